@@ -1,0 +1,1 @@
+"""Wear post-processing: surface mesh, readers, wear, analysis and plots."""

@@ -1,0 +1,63 @@
+"""Wear laws: worn volume per triangle from the load ledger of one cycle.
+
+A law is one function and one line in `LAWS`. It takes the ledger columns (name -> (m,) array, SI units in the
+names) and a mapping of parameters (units in the names), and returns the worn volume of every triangle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+Law = Callable[[Mapping[str, np.ndarray], Mapping[str, float]], np.ndarray]
+
+
+def archard(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
+    """Worn volume of Archard's law, V_i = alpha_s * sliding_work_i.
+
+    Parameters
+    ----------
+    columns : needs `sliding_work_J`, (m,) array of sum(F_n |v_t| dt) in J.
+    parameters : needs `wear_coefficient_per_pa`, alpha_s in 1/Pa, at least 0.
+
+    Returns
+    -------
+    (m,) float64 array, worn volume in m3.
+
+    Raises
+    ------
+    KeyError : the column or the parameter is missing.
+    ValueError : alpha_s is negative or not finite.
+
+    Source: Y. Yan, TU Delft 2022, Eq 3.6 and 5.2; J. F. Archard, J. Appl. Phys. 24 (1953) 981.
+    """
+    sliding_work = _required(columns, "sliding_work_J", "ledger column")
+    wear_coefficient = float(_required(parameters, "wear_coefficient_per_pa", "wear parameter"))
+    if not (np.isfinite(wear_coefficient) and wear_coefficient >= 0.0):
+        raise ValueError(
+            f"wear_coefficient_per_pa is {wear_coefficient}, allowed is a finite number >= 0 (1/Pa)"
+        )
+    return wear_coefficient * np.asarray(sliding_work, dtype=np.float64)
+
+
+LAWS: dict[str, Law] = {"archard": archard}
+
+
+def worn_volume(law: str, columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
+    """Worn volume per triangle (m,) in m3 by the law of that name.
+
+    Raises
+    ------
+    ValueError : no law of that name; the message names the allowed ones.
+    KeyError : a ledger column or parameter that the law needs is missing.
+    """
+    if law not in LAWS:
+        raise ValueError(f"wear law '{law}' is unknown, allowed are: {', '.join(sorted(LAWS))}")
+    return LAWS[law](columns, parameters)
+
+
+def _required(mapping: Mapping, name: str, kind: str):
+    if name not in mapping:
+        raise KeyError(f"{kind} '{name}' is missing, found: {', '.join(map(str, mapping)) or 'nothing'}")
+    return mapping[name]

@@ -1,0 +1,118 @@
+"""One wear update of a surface mesh, called after every cycle, and the checks that go with it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from postproc.mesh import SurfaceMesh, smallest_angles
+from postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
+from postproc.wear.displacement import displace, inward_directions, rim_directions
+
+BALANCE_TOLERANCE = (
+    1e-9  # -, of alpha * work: rounding in sums over 1e6 triangles stays far below, a loss not
+)
+HOLDER_PART = -1  # label of the faces that do not wear
+
+REMOVED_THICKNESS = "removed_thickness_m"
+HEIGHT_LOSS = "height_loss_m"
+RAY_DEPTH = "ray_depth_m"
+CARRIED_VOLUME = "carried_volume_m3"
+
+
+class BalanceError(RuntimeError):
+    """Worn volume was lost or invented: applied + carried differs from the volume of the wear law."""
+
+
+def worn_faces(mesh: SurfaceMesh) -> np.ndarray:
+    """Mask (m,) of the faces that wear: `part` >= 0; all faces where the mesh has no `part`."""
+    part = mesh.cell_data.get("part", np.zeros(len(mesh.triangles), dtype=np.int64))
+    return np.asarray(part) > HOLDER_PART
+
+
+def wear_update(
+    mesh: SurfaceMesh,
+    pristine: SurfaceMesh,
+    worn_volume: np.ndarray,
+    step_limit: np.ndarray | None = None,
+    wall: tuple[float, float, float] | None = (0.0, 0.0, -1.0),
+) -> tuple[SurfaceMesh, dict[str, float]]:
+    """Wear the mesh by one cycle.
+
+    Parameters
+    ----------
+    mesh : present surface, m; point data of earlier updates are taken up (zero where absent)
+    pristine : surface before any wear, in the same frame, m; its triangulation may differ (after remeshing)
+    worn_volume : (m,) m3 >= 0 of this cycle; ignored on the holder
+    step_limit : (n,) m, see `postproc.wear.caps`; None: no caps, too large a step is refused
+    wall : direction in which nodes at the rim of the worn faces slide; None: along their normal, like others
+
+    Returns
+    -------
+    mesh : new points; point data `removed_thickness_m`, `height_loss_m`, `ray_depth_m`, `carried_volume_m3`
+    record : worn_volume_m3 (this cycle, worn faces only), applied_volume_m3 (this cycle), carried_volume_m3
+        (now), largest_step_m, smallest_angle_deg (worn faces), largest_depth_m (of the removed thickness)
+
+    Raises
+    ------
+    ValueError, StepTooLargeError : see `displace`.
+    """
+    worn = worn_faces(mesh)
+    carried = _point_data(mesh, CARRIED_VOLUME)
+    rim = None if wall is None else rim_directions(mesh.points, mesh.triangles, worn, wall)
+    moved = displace(mesh.points, mesh.triangles, worn_volume, carried, step_limit, rim, worn)
+    thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
+    fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
+    fields |= _depths(moved.points, mesh.triangles, worn, thickness, pristine)
+    record = {
+        "worn_volume_m3": float(np.sum(worn_volume, where=worn)),
+        "applied_volume_m3": float(moved.applied_volume.sum()),
+        "carried_volume_m3": float(moved.carried_volume.sum()),
+        "largest_step_m": float(moved.step.max(initial=0.0)),
+        "smallest_angle_deg": float(smallest_angles(moved.points, mesh.triangles[worn]).min(initial=60.0)),
+        "largest_depth_m": float(thickness.max(initial=0.0)),
+    }
+    return SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields), record
+
+
+def volume_balance(applied_total: float, carried: float, law_total: float) -> float:
+    """Relative error |applied + carried - law| / law of the volumes (m3), law = alpha * work over all cycles.
+
+    Raises
+    ------
+    BalanceError : the error is above `BALANCE_TOLERANCE`, or is not a number.
+    """
+    error = abs(applied_total + carried - law_total)
+    relative = error / abs(law_total) if law_total else (np.inf if error else 0.0)
+    if not relative <= BALANCE_TOLERANCE:
+        raise BalanceError(
+            f"applied {applied_total:.12g} m3 + carried {carried:.12g} m3 differ from the worn volume "
+            f"{law_total:.12g} m3 by {relative:.3g} of it, allowed is {BALANCE_TOLERANCE}"
+        )
+    return float(relative)
+
+
+def recession_fault(mesh: SurfaceMesh, floor_z: float = 0.0, clearance: float = 0.0) -> str | None:
+    """Phrase if a node of the worn faces came down to the floor (z <= floor_z + clearance, m), else None."""
+    nodes = np.unique(mesh.triangles[worn_faces(mesh)])
+    lowest = nodes[np.argmin(mesh.points[nodes, 2])] if len(nodes) else None
+    if lowest is None or mesh.points[lowest, 2] > floor_z + clearance:
+        return None
+    return (
+        f"the sample is worn down to the floor: node {lowest} is at z = {mesh.points[lowest, 2]:.4g} m, "
+        f"allowed is above {floor_z + clearance:.4g} m"
+    )
+
+
+def _point_data(mesh: SurfaceMesh, name: str) -> np.ndarray:
+    return np.asarray(mesh.point_data.get(name, np.zeros(len(mesh.points))), dtype=np.float64)
+
+
+def _depths(points, triangles, worn, thickness, pristine: SurfaceMesh) -> dict[str, np.ndarray]:
+    """Height loss and ray depth (n,) m, computed where something was removed and 0 elsewhere."""
+    touched = np.flatnonzero(thickness > 0.0)
+    outward = -inward_directions(points, triangles, worn)
+    fields = {HEIGHT_LOSS: np.zeros(len(points)), RAY_DEPTH: np.zeros(len(points))}
+    old = (pristine.points, pristine.triangles)
+    fields[HEIGHT_LOSS][touched] = height_loss(points[touched], *old)
+    fields[RAY_DEPTH][touched] = ray_depth(points[touched], outward[touched], thickness[touched], *old)
+    return fields

@@ -1,0 +1,64 @@
+"""Largest step of a node in one update."""
+
+import numpy as np
+import pytest
+
+from meshes.plate import flat_plate
+from postproc.wear.caps import gap_closing_step, step_limit
+
+ROUNDING = 1e-12  # relative: a handful of products
+
+
+def test_edge_limit_is_the_fraction_of_the_shortest_edge():
+    """With a long cycle only the geometry counts: fraction times the shortest edge at the node."""
+    mesh = flat_plate(6.0, 4.0, 1.0)
+    mesh.points[mesh.points[:, 0] == 3.0, 0] = 2.5  # the last column of cells is half as wide
+    limit = step_limit(mesh.points, mesh.triangles, 0.1, 0.01, 1e6)
+    narrow = mesh.points[:, 0] >= 2.0
+    np.testing.assert_allclose(limit[narrow], 0.05, rtol=ROUNDING)
+    np.testing.assert_allclose(limit[~narrow], 0.1, rtol=ROUNDING)
+
+
+def test_time_limit_is_the_free_fall_of_that_fraction_of_the_cycle():
+    """A particle falls d = g (f T)^2 / 2 in the time f T, so closing the gap takes the fraction f of T."""
+    duration = 0.2
+    limit = step_limit(*_plate(), 0.5, 0.01, duration)
+    np.testing.assert_allclose(limit, 0.5 * 9.81 * 0.002**2, rtol=ROUNDING)
+    fall = np.sqrt(2.0 * limit / 9.81)
+    np.testing.assert_allclose(fall, 0.01 * duration, rtol=ROUNDING)
+
+
+def test_gap_closing_step_grows_with_the_square_of_time():
+    """Twice the cycle, four times the step."""
+    assert gap_closing_step(0.01, 2.0, 9.81) == pytest.approx(
+        4.0 * gap_closing_step(0.01, 1.0, 9.81), rel=ROUNDING
+    )
+
+
+def test_unused_node_gets_the_time_limit():
+    """A node of no triangle has no edge: the time limit alone, never NaN or infinity."""
+    points, triangles = _plate()
+    limit = step_limit(np.vstack((points, [[9.0, 9.0, 9.0]])), triangles, 0.1, 0.01, 1.0)
+    assert limit[-1] == gap_closing_step(0.01, 1.0, 9.81)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "name"),
+    [
+        ((0.0, 0.01, 1.0, 9.81), "edge_fraction"),
+        ((0.6, 0.01, 1.0, 9.81), "edge_fraction"),
+        ((np.nan, 0.01, 1.0, 9.81), "edge_fraction"),
+        ((0.1, 0.0, 1.0, 9.81), "gap_closing_time_fraction"),
+        ((0.1, 0.01, -1.0, 9.81), "cycle_duration_s"),
+        ((0.1, 0.01, 1.0, 0.0), "gravity"),
+    ],
+)
+def test_numbers_out_of_range_are_named(numbers, name):
+    """Each number outside its range is refused by name."""
+    with pytest.raises(ValueError, match=f"{name} is"):
+        step_limit(*_plate(), *numbers)
+
+
+def _plate():
+    mesh = flat_plate(6.0, 4.0, 1.0)
+    return mesh.points, mesh.triangles
