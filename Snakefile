@@ -1,0 +1,35 @@
+"""Contents page: a study's name makes its report, <study>_decks renders its decks without running the solver.
+
+    snakemake demo
+    snakemake screening --config fidelity=standard
+    snakemake demo_decks
+
+The profile workflows/profiles/default is chosen by `make`; give it yourself with --workflow-profile.
+"""
+
+
+include: "workflows/common.smk"
+include: "workflows/mesh.smk"
+include: "workflows/solve.smk"
+include: "workflows/analyse.smk"
+include: "workflows/report.smk"
+
+
+for STUDY in STUDIES:
+
+    rule:
+        name:
+            STUDY
+        input:
+            f"results/{STUDY}/report.html",
+            f"results/{STUDY}/summary.csv",
+        message:
+            "Report of the study"
+
+    rule:
+        name:
+            f"{STUDY}_decks"
+        input:
+            study_decks(STUDY),
+        message:
+            "Decks of the study, rendered without running the solver"

@@ -1,0 +1,1 @@
+"""What a study says: tables from the files of its runs."""

@@ -1,0 +1,49 @@
+"""One row per run: what a study's plots and regressions draw on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+SUMMED = (
+    "archard_volume_m3",
+    "base_archard_volume_m3",
+    "bump_archard_volume_m3",
+    "applied_volume_m3",
+    "sliding_work_J",
+    "finnie_volume_m3",
+)
+AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
+
+
+def run_summary(wear: pd.DataFrame) -> dict[str, float]:
+    """Return a run's totals (m3, J), its state at the end, mean normal force (N) and wear per metre (m3/m).
+
+    wear: rows of wear.csv, cycle by cycle.
+    """
+    totals = {name: float(wear[name].sum()) for name in SUMMED}
+    last = {name: float(wear[name].iloc[-1]) for name in AT_THE_END}
+    return {
+        "cycles": len(wear),
+        **last,
+        **totals,
+        "archard_volume_per_metre_m3_per_m": totals["archard_volume_m3"] / last["travel_m"],
+        "mean_normal_force_N": float(wear["mean_normal_force_N"].mean()),
+        "largest_balance_error": float(wear["balance_error"].max()),
+    }
+
+
+def relative_wear(table: pd.DataFrame) -> pd.Series:
+    """Return each run's Archard volume over that of the plain run of the same design row; NaN without one."""
+    plain = table[table["surface"] == "plain"].set_index("row")["archard_volume_m3"]
+    return table["archard_volume_m3"] / table["row"].map(plain)
+
+
+def summary_table(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
+    """Return the design table with the totals of every run; files in the order of the design's rows."""
+    runs = pd.read_csv(design)
+    totals = pd.DataFrame([run_summary(pd.read_csv(path)) for path in wear_files])
+    table = pd.concat([runs, totals], axis=1)
+    return table.assign(wear_over_plain=relative_wear(table))

@@ -1,0 +1,72 @@
+"""Studies, checked before anything runs, and the input functions of all stages."""
+
+import os
+from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
+from snakemake.utils import min_version
+
+from workflows.design import ConfigError, list_studies, load_study
+
+min_version("9.0")
+
+ROOT = Path(workflow.basedir)
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+
+
+wildcard_constraints:
+    study=r"[a-z][a-z0-9_]*",
+    run=r"(?!beds|decks|figures|logs)[A-Za-z0-9_-]+",
+    bed=r"bed_\d+",
+
+
+def checked_studies():
+    """All studies by name. Any fault in the configuration ends here, in one sentence, before a job starts."""
+    try:
+        return {name: load_study(name, ROOT, dict(config)) for name in list_studies(ROOT)}
+    except ConfigError as fault:
+        raise WorkflowError(str(fault)) from None
+
+
+STUDIES = checked_studies()
+
+
+def study_of(wildcards):
+    return STUDIES[wildcards.study]
+
+
+def run_of(wildcards):
+    return study_of(wildcards).run(wildcards.run)
+
+
+def run_parameters(wildcards):
+    return run_of(wildcards).parameters
+
+
+def bed_parameters(wildcards):
+    return study_of(wildcards).beds[wildcards.bed]
+
+
+def bed_parameters_of_run(wildcards):
+    return study_of(wildcards).beds[study_of(wildcards).bed_of(wildcards.run)]
+
+
+def bed_folder_of_run(wildcards):
+    return f"results/{wildcards.study}/beds/{study_of(wildcards).bed_of(wildcards.run)}"
+
+
+def of_every_run(pattern):
+    """An input function: a path pattern with {study} and {run}, expanded over the runs of the study."""
+
+    def paths(wildcards):
+        return [pattern.format(study=wildcards.study, run=run.name) for run in study_of(wildcards).runs]
+
+    return paths
+
+
+def study_decks(study):
+    """The folders with all decks of a study: its beds and its runs."""
+    names = [f"beds/{bed}" for bed in STUDIES[study].beds] + [run.name for run in STUDIES[study].runs]
+    return [f"results/{study}/decks/{name}/cycle_000/deck.in" for name in names if "/" not in name] + [
+        f"results/{study}/decks/{name}/deck.in" for name in names if "/" in name
+    ]

@@ -1,0 +1,277 @@
+"""Render the templates of templates/ into decks that run by hand.
+
+A deck's parameters are SI numbers and words; what a template does not use, and what it uses but is not given, is an
+error. Everything that has to be computed is computed here, so that templates only substitute.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import jinja2.meta
+
+TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
+GRAVITY = 9.81  # m/s2, as in Yan 2022, Table 3.2
+FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
+FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere
+FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
+RELAXING_TIME = 0.01  # s, after levelling
+LOWERING_FREE_FALLS = (
+    2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
+)
+SKIN_OVER_RADIUS = (
+    0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
+)
+FILL_GAP_DIAMETERS = 0.1  # -, between poured particles and the walls, in largest diameters
+DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
+REPORTS_PER_RUN = 50  # lines of progress per run command
+SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
+CONTACT_COLUMNS = 18  # of compute wall/gran/local with pos vel id force
+
+
+class DeckError(ValueError):
+    """A template and its parameters do not fit; the message names the template and the parameter."""
+
+
+# ---------------------------------------------------------------- rendering
+
+
+@cache
+def _environment(folder: Path) -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(folder),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["table"] = pair_table
+    return environment
+
+
+def pair_table(rows: Sequence[Sequence[float]]) -> str:
+    """Return a square table as the continued lines of a LIGGGHTS command."""
+    return " &\n".join("     " + " ".join(f"{value:.9g}" for value in row) for row in rows)
+
+
+def template_parts(template: str, folder: Path = TEMPLATES) -> list[str]:
+    """Return the template's file name and those of all partials that it includes. Raises DeckError if one is missing."""
+    environment = _environment(folder)
+    names = [f"{template}.in.j2"]
+    for name in names:
+        try:
+            source = environment.loader.get_source(environment, name)[0]
+        except jinja2.TemplateNotFound as missing:
+            raise DeckError(f"templates/{missing.name}: no such template.") from missing
+        found = jinja2.meta.find_referenced_templates(environment.parse(source))
+        names.extend(part for part in found if part and part not in names)
+    return names
+
+
+def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
+    """Return {file name: text} of a template and its partials: what a deck depends on besides its parameters."""
+    return {name: (folder / name).read_text() for name in template_parts(template, folder)}
+
+
+def template_variables(template: str, folder: Path = TEMPLATES) -> set[str]:
+    """Return the names of all parameters that a template and its partials use."""
+    environment = _environment(folder)
+    sources = template_sources(template, folder).values()
+    return set().union(*(jinja2.meta.find_undeclared_variables(environment.parse(text)) for text in sources))
+
+
+def render(template: str, parameters: Mapping[str, Any], folder: Path = TEMPLATES) -> str:
+    """Return the deck of a template, e.g. "settled_bed". Raises DeckError for missing and for unused parameters."""
+    wanted = template_variables(template, folder)
+    for names, fault in (
+        (wanted - set(parameters), "is not given"),
+        (set(parameters) - wanted, "is never used"),
+    ):
+        if names:
+            raise DeckError(f"templates/{template}.in.j2: parameter {', '.join(sorted(names))} {fault}.")
+    try:
+        return _environment(folder).get_template(f"{template}.in.j2").render(parameters)
+    except jinja2.TemplateError as fault:
+        raise DeckError(f"templates/{template}.in.j2: {fault}.") from fault
+
+
+# ---------------------------------------------------------------- parameters of the three decks
+
+
+def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of the deck that fills and settles a bed; `bed` as in design.bed_parameters."""
+    particle = bed["particle"]
+    filled = bed["thickness_m"] * particle["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
+    gap = max(particle["diameters_m"]) * FILL_GAP_DIAMETERS
+    floor = bed["temporary_floor_m"]
+    step = bed["time_step_s"]
+    settling = steps(math.sqrt(2.0 * filled / GRAVITY), step)
+    return {
+        **_integration(bed["ranks"], step, particle, settling),
+        **_materials(particle, bed["floor_material"], bed["floor_material"], bed),
+        **_domain(bed),
+        "rayleigh_fraction": bed["rayleigh_fraction"],
+        "temporary_floor_m": floor,
+        "fill_bottom_m": floor + gap,
+        "fill_top_m": floor + gap + filled,
+        "fill_gap_m": gap,
+        "fill_fraction": FILL_FRACTION,
+        "fall_speed_m_per_s": FALL_SPEED,
+        "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
+        "density_kg_per_m3": particle["density_kg_per_m3"],
+        "particle_diameter_m": particle["diameters_m"],
+        "size_distribution": _size_distribution(particle["mass_fractions"]),
+        "size_count": len(particle["mass_fractions"]),
+        "seeds": primes(bed["seed"], len(particle["diameters_m"]) + 2),
+        "settling_steps": settling,
+        "relaxing_steps": steps(RELAXING_TIME, step),
+    }
+
+
+def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str) -> dict[str, Any]:
+    """Return the parameters of the deck that lowers a settled bed on to the sample and runs it in.
+
+    `run` is Run.parameters, `bed` the bed's, `bed_restart` the path of its restart file as seen from the deck.
+    """
+    derived = run["derived"]
+    step = derived["time_step_s"]
+    fall = math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY)
+    return {
+        **_integration(run["solver"]["ranks"], step, run["particle"], derived["run_in_steps"]),
+        **_sliding(run, bed, cycle=0),
+        "bed_restart": bed_restart,
+        "lowering_steps": steps(LOWERING_FREE_FALLS * fall, step),
+        "run_in_steps": derived["run_in_steps"],
+    }
+
+
+def sliding_sample(
+    run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, run_restart: str
+) -> dict[str, Any]:
+    """Return the parameters of the deck of one wear cycle (1, 2, ...); arguments as for `lowered_bed`."""
+    derived = run["derived"]
+    return {
+        **_integration(
+            run["solver"]["ranks"], derived["time_step_s"], run["particle"], derived["cycle_steps"]
+        ),
+        **_sliding(run, bed, cycle),
+        "run_restart": run_restart,
+        "cycle_steps": derived["cycle_steps"],
+        "sampling_interval_steps": run["solver"]["sampling_interval_steps"],
+        "picture_steps": min(derived["picture_interval_steps"], derived["cycle_steps"]),
+        "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in range(1, CONTACT_COLUMNS + 1)),
+    }
+
+
+def travelled(run: Mapping[str, Any], cycle: int) -> float:
+    """Return how far (m) the bed has travelled when a cycle starts; cycle 0 starts at rest, 1 after the run-in."""
+    derived = run["derived"]
+    total = derived["run_in_steps"] + (cycle - 1) * derived["cycle_steps"] if cycle else 0
+    return run["sliding"]["velocity_m_per_s"] * derived["time_step_s"] * total
+
+
+def steps(duration: float, time_step: float) -> int:
+    """Return the whole number of time steps, at least one, that last a duration; both in s."""
+    return max(math.ceil(duration / time_step), 1)
+
+
+def primes(above: int, count: int) -> list[int]:
+    """Return the first `count` primes above a number; LIGGGHTS takes only primes above 10,000 as random seeds."""
+    found: list[int] = []
+    candidate = max(above, SMALLEST_SEED)
+    while len(found) < count:
+        candidate += 1
+        if all(candidate % divisor for divisor in range(2, math.isqrt(candidate) + 1)):
+            found.append(candidate)
+    return found
+
+
+# ---------------------------------------------------------------- shared blocks
+
+
+def _integration(
+    ranks: int, time_step: float, particle: Mapping[str, Any], longest_run: int
+) -> dict[str, Any]:
+    return {
+        "ranks": ranks,
+        "time_step_s": time_step,
+        "skin_m": SKIN_OVER_RADIUS * min(particle["diameters_m"]) / 2.0,
+        "gravity_m_per_s2": GRAVITY,
+        "report_steps": max(longest_run // REPORTS_PER_RUN, 1),
+    }
+
+
+def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
+    """Return the box of a bed, long enough for its whole travel and high enough for bulk piling up at a sample."""
+    margin = DOMAIN_MARGIN_DIAMETERS * max(bed["particle"]["diameters_m"])
+    filled = bed["thickness_m"] * bed["particle"]["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
+    return {
+        "half_width_m": bed["width_m"] / 2.0,
+        "bed_start_m": bed["start_m"],
+        "bed_end_m": bed["start_m"] + bed["length_m"],
+        "domain_end_m": bed["start_m"] + bed["length_m"] + bed["travel_m"],
+        "domain_margin_m": margin,
+        "domain_top_m": bed["temporary_floor_m"] + max(filled, 3.0 * bed["thickness_m"]) + 2.0 * margin,
+    }
+
+
+def end_wall_corners(bed: Mapping[str, Any]) -> tuple[float, float, float]:
+    """Return half width, bottom and top (m) of the walls at the bed's ends; they fill the domain's cross-section."""
+    domain = _domain(bed)
+    return domain["half_width_m"], -0.5 * domain["domain_margin_m"], domain["domain_top_m"] - 1e-6
+
+
+def _materials(
+    particle: Mapping[str, Any],
+    sample: Mapping[str, Any],
+    floor: Mapping[str, Any],
+    derived: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Return the property tables for the types particle, sample, floor. Wall on wall repeats the wall's value."""
+    moduli, rolling = derived["youngs_modulus_pa"], derived["rolling_friction_for_solver"]
+    sample_key = "sample_material" if "sample_material" in moduli else "floor_material"
+    keys = ("particle", sample_key, "floor_material")
+    contacts = [section["contact"] for section in (particle, sample, floor)]
+    return {
+        "youngs_modulus_pa": [moduli[key] for key in keys],
+        "poissons_ratio": [section["poissons_ratio"] for section in (particle, sample, floor)],
+        "restitution": _pairs(contact["restitution"] for contact in contacts),
+        "sliding_friction": _pairs(contact["sliding_friction"] for contact in contacts),
+        "rolling_friction_coefficient": _pairs(rolling[key] for key in keys),
+        "rolling_radius": derived["rolling_radius"],
+        "rolling_friction_model": derived["rolling_friction"],
+    }
+
+
+def _pairs(with_particle: Iterable[float]) -> list[list[float]]:
+    """Return the symmetric table of a property that is known for particle, sample and floor against a particle."""
+    particle, sample, floor = with_particle
+    return [[particle, sample, floor], [sample, sample, floor], [floor, floor, floor]]
+
+
+def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int) -> dict[str, Any]:
+    """Return what both sliding decks need: materials, where the bed's ends are, the sample's fix id."""
+    coefficient = run["wear"]["accelerated_wear_coefficient_per_pa"]
+    convention = {key: run["solver"][key] for key in ("rolling_radius", "rolling_friction")}
+    ahead = travelled(run, cycle)
+    return {
+        **_materials(
+            run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}
+        ),
+        "finnie_coefficient_per_pa": _pairs([coefficient] * 3),
+        "velocity_m_per_s": run["sliding"]["velocity_m_per_s"],
+        "upstream_end_m": bed["start_m"] + ahead,
+        "downstream_end_m": bed["start_m"] + bed["length_m"] + ahead,
+        "rayleigh_fraction": run["solver"]["rayleigh_fraction"],
+        "end_wall_file": "../end_wall.stl",
+        "cycle": cycle,
+    }
+
+
+def _size_distribution(fractions: Sequence[float]) -> str:
+    return " ".join(f"size_{index} {fraction:.9g}" for index, fraction in enumerate(fractions, start=1))

@@ -1,0 +1,160 @@
+"""Values that follow from a run's parameters. SI throughout: units are converted in design.py only."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
+HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
+ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
+
+
+def youngs_modulus(shear_modulus: float, poissons_ratio: float) -> float:
+    """Return E = 2 G (1 + nu) in Pa, from G in Pa."""
+    return 2.0 * shear_modulus * (1.0 + poissons_ratio)
+
+
+def rayleigh_time(radius: float, density: float, shear_modulus: float, poissons_ratio: float) -> float:
+    """Return the Rayleigh time of a sphere in s, from radius (m), density (kg/m3) and shear modulus (Pa).
+
+    T_R = pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the time a surface wave needs for half the circumference;
+    Li, Xu and Thornton, Powder Technology 160 (2005) 219-228.
+    """
+    return math.pi * radius * math.sqrt(density / shear_modulus) / (0.1631 * poissons_ratio + 0.8766)
+
+
+def equivalent_size_ratio(
+    median_diameter: float, major_radius: float, minor_radius: float, height: float
+) -> float:
+    """Return alpha_ER = R50 / cbrt(a b h / 2), lengths in m: particle over the sphere of the bump's volume.
+
+    The semi-ellipsoid's volume is 2/3 pi a b h. Below 1 the pattern helps (Yan 2022, Eq 4.18 and Fig 4.17).
+    """
+    return 0.5 * median_diameter / math.cbrt(0.5 * major_radius * minor_radius * height)
+
+
+def rolling_coefficient_for_solver(coefficient: float, rolling_radius: str, contact: str) -> float:
+    """Return the rolling friction coefficient (-) that makes LIGGGHTS apply the torque meant.
+
+    LIGGGHTS' cdt and epsd2 limit the torque to mu_r F_n R_reduced, R_reduced = R1 R2 / (R1 + R2): half the
+    radius for two equal spheres, the whole radius against a wall. A coefficient calibrated with the full
+    radius (`rolling_radius` full: M_r = mu_r R F_n, Yan 2022, Eq 3.3) is therefore doubled between particles
+    and unchanged at walls. For unequal spheres the factor is a compromise (radii 1.2 to 0.8: the torque is
+    4 % less than with the mean radius): recalibrate where that matters.
+
+    `contact` is "particle_particle" or "particle_wall". Raises ValueError for other words.
+    """
+    factors = {
+        ("full", "particle_particle"): 2.0,
+        ("full", "particle_wall"): 1.0,
+        ("reduced", "particle_particle"): 1.0,
+        ("reduced", "particle_wall"): 1.0,
+    }
+    if (rolling_radius, contact) not in factors:
+        raise ValueError(
+            f"rolling_radius is {rolling_radius!r} and contact {contact!r}, allowed are full or reduced"
+            " and particle_particle or particle_wall."
+        )
+    return coefficient * factors[rolling_radius, contact]
+
+
+def whole_cycle(cycle_duration: float, largest_time_step: float, sampling_interval: int) -> tuple[int, float]:
+    """Return (steps, time step in s) of a wear cycle: whole samples, and exactly the duration asked for.
+
+    The time step is the largest one, not above `largest_time_step` (s), of which a multiple of
+    `sampling_interval` steps lasts `cycle_duration` (s).
+    """
+    samples = math.ceil(cycle_duration / (largest_time_step * sampling_interval) * (1.0 - ROUNDING))
+    steps = max(samples, 1) * sampling_interval
+    return steps, cycle_duration / steps
+
+
+def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return what follows from the other sections (SI)."""
+    layers = parameters["bed"]["thickness_m"] / parameters["particle"]["median_diameter_m"]
+    return {
+        "layers": layers,
+        "thin_bed": layers < THIN_BED_LAYERS * (1.0 - ROUNDING),
+        "equivalent_size_ratio": _size_ratio(parameters),
+        **_derived_materials(parameters),
+        **_derived_geometry(parameters),
+        **_derived_times(parameters),
+    }
+
+
+def _size_ratio(parameters: dict[str, Any]) -> float | None:
+    pattern = parameters["pattern"]
+    if pattern is None:
+        return None
+    lengths = (pattern["major_radius_m"], pattern["minor_radius_m"], pattern["height_m"])
+    return equivalent_size_ratio(parameters["particle"]["median_diameter_m"], *lengths)
+
+
+def _derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return Young's moduli, and the rolling coefficients in the solver's convention."""
+    sections = {name: parameters[name] for name in ("particle", "sample_material", "floor_material")}
+    convention = parameters["solver"]["rolling_radius"]
+    return {
+        "youngs_modulus_pa": {
+            name: youngs_modulus(section["shear_modulus_pa"], section["poissons_ratio"])
+            for name, section in sections.items()
+        },
+        "rolling_friction_for_solver": {
+            name: rolling_coefficient_for_solver(
+                section["contact"]["rolling_friction"],
+                convention,
+                "particle_particle" if name == "particle" else "particle_wall",
+            )
+            for name, section in sections.items()
+        },
+    }
+
+
+def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
+    """Return the skirt's width, and the bed's length (the whole travel and its ends), mass and particles."""
+    sample, bed, sliding = parameters["sample"], parameters["bed"], parameters["sliding"]
+    particle = parameters["particle"]
+    length = math.fsum(
+        [bed["ahead_m"], bed["behind_m"], sample["length_m"], sliding["run_in_m"], sliding["travel_m"]]
+    )
+    solid_volume = length * bed["width_m"] * bed["thickness_m"] * particle["bulk_solid_fraction"]
+    per_volume = math.fsum(
+        fraction / (math.pi / 6.0 * diameter**3)
+        for fraction, diameter in zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
+    )
+    return {
+        "skirt_width_m": sample["height_above_floor_m"] / math.tan(sample["skirt_slope_rad"]),
+        "bed_length_m": length,
+        "bed_start_m": sample["length_m"] / 2.0 + bed["behind_m"] - length,
+        "total_travel_m": sliding["run_in_m"] + sliding["travel_m"],
+        "highest_point_m": sample["height_above_floor_m"]
+        + (parameters["pattern"] or {"height_m": 0.0})["height_m"]
+        + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
+        "bed_mass_kg": solid_volume * particle["density_kg_per_m3"],
+        "bed_particles": round(solid_volume * per_volume),
+    }
+
+
+def _derived_times(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return time steps (s) and numbers of steps."""
+    particle, sliding, solver = parameters["particle"], parameters["sliding"], parameters["solver"]
+    rayleigh = rayleigh_time(
+        min(particle["diameters_m"]) / 2.0,
+        particle["density_kg_per_m3"],
+        particle["shear_modulus_pa"],
+        particle["poissons_ratio"],
+    )
+    largest = solver["rayleigh_fraction"] * rayleigh
+    duration = sliding["travel_m"] / sliding["cycles"] / sliding["velocity_m_per_s"]
+    cycle_steps, time_step = whole_cycle(duration, largest, solver["sampling_interval_steps"])
+    travel_per_step = sliding["velocity_m_per_s"] * time_step
+    return {
+        "rayleigh_time_s": rayleigh,
+        "largest_time_step_s": largest,
+        "time_step_s": time_step,
+        "cycle_duration_s": duration,
+        "cycle_steps": cycle_steps,
+        "run_in_steps": round(sliding["run_in_m"] / travel_per_step),
+        "picture_interval_steps": max(round(solver["picture_interval_m"] / travel_per_step), 1),
+    }

@@ -1,0 +1,45 @@
+"""What every job does alike: progress and faults go to the terminal and to the job's log."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TextIO
+
+
+class _Both:
+    """A text stream that writes to two."""
+
+    def __init__(self, first: TextIO, second: TextIO):
+        self.streams = (first, second)
+
+    def write(self, text: str) -> int:
+        for stream in self.streams:
+            stream.write(text)
+            stream.flush()
+        return len(text)
+
+    def flush(self) -> None:
+        """Nothing is buffered here."""
+
+
+@contextlib.contextmanager
+def job_log(path: str | Path) -> Iterator[None]:
+    """Copy standard error to a log. A fault of the user's or the solver's ends the job with its sentence alone.
+
+    Faults are ValueError, RuntimeError and OSError of this project's own modules: their messages are sentences for
+    people. The log gets the traceback too. Exit code 1.
+    """
+    with open(path, "w") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
+        try:
+            yield
+        except (ValueError, RuntimeError, OSError) as fault:
+            print(f"\n{fault}\n", file=sys.stderr)
+            traceback.print_exc(file=log)
+            sys.exit(1)
+        except Exception:
+            traceback.print_exc(file=log)
+            raise

@@ -1,0 +1,3 @@
+rule report:
+    output: "results/{study}/report.html"
+    shell: "touch {output}"

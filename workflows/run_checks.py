@@ -1,0 +1,199 @@
+"""Checks of one run that compare several settings, before any solver starts.
+
+Each check returns None, or (key at fault, what is allowed). To add one: a function, listed in RUN_CHECKS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from workflows.config_files import ConfigError, Layer
+from workflows.validation import locate, show
+
+Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
+
+MINIMUM_STEPS_PER_CYCLE = 100  # fewer time steps do not resolve a single contact, let alone a cycle
+SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run to be checked: settings with the layers they come from, design row, parameters in SI."""
+
+    layers: tuple[Layer, ...]
+    settings: dict[str, Any]
+    row: Layer
+    parameters: dict[str, Any]
+
+
+def check_run(case: Case) -> None:
+    """Raise ConfigError for the first fault of a run: file, line, key, value, row, allowed."""
+    for check in RUN_CHECKS:
+        fault = check(case)
+        if fault is not None:
+            key, allowed = fault
+            if not key:
+                raise ConfigError(f"{case.row.where()}: {allowed}.")
+            found = f"{show(_value(case, key))}{_for_row(case, key)}"
+            raise ConfigError(f"{_where(case, key)} is {found}, allowed is {allowed}.")
+
+
+def _where(case: Case, key: str) -> str:
+    source = case.row.where() if "." not in key else locate(case.layers, tuple(key.split(".")))
+    return f"{source}: {key}"
+
+
+def _value(case: Case, key: str) -> Any:
+    section, _, name = key.rpartition(".")
+    return case.settings[section][name] if section else case.row.values[name]
+
+
+def _for_row(case: Case, key: str) -> str:
+    return f" for row {case.row.values['row']}" if "." in key else ""
+
+
+def _millimetres(metres: float) -> str:
+    return f"{metres * 1000.0:.6g} mm"
+
+
+def sample_in_bed(case: Case) -> Fault | None:
+    """The sample and its skirt on both sides lie within the bed's width."""
+    sample, skirt = case.parameters["sample"], case.parameters["derived"]["skirt_width_m"]
+    room = case.parameters["bed"]["width_m"] - 2.0 * skirt
+    if sample["width_m"] <= room:
+        return None
+    return (
+        "sample.width_mm",
+        f"at most {_millimetres(room)}, bed.width_mm less a skirt of {_millimetres(skirt)} on each side",
+    )
+
+
+def skirt_in_bed(case: Case) -> Fault | None:
+    """The bed is longer than the sample's skirt, ahead of the sample and behind it."""
+    skirt = case.parameters["derived"]["skirt_width_m"]
+    for key in ("ahead", "behind"):
+        if case.parameters["bed"][f"{key}_m"] < skirt:
+            return f"bed.{key}_mm", f"at least {_millimetres(skirt)}, the width of the sample's skirt"
+    return None
+
+
+def enough_layers(case: Case) -> Fault | None:
+    """A bed has three layers of particles, unless thin beds are allowed."""
+    if case.settings["bed"]["allow_thin_bed"] or not case.parameters["derived"]["thin_bed"]:
+        return None
+    particle = case.parameters["particle"]
+    diameter, scale = particle["median_diameter_m"], particle["scale"]
+    return "bed_thickness_mm", (
+        f"at least {_millimetres(3.0 * diameter)}, three layers of particles of {_millimetres(diameter)}"
+        f" (particle_scale {scale:g}), or bed.allow_thin_bed: true"
+    )
+
+
+def no_particle_between(case: Case) -> Fault | None:
+    """The sample's top is less than a particle's radius above the floor."""
+    radius = min(case.parameters["particle"]["diameters_m"]) / 2.0
+    if case.parameters["sample"]["height_above_floor_m"] < radius:
+        return None
+    return (
+        "sample.height_above_floor_mm",
+        f"below {_millimetres(radius)}, the radius of the smallest particle",
+    )
+
+
+def element_resolves_bump(case: Case) -> Fault | None:
+    """A bump's footprint is at least two elements across its narrow side.
+
+    The height sets no limit: a low bump is a gentle slope, which large elements follow.
+    """
+    pattern = case.parameters["pattern"]
+    if pattern is None:
+        return None
+    radius = min(pattern["major_radius_m"], pattern["minor_radius_m"])
+    if case.parameters["sample"]["element_size_m"] <= radius:
+        return None
+    return "sample.element_size_mm", f"at most {_millimetres(radius)}, the smaller radius of a bump"
+
+
+def element_resolves_sample(case: Case) -> Fault | None:
+    """A sample's shorter side is several elements long."""
+    sample = case.parameters["sample"]
+    largest = min(sample["width_m"], sample["length_m"]) / SAMPLE_ELEMENTS
+    if sample["element_size_m"] <= largest:
+        return None
+    return (
+        "sample.element_size_mm",
+        f"at most {_millimetres(largest)}, a quarter of the sample's shorter side",
+    )
+
+
+def bump_in_bed(case: Case) -> Fault | None:
+    """A bump is lower than the bed is thick."""
+    pattern, thickness = case.parameters["pattern"], case.parameters["bed"]["thickness_m"]
+    if pattern is None or pattern["height_m"] < thickness:
+        return None
+    return "height_mm", f"below {_millimetres(thickness)}, bed_thickness_mm"
+
+
+def cycle_long_enough(case: Case) -> Fault | None:
+    """A wear cycle has at least a hundred time steps."""
+    steps = _raw_steps(case)
+    if steps >= MINIMUM_STEPS_PER_CYCLE:
+        return None
+    most = int(case.settings["sliding"]["cycles"] * steps / MINIMUM_STEPS_PER_CYCLE)
+    if most < 1:
+        derived, velocity = case.parameters["derived"], case.parameters["sliding"]["velocity_m_per_s"]
+        least = MINIMUM_STEPS_PER_CYCLE * derived["largest_time_step_s"] * velocity
+        return "sliding.travel_mm", f"at least {_millimetres(least)}, {MINIMUM_STEPS_PER_CYCLE} time steps"
+    return "sliding.cycles", f"at most {most}, so that a cycle has {MINIMUM_STEPS_PER_CYCLE} time steps"
+
+
+def sampled_in_cycle(case: Case) -> Fault | None:
+    """Contacts are sampled more than once in a cycle."""
+    steps = _raw_steps(case)
+    if case.settings["solver"]["sampling_interval_steps"] < steps:
+        return None
+    return "solver.sampling_interval_steps", f"below {int(steps)}, the time steps of a cycle"
+
+
+def _raw_steps(case: Case) -> float:
+    derived = case.parameters["derived"]
+    return derived["cycle_duration_s"] / derived["largest_time_step_s"]
+
+
+def pattern_fits(case: Case) -> Fault | None:
+    """Bumps neither overlap nor leave the sample (meshes.pattern decides)."""
+    section, sample = case.parameters["pattern"], case.parameters["sample"]
+    if section is None:
+        return None
+    from meshes.pattern import (
+        ConvexPattern,
+        pattern_faults,
+    )  # here, so that plain studies need no mesh package
+
+    pattern = ConvexPattern(
+        major_radius=section["major_radius_m"],
+        minor_radius=section["minor_radius_m"],
+        height=section["height_m"],
+        row_spacing=section["row_spacing_m"],
+        column_spacing=section["column_spacing_m"],
+        major_axis=section["major_axis"],
+        row_offset=section["row_offset_fraction"],
+    )
+    fault = pattern_faults(pattern, sample["width_m"], sample["length_m"])
+    return None if fault is None else ("", fault)
+
+
+RUN_CHECKS: tuple[Callable[[Case], Fault | None], ...] = (
+    enough_layers,
+    bump_in_bed,
+    pattern_fits,
+    sample_in_bed,
+    skirt_in_bed,
+    element_resolves_sample,
+    element_resolves_bump,
+    no_particle_between,
+    cycle_long_enough,
+    sampled_in_cycle,
+)

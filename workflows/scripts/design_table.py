@@ -1,0 +1,9 @@
+"""Write the design table of a study: one row per run."""
+
+from pathlib import Path
+
+from workflows.cycles import write_table
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    write_table(Path(snakemake.output[0]), snakemake.params.rows)

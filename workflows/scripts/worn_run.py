@@ -1,0 +1,18 @@
+"""Run the wear cycles of a run, or what is missing of them."""
+
+from pathlib import Path
+
+from workflows.cycles import Chain, run_chain
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    run_chain(
+        Chain(
+            name=snakemake.wildcards.run,
+            folder=Path(snakemake.output.wear).parent,
+            parameters=snakemake.params.run,
+            bed=snakemake.params.bed,
+            surface=Path(snakemake.input.surface),
+            bed_restart=Path(snakemake.input.bed),
+        )
+    )

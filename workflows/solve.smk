@@ -1,0 +1,70 @@
+"""Beds and runs: everything that calls the solver, and the same decks without calling it."""
+
+
+rule settled_bed:
+    output:
+        restart="results/{study}/beds/{bed}/bed.restart",
+        cost="results/{study}/beds/{bed}/cost.csv",
+    params:
+        bed=bed_parameters,
+    log:
+        "results/{study}/logs/settled_bed_{bed}.log",
+    benchmark:
+        "results/{study}/logs/settled_bed_{bed}.benchmark.tsv"
+    threads: lambda wildcards: bed_parameters(wildcards)["ranks"]
+    message:
+        "Filling and settling {wildcards.bed}"
+    script:
+        "scripts/settled_bed.py"
+
+
+rule worn_run:
+    input:
+        surface="results/{study}/{run}/surface.vtu",
+        bed=lambda wildcards: f"{bed_folder_of_run(wildcards)}/bed.restart",
+    output:
+        wear="results/{study}/{run}/wear.csv",
+        cost="results/{study}/{run}/cost.csv",
+        surface="results/{study}/{run}/worn_surface.vtu",
+    params:
+        run=run_parameters,
+        bed=bed_parameters_of_run,
+    log:
+        "results/{study}/logs/worn_run_{run}.log",
+    benchmark:
+        "results/{study}/logs/worn_run_{run}.benchmark.tsv"
+    threads: lambda wildcards: run_parameters(wildcards)["solver"]["ranks"]
+    message:
+        "Wear cycles of {wildcards.run}"
+    script:
+        "scripts/worn_run.py"
+
+
+rule bed_deck:
+    output:
+        "results/{study}/decks/beds/{bed}/deck.in",
+    params:
+        bed=bed_parameters,
+    log:
+        "results/{study}/logs/bed_deck_{bed}.log",
+    message:
+        "Deck of {wildcards.bed}"
+    script:
+        "scripts/bed_deck.py"
+
+
+rule run_decks:
+    input:
+        "results/{study}/{run}/surface.vtu",
+    output:
+        "results/{study}/decks/{run}/cycle_000/deck.in",
+    params:
+        run=run_parameters,
+        bed=bed_parameters_of_run,
+        bed_restart=lambda wildcards: f"results/{wildcards.study}/decks/beds/{study_of(wildcards).bed_of(wildcards.run)}/bed.restart",
+    log:
+        "results/{study}/logs/run_decks_{run}.log",
+    message:
+        "Decks of {wildcards.run}"
+    script:
+        "scripts/run_decks.py"

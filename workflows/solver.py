@@ -1,0 +1,134 @@
+"""Run LIGGGHTS on a deck in its folder: start it, watch it, stop it with its parent, and pass on its last words."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
+
+DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
+EXECUTABLE = "liggghts"
+POLL_SECONDS = 0.25  # between two looks at the log
+LAST_LINES = 12  # of the solver's output, shown when it fails
+_PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+
+
+class SolverError(RuntimeError):
+    """LIGGGHTS failed; the message gives its last words and, where known, the cause."""
+
+
+def solver_command(ranks: int) -> list[str]:
+    """Return the command that runs a deck; output is line-buffered, or fatal messages would vanish in a pipe."""
+    deck = ["stdbuf", "-oL", EXECUTABLE, "-in", DECK, "-log", LOG]
+    return deck if ranks == 1 else ["mpirun", "--bind-to", "none", "-n", str(ranks), *deck]
+
+
+def solver_environment() -> dict[str, str]:
+    """Return the environment of the solver; Open MPI refuses to run as root unless told twice."""
+    allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    return {**os.environ, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
+
+
+def run_deck(
+    folder: Path,
+    ranks: int = 1,
+    on_step: Callable[[int], None] = lambda step: None,
+    triangles: Mapping[str, int] | None = None,
+) -> float:
+    """Run `deck.in` of a folder to its end and return the wall time in s.
+
+    on_step: called with the last time step in the log, several times a second
+    triangles: {mesh fix id: number of triangles written for it}; the run is stopped when the solver reports fewer
+
+    Raises SolverError.
+    """
+    if shutil.which(EXECUTABLE) is None:
+        raise SolverError(f"{EXECUTABLE} is not on the PATH; `make setup` installs it and `make doctor` checks it.")
+    started = time.monotonic()
+    with open(folder / SCREEN, "wb") as screen:
+        process = subprocess.Popen(
+            solver_command(ranks),
+            cwd=folder,
+            env=solver_environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=screen,
+            stderr=subprocess.STDOUT,
+            preexec_fn=_die_with_parent,
+        )
+        try:
+            _watch(process, folder, on_step, dict(triangles or {}))
+        finally:
+            _stop(process)
+    if process.returncode != 0:
+        raise SolverError(_last_words(folder, process.returncode))
+    return time.monotonic() - started
+
+
+def _watch(
+    process: subprocess.Popen, folder: Path, on_step: Callable[[int], None], triangles: dict[str, int]
+) -> None:
+    """Follow a run until it ends; every mesh is checked once, as soon as the solver has reported it."""
+    ended = False
+    while not ended:
+        ended = _ended(process)
+        step = last_step(folder / LOG) if (folder / LOG).exists() else None
+        if step is not None:
+            on_step(step)
+        if triangles:
+            _check_triangles(folder, triangles)
+
+
+def _ended(process: subprocess.Popen) -> bool:
+    try:
+        process.wait(POLL_SECONDS)
+    except subprocess.TimeoutExpired:
+        return False
+    return True
+
+
+def _check_triangles(folder: Path, expected: dict[str, int]) -> None:
+    """Compare the triangles that the solver kept with those written; what is checked leaves `expected`."""
+    for mesh, written in list(expected.items()):
+        try:
+            kept = reported_triangles(folder / SCREEN, mesh)
+        except SolverLogError:
+            continue
+        if kept != written:
+            raise SolverError(
+                f"{folder / DECK}: LIGGGHTS keeps {kept} of the {written} triangles of mesh {mesh}; allowed is every "
+                "one, because it drops degenerate ones silently and the ids of all later ones shift."
+            )
+        del expected[mesh]
+
+
+def _last_words(folder: Path, code: int) -> str:
+    text = (folder / SCREEN).read_text("utf-8", "replace")
+    cause = failure(text) or f"LIGGGHTS stopped with exit code {code}"
+    lines = deque((line for line in text.splitlines() if line.strip()), maxlen=LAST_LINES)
+    quoted = "\n".join(f"    {line}" for line in lines)
+    return f"{folder / DECK}: {cause}. Its last lines ({folder / SCREEN}):\n{quoted}"
+
+
+def _stop(process: subprocess.Popen) -> None:
+    if process.poll() is None:
+        process.terminate()
+        try:
+            process.wait(10.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _die_with_parent() -> None:
+    """Let the kernel stop the solver when the driver dies, however it dies; mpirun then stops its ranks."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGTERM)

@@ -1,0 +1,129 @@
+"""State of a run on disk: what a finished cycle depended on, what it left, and which cycles still hold.
+
+A cycle is worked on in `cycle_<nnn>.part` and renamed to `cycle_<nnn>` when its state is written: a folder under the
+final name is whole. A run resumes after the newest cycle whose state was made from the same inputs, and from nothing
+else; cycles of other inputs move to `superseded/<digest>`, and come back when those inputs do.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+STATE = "state.json"
+DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder
+
+
+class StateError(RuntimeError):
+    """A run's folder cannot be used; the message names it."""
+
+
+def digest(*parts: bytes | str | Mapping[str, Any]) -> str:
+    """Return the SHA-256 of texts, bytes and mappings (as JSON with sorted keys), each told apart from the next."""
+    total = hashlib.sha256()
+    for part in parts:
+        text = json.dumps(part, sort_keys=True) if isinstance(part, Mapping) else part
+        data = text.encode() if isinstance(text, str) else text
+        total.update(len(data).to_bytes(8, "big") + data)
+    return total.hexdigest()
+
+
+def file_digest(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def cycle_folder(run_folder: Path, cycle: int) -> Path:
+    """Return the folder of a finished cycle: cycle_000 is the lowered and run-in bed, wear starts with cycle_001."""
+    return run_folder / f"cycle_{cycle:03d}"
+
+
+@contextlib.contextmanager
+def working_folder(run_folder: Path, cycle: int) -> Iterator[Path]:
+    """Give an empty folder to work on a cycle in; it gets the cycle's final name when the block ends well."""
+    final = cycle_folder(run_folder, cycle)
+    part = final.with_suffix(".part")
+    shutil.rmtree(part, ignore_errors=True)
+    part.mkdir(parents=True)
+    yield part
+    os.replace(part, final)
+
+
+def write_state(folder: Path, inputs: str, files: tuple[str, ...], record: Mapping[str, Any]) -> None:
+    """Write the state of a cycle: the digest of its inputs, those of the files that the next one needs, its record."""
+    state = {"inputs": inputs, "files": {name: file_digest(folder / name) for name in files}, **record}
+    (folder / STATE).write_text(json.dumps(state, indent=1, sort_keys=False) + "\n")
+
+
+def read_state(run_folder: Path, cycle: int) -> dict[str, Any]:
+    """Return the state of a finished cycle."""
+    return json.loads((cycle_folder(run_folder, cycle) / STATE).read_text())
+
+
+def finished_cycles(run_folder: Path, inputs: str) -> int:
+    """Return how many cycles, counted from 0 without a gap, were made from these inputs and are undamaged."""
+    count = 0
+    while _holds(cycle_folder(run_folder, count), inputs):
+        count += 1
+    return count
+
+
+def _holds(folder: Path, inputs: str) -> bool:
+    try:
+        state = json.loads((folder / STATE).read_text())
+        found = {name: file_digest(folder / name) for name in state["files"]}
+    except (OSError, ValueError, KeyError):
+        return False
+    return state["inputs"] == inputs and found == state["files"]
+
+
+def set_aside_others(run_folder: Path, inputs: str) -> str | None:
+    """Move cycles of other inputs to superseded/<digest> and bring back those of these inputs, if there are any.
+
+    Returns a sentence about what was moved, or None.
+    """
+    said = []
+    first = cycle_folder(run_folder, 0)
+    if first.exists() and (other := _inputs_of(first)) != inputs:
+        target = run_folder / "superseded" / other[:DIGEST_LETTERS]
+        _move_cycles(run_folder, target)
+        said.append(f"its inputs changed, earlier cycles are kept in {target}")
+    stored = run_folder / "superseded" / inputs[:DIGEST_LETTERS]
+    if stored.exists() and not first.exists():
+        _move_cycles(stored, run_folder)
+        said.append(f"cycles of the same inputs were brought back from {stored}")
+    return "; ".join(said) or None
+
+
+def _inputs_of(folder: Path) -> str:
+    try:
+        return json.loads((folder / STATE).read_text())["inputs"]
+    except (OSError, ValueError, KeyError):
+        return "damaged_state"
+
+
+def _move_cycles(source: Path, target: Path) -> None:
+    target.mkdir(parents=True, exist_ok=True)
+    for folder in sorted(source.glob("cycle_[0-9]*")):
+        shutil.rmtree(target / folder.name, ignore_errors=True)
+        shutil.move(folder, target / folder.name)
+
+
+@contextlib.contextmanager
+def only_driver(run_folder: Path) -> Iterator[None]:
+    """Hold the run's lock; the kernel releases it with the process. Raises StateError when another one holds it."""
+    run_folder.mkdir(parents=True, exist_ok=True)
+    with open(run_folder / ".lock", "w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as busy:
+            raise StateError(f"{run_folder}: another process works on this run; wait for it or stop it.") from busy
+        yield
