@@ -1,0 +1,1 @@
+"""Geometry builders: plain SI arguments in, a `SurfaceMesh` out."""

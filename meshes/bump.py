@@ -1,0 +1,107 @@
+"""The shell of one bump: the upper half of an ellipsoid, with nodes evenly spaced along its foot."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from meshes.gmsh_session import gmsh_session
+from meshes.relax import relax
+from postproc.mesh import volume_above_plane
+
+FINE_EDGES = 4  # edges along the smaller radius of the foot that are fine enough: 26 or more round the foot
+COARSE_EDGES = 2  # fewest edges along the smaller radius of the foot: 12 or more round the foot
+SWEEPS = 60  # of relaxation; angles stop improving after about 40
+ARC_SAMPLES = 20_001  # points on the foot from which arc length is summed; its error is below 1e-8
+
+
+def bump_element_size(half_width: float, half_length: float, element_size: float) -> float:
+    """Edge length on a bump (m): the element size, halved on small bumps.
+
+    With r the foot's smaller radius: elements up to r/4 are used as they are; longer ones are shortened to
+    r/4, but to no less than half the element size; on no account are they longer than r/2.
+    """
+    radius = min(half_width, half_length)
+    return min(element_size, max(element_size / 2, radius / FINE_EDGES), radius / COARSE_EDGES)
+
+
+def foot_nodes(half_width: float, half_length: float, element_size: float) -> np.ndarray:
+    """Nodes on the foot ellipse, evenly spaced in arc length, anticlockwise from +x, (f, 2) m; f is even."""
+    angle = np.linspace(0.0, 2 * math.pi, ARC_SAMPLES)
+    steps = np.hypot(half_width * np.diff(np.cos(angle)), half_length * np.diff(np.sin(angle)))
+    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    count = 2 * math.ceil(arc[-1] / element_size / 2)
+    at = np.interp(np.arange(count) * arc[-1] / count, arc, angle)
+    return np.column_stack([half_width * np.cos(at), half_length * np.sin(at)])
+
+
+def bump_shell(
+    half_width: float, half_length: float, height: float, element_size: float
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Mesh the semi-ellipsoid x2/half_width2 + y2/half_length2 + z2/height2 = 1, z >= 0; all arguments in m.
+
+    Returns points (p, 3) m on the ellipsoid, triangles (t, 3) with outward normals, and the number f of foot
+    nodes: the first f points are `foot_nodes` at z = 0.
+    """
+    foot = foot_nodes(half_width, half_length, element_size)
+    semi_axes = np.array([half_width, half_length, height])
+    points, triangles = _gmsh_shell(semi_axes, len(foot), element_size)
+    points, triangles = _foot_first(points, triangles, semi_axes, foot)
+    fixed = np.arange(len(points)) < len(foot)
+    points, triangles = relax(points, triangles, fixed, lambda at: _on_ellipsoid(at, semi_axes), SWEEPS)
+    return points, triangles, len(foot)
+
+
+def _on_ellipsoid(points: np.ndarray, semi_axes: np.ndarray) -> np.ndarray:
+    """Points near the ellipsoid moved on to it: two Newton steps along its gradient, the rest by scaling."""
+    for _ in range(2):
+        gradient = points / semi_axes**2
+        value = (points * gradient).sum(axis=1, keepdims=True) - 1.0
+        points = points - value * gradient / (2.0 * (gradient**2).sum(axis=1, keepdims=True))
+    return points / np.linalg.norm(points / semi_axes, axis=1, keepdims=True)
+
+
+def _gmsh_shell(semi_axes: np.ndarray, feet: int, element_size: float) -> tuple[np.ndarray, np.ndarray]:
+    """A first triangulation from gmsh, `feet` edges round the foot: points (p, 3) m, triangles (t, 3)."""
+    with gmsh_session() as gmsh:
+        occ, scale = gmsh.model.occ, float(semi_axes.max())
+        half_ball = occ.addSphere(0, 0, 0, 1, angle1=0, angle2=math.pi / 2)
+        occ.dilate([(3, half_ball)], 0, 0, 0, *(semi_axes / scale).tolist())
+        occ.synchronize()
+        faces = gmsh.model.getEntities(2)
+        flat = [face for face in faces if gmsh.model.getBoundingBox(*face)[5] < semi_axes[2] / scale / 2]
+        curves = [abs(tag) for _, tag in gmsh.model.getBoundary(flat)]
+        occ.remove([(3, half_ball)])
+        occ.remove(flat)
+        occ.synchronize()
+        for curve in curves:
+            gmsh.model.mesh.setTransfiniteCurve(curve, feet // len(curves) + 1)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", element_size / scale)
+        gmsh.model.mesh.generate(2)
+        tags, points, _ = gmsh.model.mesh.getNodes()
+        _, cells = gmsh.model.mesh.getElementsByType(2)
+    index = np.empty(int(tags.max()) + 1, dtype=np.int64)
+    index[tags] = np.arange(len(tags))
+    used, triangles = np.unique(index[cells], return_inverse=True)
+    return points.reshape(-1, 3)[used] * scale, triangles.reshape(-1, 3)
+
+
+def _foot_first(
+    points: np.ndarray, triangles: np.ndarray, semi_axes: np.ndarray, foot: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Renumber so that the foot comes first, at the given nodes; turn the triangles outward."""
+    on_foot = points[:, 2] < 1e-6 * semi_axes[2]
+    if on_foot.sum() != len(foot):
+        raise RuntimeError(f"the foot of a bump must have {len(foot)} nodes, found {on_foot.sum()}")
+    angle = np.arctan2(points[:, 1] / semi_axes[1], points[:, 0] / semi_axes[0])
+    turn = np.mod(angle + 1e-6, 2 * math.pi)  # the node on +x comes first, whatever its last digit
+    order = np.concatenate([np.flatnonzero(on_foot)[np.argsort(turn[on_foot])], np.flatnonzero(~on_foot)])
+    index = np.empty(len(points), dtype=np.int64)
+    index[order] = np.arange(len(points))
+    points, triangles = points[order], index[triangles]
+    points = points / np.linalg.norm(points / semi_axes, axis=1, keepdims=True)
+    points[: len(foot)] = np.column_stack([foot, np.zeros(len(foot))])
+    if volume_above_plane(points, triangles) < 0:
+        triangles = triangles[:, ::-1].copy()
+    return points, triangles

@@ -1,0 +1,146 @@
+"""The patterned sample: plane, bumps and ramped skirt as one conforming surface.
+
+All bumps are alike: one shell is meshed (`meshes.bump`) and copied. The plane is meshed round the feet, whose
+nodes are prescribed (`meshes.plane`), and the parts share nodes by index. Nothing is matched by distance.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.bump import bump_element_size, bump_shell
+from meshes.pattern import ConvexPattern, bump_centres, bump_rows, pattern_faults
+from meshes.plane import PlaneMesh, mesh_plane, rectangle_rim
+from postproc.mesh import SurfaceMesh, smallest_angles
+
+SKIRT_DEPTH = (
+    0.2  # of the height above the floor: how far the skirt reaches below the floor, so that no slit opens
+)
+LARGEST_SKIRT_SLOPE = math.pi / 4  # a steeper ramp is a wall and would plough the bed
+SMALLEST_ANGLE = 10.0  # degrees, promised for every triangle
+HOLDER = -1  # label `part` of the skirt
+
+
+@dataclass(frozen=True, eq=False)
+class _Bumps:
+    """Shell (p, 3) m, first `feet` nodes on the foot; triangles (t, 3); centres (k, 2) m; column, row."""
+
+    shell: np.ndarray
+    triangles: np.ndarray
+    feet: int
+    centres: np.ndarray
+    column: np.ndarray
+    row: np.ndarray
+
+
+def sample_top(
+    width: float, length: float, element_size: float, pattern: ConvexPattern | None
+) -> SurfaceMesh:
+    """The top of a sample, plane at z = 0 with its bumps, without a skirt.
+
+    width (x), length (y), element_size: m; pattern None gives a plain sample. Cell data: `part`, `column` and
+    `row`. Raises ValueError for a pattern that does not fit, or when a triangle would be too acute.
+    """
+    return _checked(_flat_sample(width, length, element_size, pattern, skirt_width=0.0), element_size)
+
+
+def sliding_sample(
+    width: float,
+    length: float,
+    element_size: float,
+    pattern: ConvexPattern | None,
+    height_above_floor: float,
+    skirt_slope: float,
+) -> SurfaceMesh:
+    """A sample with its top at z = `height_above_floor` (m) above the floor z = 0, and a ramp down all round.
+
+    The skirt falls at `skirt_slope` (rad) from the rim to 0.2 heights below the floor; its `part` is -1.
+    Other arguments, data and errors as in `sample_top`; the height must be > 0, the slope in (0, pi/4].
+    """
+    if not height_above_floor > 0:
+        raise ValueError(f"height_above_floor must be greater than 0 m, found {height_above_floor}")
+    if not 0 < skirt_slope <= LARGEST_SKIRT_SLOPE:
+        raise ValueError(f"skirt_slope must be in (0, {LARGEST_SKIRT_SLOPE:.4f}] rad, found {skirt_slope}")
+    skirt_width = (1 + SKIRT_DEPTH) * height_above_floor / math.tan(skirt_slope)
+    flat = _flat_sample(width, length, element_size, pattern, skirt_width)
+    beyond_rim = np.max(np.abs(flat.points[:, :2]) - (width / 2, length / 2), axis=1)
+    points = flat.points.copy()
+    points[:, 2] += height_above_floor - math.tan(skirt_slope) * np.maximum(beyond_rim, 0.0)
+    return _checked(SurfaceMesh(points, flat.triangles, flat.cell_data), element_size)
+
+
+def _flat_sample(
+    width: float, length: float, element_size: float, pattern: ConvexPattern | None, skirt_width: float
+) -> SurfaceMesh:
+    """Plane and bumps, top at z = 0, with a frame of `skirt_width` (m, 0 for none) in the same plane."""
+    for name, value in (("width", width), ("length", length), ("element_size", element_size)):
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"{name} of a sample must be greater than 0 m, found {value}")
+    bumps = _place_bumps(pattern, width, length, element_size)
+    holes = bumps.centres[:, None] + bumps.shell[None, : bumps.feet, :2]
+    rim = rectangle_rim(width, length, _rim_element_size(width, length, element_size, holes))
+    return _join(mesh_plane(rim, holes, element_size, skirt_width), len(rim), bumps)
+
+
+def _rim_element_size(width: float, length: float, element_size: float, holes: np.ndarray) -> float:
+    """Edge length along the rim (m): the element size, or less where `holes` (k, f, 2) lie close to it."""
+    if not len(holes):
+        return element_size
+    gap = (np.array([width, length]) / 2 - np.abs(holes).max(axis=(0, 1))).min()
+    spacing = np.linalg.norm(holes[0, 1] - holes[0, 0])
+    return min(element_size, max(gap, spacing))
+
+
+def _checked(mesh: SurfaceMesh, element_size: float) -> SurfaceMesh:
+    """The mesh, if no triangle is more acute than promised; ValueError otherwise."""
+    angle = smallest_angles(mesh.points, mesh.triangles).min()
+    if angle >= SMALLEST_ANGLE:
+        return mesh
+    raise ValueError(
+        f"a gap between bumps, rim and skirt is too narrow for elements of {1e3 * element_size:.4g} mm: "
+        f"smallest angle {angle:.3g} degrees, allowed are {SMALLEST_ANGLE:g} or more"
+    )
+
+
+def _place_bumps(pattern: ConvexPattern | None, width: float, length: float, element_size: float) -> _Bumps:
+    """Shell and places of the bumps, none for a plain sample. Raises ValueError when they do not fit."""
+    none = np.empty(0, dtype=np.int64)
+    if pattern is None:
+        return _Bumps(np.empty((0, 3)), np.empty((0, 3), dtype=np.int64), 0, np.empty((0, 2)), none, none)
+    fault = pattern_faults(pattern, width, length)
+    if fault:
+        raise ValueError(f"the pattern does not fit the sample: {fault}")
+    size = bump_element_size(pattern.half_width, pattern.half_length, element_size)
+    shell, triangles, feet = bump_shell(pattern.half_width, pattern.half_length, pattern.height, size)
+    centres, column = bump_centres(pattern, width, length)
+    return _Bumps(shell, triangles, feet, centres, column, bump_rows(pattern, width, length))
+
+
+def _join(plane: PlaneMesh, n_rim: int, bumps: _Bumps) -> SurfaceMesh:
+    """Plane and copies of the shell, joined by node index; triangles in the order base, bumps, frame."""
+    count, n_plane = len(bumps.centres), len(plane.points)
+    inner = bumps.shell[bumps.feet :]
+    copies = np.tile(inner, (count, 1))
+    copies[:, :2] += np.repeat(bumps.centres, len(inner), axis=0)
+    points = np.concatenate([np.column_stack([plane.points, np.zeros(n_plane)]), copies])
+    foot_nodes = n_rim + np.arange(count * bumps.feet).reshape(count, bumps.feet)
+    inner_nodes = n_plane + np.arange(len(copies)).reshape(count, len(inner))
+    nodes = np.concatenate([foot_nodes, inner_nodes], axis=1)
+    triangles = np.concatenate([plane.base, nodes[:, bumps.triangles].reshape(-1, 3), plane.frame])
+    return SurfaceMesh(points, triangles, _labels(plane, bumps))
+
+
+def _labels(plane: PlaneMesh, bumps: _Bumps) -> dict[str, np.ndarray]:
+    """`part`, `column` and `row` of every triangle, int64: base, then bump by bump, then frame."""
+
+    def label(per_bump: np.ndarray, frame: int) -> np.ndarray:
+        on_bumps = np.repeat(per_bump, len(bumps.triangles))
+        return np.concatenate([np.zeros(len(plane.base)), on_bumps, np.full(len(plane.frame), frame)]).astype(
+            np.int64
+        )
+
+    part = label(np.arange(1, len(bumps.centres) + 1), HOLDER)
+    return {"part": part, "column": label(bumps.column, 0), "row": label(bumps.row, 0)}
