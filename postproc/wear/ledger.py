@@ -90,8 +90,6 @@ class LedgerBuilder:
     touching: ids of the particles that touch the mesh in the sample before the first one (carry it from the
         previous cycle's builder, so that a lasting contact is no new impact); None: unknown, so nothing in
         the first sample counts as an impact
-
-    Attributes: touching (ids after the last sample added), samples (how many), time_s (their duration).
     """
 
     def __init__(
@@ -100,7 +98,7 @@ class LedgerBuilder:
         self.n_triangles, self.mesh_index = n_triangles, mesh_index
         self.effective_modulus, self.density = effective_modulus, density
         self._touching = None if touching is None else np.unique(np.asarray(touching, np.int64))
-        self.samples, self.time_s = 0, 0.0
+        self._samples, self._time_s = 0, 0.0
         self._sums = {
             name: np.zeros(n_triangles)
             for name in (*LEDGER_FIELDS[:5], *(f"{kind}_{what}" for kind in "wf" for what in "axyz"))
@@ -113,6 +111,17 @@ class LedgerBuilder:
         """(k,) sorted ids of the particles touching the mesh in the last sample; None before any sample."""
         self._flush()
         return self._touching
+
+    @property
+    def samples(self) -> int:
+        """Number of samples added."""
+        return self._samples + len(self._buffer)
+
+    @property
+    def time_s(self) -> float:
+        """Time that the samples added stand for, s."""
+        self._flush()
+        return self._time_s
 
     def add(self, contacts, interval_s: float) -> None:
         """Adds one sample.
@@ -185,8 +194,8 @@ class LedgerBuilder:
             for axis, letter in enumerate("xyz"):
                 self._sum(f"{kind}_{letter}", triangle, weight * contacts.contact_point[:, axis])
         self._impacts(contacts, motion, pairs, counts.size)
-        self.samples += counts.size
-        self.time_s += counts.size * interval_s
+        self._samples += counts.size
+        self._time_s += counts.size * interval_s
 
     def _sum(self, name: str, triangle: np.ndarray, values: np.ndarray) -> None:
         self._sums[name] += np.bincount(triangle, weights=values, minlength=self.n_triangles)

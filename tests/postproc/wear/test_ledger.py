@@ -132,6 +132,15 @@ def test_torsion_about_the_normal_neither_slides_nor_rolls():
     assert table["normal_impulse_N_s"][0] > 0.0
 
 
+def test_approach_along_the_normal_is_no_sliding():
+    """v_t is v_rel without its normal part, on a wall that leans too."""
+    normal = np.array([0.6, 0.0, 0.8])
+    leaning = sample(
+        centre=[RADIUS * normal], force=[2.0 * normal], particle_velocity=[[0.0, 0.3, 0.0] - 0.7 * normal]
+    )
+    assert ledger([leaning])["sliding_work_J"][0] == pytest.approx(2.0 * 0.3e-3, rel=ROUND_OFF)
+
+
 def test_a_pulling_contact_counts_as_zero_force():
     """Tensile normal forces come from damping; the contact still lasts."""
     table = ledger([sample(force=[[0.5, 0.0, -2.0]], particle_velocity=[[0.3, 0.0, 0.0]])], touching=[1])
@@ -155,7 +164,7 @@ def test_triangles_never_touched_have_zero_sums_and_no_mean():
 
 
 def test_contacts_on_other_meshes_are_left_out():
-    """The same contacts with a second mesh among them give the same ledger; nothing of it leaks into impacts."""
+    """A second mesh among the contacts changes nothing, impacts included."""
     crowd = random_samples()
     mixed = []
     for contacts in crowd:
@@ -302,15 +311,19 @@ def test_two_triangles_under_one_particle_share_its_total_force():
 
 def test_means_are_weighted_with_the_sliding_work():
     """3 parts of work at x = 1 and 1 part at x = 5 lie at x = 2; a resting contact has no vote."""
-    places = [sample(contact_point=[[x, 0.0, 0.0]], centre=[[x, 0.0, RADIUS]], particle_velocity=[[v, 0.0, 0.0]])
-              for x, v in ((1.0, 0.3), (5.0, 0.1), (9.0, 0.0))]  # fmt: skip
+    places = [
+        sample(contact_point=[[x, 0, 0]], centre=[[x, 0, RADIUS]], particle_velocity=[[v, 0, 0]])
+        for x, v in ((1.0, 0.3), (5.0, 0.1), (9.0, 0.0))
+    ]
     assert ledger(places)["contact_position_x_m"][0] == pytest.approx(2.0, rel=ROUND_OFF)
 
 
 def test_without_sliding_the_means_are_weighted_with_the_impulse():
     """A triangle that is only rolled on has a position too."""
-    places = [sample(contact_point=[[x, 0.0, 0.0]], centre=[[x, 0.0, RADIUS]], force=[[0.0, 0.0, f]])
-              for x, f in ((1.0, 3.0), (5.0, 1.0))]  # fmt: skip
+    places = [
+        sample(contact_point=[[x, 0, 0]], centre=[[x, 0, RADIUS]], force=[[0, 0, f]])
+        for x, f in ((1.0, 3.0), (5.0, 1.0))
+    ]
     assert ledger(places)["contact_position_x_m"][0] == pytest.approx(2.0, rel=ROUND_OFF)
 
 

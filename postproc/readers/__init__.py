@@ -1,0 +1,1 @@
+"""Readers of what LIGGGHTS writes: contact dumps, log files and loads per triangle."""
