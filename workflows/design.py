@@ -79,10 +79,22 @@ class Study:
         return found
 
     def design_table(self) -> list[dict[str, Any]]:
-        """Return one row per run: run, row, surface, then the factors with their units in the names."""
+        """Return one row per run: run, row, surface, the factors with their units, and what follows from them.
+
+        The equivalent size ratio is the particle's over the bump's, alpha_ER of Yan 2022, Eq 4.18.
+        """
         factors = {str(row["row"]): {k: v for k, v in row.items() if k != "row"} for row in self.design_rows}
         return [
-            {"run": run.name, "row": run.row, "surface": run.surface, **factors[run.row]} for run in self.runs
+            {
+                "run": run.name,
+                "row": run.row,
+                "surface": run.surface,
+                **factors[run.row],
+                "particle_scale": run.parameters["particle"]["scale"],
+                "layers": run.parameters["derived"]["layers"],
+                "equivalent_size_ratio": run.parameters["derived"]["equivalent_size_ratio"],
+            }
+            for run in self.runs
         ]
 
     @cached_property
@@ -259,7 +271,7 @@ def run_parameters(
 ) -> dict[str, Any]:
     """Return the parameters of a run in SI (see Run), derived ones included."""
     si, factors = to_si(settings), to_si(row)
-    scale = settings["particle_scale"]
+    scale = row_particle_scale(settings, materials, factors["bed_thickness_m"])
     parameters = {
         "sample": si["sample"],
         "pattern": _pattern(si["pattern"], factors) if surface == "convex" else None,
@@ -276,6 +288,13 @@ def run_parameters(
         "floor_material": _wall(settings["bed"]["floor_material"], materials),
     }
     return {**parameters, "derived": derived_parameters(parameters)}
+
+
+def row_particle_scale(settings: dict[str, Any], materials: dict[str, Any], thickness: float) -> float:
+    """Return the particle scale (-) of a bed of that thickness (m): the study's, lowered to keep bed.least_layers."""
+    scale, layers = settings["particle_scale"], settings["bed"]["least_layers"]
+    diameter = to_si(materials["particles"][settings["bed"]["material"]])["median_diameter_m"]
+    return min(scale, max(thickness / (layers * diameter), 1.0)) if layers else scale
 
 
 def _pattern(pattern: dict[str, Any], factors: dict[str, Any]) -> dict[str, Any]:
@@ -339,8 +358,11 @@ def figure_remarks(study: Study) -> list[str]:
     """Return what every figure must say: what is smaller than at paper fidelity, thin beds, acceleration."""
     now, full = study.settings, study.paper_settings
     remarks = []
-    if now["particle_scale"] != 1.0:
-        remarks.append(f"particles at scale {now['particle_scale']:g}")
+    scales = sorted({round(run.parameters["particle"]["scale"], 3) for run in study.runs})
+    if scales[0] != scales[-1]:
+        remarks.append(f"particles at scale {scales[0]:g} to {scales[-1]:g}, different from row to row")
+    elif scales != [1.0]:
+        remarks.append(f"particles at scale {scales[0]:g}")
     sizes, whole = (f"{s['sample']['width_mm']:g} x {s['sample']['length_mm']:g} mm" for s in (now, full))
     if sizes != whole:
         remarks.append(f"sample {sizes} of {whole}")
