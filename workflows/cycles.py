@@ -104,6 +104,8 @@ def run_cycle(chain: Chain, cycle: int, inputs: str, progress: Progress) -> None
         record = {"cost": {}} if cycle == 0 else account_and_wear(chain, cycle, folder, surface)
         record["cost"] = cost(chain, cycle, folder, solver_seconds, time.monotonic() - started) | record["cost"]
         record["solver_warnings"] = warnings(folder / SCREEN)
+        if inputs_digest(chain) != inputs:
+            raise state.StateError(f"{chain.name}: its inputs changed while {cycle_title(chain, cycle)} ran; start again.")
         files = (RESTART,) if cycle == 0 else (RESTART, SURFACE, LEDGER, TOUCHING)
         state.write_state(folder, inputs, files, record)
 

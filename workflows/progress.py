@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TextIO
 
 SECONDS_BETWEEN_LINES = 15.0
+SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
 
 
 def duration_text(seconds: float) -> str:
@@ -37,7 +38,7 @@ class Progress:
     def update(self, done: int, what: str) -> None:
         """Print a line if the last one is old enough; `what` names the present part of the work."""
         now = self.clock()
-        if now - self.last_line < SECONDS_BETWEEN_LINES or done <= self.start:
+        if now - self.last_line < SECONDS_BETWEEN_LINES or done - self.start < SMALLEST_BASIS * self.total:
             return
         self.last_line = now
         left = (self.total - done) * (now - self.start_time) / (done - self.start)

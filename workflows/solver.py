@@ -46,7 +46,7 @@ def run_deck(
 ) -> float:
     """Run `deck.in` of a folder to its end and return the wall time in s.
 
-    on_step: called with the last time step in the log, several times a second
+    on_step: called with the last time step reported, several times a second
     triangles: {mesh fix id: number of triangles written for it}; the run is stopped when the solver reports fewer
 
     Raises SolverError.
@@ -80,7 +80,7 @@ def _watch(
     ended = False
     while not ended:
         ended = _ended(process)
-        step = last_step(folder / LOG) if (folder / LOG).exists() else None
+        step = last_step(folder / SCREEN)  # the log file lags behind: the solver buffers it
         if step is not None:
             on_step(step)
         if triangles:

@@ -1,0 +1,73 @@
+# Front door. `make` alone lists the targets. Everything runs in .venv, which `make setup` builds from requirements.txt.
+
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+CORES ?= $(shell nproc)
+STUDY ?= demo
+# The environment's programs come first, so that rules which call `python` get its interpreter.
+export PATH := $(CURDIR)/.venv/bin:$(PATH)
+# Pictures come from the software renderer everywhere: the same on every machine, and without X.
+export VTK_DEFAULT_OPENGL_WINDOW ?= vtkOSOpenGLRenderWindow
+
+PROFILE := workflows/profiles/default
+SNAKEMAKE := .venv/bin/snakemake --workflow-profile $(PROFILE) --cores $(CORES)
+# one file's tests stay on one process, so that what they share (a solver run) is made once
+PYTEST := .venv/bin/pytest --numprocesses $(CORES) --maxprocesses 8 --dist loadfile
+SMK_FILES = Snakefile $(wildcard workflows/*.smk)
+# doctor must also work where set-up failed
+DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
+
+.PHONY: help setup doctor demo study test verify screening report decks lint format lock clean
+
+help: ## List the targets
+	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
+	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/\1|\2/p' Makefile | while IFS='|' read -r name text; do printf '  %-10s %s\n' "$$name" "$$text"; done
+
+setup: ## Install what is missing: Debian packages, then .venv from the lock (nothing to do: under a second)
+	@workflows/environment/setup.sh
+
+doctor: ## Check this machine: solver, MPI, rendering, packages, disk; says what to do
+	@$(DOCTOR_PYTHON) workflows/environment/doctor.py
+
+demo: setup ## Run the demonstration study, from mesh to report
+	$(SNAKEMAKE) demo
+
+study: setup ## Run a whole study: make study STUDY=<name of a file in config/studies>
+	$(SNAKEMAKE) $(STUDY)
+
+screening: setup ## Run the screening study
+	$(SNAKEMAKE) screening
+
+decks: setup ## Render every deck of a study without running the solver (STUDY=demo)
+	$(SNAKEMAKE) $(STUDY)_decks
+
+report: setup ## Build results/<STUDY>/report.html and Snakemake's own snakemake_report.html beside it
+	$(SNAKEMAKE) results/$(STUDY)/report.html
+	$(SNAKEMAKE) $(STUDY) --report results/$(STUDY)/snakemake_report.html
+
+test: setup ## Run the tests and every check a submission must pass
+	$(PYTEST)
+	@$(MAKE) --no-print-directory lint
+
+verify: setup ## Run the long physics tests (pytest -m verify)
+	$(PYTEST) -m verify
+
+lint: setup ## Check style: ruff, snakemake --lint, snakefmt
+	.venv/bin/ruff check .
+	.venv/bin/ruff format --check .
+	.venv/bin/python workflows/environment/snakemake_lint.py
+	.venv/bin/snakefmt --check $(SMK_FILES)
+
+format: setup ## Rewrite Python and Snakemake files in the house format
+	.venv/bin/ruff check --fix .
+	.venv/bin/ruff format .
+	.venv/bin/snakefmt $(SMK_FILES)
+
+lock: setup ## Resolve requirements.in again into requirements.txt (exact versions and hashes)
+	.venv/bin/uv pip compile --quiet requirements.in --output-file requirements.txt --upgrade --python-version 3.11 \
+	    --generate-hashes --no-header --no-annotate --no-emit-index-url
+	awk '/^[^ ]/ {keep = /^uv==/} keep' requirements.txt >requirements-bootstrap.txt
+
+clean: ## Remove caches (never results)
+	rm -rf .pytest_cache .ruff_cache .hypothesis .numba_cache
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

@@ -1,0 +1,259 @@
+"""The driver on the real solver: what a cycle leaves, what is checked, and what a killed run keeps."""
+
+import os
+import pickle
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.analysis.summary import run_summary
+from postproc.mesh import read_stl, read_surface
+from postproc.wear.update import BALANCE_TOLERANCE
+from workflows import cycles, state
+from workflows.solver import SolverError
+from tiny import tiny_chain, tiny_study
+
+pytestmark = pytest.mark.solver
+
+STL_ROUNDING = 1e-9  # m; %.9g of coordinates below 0.1 m is good to 5e-11
+RANKS_TOLERANCE = 1e-2  # relative; rounding differs between ranks and chaos lets it grow over 580 steps
+KILL_TIMEOUT = 120.0  # s, for a chain that takes seconds
+DRIVER = "import pickle, sys; from workflows.cycles import run_chain; run_chain(pickle.load(open(sys.argv[1], 'rb')))"
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """An undisturbed run of the convex sample."""
+    chain = tiny_chain(tiny_study(), tmp_path_factory.mktemp("undisturbed"))
+    cycles.run_chain(chain)
+    return chain
+
+
+def twin(chain, folder: Path):
+    """The same run elsewhere, nothing of it done yet."""
+    copy = folder / chain.name
+    copy.mkdir(parents=True)
+    shutil.copy(chain.surface, copy / "surface.vtu")
+    return replace(chain, folder=copy, surface=copy / "surface.vtu")
+
+
+def wear_table(chain) -> pd.DataFrame:
+    return pd.read_csv(chain.folder / "wear.csv")
+
+
+def test_every_cycle_leaves_its_contract(finished):
+    """Deck, log, restart and state in every cycle; ledger, worn surface and forces in every wear cycle; no dumps."""
+    for cycle in range(finished.cycles + 1):
+        folder = state.cycle_folder(finished.folder, cycle)
+        names = {path.name for path in folder.iterdir()}
+        assert {"deck.in", "log.liggghts", "run.restart", "surface.stl", "state.json"} <= names
+        assert ({"ledger.parquet", "surface.vtu", "forces.csv"} <= names) == (cycle > 0)
+        assert not names & {"contacts.dump", "spins.dump"}
+
+
+def test_applied_plus_carried_is_alpha_times_work_at_every_cycle(finished):
+    """Nothing is lost: applied so far + carried now = alpha x sliding work so far."""
+    table, wear = wear_table(finished), finished.parameters["wear"]
+    alpha = wear["wear_coefficient_per_pa"] * wear["acceleration"]
+    balance = table["total_applied_volume_m3"] + table["carried_volume_m3"]
+    work = table["sliding_work_J"].cumsum()
+    assert (work > 0).all()
+    np.testing.assert_allclose(balance, alpha * work, rtol=BALANCE_TOLERANCE)
+
+
+def test_wear_stays_on_the_top_surface_and_goes_inward(finished):
+    """The skirt's outer nodes stay, nothing rises, and the largest loss is the one the table tells."""
+    before, after = read_surface(finished.surface), read_surface(finished.folder / "worn_surface.vtu")
+    holder_only = np.setdiff1d(before.triangles[before.cell_data["part"] < 0], before.triangles[before.cell_data["part"] >= 0])
+    np.testing.assert_array_equal(before.points[holder_only], after.points[holder_only])
+    assert (after.points[:, 2] <= before.points[:, 2]).all()
+    assert after.point_data["removed_thickness_m"].max() == wear_table(finished)["largest_depth_m"].iloc[-1] > 0
+
+
+def test_worn_surface_goes_back_into_the_solver(finished):
+    """The solver's mesh in cycle 2 is the surface that cycle 1 left."""
+    facets = read_stl(state.cycle_folder(finished.folder, 2) / "surface.stl")
+    surface = read_surface(state.cycle_folder(finished.folder, 1) / "surface.vtu")
+    np.testing.assert_allclose(facets, surface.points[surface.triangles], atol=STL_ROUNDING)
+    assert not np.array_equal(surface.points, read_surface(finished.surface).points)
+
+
+def test_ledger_impulse_agrees_with_the_solver_own_force(finished):
+    """Mean normal traction of the dumps and of LIGGGHTS' stress dump's last sample have the same order; the vertical
+    force of the log lies between zero and the summed normal force."""
+    forces = pd.read_csv(state.cycle_folder(finished.folder, 1) / "forces.csv")
+    mean = wear_table(finished)["mean_normal_force_N"].iloc[0]
+    assert 0.2 * mean < -forces["force_z_N"].mean() < 1.5 * mean
+
+
+def test_a_rigid_sample_carries_all_its_wear(finished, tmp_path):
+    """deform: false keeps every node where it is; the volume is carried, not lost."""
+    chain = tiny_chain(tiny_study(wear={"deform": False}, sliding={"cycles": 1}), tmp_path)
+    cycles.run_chain(chain)
+    table = wear_table(chain)
+    assert table["applied_volume_m3"].abs().max() <= BALANCE_TOLERANCE * table["archard_volume_m3"].sum()
+    np.testing.assert_array_equal(
+        read_surface(chain.surface).points, read_surface(chain.folder / "worn_surface.vtu").points
+    )
+
+
+def test_two_ranks_write_the_same_ledger(finished, tmp_path):
+    """Under MPI every contact is counted once: from the same restart, two ranks account the same sums as one."""
+    chain = twin(finished, tmp_path)
+    shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))
+    two = replace(chain, parameters={**chain.parameters, "solver": {**chain.parameters["solver"], "ranks": 2}})
+    folder = state.cycle_folder(two.folder, 1)
+    folder.mkdir()
+    surface = read_surface(two.surface)
+    cycles.write_end_wall(two)
+    cycles.write_cycle(two, 1, folder, surface)
+    cycles.simulate(two, 1, folder, len(surface.triangles), cycles.Progress("two ranks", 1))
+    found = cycles.account(two, 1, folder, len(surface.triangles))
+    expected = pd.read_parquet(state.cycle_folder(finished.folder, 1) / "ledger.parquet")
+    for field in ("sliding_work_J", "normal_impulse_N_s", "contact_time_s"):
+        assert found[field].sum() == pytest.approx(expected[field].sum(), rel=RANKS_TOLERANCE)
+
+
+@pytest.mark.parametrize("rolling_friction", ["epsd2"])
+def test_other_rolling_friction_runs(tmp_path, rolling_friction):
+    """The elastic-plastic rolling model is a word in the configuration, and the solver takes it."""
+    chain = tiny_chain(tiny_study(solver={"rolling_friction": rolling_friction}, sliding={"cycles": 1}), tmp_path)
+    cycles.run_chain(chain)
+    assert wear_table(chain)["sliding_work_J"].iloc[0] > 0
+
+
+# ---------------------------------------------------------------- killed and started again
+
+
+def start_driver(chain, folder: Path) -> subprocess.Popen:
+    task = folder / "chain.pickle"
+    task.write_bytes(pickle.dumps(chain))
+    return subprocess.Popen([sys.executable, "-c", DRIVER, str(task)], cwd=Path(__file__).parents[2])
+
+
+def kill_when(process: subprocess.Popen, moment) -> None:
+    """SIGKILL the driver at a moment, and wait until its solver is gone too."""
+    deadline = time.monotonic() + KILL_TIMEOUT
+    while not moment():
+        assert process.poll() is None, "the driver ended before the moment to kill it"
+        assert time.monotonic() < deadline, "the moment to kill the driver never came"
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def solver_processes(folder: Path) -> list[int]:
+    """Process ids of solvers that work below a folder."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and str(folder) in os.readlink(entry / "cwd"):
+                found.append(int(entry.name))
+        except OSError:
+            continue
+    return found
+
+
+def wait_until_no_solver(folder: Path) -> None:
+    deadline = time.monotonic() + KILL_TIMEOUT
+    while solver_processes(folder):
+        assert time.monotonic() < deadline, "a solver outlived its driver"
+        time.sleep(0.05)
+
+
+MOMENTS = {
+    "while the bed is lowered": lambda run: (run / "cycle_000.part" / "screen.txt").exists(),
+    "while cycle 1 is simulated": lambda run: (run / "cycle_001.part" / "contacts.dump").exists(),
+    "while cycle 1 is accounted": lambda run: (run / "cycle_001.part" / "run.restart").exists(),
+    "while cycle 2 is simulated": lambda run: (run / "cycle_002.part" / "screen.txt").exists(),
+}
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_killed_and_started_again_gives_the_same_tables(finished, tmp_path, moment):
+    """kill -9 at any moment, start again: the same wear.csv and summary, finished cycles untouched, no orphan."""
+    chain = twin(finished, tmp_path)
+    kill_when(start_driver(chain, tmp_path), lambda: MOMENTS[moment](chain.folder))
+    wait_until_no_solver(tmp_path)
+    done = {path: path.stat().st_mtime_ns for path in chain.folder.glob("cycle_???/*")}
+    cycles.run_chain(chain)
+    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
+    assert run_summary(wear_table(chain)) == run_summary(wear_table(finished))
+    assert {path: path.stat().st_mtime_ns for path in done} == done
+
+
+def test_a_finished_run_is_not_done_again(finished, capsys):
+    """Started once more, a finished run only writes its tables."""
+    before = {path: path.stat().st_mtime_ns for path in finished.folder.glob("cycle_???/*")}
+    cycles.run_chain(finished)
+    assert {path: path.stat().st_mtime_ns for path in finished.folder.glob("cycle_???/*")} == before
+
+
+def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):
+    """Another wear coefficient: cycles are done again, the old ones are kept and come back with the old inputs."""
+    chain = twin(finished, tmp_path)
+    for cycle in range(chain.cycles + 1):
+        shutil.copytree(state.cycle_folder(finished.folder, cycle), state.cycle_folder(chain.folder, cycle))
+    doubled = replace(
+        chain, parameters={**chain.parameters, "wear": {**chain.parameters["wear"], "gap_closing_fraction": 0.1}}
+    )
+    cycles.run_chain(doubled)
+    assert (chain.folder / "wear.csv").read_bytes() != (finished.folder / "wear.csv").read_bytes()
+    assert len(list(chain.folder.glob("superseded/*/cycle_???"))) == chain.cycles + 1
+    old = (state.cycle_folder(finished.folder, 1) / "log.liggghts").read_bytes()
+    cycles.run_chain(chain)
+    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
+    assert (state.cycle_folder(chain.folder, 1) / "log.liggghts").read_bytes() == old
+
+
+def test_a_damaged_cycle_is_done_again(finished, tmp_path):
+    """A restart file that changed after its state was written does not count as finished."""
+    chain = twin(finished, tmp_path)
+    for cycle in range(chain.cycles + 1):
+        shutil.copytree(state.cycle_folder(finished.folder, cycle), state.cycle_folder(chain.folder, cycle))
+    inputs = cycles.inputs_digest(chain)
+    assert state.finished_cycles(chain.folder, inputs) == chain.cycles + 1
+    with open(state.cycle_folder(chain.folder, 1) / "run.restart", "ab") as restart:
+        restart.write(b"damage")
+    assert state.finished_cycles(chain.folder, inputs) == 1
+
+
+def test_a_failed_solver_shows_its_last_words_and_keeps_finished_cycles(finished, tmp_path):
+    """The message has the cause and the solver's own lines; cycle 0 stays and the run can be resumed."""
+    chain = twin(finished, tmp_path)
+    shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))
+    (state.cycle_folder(chain.folder, 0) / "run.restart").rename(tmp_path / "hidden")
+    broken = state.cycle_folder(chain.folder, 1).with_suffix(".part")
+    broken.mkdir()
+    cycles.write_cycle(chain, 1, broken, read_surface(chain.surface))
+    with pytest.raises(SolverError, match=r"cycle_001\.part/deck\.in: LIGGGHTS stopped: .*[Cc]annot open restart file"):
+        cycles.simulate(chain, 1, broken, 1, cycles.Progress("test", 1))
+
+
+def test_missing_triangles_stop_the_run(finished, tmp_path):
+    """A surface of which the solver drops a triangle ends the run with both counts."""
+    chain = twin(finished, tmp_path)
+    shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))
+    folder = chain.folder / "cycle_001.part"
+    folder.mkdir()
+    surface = read_surface(chain.surface)
+    cycles.write_end_wall(chain)
+    cycles.write_cycle(chain, 1, folder, surface)
+    count = len(surface.triangles)
+    with pytest.raises(SolverError, match=re.escape(f"keeps {count} of the {count + 1} triangles of mesh sample_1")):
+        cycles.simulate(chain, 1, folder, count + 1, cycles.Progress("test", 1))
+
+
+def test_two_drivers_do_not_share_a_run(finished):
+    """The second driver of a run is turned away."""
+    with state.only_driver(finished.folder), pytest.raises(state.StateError, match="another process works on this run"):
+        cycles.run_chain(finished)

@@ -1,0 +1,95 @@
+"""Templates and their parameters: complete, documented, and one golden deck."""
+
+import re
+from pathlib import Path
+
+import pytest
+from tiny import tiny_study
+
+from workflows import deck
+from workflows.design import list_studies, load_study
+
+TEMPLATES = sorted(path.name.removesuffix(".in.j2") for path in deck.TEMPLATES.glob("*.in.j2"))
+README = (deck.TEMPLATES / "README.md").read_text()
+GOLDEN = Path(__file__).parents[1] / "data" / "golden_sliding_sample.in"
+
+
+def run_and_bed(study, name="R9_convex"):
+    return study.run(name).parameters, study.beds[study.bed_of(name)]
+
+
+def test_every_variable_of_the_templates_is_in_their_readme():
+    """The table has each variable of the templates once, and no other."""
+    used = set().union(*(deck.template_variables(name) for name in TEMPLATES))
+    listed = re.findall(r"^\| `(\w+)` \|", README.split("## Variables")[1], re.MULTILINE)
+    assert sorted(listed) == sorted(used)
+
+
+@pytest.mark.parametrize("name", list_studies())
+@pytest.mark.parametrize("rolling_friction", ["cdt", "epsd2"])
+def test_every_deck_of_every_study_renders(name, rolling_friction):
+    """No deck has an open word, a missing or an unused parameter, or a tab."""
+    study = load_study(name, overrides={"solver": {"rolling_friction": rolling_friction}})
+    texts = [deck.render("settled_bed", deck.settled_bed(bed)) for bed in study.beds.values()]
+    for run in study.runs:
+        parameters, bed = run_and_bed(study, run.name)
+        texts.append(deck.render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")))
+        texts.append(deck.render("sliding_sample", deck.sliding_sample(parameters, bed, 1, "run.restart")))
+    for text in texts:
+        assert f"rolling_friction {rolling_friction}" in text
+        assert not re.search(r"\{\{|\}\}|\{%|%\}|\t|\bNone\b|\bnan\b", text)
+
+
+def test_golden_deck():
+    """The deck of the tiny chain's second cycle, word for word; a change of it is a decision."""
+    parameters, bed = run_and_bed(tiny_study())
+    text = deck.render("sliding_sample", deck.sliding_sample(parameters, bed, 2, "../cycle_001/run.restart"))
+    assert text == GOLDEN.read_text()
+
+
+def test_missing_and_unused_parameters_are_errors():
+    """The message names template and parameter."""
+    given = deck.settled_bed(run_and_bed(tiny_study())[1])
+    with pytest.raises(deck.DeckError, match=r"templates/settled_bed\.in\.j2: parameter skin_m is not given"):
+        deck.render("settled_bed", {key: value for key, value in given.items() if key != "skin_m"})
+    with pytest.raises(deck.DeckError, match=r"templates/settled_bed\.in\.j2: parameter colour is never used"):
+        deck.render("settled_bed", {**given, "colour": "red"})
+
+
+def test_decks_begin_with_their_case_and_keep_the_order_of_blocks():
+    """Header with source, axes and files; then the blocks in one order in every deck."""
+    order = ["domain", "materials", "contact model", "geometry", "particles", "integration", "output", "run"]
+    for name in TEMPLATES:
+        text = "".join(deck.template_sources(name)[part] for part in [f"{name}.in.j2"])
+        for word in ("Runs by hand:", "Axes:", "Source of the case:", "Writes:"):
+            assert word in text.split("\n\n")[0]
+        blocks = {found: index for index, found in enumerate(order)}
+        whole = re.sub(
+            r'\{% include "(.*?)" %\}', lambda found: deck.template_sources(name)[found[1]], text
+        )
+        titles = [title for title in re.findall(r"^# --- ([a-z ]+?)(?::.*)? -", whole, re.MULTILINE) if title in blocks]
+        assert [blocks[title] for title in titles] == sorted(blocks[title] for title in titles)
+        assert {"domain", "materials", "contact model", "geometry", "integration", "output", "run"} <= set(titles)
+
+
+def test_random_seeds_are_primes_above_ten_thousand():
+    """LIGGGHTS refuses other seeds; the first five primes above 10,000 are known."""
+    assert deck.primes(1, 5) == [10007, 10009, 10037, 10039, 10061]
+
+
+def test_bed_has_travelled_run_in_and_all_earlier_cycles():
+    """The end walls of cycle k start where cycle k-1 left them: the run-in and k-1 cycles on."""
+    parameters, _ = run_and_bed(tiny_study())
+    sliding = parameters["sliding"]
+    cycle = sliding["travel_m"] / sliding["cycles"]
+    assert deck.travelled(parameters, 0) == 0.0
+    for number in (1, 2, 3):
+        expected = sliding["run_in_m"] + (number - 1) * cycle
+        assert deck.travelled(parameters, number) == pytest.approx(expected, rel=1e-3)
+
+
+def test_every_particle_pair_keeps_its_own_property():
+    """Pair tables are symmetric and have the floor's value only where the floor takes part."""
+    table = deck.settled_bed(run_and_bed(tiny_study())[1])["sliding_friction"]
+    assert table[0][0] == 0.21 and table[0][2] == 0.38
+    assert all(table[i][j] == table[j][i] for i in range(3) for j in range(3))

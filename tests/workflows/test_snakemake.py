@@ -1,0 +1,122 @@
+"""Snakemake on a tiny study in a copy of the repository: from design row to summary, killed and started again, refused."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PARTS = ("workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
+TIMEOUT = 300.0  # s, for a study that takes about 20 s on an idle machine
+TINY = """\
+title: A tiny study
+question: Does the chain hold together?
+design: demo.csv
+surfaces: [convex, plain]
+fidelities:
+  quick:
+    particle_scale: 4
+    sample: {width_mm: 40, length_mm: 40, element_size_mm: 2}
+    bed: {width_mm: 60, ahead_mm: 20, behind_mm: 20}
+    sliding: {run_in_mm: 10, travel_mm: 20, cycles: 2}
+"""
+
+
+def workspace(folder: Path) -> Path:
+    """Copy what a study needs into a folder, with the tiny study as its only one."""
+    for name in PARTS:
+        source = REPOSITORY / name
+        if source.is_dir():
+            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(source, folder / name)
+    for study in (folder / "config" / "studies").iterdir():
+        study.unlink()
+    (folder / "config" / "studies" / "tiny.yaml").write_text(TINY)
+    return folder
+
+
+def snakemake(folder: Path, *arguments: str) -> subprocess.Popen:
+    return subprocess.Popen(
+        [sys.executable, "-m", "snakemake", *arguments],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def finish(process: subprocess.Popen) -> str:
+    output, _ = process.communicate(timeout=TIMEOUT)
+    assert process.returncode == 0, output
+    return output
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    folder = workspace(tmp_path_factory.mktemp("undisturbed"))
+    finish(snakemake(folder, "results/tiny/summary.csv"))
+    return folder
+
+
+@pytest.mark.solver
+def test_a_design_row_becomes_a_summary(undisturbed):
+    """One row and two surfaces give two runs, each with its wear; the plain run is its own reference."""
+    table = pd.read_csv(undisturbed / "results/tiny/summary.csv").set_index("run")
+    assert list(table.index) == ["R9_convex", "R9_plain"]
+    assert (table["archard_volume_m3"] > 0).all()
+    assert table.loc["R9_plain", "wear_over_plain"] == 1.0
+    assert table.loc["R9_plain", "bump_archard_volume_m3"] == 0.0 < table.loc["R9_convex", "bump_archard_volume_m3"]
+
+
+@pytest.mark.solver
+def test_nothing_is_left_to_do_after_a_study(undisturbed):
+    """Started again, Snakemake finds everything up to date; the settled bed was filled once for both runs."""
+    assert "Nothing to be done" in finish(snakemake(undisturbed, "results/tiny/summary.csv"))
+    assert len(list((undisturbed / "results/tiny/beds").iterdir())) == 1
+
+
+@pytest.mark.solver
+def test_killed_snakemake_started_again_gives_the_same_summary(undisturbed, tmp_path):
+    """kill -9 of everything during a wear cycle; a plain second call ends in the same summary.csv."""
+    folder = workspace(tmp_path)
+    process = snakemake(folder, "results/tiny/summary.csv")
+    deadline = time.monotonic() + TIMEOUT
+    while not list(folder.glob("results/tiny/*/cycle_001.part/contacts.dump")):
+        assert process.poll() is None and time.monotonic() < deadline
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+    finish(snakemake(folder, "results/tiny/summary.csv"))
+    for name in ("summary.csv", "R9_convex/wear.csv", "R9_plain/wear.csv"):
+        path = Path("results/tiny") / name
+        assert (folder / path).read_bytes() == (undisturbed / path).read_bytes()
+
+
+def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
+    """The message names file, line and key; no job starts and the exit code is not zero."""
+    folder = workspace(tmp_path)
+    study = folder / "config" / "studies" / "tiny.yaml"
+    study.write_text(TINY.replace("width_mm: 40", "width_cm: 4"))
+    process = snakemake(folder, "tiny")
+    output, _ = process.communicate(timeout=TIMEOUT)
+    assert process.returncode != 0
+    sentence = "config/studies/tiny.yaml, line 8, fidelity quick: unit cm is not allowed for sample.width"
+    assert sentence in output
+    assert "Traceback" not in output
+    assert not (folder / "results").exists()
+
+
+def test_paper_fidelity_dry_runs(tmp_path):
+    """Sizes for a cluster are configured and planned: all jobs of the study, no solver."""
+    folder = workspace(tmp_path)
+    shutil.copy(REPOSITORY / "config/studies/screening.yaml", folder / "config/studies")
+    output = finish(snakemake(folder, "screening", "--dry-run", "--config", "fidelity=paper"))
+    assert "worn_run" in output and "26" in output

@@ -1,0 +1,37 @@
+"""A chain small enough for tests: 200 particles, two cycles, a few seconds."""
+
+from pathlib import Path
+
+from postproc.mesh import write_surface
+from workflows.cycles import Chain, fill_bed
+from workflows.design import Study, load_study
+from workflows.geometry import sample_surface
+
+TINY = {
+    "particle_scale": 4,
+    "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 2},
+    "bed": {"width_mm": 60, "ahead_mm": 20, "behind_mm": 20},
+    "sliding": {"run_in_mm": 10, "travel_mm": 20, "cycles": 2},
+}
+
+
+def tiny_study(**changes) -> Study:
+    """Return the demo, shrunk; `changes` are further settings, merged by section."""
+    settings = {key: dict(value) if isinstance(value, dict) else value for key, value in TINY.items()}
+    for key, value in changes.items():
+        settings[key] = {**settings.get(key, {}), **value} if isinstance(value, dict) else value
+    return load_study("demo", overrides=settings)
+
+
+def tiny_chain(study: Study, folder: Path, run: str = "R9_convex") -> Chain:
+    """Return a chain in `folder`, its surface built and its bed filled unless they are there."""
+    bed_name = study.bed_of(run)
+    bed_folder, run_folder = folder / "beds" / bed_name, folder / run
+    if not (bed_folder / "bed.restart").exists():
+        fill_bed(bed_name, study.beds[bed_name], bed_folder)
+    parameters = study.run(run).parameters
+    surface = run_folder / "surface.vtu"
+    if not surface.exists():
+        run_folder.mkdir(parents=True, exist_ok=True)
+        write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
+    return Chain(run, run_folder, parameters, study.beds[bed_name], surface, bed_folder / "bed.restart")

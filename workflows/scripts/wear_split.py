@@ -1,0 +1,11 @@
+"""Draw the wear of base and bumps."""
+
+from postproc.analysis.comparison import read_summary, wear_split
+from postproc.plots import bars
+from postproc.plots.style import save
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    split = wear_split(read_summary(snakemake.input[0]))
+    save(bars.wear_split(split, snakemake.params.remarks), snakemake.output.figure)
+    split.to_csv(snakemake.output.table, index=False)

@@ -1,0 +1,324 @@
+"""Assemble a study's page: one HTML file that needs nothing else, read from what the study's jobs left.
+
+`study` is `figures.page_parameters`, `folder` is results/<study>. Numbers come from the tables beside the figures.
+"""
+
+from __future__ import annotations
+
+import base64
+import importlib.metadata
+import json
+import os
+import platform
+import re
+import subprocess
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import pandas as pd
+
+from postproc.analysis.comparison import cycle_ratios, read_history, read_summary, rows_to_show
+from postproc.analysis.cost import BENCHMARK_SUFFIX, benchmark_seconds, job_costs, outside_solver_share
+from postproc.analysis.depth import depth_summary
+from postproc.analysis.display import in_display_units
+from workflows.figures import INTERACTIVE, ROWS_IN_DETAIL, figure_file
+from workflows.page_text import decks_of, name_and_unit, setting_rows, simplifications
+
+REPORT_FOLDER = Path(__file__).resolve().parent / "report"
+REPOSITORY = Path(__file__).resolve().parents[1]
+TEMPLATE = "study.html.j2"
+TABLE_OF = {"worn_surface_3d": "worn_surface"}  # figures that share another's table
+DETAILED = ("worn_surface_3d", "bed")  # figures that show a few design rows only
+LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
+PACKAGES = (
+    "numpy",
+    "scipy",
+    "pandas",
+    "polars",
+    "numba",
+    "meshio",
+    "gmsh",
+    "pyvista",
+    "vtk",
+    "matplotlib",
+    "snakemake",
+)
+VERSION_LINE = re.compile(r"^LIGGGHTS \((.*)\)", re.MULTILINE)
+
+
+def write_page(path: Path, study: Mapping[str, Any]) -> None:
+    """Write the page of a study beside its tables. Raises FileNotFoundError or ValueError when one is missing."""
+    text = environment().get_template(TEMPLATE).render(page_context(study, path.parent))
+    part = path.with_suffix(".html.part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def environment() -> jinja2.Environment:
+    """Return the Jinja environment of the page and of captions: strict, everything escaped."""
+    found = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(REPORT_FOLDER),
+        undefined=jinja2.StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters["number"] = number
+    return found
+
+
+def number(value: Any, digits: int = 4) -> str:
+    """Return a number as people read it: few digits, no exponent between 0.001 and 1e6; words stay words."""
+    if isinstance(value, str):
+        return value.replace("_", " ")
+    if value is None or value != value:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if value == int(value) and (isinstance(value, int) or abs(value) < 1e7):
+        return f"{int(value):,}".replace(",", "\u202f")
+    return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e6 else f"{value:.{digits - 1}e}"
+
+
+def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return everything that the template shows."""
+    summary = read_summary(folder / "summary.csv")
+    history = read_history(folder / "figures" / "wear_against_travel.csv")
+    depths = depth_summary(
+        pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=["run", "depth_um", "area_mm2"])
+    )
+    results = result_table(summary, depths, history, study["settings"]["wear"]["acceleration"])
+    jobs = jobs_of(study, folder)
+    return {
+        "study": study,
+        "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        "results": results.to_dict("records"),
+        "cards": cards(results),
+        "run_columns": run_columns(study),
+        "detailed": DETAILED,
+        "results_csv": data_uri(results.to_csv(index=False).encode(), "text/csv"),
+        "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
+        "settings": setting_rows(study["settings"], study["paper_settings"]),
+        "runs": run_rows(study),
+        "figures": [figure(name, index, folder) for index, name in enumerate(study["figures"], start=1)],
+        "simplified": simplifications(study, summary),
+        "versions": versions(study, folder),
+        "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
+        "decks": decks_of(study, folder),
+        "warnings": solver_warnings(study, folder),
+        "jobs": solver_jobs(jobs),
+        "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
+        "totals": cost_totals(jobs),
+        "balance": float(summary["largest_balance_error"].max()),
+    }
+
+
+# ---------------------------------------------------------------- results
+
+
+def result_table(
+    summary: pd.DataFrame, depths: pd.DataFrame, history: pd.DataFrame, acceleration: float
+) -> pd.DataFrame:
+    """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated test,
+    over plain with its range over the cycles, share of the bumps, carried share, forces and depths."""
+    volume = summary["archard_volume_m3"]
+    table = summary[["run", "row", "surface", "travel_m", "archard_volume_m3"]].assign(
+        archard_volume_per_metre_m3_per_m=volume / summary["travel_m"],
+        real_volume_per_metre_m3_per_m=volume / summary["travel_m"] / acceleration,
+        wear_over_plain=summary["wear_over_plain"],
+        bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
+        carried_share_percent=100.0 * summary["carried_volume_m3"] / volume,
+        mean_normal_force_N=summary["mean_normal_force_N"],
+    )
+    ranges = cycle_ratios(history)
+    return (
+        in_display_units(table)
+        .merge(ranges, on=["row", "surface"], how="left")
+        .merge(depths, on="run", how="left")
+    )
+
+
+def cards(results: pd.DataFrame) -> list[dict[str, str]]:
+    """Return the few numbers that answer the question, lowest relative wear first; none without a plain twin."""
+    convex = results[(results["surface"] != "plain") & results["wear_over_plain"].notna()]
+    if convex.empty:
+        return []
+    best = convex.sort_values("wear_over_plain", kind="stable").iloc[0]
+    plain = results[(results["row"] == best["row"]) & (results["surface"] == "plain")].iloc[0]
+    rate, unit = "archard_volume_per_metre_mm3_per_m", "mm³/m (accelerated)"
+    several = len(convex) > 1
+    which = f"{best['row']}, the lowest of {len(convex)} rows" if several else best["row"]
+    found = [
+        (f"{best['wear_over_plain']:.3f}", f"{best['surface']} over plain wear, {which}"),
+        (number(best[rate], 3), f"{unit}, {best['run'].replace('_', ' ')}"),
+        (number(plain[rate], 3), f"{unit}, {plain['run'].replace('_', ' ')}"),
+    ]
+    if several:
+        less = int((convex["wear_over_plain"] < 1.0).sum())
+        found.append((f"{less} of {len(convex)}", "patterns wear less than their plain twin"))
+    else:
+        found.append((f"{best['bump_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
+    return [{"value": value, "label": label} for value, label in found]
+
+
+def figure(name: str, index: int, folder: Path) -> dict[str, Any]:
+    """Return one figure of the page: number, title, caption paragraphs, picture or page, its table."""
+    title, paragraphs = caption(name)
+    file = folder / "figures" / figure_file(name)
+    table = folder / "figures" / f"{TABLE_OF.get(name, name)}.csv"
+    interactive = name in INTERACTIVE
+    embedded = table.stat().st_size <= LARGEST_EMBEDDED_BYTES
+    return {
+        "name": name,
+        "number": index,
+        "title": title,
+        "caption": paragraphs,
+        "page": file.read_text(encoding="utf-8") if interactive else None,
+        "picture": None if interactive else data_uri(file.read_bytes(), "image/png"),
+        "table_name": table.name,
+        "table": data_uri(table.read_bytes(), "text/csv") if embedded else f"figures/{table.name}",
+        "embedded": embedded,
+    }
+
+
+def caption(name: str, folder: Path = REPORT_FOLDER) -> tuple[str, list[str]]:
+    """Return (title, paragraphs) of a figure's caption file: an underlined title, then plain paragraphs.
+
+    Raises ValueError when the title is not underlined.
+    """
+    path = folder / f"{name}.rst"
+    title, underline, *rest = path.read_text(encoding="utf-8").split("\n")
+    if set(underline) != {"-"}:
+        raise ValueError(f"{path}: line 2 must underline the title with '-', found {underline!r}.")
+    blocks = re.split(r"\n\s*\n", "\n".join(rest).strip())
+    return title, [" ".join(block.split()) for block in blocks]
+
+
+def data_uri(content: bytes, kind: str) -> str:
+    """Return content as an address that needs no network."""
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
+
+
+# ---------------------------------------------------------------- setting
+
+
+def run_rows(study: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return one row per run: design factors, layers, alpha_ER, particles, time step and steps per cycle."""
+    factors = {row["row"]: {k: v for k, v in row.items() if k != "row"} for row in study["design_rows"]}
+    rows = []
+    for run, names in study["runs"].items():
+        derived = study["parameters"][run]["derived"]
+        rows.append(
+            {
+                "run": run,
+                **(factors[names["row"]]),
+                "bed": study["bed_of"][run],
+                "layers": derived["layers"],
+                "equivalent_size_ratio": derived["equivalent_size_ratio"],
+                "particles_about": derived["bed_particles"],
+                "time_step_us": derived["time_step_s"] * 1e6,
+                "steps_per_cycle": derived["cycle_steps"],
+            }
+        )
+    return rows
+
+
+def run_columns(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Return key, name and unit of the columns of the table of runs."""
+    pairs = ((key, *name_and_unit(key)) for key in run_rows(study)[0])
+    return [{"key": key, "name": name, "unit": unit} for key, name, unit in pairs]
+
+
+# ---------------------------------------------------------------- cost and provenance
+
+
+def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Return the cost of every job behind the page, see `analysis.cost.job_costs`."""
+    files = [folder / "logs" / f"{job}{BENCHMARK_SUFFIX}" for job in study["jobs"]]
+    costs = {f"worn_run_{run}": folder / run / "cost.csv" for run in study["runs"]}
+    costs |= {f"settled_bed_{bed}": folder / "beds" / bed / "cost.csv" for bed in study["beds"]}
+    tables = {job: pd.read_csv(path) for job, path in costs.items() if path.is_file()}
+    return job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
+
+
+def solver_jobs(jobs: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the jobs that call the solver, and all others in one row."""
+    solving = jobs[jobs["solver_s"] > 0.0]
+    rest = jobs[jobs["solver_s"] == 0.0]
+    others = {"job": f"{len(rest)} other jobs (meshes, tables, figures)", "wall_s": rest["wall_s"].sum()}
+    rows = [
+        *solving.to_dict("records"),
+        {**dict.fromkeys(jobs.columns), **others, "outside_s": others["wall_s"]},
+    ]
+    return [{**row, "solver_share": share_of(row["solver_s"], row["wall_s"])} for row in rows]
+
+
+def share_of(part: float | None, whole: float) -> float:
+    """Return a share in percent, 0 where nothing was taken."""
+    return 100.0 * (part or 0.0) / whole if whole else 0.0
+
+
+def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
+    """Return the sums of all jobs: wall_s, solver_s, outside_s, outside_percent, particle steps per second."""
+    solver_seconds = float(jobs["solver_s"].sum())
+    steps = float((jobs["particle_steps_per_s"] * jobs["solver_s"]).sum()) if solver_seconds else 0.0
+    return {
+        "jobs": len(jobs),
+        "wall_s": float(jobs["wall_s"].sum()),
+        "solver_s": solver_seconds,
+        "outside_s": float(jobs["outside_s"].sum()),
+        "outside_percent": 100.0 * outside_solver_share(jobs),
+        "particle_steps_per_s": steps / solver_seconds if solver_seconds else float("nan"),
+    }
+
+
+def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
+    """Return the versions of everything that made the results."""
+    log = next((folder / run / "cycle_001" / "log.liggghts" for run in study["runs"]), None)
+    said = VERSION_LINE.search(log.read_text(errors="replace")) if log and log.is_file() else None
+    found = {"LIGGGHTS": said.group(1).removeprefix("Version ") if said else "not reported"}
+    found["this project"] = commit()
+    found["Python"] = (
+        f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
+    )
+    for name in PACKAGES:
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    return found
+
+
+def commit(repository: Path = REPOSITORY) -> str:
+    """Return the commit of the project, and whether files differ from it; what is known where git is not there."""
+
+    def git(*words: str) -> str:
+        command = ["git", "-c", f"safe.directory={repository}", *words]
+        return subprocess.run(
+            command, cwd=repository, capture_output=True, text=True, check=True
+        ).stdout.strip()
+
+    try:
+        changed = " with changes" if git("status", "--porcelain") else ""
+        return f"commit {git('rev-parse', '--short=12', 'HEAD')}{changed}"
+    except (OSError, subprocess.CalledProcessError):
+        return "commit not known"
+
+
+def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, Any]]:
+    """Return the solver's warnings over all cycles of all runs: what was said, how often."""
+    counts: dict[str, int] = {}
+    for said, count in _warnings_of(folder / run for run in study["runs"]):
+        counts[said] = counts.get(said, 0) + count
+    return [
+        {"said": said, "count": count} for said, count in sorted(counts.items(), key=lambda item: -item[1])
+    ]
+
+
+def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:
+    for folder in folders:
+        for path in sorted(folder.glob("cycle_[0-9]*/state.json")):
+            yield from json.loads(path.read_text()).get("solver_warnings", {}).items()
