@@ -63,9 +63,7 @@ def _timed(label: str, megabytes: float, action) -> None:
     start, cpu_start = time.perf_counter(), time.process_time()
     action()
     seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu_start
-    print(
-        f"{label:<41} {seconds:6.2f} s wall {cpu_seconds:6.2f} s of core {megabytes / cpu_seconds:6.0f} MB/s"
-    )
+    print(f"{label:<41} {seconds:6.2f} s wall {cpu_seconds:6.2f} s of core {megabytes / cpu_seconds:6.0f} MB/s")
 
 
 def _ledger(folder: Path, batched: bool) -> None:
@@ -93,9 +91,7 @@ def main() -> None:
             del contacts
             break
         _timed("parse the contact dump alone", size, lambda: [None for _ in read_frames(paths[0], "ENTRIES")])
-        _timed(
-            "read both dumps, batches of frames", size, lambda: [None for _ in read_contact_batches(*paths)]
-        )
+        _timed("read both dumps, batches of frames", size, lambda: [None for _ in read_contact_batches(*paths)])
         _timed("read both dumps, one frame at a time", size, lambda: [None for _ in read_contacts(*paths)])
         _timed("read and ledger, batches (add_batch)", size, lambda: _ledger(folder, batched=True))
         _timed("read and ledger, one frame at a time (add)", size, lambda: _ledger(folder, batched=False))

@@ -14,9 +14,7 @@ def gmsh_session() -> Iterator[ModuleType]:
     """Yield gmsh with a fresh model: silent, one thread, fixed seed, so that equal input gives equal bits."""
     import gmsh  # half a second, and needed by the builders only
 
-    gmsh.initialize(
-        readConfigFiles=False, interruptible=False
-    )  # no signal handler: works off the main thread
+    gmsh.initialize(readConfigFiles=False, interruptible=False)  # no signal handler: works off the main thread
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)

@@ -14,9 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 MAJOR_AXES = ("along_travel", "across_travel")
-RIM_MARGIN = (
-    0.125  # of the smaller radius: plane left between a bump and the rim, so that triangles fit there
-)
+RIM_MARGIN = 0.125  # of the smaller radius: plane left between a bump and the rim, so that triangles fit there
 ROUNDING = 1e-9  # relative: a bump that fits exactly is not lost to the last digit
 
 

@@ -29,9 +29,7 @@ def rectangle_rim(width: float, length: float, element_size: float) -> np.ndarra
     corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (width / 2, length / 2)
     sides = []
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        count = max(
-            1, math.ceil(np.abs(end - start).max() / element_size - 1e-9)
-        )  # 1e-9: rounding in the ratio
+        count = max(1, math.ceil(np.abs(end - start).max() / element_size - 1e-9))  # 1e-9: rounding in the ratio
         sides.append(np.linspace(start, end, count, endpoint=False))
     return np.concatenate(sides)
 

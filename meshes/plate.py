@@ -30,9 +30,7 @@ def flat_plate(width: float, length: float, element_size: float) -> SurfaceMesh:
         if not value > 0:
             raise ValueError(f"{name} of a plate must be greater than 0 m, found {value}")
     columns, rows = _cells(width, element_size), _cells(length, element_size)
-    x, y = np.meshgrid(
-        np.linspace(-width / 2, width / 2, columns + 1), np.linspace(-length / 2, length / 2, rows + 1)
-    )
+    x, y = np.meshgrid(np.linspace(-width / 2, width / 2, columns + 1), np.linspace(-length / 2, length / 2, rows + 1))
     points = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
     corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
     quads = np.column_stack([corner, corner + 1, corner + columns + 2, corner + columns + 1])
@@ -50,9 +48,7 @@ def _unit_icosahedron() -> tuple[np.ndarray, np.ndarray]:
     faces = "0 11 5 0 5 1 0 1 7 0 7 10 0 10 11 1 5 9 5 11 4 11 10 2 10 7 6 7 1 8 "
     faces += "3 9 4 3 4 2 3 2 6 3 6 8 3 8 9 4 9 5 2 4 11 6 2 10 8 6 7 9 8 1"
     order = np.array([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11])
-    return np.array(corners) / math.hypot(1, golden), order[
-        np.array(faces.split(), dtype=np.int64).reshape(-1, 3)
-    ]
+    return np.array(corners) / math.hypot(1, golden), order[np.array(faces.split(), dtype=np.int64).reshape(-1, 3)]
 
 
 def sphere(radius: float, subdivisions: int) -> SurfaceMesh:
@@ -97,8 +93,6 @@ def closed_box(width: float, length: float, height: float, element_size: float) 
     starts = np.cumsum([0] + [len(points) for points, _ in sides[:-1]])
     points = np.concatenate([points for points, _ in sides])
     triangles = np.concatenate([tri + start for (_, tri), start in zip(sides, starts, strict=True)])
-    points, inverse = np.unique(
-        points, axis=0, return_inverse=True
-    )  # the same linspace on both sides: bit-equal
+    points, inverse = np.unique(points, axis=0, return_inverse=True)  # the same linspace on both sides: bit-equal
     points[:, 2] += height / 2
     return SurfaceMesh(points, inverse.reshape(-1)[triangles], base_labels(len(triangles)))

@@ -32,9 +32,7 @@ def quality_table(meshes: Iterable[tuple[str, SurfaceMesh]]) -> str:
     ]
     for name, mesh in meshes:
         numbers = quality(mesh)
-        angles = [
-            f"{numbers[f'{p}_smallest_deg']:.0f} / {numbers[f'{p}_percentile_1_deg']:.0f}" for p in PARTS
-        ]
+        angles = [f"{numbers[f'{p}_smallest_deg']:.0f} / {numbers[f'{p}_percentile_1_deg']:.0f}" for p in PARTS]
         counts = [numbers["bumps"], numbers["triangles"], numbers["on_bumps"]]
         lines.append("| " + " | ".join([name, *map(str, counts), *angles]) + " |")
     return "\n".join(lines)

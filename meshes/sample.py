@@ -16,9 +16,7 @@ from meshes.pattern import ConvexPattern, bump_centres, bump_rows, pattern_fault
 from meshes.plane import PlaneMesh, mesh_plane, rectangle_rim
 from postproc.mesh import SurfaceMesh, smallest_angles
 
-SKIRT_DEPTH = (
-    0.2  # of the height above the floor: how far the skirt reaches below the floor, so that no slit opens
-)
+SKIRT_DEPTH = 0.2  # of the height above the floor: how far the skirt reaches below the floor, so that no slit opens
 LARGEST_SKIRT_SLOPE = math.pi / 4  # a steeper ramp is a wall and would plough the bed
 SMALLEST_ANGLE = 10.0  # degrees, promised for every triangle
 HOLDER = -1  # label `part` of the skirt
@@ -36,9 +34,7 @@ class _Bumps:
     row: np.ndarray
 
 
-def sample_top(
-    width: float, length: float, element_size: float, pattern: ConvexPattern | None
-) -> SurfaceMesh:
+def sample_top(width: float, length: float, element_size: float, pattern: ConvexPattern | None) -> SurfaceMesh:
     """The top of a sample, plane at z = 0 with its bumps, without a skirt.
 
     width (x), length (y), element_size: m; pattern None gives a plain sample. Cell data: `part`, `column` and
@@ -138,9 +134,7 @@ def _labels(plane: PlaneMesh, bumps: _Bumps) -> dict[str, np.ndarray]:
 
     def label(per_bump: np.ndarray, frame: int) -> np.ndarray:
         on_bumps = np.repeat(per_bump, len(bumps.triangles))
-        return np.concatenate([np.zeros(len(plane.base)), on_bumps, np.full(len(plane.frame), frame)]).astype(
-            np.int64
-        )
+        return np.concatenate([np.zeros(len(plane.base)), on_bumps, np.full(len(plane.frame), frame)]).astype(np.int64)
 
     part = label(np.arange(1, len(bumps.centres) + 1), HOLDER)
     return {"part": part, "column": label(bumps.column, 0), "row": label(bumps.row, 0)}

@@ -313,9 +313,7 @@ def test_lengths_and_blocks_are_found():
     assert not has_run_block("rule dry_run:\n    output: 'b'\n")
 
 
-@pytest.mark.parametrize(
-    "text", ["--index-url x", "--find-links /a", "a @ https://b/c", "--extra-index-url y"]
-)
+@pytest.mark.parametrize("text", ["--index-url x", "--find-links /a", "a @ https://b/c", "--extra-index-url y"])
 def test_an_address_is_found(text):
     """Every way to name a package source is found."""
     assert WORDS_OF_AN_INDEX.search(text)

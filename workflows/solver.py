@@ -73,9 +73,7 @@ def run_deck(
     return time.monotonic() - started
 
 
-def _watch(
-    process: subprocess.Popen, folder: Path, on_step: Callable[[int], None], triangles: dict[str, int]
-) -> None:
+def _watch(process: subprocess.Popen, folder: Path, on_step: Callable[[int], None], triangles: dict[str, int]) -> None:
     """Follow a run until it ends; every mesh is checked once, as soon as the solver has reported it."""
     ended = False
     while not ended:

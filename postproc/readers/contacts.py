@@ -129,8 +129,7 @@ def _check_steps(expected: np.ndarray, found: np.ndarray, contact_path: Path, sp
     k = found.size if same.all() else int(np.argmin(same))
     there = f"step {found[k]}" if k < found.size else "the end of the file"
     raise ContactDumpError(
-        f"{spin_path}: found {there} where {contact_path} has step {expected[k]}, "
-        "allowed are the same steps in both."
+        f"{spin_path}: found {there} where {contact_path} has step {expected[k]}, allowed are the same steps in both."
     )
 
 
@@ -229,9 +228,7 @@ def read_contact_batches(
         yield _batch(contact, spin, spin_path)
 
 
-def read_contacts(
-    contact_dump: Path | str, spin_dump: Path | str, after_step: int | None = None
-) -> Iterator[Contacts]:
+def read_contacts(contact_dump: Path | str, spin_dump: Path | str, after_step: int | None = None) -> Iterator[Contacts]:
     """Streams the wall contacts, one `Contacts` per sampled step; samples without contacts are yielded too.
 
     Arguments and errors as `read_contact_batches`.

@@ -26,9 +26,7 @@ _POWERS_OF_TEN = np.array([float(f"1e{exponent}") for exponent in range(_LARGEST
 _LONGEST = 18  # characters of a mantissa that 64 bits hold for sure
 _NEWLINE, _SPACE, _MINUS, _PLUS, _POINT, _ZERO, _NINE, _EXPONENT, _ITEM = (ord(c) for c in "\n -+.09eI")
 
-_DONE, _NO_TIMESTEP, _NO_COUNT, _NO_BOX, _NO_HEADING, _NO_WHOLE, _NOT_FINITE, _COLUMNS, _SHORT, _ORDER = (
-    range(10)
-)
+_DONE, _NO_TIMESTEP, _NO_COUNT, _NO_BOX, _NO_HEADING, _NO_WHOLE, _NOT_FINITE, _COLUMNS, _SHORT, _ORDER = range(10)
 
 
 class ContactDumpError(ValueError):

@@ -41,9 +41,7 @@ def _cell_fields(text: str, path: Path) -> dict[str, np.ndarray]:
         values = words[place + 4 : place + 4 + components * tuples]
         if tuples != cells or len(values) != components * tuples:
             found = f"{len(values)} values of field '{name}'"
-            raise MeshLoadsError(
-                f"{path}: found {found}, allowed are {components} for each of {cells} triangles."
-            )
+            raise MeshLoadsError(f"{path}: found {found}, allowed are {components} for each of {cells} triangles.")
         place += 4 + components * tuples
         if components == 1:
             fields[name] = _finite(values, name, path)

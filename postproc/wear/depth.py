@@ -31,18 +31,14 @@ def add_removed_thickness(removed_thickness: np.ndarray, step: np.ndarray) -> np
     return removed_thickness + step
 
 
-def height_loss(
-    points: np.ndarray, pristine_points: np.ndarray, pristine_triangles: np.ndarray
-) -> np.ndarray:
+def height_loss(points: np.ndarray, pristine_points: np.ndarray, pristine_triangles: np.ndarray) -> np.ndarray:
     """Vertical distance (k,) m from each point up to the pristine surface above it, NaN where there is none.
 
     Parameters: points (k, 3) m; pristine_points (n, 3) m; pristine_triangles (m, 3).
     """
     flat = pristine_points * (1.0, 1.0, 0.0)
     up = np.broadcast_to((0.0, 0.0, 1.0), points.shape)
-    return _along_rays(
-        points, up, pristine_points, pristine_triangles, points * (1.0, 1.0, 0.0), flat, 0.0, np.inf
-    )
+    return _along_rays(points, up, pristine_points, pristine_triangles, points * (1.0, 1.0, 0.0), flat, 0.0, np.inf)
 
 
 def ray_depth(
@@ -64,9 +60,7 @@ def ray_depth(
     )
 
 
-def _along_rays(
-    origins, directions, points, triangles, search_at, search_points, radius, reach
-) -> np.ndarray:
+def _along_rays(origins, directions, points, triangles, search_at, search_points, radius, reach) -> np.ndarray:
     """Nearest hit (k,) m of each ray, 0 <= t <= reach, NaN where none.
 
     Candidates are the triangles that may come within `radius` of `search_at`, both in the space of

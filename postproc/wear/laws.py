@@ -35,9 +35,7 @@ def archard(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) 
     sliding_work = _required(columns, "sliding_work_J", "ledger column")
     wear_coefficient = float(_required(parameters, "wear_coefficient_per_pa", "wear parameter"))
     if not (np.isfinite(wear_coefficient) and wear_coefficient >= 0.0):
-        raise ValueError(
-            f"wear_coefficient_per_pa is {wear_coefficient}, allowed is a finite number >= 0 (1/Pa)"
-        )
+        raise ValueError(f"wear_coefficient_per_pa is {wear_coefficient}, allowed is a finite number >= 0 (1/Pa)")
     return wear_coefficient * np.asarray(sliding_work, dtype=np.float64)
 
 

@@ -92,9 +92,7 @@ class LedgerBuilder:
         the first sample counts as an impact
     """
 
-    def __init__(
-        self, n_triangles: int, mesh_index: int, effective_modulus: float, density: float, touching=None
-    ):
+    def __init__(self, n_triangles: int, mesh_index: int, effective_modulus: float, density: float, touching=None):
         self.n_triangles, self.mesh_index = n_triangles, mesh_index
         self.effective_modulus, self.density = effective_modulus, density
         self._touching = None if touching is None else np.unique(np.asarray(touching, np.int64))

@@ -8,9 +8,7 @@ from postproc.mesh import SurfaceMesh, smallest_angles
 from postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
 from postproc.wear.displacement import displace, inward_directions, rim_directions
 
-BALANCE_TOLERANCE = (
-    1e-9  # -, of alpha * work: rounding in sums over 1e6 triangles stays far below, a loss not
-)
+BALANCE_TOLERANCE = 1e-9  # -, of alpha * work: rounding in sums over 1e6 triangles stays far below, a loss not
 HOLDER_PART = -1  # label of the faces that do not wear
 
 REMOVED_THICKNESS = "removed_thickness_m"

@@ -49,9 +49,7 @@ def test_normals_point_outward(shape):
     points, triangles, _ = bump_shell(*shape, 0.5e-3)
     normals, gradient = unit_normals(points, triangles), centroids(points, triangles) / np.square(shape)
     gradient /= np.linalg.norm(gradient, axis=1, keepdims=True)
-    assert (normals * gradient).sum(
-        axis=1
-    ).min() > 0.7  # 45 degrees at the sharpest tip, radius of a tenth of the edge
+    assert (normals * gradient).sum(axis=1).min() > 0.7  # 45 degrees at the sharpest tip, radius of a tenth of the edge
     assert normals[:, 2].min() > OVERHANG
 
 

@@ -51,9 +51,7 @@ def test_half_offset_is_symmetric():
     centres, _ = bump_centres(R5, 0.2, 0.2)
     for mirror in ((-1, 1), (1, -1)):
         order = np.lexsort((centres * mirror).round(9).T)
-        assert (centres * mirror)[order] == pytest.approx(
-            centres[np.lexsort(centres.round(9).T)], abs=ROUNDING
-        )
+        assert (centres * mirror)[order] == pytest.approx(centres[np.lexsort(centres.round(9).T)], abs=ROUNDING)
 
 
 def test_offset_shifts_every_second_row():

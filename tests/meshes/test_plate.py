@@ -26,9 +26,7 @@ def test_plate_area_normals_and_edges():
     assert vectors[:, 2].min() > 0
     legs = np.diff(np.unique(plate.points[:, 0])), np.diff(np.unique(plate.points[:, 1]))
     assert max(legs[0].max(), legs[1].max()) <= 0.3
-    assert (
-        smallest_angles(plate.points, plate.triangles).min() > 40
-    )  # 41.2 degrees for cells of 0.25 by 0.286
+    assert smallest_angles(plate.points, plate.triangles).min() > 40  # 41.2 degrees for cells of 0.25 by 0.286
     assert nonmanifold_edges(plate.triangles).size == 0
 
 

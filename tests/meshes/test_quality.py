@@ -25,6 +25,4 @@ def test_parts_are_told_apart():
     numbers = quality(mesh)
     assert numbers["base_smallest_deg"] == pytest.approx(45.0)
     assert numbers["bump_smallest_deg"] == pytest.approx(np.degrees(np.arctan(0.1)))
-    assert (
-        quality_table([("two", mesh)]).splitlines()[-1] == "| two | 1 | 2 | 1 | 45 / 45 | 6 / 6 | nan / nan |"
-    )
+    assert quality_table([("two", mesh)]).splitlines()[-1] == "| two | 1 | 2 | 1 | 45 / 45 | 6 / 6 | nan / nan |"

@@ -94,9 +94,7 @@ def test_other_element_sizes(element_size):
     """A small sample at other element sizes keeps angles, footprint and topology."""
     mesh = sliding_sample(60 * MM, 80 * MM, element_size, pattern_of("R9"), HEIGHT, SLOPE)
     part = mesh.cell_data["part"]
-    assert area_vectors(mesh.points, mesh.triangles)[part >= 0, 2].sum() == pytest.approx(
-        0.06 * 0.08, rel=ROUNDING
-    )
+    assert area_vectors(mesh.points, mesh.triangles)[part >= 0, 2].sum() == pytest.approx(0.06 * 0.08, rel=ROUNDING)
     angles = smallest_angles(mesh.points, mesh.triangles)
     assert angles.min() > 20
     assert nonmanifold_edges(mesh.triangles).size == 0
@@ -135,17 +133,13 @@ def test_skirt_is_a_ramp_to_below_the_floor():
     skirt = mesh.cell_data["part"] == -1
     vectors = area_vectors(mesh.points, mesh.triangles)[skirt]
     tilt = np.arctan2(np.linalg.norm(vectors[:, :2], axis=1), vectors[:, 2])
-    assert tilt == pytest.approx(
-        SLOPE, rel=1e-6
-    )  # heights of 1e-3 m carry 1e-16 m of rounding over 1 mm edges
+    assert tilt == pytest.approx(SLOPE, rel=1e-6)  # heights of 1e-3 m carry 1e-16 m of rounding over 1 mm edges
     assert (np.abs(vectors[:, :2]).min(axis=1) < 1e-12).all()  # four planes, one facing each side
     rim = np.unique(boundary_edges(mesh.triangles[~skirt]))
     assert (mesh.points[rim, 2] == HEIGHT).all()
     outer = np.unique(boundary_edges(mesh.triangles))
     assert mesh.points[outer, 2] == pytest.approx(-SKIRT_DEPTH * HEIGHT, rel=1e-9)
-    assert np.abs(mesh.points[outer, :2]).max() == pytest.approx(
-        0.025 + 1.2 * HEIGHT / math.tan(SLOPE), rel=1e-9
-    )
+    assert np.abs(mesh.points[outer, :2]).max() == pytest.approx(0.025 + 1.2 * HEIGHT / math.tan(SLOPE), rel=1e-9)
 
 
 def test_labels():

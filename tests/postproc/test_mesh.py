@@ -163,9 +163,7 @@ def test_failed_write_leaves_the_old_file(tmp_path):
     pm.write_stl(path, plate.points, plate.triangles)
     before = path.read_bytes()
     with pytest.raises(RuntimeError, match="disk"):
-        pm._write_atomically(
-            path, lambda name: (name.write_text("half"), (_ for _ in ()).throw(RuntimeError("disk")))
-        )
+        pm._write_atomically(path, lambda name: (name.write_text("half"), (_ for _ in ()).throw(RuntimeError("disk"))))
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["a.stl"]
 

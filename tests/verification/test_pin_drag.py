@@ -1,4 +1,4 @@
-"""A pin dragged straight over a flat mesh by LIGGGHTS: dumps -> ledger -> Archard -> displaced mesh, against alpha F L."""
+"""A pin dragged straight over a flat mesh by LIGGGHTS: dumps, ledger, Archard, displaced mesh, against alpha F L."""
 
 import shutil
 import subprocess
@@ -56,7 +56,7 @@ def test_worn_volume_is_alpha_times_load_times_distance(tmp_path, element_size):
 
 def test_wear_lies_on_the_track(tmp_path):
     """All wear is on triangles under the pin's path, and its mean position moves along the path."""
-    mesh, ledger = dragged_pin(tmp_path, 1e-3)
+    _, ledger = dragged_pin(tmp_path, 1e-3)
     loaded = ledger["sliding_work_J"] > 0
     start, end = (SPEED * TIME_STEP * steps for steps in (SETTLED, SETTLED + STEPS))
     assert np.abs(ledger["contact_position_x_m"][loaded]).max() < 1e-6

@@ -69,9 +69,7 @@ def test_an_unknown_study_is_named_with_the_nearest(config):
     """A misspelt study gives the studies there are."""
     with pytest.raises(ConfigError) as caught:
         load_study("smal", config.root)
-    assert str(caught.value) == (
-        "config/studies: study is 'smal', allowed is one of small (the nearest is small)."
-    )
+    assert str(caught.value) == ("config/studies: study is 'smal', allowed is one of small (the nearest is small).")
 
 
 # ---------------------------------------------------------------- layers of settings
@@ -79,9 +77,7 @@ def test_an_unknown_study_is_named_with_the_nearest(config):
 
 def test_the_strongest_layer_wins_key_by_key(config):
     """default < study < fidelity block < command line; keys that a layer does not name come from below."""
-    settings = load_study(
-        "small", config.root, {"sample": {"length_mm": 70}, "bed": {"behind_mm": 123}}
-    ).settings
+    settings = load_study("small", config.root, {"sample": {"length_mm": 70}, "bed": {"behind_mm": 123}}).settings
     assert settings["sample"]["material"] == "steel"  # default
     assert settings["bed"]["ahead_mm"] == 150  # study
     assert (settings["sample"]["width_mm"], settings["bed"]["width_mm"]) == (80, 120)  # fidelity block
@@ -119,9 +115,7 @@ def test_loading_twice_gives_the_same_study_and_shares_nothing(config):
 
 def test_units_are_converted_once_and_keys_say_so():
     """mm become m and degrees rad, at every depth; what is SI stays, 1/Pa is no length."""
-    converted = to_si(
-        {"a": {"width_mm": 80.0, "slope_deg": 180.0}, "k_per_pa": 2.0, "v_m_per_s": 3.0, "n": 4}
-    )
+    converted = to_si({"a": {"width_mm": 80.0, "slope_deg": 180.0}, "k_per_pa": 2.0, "v_m_per_s": 3.0, "n": 4})
     assert converted == {
         "a": {"width_m": 0.08, "slope_rad": math.pi},
         "k_per_pa": 2.0,
@@ -134,11 +128,7 @@ def test_parameters_hold_no_other_unit(config):
     """No key of a run's parameters ends in mm or deg, at any depth."""
 
     def keys(value):
-        return (
-            [k for key, inner in value.items() for k in (key, *keys(inner))]
-            if isinstance(value, dict)
-            else []
-        )
+        return [k for key, inner in value.items() for k in (key, *keys(inner))] if isinstance(value, dict) else []
 
     names = keys(parameters_of(config))
     assert "skirt_slope_rad" in names
@@ -243,9 +233,7 @@ def test_rolling_coefficients_keep_the_torque(diameter):
     """mu (solver) x reduced radius = mu (calibrated) x its radius: equal spheres R/2, a wall R."""
     radius, coefficient = diameter / 2, 0.4
     between = rolling_coefficient_for_solver(coefficient, "full", "particle_particle")
-    assert between * (radius * radius / (radius + radius)) == pytest.approx(
-        coefficient * radius, rel=ROUNDING
-    )
+    assert between * (radius * radius / (radius + radius)) == pytest.approx(coefficient * radius, rel=ROUNDING)
     assert rolling_coefficient_for_solver(coefficient, "full", "particle_wall") == coefficient
     assert rolling_coefficient_for_solver(coefficient, "reduced", "particle_particle") == coefficient
     assert rolling_coefficient_for_solver(coefficient, "reduced", "particle_wall") == coefficient
@@ -284,9 +272,7 @@ def test_the_travel_is_exact_and_the_time_step_close_to_its_limit(config):
     """cycles x steps x time step x velocity = travel; the time step is at most a sample per cycle lower."""
     for run in load_study("small", config.root).runs:
         derived, sliding = run.parameters["derived"], run.parameters["sliding"]
-        total = (
-            sliding["cycles"] * derived["cycle_steps"] * derived["time_step_s"] * sliding["velocity_m_per_s"]
-        )
+        total = sliding["cycles"] * derived["cycle_steps"] * derived["time_step_s"] * sliding["velocity_m_per_s"]
         assert total == pytest.approx(1.0, rel=ROUNDING)
         slack = 1 - derived["time_step_s"] / derived["largest_time_step_s"]
         assert 0 <= slack <= 20 / derived["cycle_steps"]
@@ -410,9 +396,7 @@ def test_an_unknown_run_is_refused(config):
 
 def test_figures_say_what_is_reduced(config):
     """A reduced study names its scale, its smaller sample, bed and travel, and the acceleration."""
-    config.edit(
-        "studies/small.yaml", "      width_mm: 120\n", "      width_mm: 120\n    sliding: {travel_mm: 400}\n"
-    )
+    config.edit("studies/small.yaml", "      width_mm: 120\n", "      width_mm: 120\n    sliding: {travel_mm: 400}\n")
     assert figure_remarks(load_study("small", config.root, {"wear": {"acceleration": 1e4}})) == [
         "particles at scale 2",
         "sample 80 x 90 mm of 200 x 200 mm",

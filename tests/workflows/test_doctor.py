@@ -68,9 +68,7 @@ def test_solver_is_missing_without_liggghts(monkeypatch, tmp_path):
     assert doctor.SET_UP in found.advice
 
 
-@pytest.mark.parametrize(
-    ("version", "state"), [("3.8.0", "OK"), ("3.7.1", "wrong"), ("of unknown make", "wrong")]
-)
+@pytest.mark.parametrize(("version", "state"), [("3.8.0", "OK"), ("3.7.1", "wrong"), ("of unknown make", "wrong")])
 def test_solver_of_another_version_is_wrong(program, version, state):
     """The version liggghts prints decides, although it exits with 1."""
     program("liggghts", says(f"LIGGGHTS (Version LIGGGHTS-PUBLIC {version}, compiled today)", code=1))

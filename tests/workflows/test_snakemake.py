@@ -1,4 +1,4 @@
-"""Snakemake on a tiny study in a copy of the repository: from design row to summary, killed and started again, refused."""
+"""Snakemake on a tiny study in a copy of the repository: from design row to summary, killed, started again, refused."""
 
 import os
 import shutil

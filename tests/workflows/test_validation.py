@@ -88,8 +88,7 @@ BAD_KEYS = [
         SETTINGS,
         "  skirt_slope_deg: 3.0\n",
         "",
-        "config/default.yaml, line 3: sample.skirt_slope_deg is missing, allowed is a number from"
-        " 0.5 to 60 deg.",
+        "config/default.yaml, line 3: sample.skirt_slope_deg is missing, allowed is a number from 0.5 to 60 deg.",
     ),
     (
         SETTINGS,
@@ -124,8 +123,7 @@ BAD_VALUES = [
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: true",
-        "config/default.yaml, line 23: wear.acceleration is true,"
-        " allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 23: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         STUDY,
@@ -137,8 +135,7 @@ BAD_VALUES = [
         STUDY,
         "width_mm: 80",
         "width_mm: 8 cm",
-        f"{QUICK}: unit cm is not allowed for sample.width, write sample.width_mm, {WIDTH_RANGE}"
-        " (found '8 cm').",
+        f"{QUICK}: unit cm is not allowed for sample.width, write sample.width_mm, {WIDTH_RANGE} (found '8 cm').",
     ),
     (
         STUDY,
@@ -174,8 +171,7 @@ BAD_VALUES = [
         STUDY,
         "[convex, plain]",
         "[]",
-        "config/studies/small.yaml, line 4: surfaces is [], allowed is a list of convex and plain,"
-        " each at most once.",
+        "config/studies/small.yaml, line 4: surfaces is [], allowed is a list of convex and plain, each at most once.",
     ),
     (
         STUDY,
@@ -226,8 +222,7 @@ BAD_VALUES = [
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: 0",
-        "config/default.yaml, line 23: wear.acceleration is 0, allowed is a number above 0 and at"
-        " most 1000000000.",
+        "config/default.yaml, line 23: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         SETTINGS,
@@ -283,8 +278,7 @@ BAD_VALUES = [
         MATERIALS,
         "poissons_ratio: 0.49",
         "poissons_ratio: 0.5",
-        "config/materials.yaml, line 20: walls.perspex.poissons_ratio is 0.5,"
-        " allowed is a number from 0 to 0.495.",
+        "config/materials.yaml, line 20: walls.perspex.poissons_ratio is 0.5, allowed is a number from 0 to 0.495.",
     ),
 ]
 
@@ -314,8 +308,7 @@ BAD_ROWS = [
     (
         "R5,",
         "R9,",
-        "config/designs/small.csv, line 3: row is 'R9', which stands in line 2 too,"
-        " allowed is each name once.",
+        "config/designs/small.csv, line 3: row is 'R9', which stands in line 2 too, allowed is each name once.",
     ),
     (
         "R9,",
@@ -326,8 +319,7 @@ BAD_ROWS = [
     (
         ",height_mm",
         ",height_cm",
-        "config/designs/small.csv, header: unit cm is not allowed for height,"
-        " write height_mm (found height_cm).",
+        "config/designs/small.csv, header: unit cm is not allowed for height, write height_mm (found height_cm).",
     ),
     (
         ",height_mm",
@@ -346,9 +338,7 @@ BAD_ROWS = [
     ),
 ]
 
-TABLE_HEADER = (
-    "row,major_radius_mm,minor_radius_mm,column_spacing_mm,height_mm,velocity_m_per_s,bed_thickness_mm"
-)
+TABLE_HEADER = "row,major_radius_mm,minor_radius_mm,column_spacing_mm,height_mm,velocity_m_per_s,bed_thickness_mm"
 BAD_TABLES = [
     ("", "config/designs/small.csv: the file is empty, allowed is a header and one row per run."),
     ("\n \n", "config/designs/small.csv: the file is empty, allowed is a header and one row per run."),
@@ -383,8 +373,7 @@ BAD_COMBINATIONS = [
     ),
     (
         {"bed": {"behind_mm": 5}},
-        "command line: bed.behind_mm is 5 for row R9, allowed is at least 5.72434 mm, the width of"
-        " the sample's skirt.",
+        "command line: bed.behind_mm is 5 for row R9, allowed is at least 5.72434 mm, the width of the sample's skirt.",
     ),
     (
         {"sample": {"element_size_mm": 2.5}},
@@ -403,8 +392,7 @@ BAD_COMBINATIONS = [
     ),
     (
         {"sliding": {"cycles": 10000, "travel_mm": 100}},
-        "command line: sliding.cycles is 10000 for row R9, allowed is at most 115,"
-        " so that a cycle has 100 time steps.",
+        "command line: sliding.cycles is 10000 for row R9, allowed is at most 115, so that a cycle has 100 time steps.",
     ),
     (
         {"pattern": {"row_spacing_mm": 2}},
@@ -500,18 +488,13 @@ def test_broken_yaml_is_refused_with_its_line(config):
 def test_a_file_that_is_no_mapping_is_refused(config):
     """A list where keys are expected is refused."""
     config.write(STUDY, "- a\n")
-    assert (
-        message_of(config)
-        == "config/studies/small.yaml: found ['a'], allowed is a mapping of keys to values."
-    )
+    assert message_of(config) == "config/studies/small.yaml: found ['a'], allowed is a mapping of keys to values."
 
 
 def test_a_missing_file_is_named(config):
     """Without materials.yaml the message says which files there are."""
     config.path(MATERIALS).unlink()
-    assert message_of(config) == (
-        "config/materials.yaml: there is no such file, found in its folder: default.yaml."
-    )
+    assert message_of(config) == ("config/materials.yaml: there is no such file, found in its folder: default.yaml.")
 
 
 @pytest.mark.parametrize("text", ["6.3e-13", "6.3E-13", "63e-14", "+6.3e-13", ".63e-12", "0.00000000000063"])
@@ -522,9 +505,7 @@ def test_every_way_to_write_a_float_is_a_number(config, text):
     assert study.settings["wear"]["wear_coefficient_per_pa"] == 6.3e-13
 
 
-@pytest.mark.parametrize(
-    ("text", "value"), [("010", 10), ("1_0", "1_0"), ("1:30", "1:30"), ("on", "on"), ("~", None)]
-)
+@pytest.mark.parametrize(("text", "value"), [("010", 10), ("1_0", "1_0"), ("1:30", "1:30"), ("on", "on"), ("~", None)])
 def test_yaml_1_1_surprises_do_not_happen(tmp_path, text, value):
     """No octal 010, no base-60 1:30, no boolean `on`, no underscores in numbers."""
     (tmp_path / "a.yaml").write_text(f"key: {text}\n", encoding="utf-8")

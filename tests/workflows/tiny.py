@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from postproc.mesh import write_surface
-from workflows.cycles import Chain, fill_bed
+from workflows.chain import Chain
+from workflows.cycles import fill_bed
 from workflows.design import Study, load_study
 from workflows.geometry import sample_surface
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from workflows.cycles import write_bed
+from workflows.chain import write_bed
 from workflows.job import job_log
 
 with job_log(snakemake.log[0]):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from workflows.cycles import Chain, write_decks
+from workflows.chain import Chain, write_decks
 from workflows.job import job_log
 
 with job_log(snakemake.log[0]):

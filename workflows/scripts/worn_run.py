@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from workflows.cycles import Chain, run_chain
+from workflows.chain import Chain
+from workflows.cycles import run_chain
 from workflows.job import job_log
 
 with job_log(snakemake.log[0]):

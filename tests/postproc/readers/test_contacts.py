@@ -19,9 +19,7 @@ from postproc.wear.ledger import LedgerBuilder
 DATA = Path(__file__).parents[2] / "data"
 LAST_DIGIT = 2.3e-16  # one unit in the last place between this parser and Python's float
 SIX_DIGITS = 1e-5  # of a number: what the dump's format %g keeps, after a difference of two of them
-WORK_TOLERANCE = (
-    1e-4  # of F L: brief of the reader; the dump's six digits and the discrete time are far below
-)
+WORK_TOLERANCE = 1e-4  # of F L: brief of the reader; the dump's six digits and the discrete time are far below
 ROLLING_LEFTOVER = 1e-5  # of F L: six digits of the velocity and of the spin, which cancel in rolling
 LOAD, TIME_STEP, SETTLING = 5.0, 2e-6, 4000  # N, s, steps: as in sphere_on_plate.in
 EFFECTIVE_MODULUS = 1.0 / ((1 - 0.24**2) / 2.48e8 + (1 - 0.3**2) / 2.028e11)  # Pa, as in sphere_on_plate.in
@@ -123,9 +121,7 @@ def test_memory_follows_the_block_not_the_file(tmp_path):
             for copy in range(copies):
                 shifted = text
                 for step in steps:
-                    shifted = shifted.replace(
-                        f"TIMESTEP\n{step}\n", f"TIMESTEP\n{step + 6000 * copy + 10**9}\n"
-                    )
+                    shifted = shifted.replace(f"TIMESTEP\n{step}\n", f"TIMESTEP\n{step + 6000 * copy + 10**9}\n")
                 stream.write(shifted)
     list(read_contacts(*BED))  # compiled before memory is counted
     tracemalloc.start()
@@ -252,9 +248,7 @@ def test_a_contact_without_force_needs_no_spin(tmp_path):
     assert contacts.step == 4300
     assert contacts.particle.tolist() == [1]
     assert not contacts.angular_velocity.any()
-    assert contacts.radius[0] == pytest.approx(
-        0.003, rel=0.02
-    )  # distance to the contact point, less the overlap
+    assert contacts.radius[0] == pytest.approx(0.003, rel=0.02)  # distance to the contact point, less the overlap
 
 
 def test_a_particle_listed_twice_is_refused(tmp_path):
@@ -283,9 +277,7 @@ def test_other_dumps_are_refused(tmp_path):
     no_radius = spoilt(tmp_path, " radius", "", SLIDE[1], count=-1)
     with pytest.raises(ContactDumpError, match=r"line 9: found id omegax .* allowed are at least id radius"):
         list(read_contacts(SLIDE[0], no_radius))
-    with pytest.raises(
-        ContactDumpError, match=r"line 9: found 'ITEM: ATOMS id radius', allowed is 'ITEM: ENTRIES'"
-    ):
+    with pytest.raises(ContactDumpError, match=r"line 9: found 'ITEM: ATOMS id radius', allowed is 'ITEM: ENTRIES'"):
         list(read_contacts(SLIDE[1], SLIDE[1]))
 
 

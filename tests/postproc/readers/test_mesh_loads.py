@@ -112,16 +112,12 @@ def run_bed(folder, ranks):
     """Runs bed_on_plate.in on some ranks; returns its contacts and its loads file."""
     (folder / "plate.stl").write_bytes((DATA / "plate.stl").read_bytes())
     deck = (DATA / "bed_on_plate.in").read_text()
-    (folder / "bed_on_plate.in").write_text(
-        deck.replace("boundary f f f", f"boundary f f f\nprocessors 1 {ranks} 1")
-    )
+    (folder / "bed_on_plate.in").write_text(deck.replace("boundary f f f", f"boundary f f f\nprocessors 1 {ranks} 1"))
     mpirun = ["mpirun", "--bind-to", "none", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
     root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"} if os.getuid() == 0 else {}
     with open(folder / "screen.txt", "w") as screen:
         command = [*mpirun, "liggghts", "-in", "bed_on_plate.in"]
-        subprocess.run(
-            command, cwd=folder, env={**os.environ, **root}, stdout=screen, check=True, timeout=120
-        )
+        subprocess.run(command, cwd=folder, env={**os.environ, **root}, stdout=screen, check=True, timeout=120)
     return list(read_contacts(folder / "contacts.dump", folder / "spins.dump")), folder / "loads_6000.vtk"
 
 

@@ -20,9 +20,7 @@ from postproc.readers.solver_log import (
 DATA = Path(__file__).parents[2] / "data"
 LOG, SCREEN = DATA / "bed_log.txt", DATA / "bed_screen.txt"
 MESSAGES = dict(
-    re.findall(
-        r"^=== (\w+)\n(.*?)(?=^===|\Z)", (DATA / "solver_failures.txt").read_text(), re.MULTILINE | re.DOTALL
-    )
+    re.findall(r"^=== (\w+)\n(.*?)(?=^===|\Z)", (DATA / "solver_failures.txt").read_text(), re.MULTILINE | re.DOTALL)
 )
 CAUSES = {
     "unknown_command": "a command that this LIGGGHTS does not know",
@@ -75,9 +73,7 @@ def test_a_row_being_written_is_not_read(tmp_path):
 def test_runs_with_different_columns_share_a_table(tmp_path):
     """A column a run does not print is NaN there."""
     path = tmp_path / "log.liggghts"
-    path.write_text(
-        "Step Atoms\n0 5\nWARNING: not a row\n10 5\nLoop time of 1\nStep KinEng\n10 0.5\n20 0.25\n"
-    )
+    path.write_text("Step Atoms\n0 5\nWARNING: not a row\n10 5\nLoop time of 1\nStep KinEng\n10 0.5\n20 0.25\n")
     table = thermo_table(path)
     np.testing.assert_array_equal(table["Atoms"], [5, 5, np.nan, np.nan])
     np.testing.assert_array_equal(table["KinEng"], [np.nan, np.nan, 0.5, 0.25])

@@ -30,9 +30,7 @@ def test_time_limit_is_the_free_fall_of_that_fraction_of_the_cycle():
 
 def test_gap_closing_step_grows_with_the_square_of_time():
     """Twice the cycle, four times the step."""
-    assert gap_closing_step(0.01, 2.0, 9.81) == pytest.approx(
-        4.0 * gap_closing_step(0.01, 1.0, 9.81), rel=ROUNDING
-    )
+    assert gap_closing_step(0.01, 2.0, 9.81) == pytest.approx(4.0 * gap_closing_step(0.01, 1.0, 9.81), rel=ROUNDING)
 
 
 def test_unused_node_gets_the_time_limit():

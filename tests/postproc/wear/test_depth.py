@@ -35,9 +35,7 @@ def test_all_depths_agree_on_a_plate_worn_evenly():
     outward = np.tile(UP, (len(points), 1))
     thickness = np.full(len(points), down)
     np.testing.assert_allclose(height_loss(points, mesh.points, mesh.triangles), down, rtol=ROUNDING)
-    np.testing.assert_allclose(
-        ray_depth(points, outward, thickness, mesh.points, mesh.triangles), down, rtol=ROUNDING
-    )
+    np.testing.assert_allclose(ray_depth(points, outward, thickness, mesh.points, mesh.triangles), down, rtol=ROUNDING)
 
 
 def test_height_loss_on_a_slope_is_the_thickness_over_the_cosine():
@@ -67,9 +65,7 @@ def test_depths_do_not_need_the_pristine_triangulation():
     """Points between the nodes of the pristine surface (as after remeshing) are measured all the same."""
     mesh = flat_plate(0.06, 0.04, 0.003)
     random = np.random.default_rng(SEED)
-    points = np.column_stack(
-        (random.uniform(-0.03, 0.03, 500), random.uniform(-0.02, 0.02, 500), np.full(500, -1e-4))
-    )
+    points = np.column_stack((random.uniform(-0.03, 0.03, 500), random.uniform(-0.02, 0.02, 500), np.full(500, -1e-4)))
     np.testing.assert_allclose(height_loss(points, mesh.points, mesh.triangles), 1e-4, rtol=ROUNDING)
 
 
@@ -78,9 +74,7 @@ def test_wear_deeper_than_many_edges_is_measured():
     mesh = flat_plate(0.06, 0.04, 0.003)
     below = mesh.points - 0.5 * UP
     np.testing.assert_allclose(height_loss(below, mesh.points, mesh.triangles), 0.5, rtol=ROUNDING)
-    ray = ray_depth(
-        below, np.tile(UP, (len(below), 1)), np.full(len(below), 0.3), mesh.points, mesh.triangles
-    )
+    ray = ray_depth(below, np.tile(UP, (len(below), 1)), np.full(len(below), 0.3), mesh.points, mesh.triangles)
     np.testing.assert_allclose(ray, 0.5, rtol=ROUNDING)
 
 
@@ -98,9 +92,7 @@ def test_search_agrees_with_trying_every_triangle():
     thickness = np.full(60, 0.2)
     expected = np.where(nearest <= depth.LARGEST_RAY_OVER_THICKNESS * thickness, nearest, np.nan)
     assert 0 < np.isnan(expected).sum() < 60
-    np.testing.assert_allclose(
-        ray_depth(origins, directions, thickness, points, triangles), expected, rtol=ROUNDING
-    )
+    np.testing.assert_allclose(ray_depth(origins, directions, thickness, points, triangles), expected, rtol=ROUNDING)
 
 
 def test_blocks_do_not_show(monkeypatch):

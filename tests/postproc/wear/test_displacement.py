@@ -31,9 +31,7 @@ from postproc.wear.displacement import (
 SEED = 20220317
 ROUNDING = 1e-12  # relative: the solver's own convergence, and sums over a few thousand numbers
 GEOMETRY = 1e-9  # relative: volumes of bodies are differences of numbers some 1e4 times larger
-SECOND_ORDER = (
-    3.0  # -, halving the step must at least divide a second-order remainder by this (4 in the limit)
-)
+SECOND_ORDER = 3.0  # -, halving the step must at least divide a second-order remainder by this (4 in the limit)
 
 TRIANGLE = np.array([[0, 1, 2]])
 
@@ -147,18 +145,14 @@ def test_swept_volume_is_the_loss_of_a_closed_body():
     mesh = sphere(1.0, 2)
     motion = 0.2 * (np.random.default_rng(SEED).random(mesh.points.shape) - 0.5)
     before, after = (enclosed_volume(p, mesh.triangles) for p in (mesh.points, mesh.points + motion))
-    assert swept_volume(mesh.points, motion, mesh.triangles).sum() == pytest.approx(
-        before - after, rel=GEOMETRY
-    )
+    assert swept_volume(mesh.points, motion, mesh.triangles).sum() == pytest.approx(before - after, rel=GEOMETRY)
 
 
 @pytest.mark.parametrize("step_over_edge", [1e-6, 1e-2, 0.1])
 @pytest.mark.parametrize("body", ["sphere", "plate", "sample"])
 def test_removed_volume_is_the_worn_volume(body, step_over_edge):
     """Swept volume of the worn faces = sum of the worn volumes, whatever the shape and the step."""
-    mesh = {"sphere": sphere(0.05, 3), "plate": flat_plate(0.06, 0.04, 0.003), "sample": bumped_sample()}[
-        body
-    ]
+    mesh = {"sphere": sphere(0.05, 3), "plate": flat_plate(0.06, 0.04, 0.003), "sample": bumped_sample()}[body]
     worn = mesh.cell_data["part"] >= 0
     edge = shortest_edge_at_nodes(mesh.points, mesh.triangles).min()
     volume = random_volumes(mesh, step_over_edge * edge)
@@ -199,15 +193,11 @@ def test_groove_volume_does_not_depend_on_the_mesh(element_size):
     centre = mesh.points[mesh.triangles].mean(axis=1)
     depth = 5e-5 * np.exp(-((centre[:, 0] / 5e-3) ** 2))
     volume = depth * areas(mesh.points, mesh.triangles)
-    result = displace(
-        mesh.points, mesh.triangles, volume, directions=rim_directions(mesh.points, mesh.triangles)
-    )
+    result = displace(mesh.points, mesh.triangles, volume, directions=rim_directions(mesh.points, mesh.triangles))
     assert -volume_above_plane(result.points, mesh.triangles) == pytest.approx(volume.sum(), rel=GEOMETRY)
     profile = 5e-5 * np.exp(-((mesh.points[:, 0] / 5e-3) ** 2))
     inside = np.abs(mesh.points[:, 0]) < 0.019  # rim nodes average over one side only
-    smoothing = (
-        0.5 * (element_size / 5e-3) ** 2
-    )  # node averages over its ring: h^2/4 times the curvature 2/w^2
+    smoothing = 0.5 * (element_size / 5e-3) ** 2  # node averages over its ring: h^2/4 times the curvature 2/w^2
     np.testing.assert_allclose(-result.points[inside, 2], profile[inside], atol=smoothing * 5e-5)
 
 
@@ -244,9 +234,7 @@ def test_rotation_and_translation_do_not_matter():
     rotation, shift = Rotation.from_rotvec([0.3, -0.7, 1.1]).as_matrix(), np.array([0.02, -0.03, 0.05])
     here = displace(mesh.points, mesh.triangles, volume)
     there = displace(mesh.points @ rotation.T + shift, mesh.triangles, volume)
-    np.testing.assert_allclose(
-        there.points, here.points @ rotation.T + shift, atol=1e-15
-    )  # m: coordinates' rounding
+    np.testing.assert_allclose(there.points, here.points @ rotation.T + shift, atol=1e-15)  # m: coordinates' rounding
     np.testing.assert_allclose(there.step, here.step, rtol=0.0, atol=1e-15)
 
 
@@ -287,9 +275,7 @@ def test_capped_nodes_stop_and_carry():
     total = volume.sum()
     assert result.applied_volume.sum() + result.carried_volume.sum() == pytest.approx(total, rel=ROUNDING)
     assert np.abs(result.carried_volume[~capped]).sum() < 2.0 * ROUNDING * total
-    assert (
-        result.carried_volume[capped] > -ROUNDING * total
-    ).all() and result.carried_volume.sum() > 0.01 * total
+    assert (result.carried_volume[capped] > -ROUNDING * total).all() and result.carried_volume.sum() > 0.01 * total
 
 
 def test_zero_load_releases_what_was_carried():
@@ -371,9 +357,7 @@ def test_faces_about_to_turn_over_are_held():
     result = displace(mesh.points, mesh.triangles, volume, step_limit=limit)
     before, after = (area_vectors(p, mesh.triangles) for p in (mesh.points, result.points))
     assert (np.einsum("ij,ij->i", before, after) > 0.0).all()
-    assert result.applied_volume.sum() + result.carried_volume.sum() == pytest.approx(
-        volume.sum(), rel=ROUNDING
-    )
+    assert result.applied_volume.sum() + result.carried_volume.sum() == pytest.approx(volume.sum(), rel=ROUNDING)
     assert result.carried_volume.sum() > 0.0
 
 
@@ -381,9 +365,7 @@ def test_no_balance_is_told():
     """More wear than body and hardly a limit: refused, naming the largest step over the edge."""
     mesh = sphere(0.05, 1)
     with pytest.raises(StepTooLargeError, match=r"largest step is \d.* of the shortest edge"):
-        displace(
-            mesh.points, mesh.triangles, random_volumes(mesh, 0.05), step_limit=np.full(len(mesh.points), 0.5)
-        )
+        displace(mesh.points, mesh.triangles, random_volumes(mesh, 0.05), step_limit=np.full(len(mesh.points), 0.5))
 
 
 def test_a_negative_carry_is_worked_off_before_the_node_moves():
@@ -433,9 +415,7 @@ def test_any_ledger_any_cap(seed, step_over_edge, limit_over_edge, loaded):
     random = np.random.default_rng(seed)
     edge = shortest_edge_at_nodes(mesh.points, mesh.triangles)
     limit = limit_over_edge * edge * random.random(len(edge))
-    volume = (
-        areas(mesh.points, mesh.triangles) * step_over_edge * edge.min() * random.random(len(mesh.triangles))
-    )
+    volume = areas(mesh.points, mesh.triangles) * step_over_edge * edge.min() * random.random(len(mesh.triangles))
     volume *= worn & (random.random(len(volume)) < loaded)
     rim = rim_directions(mesh.points, mesh.triangles, worn)
     result = displace(mesh.points, mesh.triangles, volume, None, limit, rim, worn)

@@ -48,9 +48,7 @@ def random_samples(seed=7, samples=40, triangles=12):
         normal = random.normal(size=(n, 3))
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         centre, overlap = random.normal(size=(n, 3)), random.uniform(0.0, 0.02, (n, 1)) * RADIUS
-        vectors = {
-            name: random.normal(size=(n, 3)) for name in ("wall_velocity", "particle_velocity", "force")
-        }
+        vectors = {name: random.normal(size=(n, 3)) for name in ("wall_velocity", "particle_velocity", "force")}
         contacts = sample(
             n,
             triangle=random.integers(0, triangles, n),
@@ -84,9 +82,7 @@ def ledger(samples, interval_s=1e-3, triangles=12, **options):
 def assert_same(one, other, fields=LEDGER_FIELDS):
     for name in fields:
         scale = np.nanmax(np.abs(other[name]), initial=0.0)
-        np.testing.assert_allclose(
-            one[name], other[name], rtol=ROUND_OFF, atol=ROUND_OFF * scale, err_msg=name
-        )
+        np.testing.assert_allclose(one[name], other[name], rtol=ROUND_OFF, atol=ROUND_OFF * scale, err_msg=name)
 
 
 def test_pure_sliding_does_the_work_of_force_times_distance():
@@ -106,9 +102,7 @@ def test_a_moving_wall_under_a_resting_particle_slides_as_well():
 
 def test_rolling_without_slip_slides_nothing_and_rolls_force_times_distance():
     """omega = n x v / R: no sliding work, rolling work F_n L."""
-    table = ledger(
-        [sample(particle_velocity=[[0.3, 0.0, 0.0]], angular_velocity=[[0.0, 0.3 / RADIUS, 0.0]])] * 100
-    )
+    table = ledger([sample(particle_velocity=[[0.3, 0.0, 0.0]], angular_velocity=[[0.0, 0.3 / RADIUS, 0.0]])] * 100)
     assert table["sliding_work_J"][0] <= CANCELLATION * 2.0 * 0.3 * 0.1
     assert table["rolling_work_J"][0] == pytest.approx(2.0 * 0.3 * 0.1, rel=ROUND_OFF)
 
@@ -135,9 +129,7 @@ def test_torsion_about_the_normal_neither_slides_nor_rolls():
 def test_approach_along_the_normal_is_no_sliding():
     """v_t is v_rel without its normal part, on a wall that leans too."""
     normal = np.array([0.6, 0.0, 0.8])
-    leaning = sample(
-        centre=[RADIUS * normal], force=[2.0 * normal], particle_velocity=[[0.0, 0.3, 0.0] - 0.7 * normal]
-    )
+    leaning = sample(centre=[RADIUS * normal], force=[2.0 * normal], particle_velocity=[[0.0, 0.3, 0.0] - 0.7 * normal])
     assert ledger([leaning])["sliding_work_J"][0] == pytest.approx(2.0 * 0.3e-3, rel=ROUND_OFF)
 
 
@@ -183,9 +175,7 @@ def test_an_unknown_triangle_is_refused():
 
 def rotated(contacts, rotation):
     names = ("contact_point", "centre", "wall_velocity", "particle_velocity", "angular_velocity", "force")
-    return SimpleNamespace(
-        **{**vars(contacts), **{name: getattr(contacts, name) @ rotation.T for name in names}}
-    )
+    return SimpleNamespace(**{**vars(contacts), **{name: getattr(contacts, name) @ rotation.T for name in names}})
 
 
 def test_rotating_the_world_changes_no_scalar_and_turns_the_positions():
@@ -197,9 +187,7 @@ def test_rotating_the_world_changes_no_scalar_and_turns_the_positions():
     assert_same(turned, plain, LEDGER_FIELDS[:6])
     positions = np.column_stack([plain[name] for name in LEDGER_FIELDS[6:]])
     turned_positions = np.column_stack([turned[name] for name in LEDGER_FIELDS[6:]])
-    np.testing.assert_allclose(
-        turned_positions, positions @ rotation.T, rtol=0, atol=1e-11
-    )  # of order one, F . n
+    np.testing.assert_allclose(turned_positions, positions @ rotation.T, rtol=0, atol=1e-11)  # of order one, F . n
 
 
 def test_changing_the_units_changes_only_the_units():
@@ -214,9 +202,7 @@ def test_changing_the_units_changes_only_the_units():
     }
     crowd = random_samples()
     scaled = [
-        SimpleNamespace(
-            **{**vars(one), **{name: getattr(one, name) * factor for name, factor in factors.items()}}
-        )
+        SimpleNamespace(**{**vars(one), **{name: getattr(one, name) * factor for name, factor in factors.items()}})
         for one in crowd
     ]
     table = ledger(
@@ -244,9 +230,7 @@ def test_the_order_of_contacts_within_a_sample_does_not_matter():
     """A sample is a set."""
     crowd = random_samples()
     reverse = [
-        SimpleNamespace(
-            step=one.step, **{name: value[::-1] for name, value in vars(one).items() if name != "step"}
-        )
+        SimpleNamespace(step=one.step, **{name: value[::-1] for name, value in vars(one).items() if name != "step"})
         for one in crowd
     ]
     assert_same(ledger(reverse), ledger(crowd))

@@ -34,13 +34,7 @@ def sample():
 def random_volume(mesh, depth, seed=SEED):
     """Random worn volumes (m,) m3 of the faces that wear, mean depth about `depth` m."""
     random = np.random.default_rng(seed)
-    return (
-        worn_faces(mesh)
-        * areas(mesh.points, mesh.triangles)
-        * 2.0
-        * depth
-        * random.random(len(mesh.triangles))
-    )
+    return worn_faces(mesh) * areas(mesh.points, mesh.triangles) * 2.0 * depth * random.random(len(mesh.triangles))
 
 
 def test_zero_load_leaves_every_bit(sample):
@@ -76,9 +70,7 @@ def test_balance_closes_over_capped_cycles(sample):
         assert record["applied_volume_m3"] == pytest.approx(swept.sum(), rel=ROUNDING)
         assert record["worn_volume_m3"] == pytest.approx(volume.sum(), rel=ROUNDING)
         assert record["largest_step_m"] <= limit.max()
-        assert record["carried_volume_m3"] == pytest.approx(
-            new.point_data["carried_volume_m3"].sum(), rel=ROUNDING
-        )
+        assert record["carried_volume_m3"] == pytest.approx(new.point_data["carried_volume_m3"].sum(), rel=ROUNDING)
         total, applied, mesh = total + record["worn_volume_m3"], applied + record["applied_volume_m3"], new
         assert volume_balance(applied, record["carried_volume_m3"], total) < BALANCE_TOLERANCE
     assert record["carried_volume_m3"] > 0.01 * total  # the caps did bite
@@ -128,9 +120,7 @@ def test_smallest_angle_is_that_of_the_worn_faces():
 
 def test_other_point_data_survive(sample):
     """Data that the update does not know are handed on."""
-    marked = SurfaceMesh(
-        sample.points, sample.triangles, sample.cell_data, {"mark": np.arange(len(sample.points))}
-    )
+    marked = SurfaceMesh(sample.points, sample.triangles, sample.cell_data, {"mark": np.arange(len(sample.points))})
     worn, _ = wear_update(marked, sample, random_volume(sample, 1e-5))
     assert np.array_equal(worn.point_data["mark"], marked.point_data["mark"])
 

@@ -1,0 +1,182 @@
+"""What a simulated cycle did to the surface: dumps become a load ledger, the ledger wear, the wear a new surface."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from postproc.mesh import SurfaceMesh, areas, read_surface, write_surface
+from postproc.readers.contacts import read_contact_batches
+from postproc.readers.mesh_loads import read_mesh_loads
+from postproc.readers.solver_log import thermo_table
+from postproc.wear.caps import step_limit
+from postproc.wear.laws import worn_volume
+from postproc.wear.ledger import LedgerBuilder
+from postproc.wear.update import recession_fault, volume_balance, wear_update, worn_faces
+from workflows import state
+from workflows.chain import SURFACE, Chain
+from workflows.solver import LOG
+
+LEDGER, FORCES, TOUCHING = "ledger.parquet", "forces.csv", "touching.npy"
+CONTACTS, SPINS = "contacts.dump", "spins.dump"
+SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J", "finnie_wear")
+SAMPLE_MESH = 0  # index of the sample among the meshes of the wall fix
+
+
+class WearError(RuntimeError):
+    """The worn surface cannot go back into the solver; the message names run and cycle."""
+
+
+def account_and_wear(chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh) -> dict[str, Any]:
+    """Turn a cycle's dumps into its ledger and worn surface; return its record. The dumps are removed."""
+    dump_bytes = sum((folder / name).stat().st_size for name in (CONTACTS, SPINS))
+    ledger = account(chain, cycle, folder, len(surface.triangles))
+    write_forces(chain, cycle, folder)
+    row = wear(chain, cycle, folder, surface, ledger)
+    for name in (CONTACTS, SPINS):
+        (folder / name).unlink()
+    return {"wear": row, "cost": {"dump_bytes": dump_bytes}}
+
+
+def account(chain: Chain, cycle: int, folder: Path, triangles: int) -> pd.DataFrame:
+    """Sum the sampled contacts of a cycle into its ledger, the solver's own measures beside it; write and return it."""
+    parameters = chain.parameters
+    interval = parameters["solver"]["sampling_interval_steps"] * parameters["derived"]["time_step_s"]
+    builder = LedgerBuilder(
+        triangles,
+        SAMPLE_MESH,
+        effective_modulus(parameters),
+        parameters["particle"]["density_kg_per_m3"],
+        touching=_touching_before(chain, cycle),
+    )
+    for batch in read_contact_batches(folder / CONTACTS, folder / SPINS, after_step=0):
+        builder.add_batch(batch, interval)
+    own = read_mesh_loads(folder / f"loads_{parameters['derived']['cycle_steps']}.vtk", triangles)
+    ledger = pd.DataFrame({"triangle": own.pop("triangle"), **builder.table(), **own})
+    ledger.to_parquet(folder / LEDGER, index=False)
+    touching = builder.touching
+    np.save(folder / TOUCHING, np.zeros(0, np.int64) if touching is None else touching)
+    return ledger
+
+
+def _touching_before(chain: Chain, cycle: int) -> np.ndarray | None:
+    path = state.cycle_folder(chain.folder, cycle - 1) / TOUCHING
+    return np.load(path) if path.exists() else None
+
+
+def effective_modulus(parameters: Mapping[str, Any]) -> float:
+    """Return E* (Pa) of particle and sample as simulated: 1/E* = sum of (1 - nu^2)/E (Hertz 1882)."""
+    moduli = parameters["derived"]["youngs_modulus_pa"]
+    pairs = ((name, parameters[name]["poissons_ratio"]) for name in ("particle", "sample_material"))
+    return 1.0 / sum((1.0 - ratio**2) / moduli[name] for name, ratio in pairs)
+
+
+def write_forces(chain: Chain, cycle: int, folder: Path) -> None:
+    """Write the bed's force on the sample over a cycle; the set-up row of a run holds no force and is left out."""
+    thermo = thermo_table(folder / LOG)
+    derived = chain.parameters["derived"]
+    step = thermo["Step"][1:] + (cycle - 1) * derived["cycle_steps"]
+    time_s = step * derived["time_step_s"]
+    table = {"time_s": time_s, "travel_m": time_s * chain.parameters["sliding"]["velocity_m_per_s"]}
+    table |= {f"force_{axis}_N": thermo[f"force_{axis}"][1:] for axis in "xyz"}
+    pd.DataFrame(table).to_csv(folder / FORCES, index=False)
+
+
+def wear(
+    chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh, ledger: pd.DataFrame
+) -> dict[str, float | int | bool]:
+    """Wear the surface by a cycle's ledger, write it, and return the cycle's row of wear.csv. Raises WearError."""
+    parameters = chain.parameters
+    volume = law_volume(parameters, ledger)
+    limit = node_limits(parameters, surface)
+    worn, update = wear_update(surface, read_surface(chain.surface), volume, limit)
+    if fault := recession_fault(worn):
+        raise WearError(f"{chain.name}, cycle {cycle}: {fault}; wear is accelerated too much, or the travel too long.")
+    write_surface(folder / SURFACE, worn)
+    return wear_row(chain, cycle, surface, ledger, volume, update, float(limit.max()))
+
+
+def law_volume(parameters: Mapping[str, Any], ledger: pd.DataFrame) -> np.ndarray:
+    """Return the volume (m3) per triangle that the study's wear law makes of a ledger, acceleration included."""
+    return worn_volume(
+        parameters["wear"]["law"],
+        {name: ledger[name].to_numpy() for name in ledger},
+        {"wear_coefficient_per_pa": parameters["wear"]["accelerated_wear_coefficient_per_pa"]},
+    )
+
+
+def node_limits(parameters: Mapping[str, Any], surface: SurfaceMesh) -> np.ndarray:
+    """Return how far (m) each node may move in one cycle; nowhere when the study keeps the sample rigid."""
+    wear_parameters = parameters["wear"]
+    if not wear_parameters["deform"]:
+        return np.zeros(len(surface.points))
+    return step_limit(
+        surface.points,
+        surface.triangles,
+        wear_parameters["largest_step_edge_fraction"],
+        wear_parameters["gap_closing_fraction"],
+        parameters["derived"]["cycle_duration_s"],
+    )
+
+
+def wear_row(
+    chain: Chain,
+    cycle: int,
+    surface: SurfaceMesh,
+    ledger: pd.DataFrame,
+    volume: np.ndarray,
+    update: Mapping[str, float],
+    largest_limit: float,
+) -> dict[str, float | int | bool]:
+    """Return a cycle's row of wear.csv; the balance of volumes over all cycles is checked here."""
+    part = surface.cell_data["part"]
+    worn = worn_faces(surface)
+    before = state.read_state(chain.folder, cycle - 1)["wear"] if cycle > 1 else {}
+    derived = chain.parameters["derived"]
+    time_s = cycle * derived["cycle_duration_s"]
+    total = before.get("total_archard_volume_m3", 0.0) + update["worn_volume_m3"]
+    applied = before.get("total_applied_volume_m3", 0.0) + update["applied_volume_m3"]
+    faces = volume * worn
+    return {
+        "cycle": cycle,
+        "time_s": time_s,
+        "travel_m": time_s * chain.parameters["sliding"]["velocity_m_per_s"],
+        "sliding_work_J": float(ledger["sliding_work_J"].to_numpy()[worn].sum()),
+        "archard_volume_m3": update["worn_volume_m3"],
+        "applied_volume_m3": update["applied_volume_m3"],
+        "carried_volume_m3": update["carried_volume_m3"],
+        "total_archard_volume_m3": total,
+        "total_applied_volume_m3": applied,
+        "base_archard_volume_m3": float(faces[part == 0].sum()),
+        "bump_archard_volume_m3": float(faces[part > 0].sum()),
+        "finnie_volume_m3": float(
+            (ledger["finnie_wear"].to_numpy() * areas(surface.points, surface.triangles))[worn].sum()
+        ),
+        "mean_normal_force_N": float(ledger["normal_impulse_N_s"].to_numpy()[worn].sum()) / derived["cycle_duration_s"],
+        "largest_step_m": update["largest_step_m"],
+        "step_limit_m": largest_limit,
+        "largest_depth_m": update["largest_depth_m"],
+        "smallest_angle_deg": update["smallest_angle_deg"],
+        "remeshed": False,
+        "balance_error": volume_balance(applied, update["carried_volume_m3"], total),
+    }
+
+
+def worn_surface(chain: Chain) -> SurfaceMesh:
+    """Return the surface after the last cycle, with sums over all cycles per triangle: the work done on it, the volume
+    that the wear law takes for it, the solver's own Finnie wear; and its mean normal traction."""
+    surface = read_surface(chain.worn_folder / SURFACE)
+    ledgers = [
+        pd.read_parquet(state.cycle_folder(chain.folder, cycle) / LEDGER) for cycle in range(1, chain.cycles + 1)
+    ]
+    sums = {name: sum(ledger[name].to_numpy() for ledger in ledgers) for name in SUMMED}
+    sums["worn_volume_m3"] = sum(law_volume(chain.parameters, ledger) for ledger in ledgers)
+    duration = chain.cycles * chain.parameters["derived"]["cycle_duration_s"]
+    pristine = read_surface(chain.surface)
+    sums["normal_traction_Pa"] = sums["normal_impulse_N_s"] / duration / areas(pristine.points, pristine.triangles)
+    return replace(surface, cell_data={**surface.cell_data, **sums})

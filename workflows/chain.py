@@ -1,0 +1,108 @@
+"""A run as the driver sees it: where its cycles are, how long they are, and the decks that simulate them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from postproc.mesh import SurfaceMesh, read_surface, write_stl
+from workflows import deck, state
+from workflows.solver import DECK
+
+SURFACE, SURFACE_STL, END_WALL, RESTART = "surface.vtu", "surface.stl", "end_wall.stl", "run.restart"
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A run as the driver sees it. `parameters` and `bed` as in design.py (SI); the rest are paths."""
+
+    name: str
+    folder: Path
+    parameters: Mapping[str, Any]
+    bed: Mapping[str, Any]
+    surface: Path
+    bed_restart: Path
+
+    @property
+    def cycles(self) -> int:
+        """Number of wear cycles."""
+        return self.parameters["sliding"]["cycles"]
+
+    @property
+    def worn_folder(self) -> Path:
+        """Folder of the last wear cycle."""
+        return state.cycle_folder(self.folder, self.cycles)
+
+
+def surface_before(chain: Chain, cycle: int) -> Path:
+    """Return the surface that a cycle starts from."""
+    return chain.surface if cycle <= 1 else state.cycle_folder(chain.folder, cycle - 1) / SURFACE
+
+
+def cycle_steps(chain: Chain, cycle: int) -> int:
+    """Return the time steps of a cycle."""
+    derived = chain.parameters["derived"]
+    if cycle:
+        return derived["cycle_steps"]
+    lowering = deck.lowered_bed(chain.parameters, chain.bed, "")["lowering_steps"]
+    return lowering + derived["run_in_steps"]
+
+
+def total_steps(chain: Chain) -> int:
+    """Return the time steps of a whole run."""
+    return sum(cycle_steps(chain, cycle) for cycle in range(chain.cycles + 1))
+
+
+def cycle_title(chain: Chain, cycle: int) -> str:
+    """Return what people call a cycle."""
+    return f"cycle {cycle} of {chain.cycles}" if cycle else "lowering and run-in"
+
+
+def deck_text(chain: Chain, cycle: int) -> str:
+    """Return the deck of a cycle; paths in it are relative to the cycle's folder."""
+    if cycle:
+        restart = f"../{state.cycle_folder(chain.folder, cycle - 1).name}/{RESTART}"
+        return deck.render("sliding_sample", deck.sliding_sample(chain.parameters, chain.bed, cycle, restart))
+    restart = os.path.relpath(chain.bed_restart, state.cycle_folder(chain.folder, 0))
+    return deck.render("lowered_bed", deck.lowered_bed(chain.parameters, chain.bed, restart))
+
+
+def write_cycle(chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh) -> None:
+    """Write the deck and the surface of a cycle into its folder, where they run by hand."""
+    (folder / DECK).write_text(deck_text(chain, cycle))
+    write_stl(folder / SURFACE_STL, surface.points, surface.triangles)
+
+
+def write_end_wall(chain: Chain) -> None:
+    """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0."""
+    half_width, bottom, top = deck.end_wall_corners(chain.bed)
+    corners = [(-half_width, bottom), (half_width, bottom), (half_width, top), (-half_width, top)]
+    points = np.array([(x, 0.0, z) for x, z in corners])
+    write_stl(chain.folder / END_WALL, points, np.array([[0, 1, 2], [0, 2, 3]]))
+
+
+# ---------------------------------------------------------------- decks by hand
+
+
+def write_bed(bed: Mapping[str, Any], folder: Path) -> None:
+    """Write the deck of a bed into its folder, where it runs by hand."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / DECK).write_text(deck.render("settled_bed", deck.settled_bed(bed)))
+
+
+def write_decks(chain: Chain) -> None:
+    """Write every deck of a run with what it reads, without running the solver; they run by hand in their order."""
+    surface = read_surface(chain.surface)
+    chain.folder.mkdir(parents=True, exist_ok=True)
+    write_end_wall(chain)
+    for cycle in range(chain.cycles + 1):
+        folder = state.cycle_folder(chain.folder, cycle)
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        write_cycle(chain, cycle, folder, surface)
