@@ -34,13 +34,18 @@ class _Bumps:
     row: np.ndarray
 
 
+def skirt_width(height_above_floor: float, skirt_slope: float) -> float:
+    """Width (m) of the ramp round a sample that stands `height_above_floor` (m) high; slope in rad."""
+    return (1 + SKIRT_DEPTH) * height_above_floor / math.tan(skirt_slope)
+
+
 def sample_top(width: float, length: float, element_size: float, pattern: ConvexPattern | None) -> SurfaceMesh:
     """The top of a sample, plane at z = 0 with its bumps, without a skirt.
 
     width (x), length (y), element_size: m; pattern None gives a plain sample. Cell data: `part`, `column` and
     `row`. Raises ValueError for a pattern that does not fit, or when a triangle would be too acute.
     """
-    return _checked(_flat_sample(width, length, element_size, pattern, skirt_width=0.0), element_size)
+    return _checked(_flat_sample(width, length, element_size, pattern, frame_width=0.0), element_size)
 
 
 def sliding_sample(
@@ -60,8 +65,7 @@ def sliding_sample(
         raise ValueError(f"height_above_floor must be greater than 0 m, found {height_above_floor}")
     if not 0 < skirt_slope <= LARGEST_SKIRT_SLOPE:
         raise ValueError(f"skirt_slope must be in (0, {LARGEST_SKIRT_SLOPE:.4f}] rad, found {skirt_slope}")
-    skirt_width = (1 + SKIRT_DEPTH) * height_above_floor / math.tan(skirt_slope)
-    flat = _flat_sample(width, length, element_size, pattern, skirt_width)
+    flat = _flat_sample(width, length, element_size, pattern, skirt_width(height_above_floor, skirt_slope))
     beyond_rim = np.max(np.abs(flat.points[:, :2]) - (width / 2, length / 2), axis=1)
     points = flat.points.copy()
     points[:, 2] += height_above_floor - math.tan(skirt_slope) * np.maximum(beyond_rim, 0.0)
@@ -69,16 +73,16 @@ def sliding_sample(
 
 
 def _flat_sample(
-    width: float, length: float, element_size: float, pattern: ConvexPattern | None, skirt_width: float
+    width: float, length: float, element_size: float, pattern: ConvexPattern | None, frame_width: float
 ) -> SurfaceMesh:
-    """Plane and bumps, top at z = 0, with a frame of `skirt_width` (m, 0 for none) in the same plane."""
+    """Plane and bumps, top at z = 0, with a frame of `frame_width` (m, 0 for none) in the same plane."""
     for name, value in (("width", width), ("length", length), ("element_size", element_size)):
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"{name} of a sample must be greater than 0 m, found {value}")
     bumps = _place_bumps(pattern, width, length, element_size)
     holes = bumps.centres[:, None] + bumps.shell[None, : bumps.feet, :2]
     rim = rectangle_rim(width, length, _rim_element_size(width, length, element_size, holes))
-    return _join(mesh_plane(rim, holes, element_size, skirt_width), len(rim), bumps)
+    return _join(mesh_plane(rim, holes, element_size, frame_width), len(rim), bumps)
 
 
 def _rim_element_size(width: float, length: float, element_size: float, holes: np.ndarray) -> float:

@@ -86,9 +86,7 @@ def smallest_angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     corners = points[triangles]
     forward = np.roll(corners, -1, axis=1) - corners
     backward = np.roll(corners, 1, axis=1) - corners
-    sine = np.linalg.norm(
-        np.cross(forward, backward), axis=2
-    )  # atan2 stays exact for slivers, arccos does not
+    sine = np.linalg.norm(np.cross(forward, backward), axis=2)  # atan2 stays exact for slivers, arccos does not
     return np.degrees(np.arctan2(sine, (forward * backward).sum(axis=2))).min(axis=1)
 
 
@@ -150,9 +148,7 @@ def enclosed_volume(points: np.ndarray, triangles: np.ndarray) -> float:
     """Volume inside a closed surface, m3, by the divergence theorem. Raises ValueError when it is open."""
     open_edges = len(boundary_edges(triangles))
     if open_edges:
-        raise ValueError(
-            f"the volume needs a closed surface, found {open_edges} boundary edges, allowed are 0"
-        )
+        raise ValueError(f"the volume needs a closed surface, found {open_edges} boundary edges, allowed are 0")
     corners = points[triangles] - points.mean(axis=0)  # an origin within the body keeps the terms small
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0)
 
@@ -214,9 +210,7 @@ def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray
     normals = unit_normals(points, triangles)
     faulty = np.flatnonzero(~np.isfinite(normals).all(axis=1))
     if faulty.size:
-        raise ValueError(
-            f"{path}: facet {faulty[0]} has no area; {faulty.size} such facets found, allowed are 0"
-        )
+        raise ValueError(f"{path}: facet {faulty[0]} has no area; {faulty.size} such facets found, allowed are 0")
     numbers = np.concatenate([normals[:, None], points[triangles]], axis=1).reshape(len(triangles), 12)
 
     def write(name: Path) -> None:

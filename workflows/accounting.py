@@ -17,13 +17,14 @@ from postproc.readers.solver_log import thermo_table
 from postproc.wear.caps import step_limit
 from postproc.wear.laws import worn_volume
 from postproc.wear.ledger import LedgerBuilder
-from postproc.wear.update import recession_fault, volume_balance, wear_update, worn_faces
+from postproc.wear.update import lost_volume, recession_fault, volume_balance, wear_update, worn_faces
 from workflows import state
 from workflows.chain import SURFACE, Chain
 from workflows.solver import LOG
 
 LEDGER, FORCES, TOUCHING = "ledger.parquet", "forces.csv", "touching.npy"
 CONTACTS, SPINS = "contacts.dump", "spins.dump"
+SETUP_LOADS, SETUP_BED = "loads_0.vtk", "bed_0.dump"  # of the cycle's first instant: the last one of the cycle before
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J", "finnie_wear")
 SAMPLE_MESH = 0  # index of the sample among the meshes of the wall fix
 
@@ -38,7 +39,7 @@ def account_and_wear(chain: Chain, cycle: int, folder: Path, surface: SurfaceMes
     ledger = account(chain, cycle, folder, len(surface.triangles))
     write_forces(chain, cycle, folder)
     row = wear(chain, cycle, folder, surface, ledger)
-    for name in (CONTACTS, SPINS):
+    for name in (CONTACTS, SPINS, SETUP_LOADS, SETUP_BED):
         (folder / name).unlink()
     return {"wear": row, "cost": {"dump_bytes": dump_bytes}}
 
@@ -56,6 +57,9 @@ def account(chain: Chain, cycle: int, folder: Path, triangles: int) -> pd.DataFr
     )
     for batch in read_contact_batches(folder / CONTACTS, folder / SPINS, after_step=0):
         builder.add_batch(batch, interval)
+    expected = parameters["derived"]["cycle_steps"] // parameters["solver"]["sampling_interval_steps"]
+    if builder.samples != expected:
+        raise WearError(f"{folder / CONTACTS}: found {builder.samples} samples of the contacts, allowed is {expected}.")
     own = read_mesh_loads(folder / f"loads_{parameters['derived']['cycle_steps']}.vtk", triangles)
     ledger = pd.DataFrame({"triangle": own.pop("triangle"), **builder.table(), **own})
     ledger.to_parquet(folder / LEDGER, index=False)
@@ -90,7 +94,11 @@ def write_forces(chain: Chain, cycle: int, folder: Path) -> None:
 def wear(
     chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh, ledger: pd.DataFrame
 ) -> dict[str, float | int | bool]:
-    """Wear the surface by a cycle's ledger, write it, and return the cycle's row of wear.csv. Raises WearError."""
+    """Wear the surface by a cycle's ledger, write it, and return the cycle's row of wear.csv.
+
+    The balance closes on the geometry: pristine minus present volume, plus carried, is the law's volume of all cycles.
+    Raises WearError, BalanceError.
+    """
     parameters = chain.parameters
     volume = law_volume(parameters, ledger)
     limit = node_limits(parameters, surface)
@@ -98,7 +106,15 @@ def wear(
     if fault := recession_fault(worn):
         raise WearError(f"{chain.name}, cycle {cycle}: {fault}; wear is accelerated too much, or the travel too long.")
     write_surface(folder / SURFACE, worn)
-    return wear_row(chain, cycle, surface, ledger, volume, update, float(limit.max()))
+    row = wear_row(chain, cycle, surface, ledger, volume, update)
+    lost, rounding = lost_volume(read_surface(chain.surface), worn)
+    total, carried = row["total_archard_volume_m3"], row["carried_volume_m3"]
+    return {
+        **row,
+        "step_limit_m": float(limit.max()),
+        "remeshed": False,
+        "balance_error": volume_balance(lost, carried, total, rounding),
+    }
 
 
 def law_volume(parameters: Mapping[str, Any], ledger: pd.DataFrame) -> np.ndarray:
@@ -131,9 +147,8 @@ def wear_row(
     ledger: pd.DataFrame,
     volume: np.ndarray,
     update: Mapping[str, float],
-    largest_limit: float,
-) -> dict[str, float | int | bool]:
-    """Return a cycle's row of wear.csv; the balance of volumes over all cycles is checked here."""
+) -> dict[str, float | int]:
+    """Return a cycle's row of wear.csv: loads, volumes of this cycle and of all so far, and the state of the mesh."""
     part = surface.cell_data["part"]
     worn = worn_faces(surface)
     before = state.read_state(chain.folder, cycle - 1)["wear"] if cycle > 1 else {}
@@ -159,11 +174,8 @@ def wear_row(
         ),
         "mean_normal_force_N": float(ledger["normal_impulse_N_s"].to_numpy()[worn].sum()) / derived["cycle_duration_s"],
         "largest_step_m": update["largest_step_m"],
-        "step_limit_m": largest_limit,
         "largest_depth_m": update["largest_depth_m"],
         "smallest_angle_deg": update["smallest_angle_deg"],
-        "remeshed": False,
-        "balance_error": volume_balance(applied, update["carried_volume_m3"], total),
     }
 
 

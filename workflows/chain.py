@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +19,8 @@ SURFACE, SURFACE_STL, END_WALL, RESTART = "surface.vtu", "surface.stl", "end_wal
 
 @dataclass(frozen=True)
 class Chain:
-    """A run as the driver sees it. `parameters` and `bed` as in design.py (SI); the rest are paths."""
+    """A run as the driver sees it. `parameters` and `bed` as in design.py (SI); paths, and the MPI
+    ranks that the solver gets, which change nothing but the time it takes."""
 
     name: str
     folder: Path
@@ -28,6 +28,7 @@ class Chain:
     bed: Mapping[str, Any]
     surface: Path
     bed_restart: Path
+    ranks: int = 1
 
     @property
     def cycles(self) -> int:
@@ -103,6 +104,5 @@ def write_decks(chain: Chain) -> None:
     write_end_wall(chain)
     for cycle in range(chain.cycles + 1):
         folder = state.cycle_folder(chain.folder, cycle)
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
+        folder.mkdir(parents=True, exist_ok=True)
         write_cycle(chain, cycle, folder, surface)

@@ -1,22 +1,23 @@
 """Studies, checked before anything runs, and the input functions of all stages."""
 
-import os
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
+from workflows.deck import template_sources
 from workflows.design import ConfigError, list_studies, load_study
+from workflows.job import let_jobs_import
 
 min_version("9.0")
 
 ROOT = Path(workflow.basedir)
-os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+let_jobs_import(ROOT)
 
 
 wildcard_constraints:
     study=r"[a-z][a-z0-9_]*",
-    run=r"(?!beds|decks|figures|logs)[A-Za-z0-9_-]+",
+    run=r"[A-Za-z0-9-]+_(convex|plain)",
     bed=r"bed_\d+",
 
 

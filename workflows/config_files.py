@@ -146,8 +146,7 @@ def _collect_lines(node: yaml.Node | None, path: KeyPath, lines: dict[KeyPath, i
         if name in seen:
             full = dotted((*path, name))
             raise ConfigError(
-                f"{source}, line {line}: {full} stands here and in line {seen[name]},"
-                " allowed is each key once."
+                f"{source}, line {line}: {full} stands here and in line {seen[name]}, allowed is each key once."
             )
         seen[name] = lines[(*path, name)] = line
         _collect_lines(value, (*path, name), lines, source)
@@ -200,14 +199,11 @@ def read_csv_rows(path: Path, root: Path) -> tuple[list[str], list[tuple[int, di
         raise ConfigError(f"{source}: the file is empty, allowed is a header and one row per run.")
     (header_line, header), rows = filled[0], filled[1:]
     if len(header) == 1 and re.search(r"[;\t]", header[0]):
-        raise ConfigError(
-            f"{source}, line {header_line}: found {header[0]!r}, allowed is the comma between columns."
-        )
+        raise ConfigError(f"{source}, line {header_line}: found {header[0]!r}, allowed is the comma between columns.")
     repeated = [name for index, name in enumerate(header) if name in header[:index]]
     if repeated:
         raise ConfigError(
-            f"{source}, line {header_line}: column {repeated[0]!r} stands there twice,"
-            " allowed is each column once."
+            f"{source}, line {header_line}: column {repeated[0]!r} stands there twice, allowed is each column once."
         )
     if not rows:
         raise ConfigError(f"{source}: found a header and no rows, allowed is one row or more.")

@@ -39,15 +39,15 @@ def run_chain(chain: Chain) -> None:
 
     Raises SolverError, StateError, WearError or a reader's error; finished cycles stay and are not done again.
     """
-    with state.only_driver(chain.folder):
+    announce = Progress(chain.name, 1).say
+    with state.only_driver(chain.folder, announce):
         inputs = inputs_digest(chain)
-        moved = state.set_aside_others(chain.folder, inputs)
+        if moved := state.set_aside_others(chain.folder, inputs):
+            announce(moved)
         finished = state.finished_cycles(chain.folder, inputs)
         progress = Progress(chain.name, total_steps(chain), sum(cycle_steps(chain, k) for k in range(finished)))
-        if moved:
-            progress.say(moved)
         if 0 < finished <= chain.cycles:
-            progress.say(f"resumes after {cycle_title(chain, finished - 1)}")
+            announce(f"resumes after {cycle_title(chain, finished - 1)}")
         for cycle in range(finished, chain.cycles + 1):
             run_cycle(chain, cycle, inputs, progress)
         write_products(chain)
@@ -56,8 +56,9 @@ def run_chain(chain: Chain) -> None:
 def inputs_digest(chain: Chain) -> str:
     """Return the hash of all that a run's results depend on: parameters, decks, surface and bed."""
     parameters, bed = chain.parameters, chain.bed
+    solver = {key: value for key, value in parameters["solver"].items() if key != "ranks"}
     return state.digest(
-        parameters,
+        {**parameters, "solver": solver},
         deck.render("lowered_bed", deck.lowered_bed(parameters, bed, bed_restart="")),
         deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle=1, run_restart="")),
         state.file_digest(chain.surface),
@@ -89,7 +90,7 @@ def simulate(chain: Chain, cycle: int, folder: Path, triangles: int, progress: P
     before = sum(cycle_steps(chain, earlier) for earlier in range(cycle))
     return run_deck(
         folder,
-        chain.parameters["solver"]["ranks"],
+        chain.ranks,
         lambda step: progress.update(before + step, cycle_title(chain, cycle)),
         triangles={f"sample_{cycle}": triangles},
     )
@@ -105,7 +106,7 @@ def cost(chain: Chain, cycle: int, folder: Path, solver_seconds: float, all_seco
         "steps": cycle_steps(chain, cycle),
         "particles": int(thermo["Atoms"][-1]),
         "triangles": int(read_surface(chain.surface).triangles.shape[0]),
-        "ranks": chain.parameters["solver"]["ranks"],
+        "ranks": chain.ranks,
         "dump_bytes": 0,
     }
 
@@ -118,12 +119,13 @@ def write_products(chain: Chain) -> None:
     write_surface(chain.folder / WORN_SURFACE, worn_surface(chain))
 
 
-def fill_bed(name: str, bed: Mapping[str, Any], folder: Path) -> None:
+def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1) -> None:
     """Fill and settle a bed; leaves bed.restart and cost.csv in the folder. Raises SolverError."""
-    write_bed(bed, folder)
     parameters = deck.settled_bed(bed)
     total = parameters["settling_steps"] + parameters["relaxing_steps"]
     progress = Progress(name, total)
-    seconds = run_deck(folder, bed["ranks"], lambda step: progress.update(step, "filling and settling"))
+    with state.only_driver(folder, progress.say):
+        write_bed(bed, folder)
+        seconds = run_deck(folder, ranks, lambda step: progress.update(step, "filling and settling"))
     particles = int(thermo_table(folder / LOG)["Atoms"][-1])
     write_table(folder / "cost.csv", [{"solver_s": round(seconds, 3), "steps": total, "particles": particles}])

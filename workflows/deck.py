@@ -15,23 +15,24 @@ from typing import Any
 import jinja2
 import jinja2.meta
 
+from postproc.wear.caps import GRAVITY
+
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
-GRAVITY = 9.81  # m/s2, as in Yan 2022, Table 3.2
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
 FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere
 FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
 RELAXING_TIME = 0.01  # s, after levelling
-LOWERING_FREE_FALLS = (
-    2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
-)
-SKIN_OVER_RADIUS = (
-    0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
-)
+LOWERING_FREE_FALLS = 2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
+SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
 FILL_GAP_DIAMETERS = 0.1  # -, between poured particles and the walls, in largest diameters
+PILE_UP = 3.0  # -, the bed's height where it piles up at a sample, over its thickness; room for it is left
+END_WALL_CLEARANCE = 1e-6  # m, between the end walls' upper edge and the domain: a mesh must lie inside it
 DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
 REPORTS_PER_RUN = 50  # lines of progress per run command
 SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
 CONTACT_COLUMNS = 18  # of compute wall/gran/local with pos vel id force
+ID_COLUMNS = range(13, 16)  # of these, counted from 1: mesh, triangle, particle
+STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, before the solver's check stops the run
 
 
 class DeckError(ValueError):
@@ -60,7 +61,7 @@ def pair_table(rows: Sequence[Sequence[float]]) -> str:
 
 
 def template_parts(template: str, folder: Path = TEMPLATES) -> list[str]:
-    """Return the template's file name and those of all partials that it includes. Raises DeckError if one is missing."""
+    """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
     environment = _environment(folder)
     names = [f"{template}.in.j2"]
     for name in names:
@@ -112,10 +113,9 @@ def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
     step = bed["time_step_s"]
     settling = steps(math.sqrt(2.0 * filled / GRAVITY), step)
     return {
-        **_integration(bed["ranks"], step, particle, settling),
+        **_integration(bed, step, particle, settling),
         **_materials(particle, bed["floor_material"], bed["floor_material"], bed),
         **_domain(bed),
-        "rayleigh_fraction": bed["rayleigh_fraction"],
         "temporary_floor_m": floor,
         "fill_bottom_m": floor + gap,
         "fill_top_m": floor + gap + filled,
@@ -140,31 +140,29 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
     """
     derived = run["derived"]
     step = derived["time_step_s"]
-    fall = math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY)
+    lowering = steps(LOWERING_FREE_FALLS * math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY), step)
     return {
-        **_integration(run["solver"]["ranks"], step, run["particle"], derived["run_in_steps"]),
+        **_integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
         **_sliding(run, bed, cycle=0),
         "bed_restart": bed_restart,
-        "lowering_steps": steps(LOWERING_FREE_FALLS * fall, step),
+        "lowering_steps": lowering,
         "run_in_steps": derived["run_in_steps"],
     }
 
 
-def sliding_sample(
-    run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, run_restart: str
-) -> dict[str, Any]:
+def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, run_restart: str) -> dict[str, Any]:
     """Return the parameters of the deck of one wear cycle (1, 2, ...); arguments as for `lowered_bed`."""
     derived = run["derived"]
+    contact_columns = range(1, CONTACT_COLUMNS + 1)
     return {
-        **_integration(
-            run["solver"]["ranks"], derived["time_step_s"], run["particle"], derived["cycle_steps"]
-        ),
+        **_integration(run["solver"], derived["time_step_s"], run["particle"], derived["cycle_steps"]),
         **_sliding(run, bed, cycle),
         "run_restart": run_restart,
         "cycle_steps": derived["cycle_steps"],
         "sampling_interval_steps": run["solver"]["sampling_interval_steps"],
         "picture_steps": min(derived["picture_interval_steps"], derived["cycle_steps"]),
-        "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in range(1, CONTACT_COLUMNS + 1)),
+        "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in contact_columns),
+        "contact_format": " ".join("%.0f" if column in ID_COLUMNS else "%g" for column in contact_columns),
     }
 
 
@@ -195,11 +193,13 @@ def primes(above: int, count: int) -> list[int]:
 
 
 def _integration(
-    ranks: int, time_step: float, particle: Mapping[str, Any], longest_run: int
+    solver: Mapping[str, Any], time_step: float, particle: Mapping[str, Any], longest_run: int
 ) -> dict[str, Any]:
+    """Return what every deck needs to integrate; `solver` has rayleigh_fraction (-), `longest_run` is in steps."""
     return {
-        "ranks": ranks,
         "time_step_s": time_step,
+        "rayleigh_fraction": solver["rayleigh_fraction"],
+        "largest_time_fraction": STEP_CHECK_MARGIN * solver["rayleigh_fraction"],
         "skin_m": SKIN_OVER_RADIUS * min(particle["diameters_m"]) / 2.0,
         "gravity_m_per_s2": GRAVITY,
         "report_steps": max(longest_run // REPORTS_PER_RUN, 1),
@@ -216,14 +216,14 @@ def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
         "bed_end_m": bed["start_m"] + bed["length_m"],
         "domain_end_m": bed["start_m"] + bed["length_m"] + bed["travel_m"],
         "domain_margin_m": margin,
-        "domain_top_m": bed["temporary_floor_m"] + max(filled, 3.0 * bed["thickness_m"]) + 2.0 * margin,
+        "domain_top_m": bed["temporary_floor_m"] + max(filled, PILE_UP * bed["thickness_m"]) + 2.0 * margin,
     }
 
 
 def end_wall_corners(bed: Mapping[str, Any]) -> tuple[float, float, float]:
     """Return half width, bottom and top (m) of the walls at the bed's ends; they fill the domain's cross-section."""
     domain = _domain(bed)
-    return domain["half_width_m"], -0.5 * domain["domain_margin_m"], domain["domain_top_m"] - 1e-6
+    return domain["half_width_m"], -0.5 * domain["domain_margin_m"], domain["domain_top_m"] - END_WALL_CLEARANCE
 
 
 def _materials(
@@ -260,14 +260,11 @@ def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int) -> dict
     convention = {key: run["solver"][key] for key in ("rolling_radius", "rolling_friction")}
     ahead = travelled(run, cycle)
     return {
-        **_materials(
-            run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}
-        ),
+        **_materials(run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}),
         "finnie_coefficient_per_pa": _pairs([coefficient] * 3),
         "velocity_m_per_s": run["sliding"]["velocity_m_per_s"],
         "upstream_end_m": bed["start_m"] + ahead,
         "downstream_end_m": bed["start_m"] + bed["length_m"] + ahead,
-        "rayleigh_fraction": run["solver"]["rayleigh_fraction"],
         "end_wall_file": "../end_wall.stl",
         "cycle": cycle,
     }

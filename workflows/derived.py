@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from meshes.sample import skirt_width
+
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
@@ -24,9 +26,7 @@ def rayleigh_time(radius: float, density: float, shear_modulus: float, poissons_
     return math.pi * radius * math.sqrt(density / shear_modulus) / (0.1631 * poissons_ratio + 0.8766)
 
 
-def equivalent_size_ratio(
-    median_diameter: float, major_radius: float, minor_radius: float, height: float
-) -> float:
+def equivalent_size_ratio(median_diameter: float, major_radius: float, minor_radius: float, height: float) -> float:
     """Return alpha_ER = R50 / cbrt(a b h / 2), lengths in m: particle over the sphere of the bump's volume.
 
     The semi-ellipsoid's volume is 2/3 pi a b h. Below 1 the pattern helps (Yan 2022, Eq 4.18 and Fig 4.17).
@@ -115,16 +115,14 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
     """Return the skirt's width, and the bed's length (the whole travel and its ends), mass and particles."""
     sample, bed, sliding = parameters["sample"], parameters["bed"], parameters["sliding"]
     particle = parameters["particle"]
-    length = math.fsum(
-        [bed["ahead_m"], bed["behind_m"], sample["length_m"], sliding["run_in_m"], sliding["travel_m"]]
-    )
+    length = math.fsum([bed["ahead_m"], bed["behind_m"], sample["length_m"], sliding["run_in_m"], sliding["travel_m"]])
     solid_volume = length * bed["width_m"] * bed["thickness_m"] * particle["bulk_solid_fraction"]
     per_volume = math.fsum(
         fraction / (math.pi / 6.0 * diameter**3)
         for fraction, diameter in zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
     )
     return {
-        "skirt_width_m": sample["height_above_floor_m"] / math.tan(sample["skirt_slope_rad"]),
+        "skirt_width_m": skirt_width(sample["height_above_floor_m"], sample["skirt_slope_rad"]),
         "bed_length_m": length,
         "bed_start_m": sample["length_m"] / 2.0 + bed["behind_m"] - length,
         "total_travel_m": sliding["run_in_m"] + sliding["travel_m"],

@@ -9,6 +9,7 @@ This is the only module that converts units. Configuration faults raise ConfigEr
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -39,6 +40,12 @@ __all__ = [
     "rolling_coefficient_for_solver",
 ]
 
+STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
+RULE_NAMES = frozenset(
+    found[1]
+    for path in Path(__file__).parent.glob("*.smk")
+    for found in re.finditer(r"^rule (\w+):", path.read_text(encoding="utf-8"), re.MULTILINE)
+)
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 
@@ -73,9 +80,7 @@ class Study:
         """Return the run of that name. Raises ConfigError naming the runs there are."""
         found = next((run for run in self.runs if run.name == name), None)
         if found is None:
-            raise ConfigError(
-                unknown_name(f"study {self.name}", "run", name, [run.name for run in self.runs])
-            )
+            raise ConfigError(unknown_name(f"study {self.name}", "run", name, [run.name for run in self.runs]))
         return found
 
     def design_table(self) -> list[dict[str, Any]]:
@@ -133,6 +138,11 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     Raises ConfigError: one sentence with file, line, key or row, the value found and what is allowed.
     """
     root = Path(root)
+    if not STUDY_NAME.fullmatch(name) or name in RULE_NAMES or name.endswith("_decks"):
+        raise ConfigError(
+            f"config/studies/{name}.yaml: a study cannot be called {name}, allowed are small letters, digits and"
+            f" underscores, not ending in _decks, and none of {', '.join(sorted(RULE_NAMES))}."
+        )
     if name not in list_studies(root):
         raise ConfigError(unknown_name("config/studies", "study", name, list_studies(root)))
     sources = _read_sources(name, root, overrides)
@@ -279,8 +289,7 @@ def run_parameters(
         "sliding": {**si["sliding"], "velocity_m_per_s": factors["velocity_m_per_s"]},
         "wear": {
             **si["wear"],
-            "accelerated_wear_coefficient_per_pa": si["wear"]["wear_coefficient_per_pa"]
-            * si["wear"]["acceleration"],
+            "accelerated_wear_coefficient_per_pa": si["wear"]["wear_coefficient_per_pa"] * si["wear"]["acceleration"],
         },
         "solver": si["solver"],
         "particle": _particle(settings["bed"]["material"], materials, scale),
@@ -340,18 +349,23 @@ def bed_parameters(run: Run) -> dict[str, Any]:
         "travel_m": derived["total_travel_m"],
         "thickness_m": parameters["bed"]["thickness_m"],
         "seed": parameters["bed"]["seed"],
-        "ranks": parameters["solver"]["ranks"],
         "rolling_friction": parameters["solver"]["rolling_friction"],
         "rolling_radius": parameters["solver"]["rolling_radius"],
         "rayleigh_fraction": parameters["solver"]["rayleigh_fraction"],
         "rolling_friction_for_solver": {
             name: derived["rolling_friction_for_solver"][name] for name in ("particle", "floor_material")
         },
-        "youngs_modulus_pa": {
-            name: derived["youngs_modulus_pa"][name] for name in ("particle", "floor_material")
-        },
+        "youngs_modulus_pa": {name: derived["youngs_modulus_pa"][name] for name in ("particle", "floor_material")},
         "time_step_s": derived["largest_time_step_s"],
     }
+
+
+REDUCED = (
+    ("bed", "width_mm", "bed width"),
+    ("bed", "ahead_mm", "bed ahead of the sample"),
+    ("sliding", "run_in_mm", "run-in"),
+    ("sliding", "travel_mm", "travel"),
+)  # settings whose reduction every figure tells
 
 
 def figure_remarks(study: Study) -> list[str]:
@@ -366,14 +380,10 @@ def figure_remarks(study: Study) -> list[str]:
     sizes, whole = (f"{s['sample']['width_mm']:g} x {s['sample']['length_mm']:g} mm" for s in (now, full))
     if sizes != whole:
         remarks.append(f"sample {sizes} of {whole}")
-    for section, key, words in (("bed", "width_mm", "bed width"), ("sliding", "travel_mm", "travel")):
+    for section, key, words in REDUCED:
         if now[section][key] != full[section][key]:
             remarks.append(f"{words} {now[section][key]:g} mm of {full[section][key]:g} mm")
-    thin = {
-        run.row: run.parameters["derived"]["layers"]
-        for run in study.runs
-        if run.parameters["derived"]["thin_bed"]
-    }
+    thin = {run.row: run.parameters["derived"]["layers"] for run in study.runs if run.parameters["derived"]["thin_bed"]}
     if thin:
         rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
         remarks.append(f"fewer than three layers of particles in the bed: {rows}")

@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
+import time
 import traceback
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TextIO
+
+
+def let_jobs_import(root: Path) -> None:
+    """Let the Python scripts of all jobs import this project's packages, wherever Snakemake puts the scripts."""
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
 
 
 class _Both:
@@ -33,7 +40,8 @@ def job_log(path: str | Path) -> Iterator[None]:
     Faults are ValueError, RuntimeError and OSError of this project's own modules: their messages are sentences for
     people. The log gets the traceback too. Exit code 1.
     """
-    with open(path, "w") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
+    with open(path, "a") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
+        print(time.strftime("--- started %Y-%m-%d %H:%M:%S"), file=log)
         try:
             yield
         except (ValueError, RuntimeError, OSError) as fault:

@@ -21,7 +21,7 @@ def duration_text(seconds: float) -> str:
 
 
 class Progress:
-    """Prints progress of `total` units of work, of which `done` were finished before; the rate is this process's own."""
+    """Prints the progress of `total` units of work, `done` of them finished before; the rate is this process's own."""
 
     def __init__(
         self,

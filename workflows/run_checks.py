@@ -9,7 +9,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from meshes.pattern import pattern_faults
 from workflows.config_files import ConfigError, Layer
+from workflows.derived import THIN_BED_LAYERS
+from workflows.geometry import convex_pattern
 from workflows.validation import locate, show
 
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
@@ -86,7 +89,7 @@ def enough_layers(case: Case) -> Fault | None:
     particle = case.parameters["particle"]
     diameter, scale = particle["median_diameter_m"], particle["scale"]
     return "bed_thickness_mm", (
-        f"at least {_millimetres(3.0 * diameter)}, three layers of particles of {_millimetres(diameter)}"
+        f"at least {_millimetres(THIN_BED_LAYERS * diameter)}, three layers of particles of {_millimetres(diameter)}"
         f" (particle_scale {scale:g}), or bed.allow_thin_bed: true"
     )
 
@@ -167,20 +170,7 @@ def pattern_fits(case: Case) -> Fault | None:
     section, sample = case.parameters["pattern"], case.parameters["sample"]
     if section is None:
         return None
-    from meshes.pattern import (
-        ConvexPattern,
-        pattern_faults,
-    )  # here, so that plain studies need no mesh package
-
-    pattern = ConvexPattern(
-        major_radius=section["major_radius_m"],
-        minor_radius=section["minor_radius_m"],
-        height=section["height_m"],
-        row_spacing=section["row_spacing_m"],
-        column_spacing=section["column_spacing_m"],
-        major_axis=section["major_axis"],
-        row_offset=section["row_offset_fraction"],
-    )
+    pattern = convex_pattern(section)
     fault = pattern_faults(pattern, sample["width_m"], sample["length_m"])
     return None if fault is None else ("", fault)
 
@@ -189,11 +179,11 @@ RUN_CHECKS: tuple[Callable[[Case], Fault | None], ...] = (
     enough_layers,
     bump_in_bed,
     pattern_fits,
+    no_particle_between,
     sample_in_bed,
     skirt_in_bed,
     element_resolves_sample,
     element_resolves_bump,
-    no_particle_between,
     cycle_long_enough,
     sampled_in_cycle,
 )

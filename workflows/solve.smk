@@ -7,11 +7,12 @@ rule settled_bed:
         cost="results/{study}/beds/{bed}/cost.csv",
     params:
         bed=bed_parameters,
+        templates=template_sources("settled_bed"),
     log:
         "results/{study}/logs/settled_bed_{bed}.log",
     benchmark:
         "results/{study}/logs/settled_bed_{bed}.benchmark.tsv"
-    threads: lambda wildcards: bed_parameters(wildcards)["ranks"]
+    threads: lambda wildcards: study_of(wildcards).settings["solver"]["ranks"]
     message:
         "Filling and settling {wildcards.bed}"
     script:
@@ -29,11 +30,12 @@ rule worn_run:
     params:
         run=run_parameters,
         bed=bed_parameters_of_run,
+        templates=[template_sources("lowered_bed"), template_sources("sliding_sample")],
     log:
         "results/{study}/logs/worn_run_{run}.log",
     benchmark:
         "results/{study}/logs/worn_run_{run}.benchmark.tsv"
-    threads: lambda wildcards: run_parameters(wildcards)["solver"]["ranks"]
+    threads: lambda wildcards: study_of(wildcards).settings["solver"]["ranks"]
     message:
         "Wear cycles of {wildcards.run}"
     script:
@@ -45,6 +47,7 @@ rule bed_deck:
         "results/{study}/decks/beds/{bed}/deck.in",
     params:
         bed=bed_parameters,
+        templates=template_sources("settled_bed"),
     log:
         "results/{study}/logs/bed_deck_{bed}.log",
     message:
@@ -61,6 +64,7 @@ rule run_decks:
     params:
         run=run_parameters,
         bed=bed_parameters_of_run,
+        templates=[template_sources("lowered_bed"), template_sources("sliding_sample")],
         bed_restart=lambda wildcards: f"results/{wildcards.study}/decks/beds/{study_of(wildcards).bed_of(wildcards.run)}/bed.restart",
     log:
         "results/{study}/logs/run_decks_{run}.log",

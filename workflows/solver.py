@@ -53,7 +53,7 @@ def run_deck(
     """
     if shutil.which(EXECUTABLE) is None:
         raise SolverError(f"{EXECUTABLE} is not on the PATH; `make setup` installs it and `make doctor` checks it.")
-    started = time.monotonic()
+    started, unchecked = time.monotonic(), dict(triangles or {})
     with open(folder / SCREEN, "wb") as screen:
         process = subprocess.Popen(
             solver_command(ranks),
@@ -62,14 +62,16 @@ def run_deck(
             stdin=subprocess.DEVNULL,
             stdout=screen,
             stderr=subprocess.STDOUT,
-            preexec_fn=_die_with_parent,
+            preexec_fn=_die_with(os.getpid()),
         )
         try:
-            _watch(process, folder, on_step, dict(triangles or {}))
+            _watch(process, folder, on_step, unchecked)
         finally:
             _stop(process)
     if process.returncode != 0:
         raise SolverError(_last_words(folder, process.returncode))
+    if unchecked:
+        raise SolverError(f"{folder / SCREEN}: LIGGGHTS did not report the triangles of mesh {', '.join(unchecked)}.")
     return time.monotonic() - started
 
 
@@ -126,7 +128,13 @@ def _stop(process: subprocess.Popen) -> None:
             process.wait()
 
 
-def _die_with_parent() -> None:
-    """Let the kernel stop the solver when the driver dies, however it dies; mpirun then stops its ranks."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGTERM)
+def _die_with(parent: int) -> Callable[[], None]:
+    """Return what lets the kernel stop the solver when the driver dies, however; mpirun then stops its ranks."""
+
+    def before_exec() -> None:
+        if sys.platform == "linux":
+            ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGTERM)
+        if os.getppid() != parent:  # it died before the kernel was asked
+            os._exit(1)
+
+    return before_exec

@@ -13,7 +13,7 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder
 
 
 class StateError(RuntimeError):
-    """A run's folder cannot be used; the message names it."""
+    """The inputs of a run changed while it was running; the message names the run."""
 
 
 def digest(*parts: bytes | str | Mapping[str, Any]) -> str:
@@ -54,7 +54,17 @@ def working_folder(run_folder: Path, cycle: int) -> Iterator[Path]:
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir(parents=True)
     yield part
+    if final.exists():  # a damaged cycle, done again
+        set_aside(final)
     os.replace(part, final)
+
+
+def set_aside(folder: Path) -> None:
+    """Keep a folder that is no longer valid under superseded/damaged, replacing an earlier one of its name."""
+    target = folder.parent / "superseded" / "damaged" / folder.name
+    shutil.rmtree(target, ignore_errors=True)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    os.replace(folder, target)
 
 
 def write_state(folder: Path, inputs: str, files: tuple[str, ...], record: Mapping[str, Any]) -> None:
@@ -111,19 +121,25 @@ def _inputs_of(folder: Path) -> str:
 
 
 def _move_cycles(source: Path, target: Path) -> None:
+    """Move all cycles, the first one last: it tells whose cycles a folder holds, also when the move is interrupted."""
     target.mkdir(parents=True, exist_ok=True)
-    for folder in sorted(source.glob("cycle_[0-9]*")):
+    for folder in sorted(source.glob("cycle_[0-9]*[0-9]"), reverse=True):
         shutil.rmtree(target / folder.name, ignore_errors=True)
-        shutil.move(folder, target / folder.name)
+        os.replace(folder, target / folder.name)
 
 
 @contextlib.contextmanager
-def only_driver(run_folder: Path) -> Iterator[None]:
-    """Hold the run's lock; the kernel releases it with the process. Raises StateError when another one holds it."""
-    run_folder.mkdir(parents=True, exist_ok=True)
-    with open(run_folder / ".lock", "w") as lock:
+def only_driver(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
+    """Hold a folder's lock; the kernel releases it with the process. Waits, and says so, while another one holds it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / ".lock", "a+") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as busy:
-            raise StateError(f"{run_folder}: another process works on this run; wait for it or stop it.") from busy
+        except OSError:
+            lock.seek(0)
+            say(f"process {lock.read().strip() or 'unknown'} works on {folder}; waiting for it to end")
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
         yield

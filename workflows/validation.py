@@ -48,9 +48,7 @@ FOREIGN_SUFFIXES = (
     *("s", "ms", "min", "h", "kg", "g"),
 )
 ALL_SUFFIXES = sorted([*UNIT_OF_SUFFIX, *FOREIGN_SUFFIXES], key=len, reverse=True)
-VALUE_WITH_UNIT = re.compile(
-    r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z"
-)
+VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z")
 MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 
@@ -66,9 +64,7 @@ def _is_integer(_checker: Any, value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-_TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
-    {"number": _is_number, "integer": _is_integer}
-)
+_TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
 _Validator = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=_TYPES)
 
 
@@ -183,9 +179,7 @@ def show(value: Any) -> str:
         return "a block of keys"
     if isinstance(value, bool):
         return str(value).lower()
-    text = (
-        repr(value) if isinstance(value, str) else f"{value:.10g}" if isinstance(value, float) else str(value)
-    )
+    text = repr(value) if isinstance(value, str) else f"{value:.10g}" if isinstance(value, float) else str(value)
     return text if len(text) <= LONGEST_VALUE else text[:LONGEST_VALUE] + "..."
 
 
@@ -315,9 +309,7 @@ def unknown_name(source: str, noun: str, name: str, known: list[str]) -> str:
     return f"{source}: {noun} is {show(name)}, allowed is one of {', '.join(known) or 'none'}{hint}."
 
 
-def check_material_names(
-    layers: tuple[Layer, ...], settings: dict[str, Any], materials: dict[str, Any]
-) -> None:
+def check_material_names(layers: tuple[Layer, ...], settings: dict[str, Any], materials: dict[str, Any]) -> None:
     """Raise ConfigError if a setting names a material that config/materials.yaml does not have."""
     for section, key, kind in (
         ("sample", "material", "walls"),

@@ -43,7 +43,7 @@ def relative_wear(table: pd.DataFrame) -> pd.Series:
 
 def summary_table(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
     """Return the design table with the totals of every run; files in the order of the design's rows."""
-    runs = pd.read_csv(design)
+    runs = pd.read_csv(design, keep_default_na=False, na_values=[""], dtype={"run": str, "row": str})
     totals = pd.DataFrame([run_summary(pd.read_csv(path)) for path in wear_files])
     table = pd.concat([runs, totals], axis=1)
     return table.assign(wear_over_plain=relative_wear(table))

@@ -63,6 +63,7 @@ bed:
   width_mm: 300
   ahead_mm: 200
   behind_mm: 300
+  least_layers: 0
   allow_thin_bed: false
   seed: 20220317
 sliding: {run_in_mm: 300, travel_mm: 1000, cycles: 4}

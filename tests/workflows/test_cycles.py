@@ -122,7 +122,7 @@ def test_two_ranks_write_the_same_ledger(finished, tmp_path):
     """Under MPI every contact is counted once: from the same restart, two ranks account the same sums as one."""
     chain = twin(finished, tmp_path)
     shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))
-    two = replace(chain, parameters={**chain.parameters, "solver": {**chain.parameters["solver"], "ranks": 2}})
+    two = replace(chain, ranks=2)
     folder = state.cycle_folder(two.folder, 1)
     folder.mkdir()
     surface = read_surface(two.surface)
@@ -203,7 +203,7 @@ def test_killed_and_started_again_gives_the_same_tables(finished, tmp_path, mome
     assert {path: path.stat().st_mtime_ns for path in done} == done
 
 
-def test_a_finished_run_is_not_done_again(finished, capsys):
+def test_a_finished_run_is_not_done_again(finished):
     """Started once more, a finished run only writes its tables."""
     before = {path: path.stat().st_mtime_ns for path in finished.folder.glob("cycle_???/*")}
     cycles.run_chain(finished)
@@ -213,8 +213,7 @@ def test_a_finished_run_is_not_done_again(finished, capsys):
 def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):
     """Another wear coefficient: cycles are done again, the old ones are kept and come back with the old inputs."""
     chain = twin(finished, tmp_path)
-    for cycle in range(chain.cycles + 1):
-        shutil.copytree(state.cycle_folder(finished.folder, cycle), state.cycle_folder(chain.folder, cycle))
+    copy_cycles(finished, chain)
     doubled = replace(
         chain,
         parameters={**chain.parameters, "wear": {**chain.parameters["wear"], "gap_closing_fraction": 0.1}},
@@ -228,28 +227,60 @@ def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):
     assert (state.cycle_folder(chain.folder, 1) / "log.liggghts").read_bytes() == old
 
 
+def copy_cycles(source, target) -> None:
+    for cycle in range(source.cycles + 1):
+        shutil.copytree(state.cycle_folder(source.folder, cycle), state.cycle_folder(target.folder, cycle))
+
+
 def test_a_damaged_cycle_is_done_again(finished, tmp_path):
-    """A restart file that changed after its state was written does not count as finished."""
+    """A restart file that changed after its state was written does not count: its cycle is simulated again."""
     chain = twin(finished, tmp_path)
-    for cycle in range(chain.cycles + 1):
-        shutil.copytree(state.cycle_folder(finished.folder, cycle), state.cycle_folder(chain.folder, cycle))
+    copy_cycles(finished, chain)
     inputs = cycles.inputs_digest(chain)
     assert state.finished_cycles(chain.folder, inputs) == chain.cycles + 1
     with open(state.cycle_folder(chain.folder, 1) / "run.restart", "ab") as restart:
         restart.write(b"damage")
     assert state.finished_cycles(chain.folder, inputs) == 1
+    cycles.run_chain(chain)
+    assert state.finished_cycles(chain.folder, inputs) == chain.cycles + 1
+    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
 
 
-def test_a_failed_solver_shows_its_last_words_and_keeps_finished_cycles(finished, tmp_path):
-    """The message has the cause and the solver's own lines; cycle 0 stays and the run can be resumed."""
+def test_a_kill_while_cycles_are_moved_loses_nothing(finished, tmp_path, monkeypatch):
+    """Interrupted between two moves, the next start moves the rest: old cycles are whole in superseded/."""
     chain = twin(finished, tmp_path)
-    shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))
-    (state.cycle_folder(chain.folder, 0) / "run.restart").rename(tmp_path / "hidden")
-    broken = state.cycle_folder(chain.folder, 1).with_suffix(".part")
-    broken.mkdir()
-    write_cycle(chain, 1, broken, read_surface(chain.surface))
-    with pytest.raises(SolverError, match=r"cycle_001\.part/deck\.in: LIGGGHTS stopped: .*[Cc]annot open restart file"):
-        cycles.simulate(chain, 1, broken, 1, Progress("test", 1))
+    copy_cycles(finished, chain)
+    moves = []
+
+    def move_once(source, target):
+        if moves:
+            raise KeyboardInterrupt
+        moves.append(source)
+        Path(source).rename(target)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(state.os, "replace", move_once)
+        with pytest.raises(KeyboardInterrupt):
+            state.set_aside_others(chain.folder, "f" * 64)
+    state.set_aside_others(chain.folder, "f" * 64)
+    kept = sorted(path.name for path in chain.folder.glob("superseded/*/cycle_*"))
+    assert kept == [f"cycle_{cycle:03d}" for cycle in range(chain.cycles + 1)]
+
+
+def test_a_failed_solver_shows_its_last_words_and_the_run_resumes(finished, tmp_path, monkeypatch):
+    """The message has the cause and the solver's own lines; finished cycles stay, and without the fault they go on."""
+    chain = twin(finished, tmp_path)
+    with monkeypatch.context() as broken:
+        broken.setattr("workflows.chain.RESTART", "no_such.restart")
+        with pytest.raises(
+            SolverError, match=r"cycle_001\.part/deck\.in: LIGGGHTS stopped: .*open restart file"
+        ) as fault:
+            cycles.run_chain(chain)
+    assert "Its last lines" in str(fault.value) and "ERROR" in str(fault.value)
+    done = (state.cycle_folder(chain.folder, 0) / "state.json").stat().st_mtime_ns
+    cycles.run_chain(chain)
+    assert (state.cycle_folder(chain.folder, 0) / "state.json").stat().st_mtime_ns == done
+    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
 
 
 def test_missing_triangles_stop_the_run(finished, tmp_path):
@@ -266,10 +297,26 @@ def test_missing_triangles_stop_the_run(finished, tmp_path):
         cycles.simulate(chain, 1, folder, count + 1, Progress("test", 1))
 
 
-def test_two_drivers_do_not_share_a_run(finished):
-    """The second driver of a run is turned away."""
-    with (
-        state.only_driver(finished.folder),
-        pytest.raises(state.StateError, match="another process works on this run"),
-    ):
-        cycles.run_chain(finished)
+def test_a_second_driver_waits_for_the_first(finished, tmp_path):
+    """Two drivers of one run do the work once: the second waits, says for whom, and finds everything finished."""
+    chain = twin(finished, tmp_path)
+    first = start_driver(chain, tmp_path)
+    lock = chain.folder / ".lock"
+    while not (lock.exists() and lock.read_text()):
+        time.sleep(0.01)
+    second = subprocess.run(
+        [sys.executable, "-c", DRIVER, str(tmp_path / "chain.pickle")],
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert first.wait() == 0
+    assert f"process {first.pid} works on {chain.folder}; waiting for it to end" in second.stderr
+    assert "cycle 1" not in second.stderr
+    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
+
+
+def test_more_ranks_are_the_same_run(finished):
+    """Ranks change the time a run takes, not what it is: its cycles stay valid."""
+    assert cycles.inputs_digest(replace(finished, ranks=4)) == cycles.inputs_digest(finished)

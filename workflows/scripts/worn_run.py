@@ -15,5 +15,6 @@ with job_log(snakemake.log[0]):
             bed=snakemake.params.bed,
             surface=Path(snakemake.input.surface),
             bed_restart=Path(snakemake.input.bed),
+            ranks=snakemake.threads,
         )
     )

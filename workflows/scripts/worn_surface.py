@@ -2,7 +2,7 @@
 
 from postproc.analysis.depth import carried_remark, depth_quantity, depth_table, read_worn_surfaces
 from postproc.analysis.history import runs_of
-from postproc.plots.pictures import colour_limits, worn_surface
+from postproc.plots.pictures import worn_surface
 from postproc.plots.style import save
 from workflows.job import job_log
 
@@ -11,6 +11,6 @@ with job_log(snakemake.log[0]):
     meshes = read_worn_surfaces(runs["run"], snakemake.input.surfaces)
     depths = depth_table(meshes, deformed)
     remarks = [*snakemake.params.remarks, carried_remark(meshes, deformed)]
-    figure = worn_surface(meshes, runs, deformed, colour_limits(depths), depth_quantity(deformed), remarks)
+    figure = worn_surface(meshes, runs, deformed, depths, depth_quantity(deformed), remarks)
     save(figure, snakemake.output.figure)
     depths.to_csv(snakemake.output.table, index=False, float_format="%.6g")

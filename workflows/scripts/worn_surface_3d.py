@@ -2,8 +2,8 @@
 
 from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_rows
 from postproc.analysis.depth import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+from postproc.plots.page import surfaces_page
 from postproc.plots.pictures import colour_limits
-from postproc.plots.scene import surfaces_page
 from workflows.figures import ROWS_IN_DETAIL
 from workflows.job import job_log
 
