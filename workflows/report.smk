@@ -1,3 +1,245 @@
+"""Figures of a study, and its page."""
+
+from workflows.design import figure_remarks
+from workflows.figures import equivalent_size_ratios, figure_files, is_deformed, page_parameters
+
+WORN_SURFACES = of_every_run("results/{study}/{run}/worn_surface.vtu")
+WEAR_TABLES = of_every_run("results/{study}/{run}/wear.csv")
+
+
+rule worn_surface:
+    input:
+        design="results/{study}/design.csv",
+        surfaces=WORN_SURFACES,
+    output:
+        figure=report(
+            "results/{study}/figures/worn_surface.png",
+            caption="report/worn_surface.rst",
+            category="Wear",
+            labels={"figure": "Worn surfaces"},
+        ),
+        table="results/{study}/figures/worn_surface.csv",
+    log:
+        "results/{study}/logs/worn_surface.log",
+    benchmark:
+        "results/{study}/logs/worn_surface.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        deformed=lambda wildcards: is_deformed(study_of(wildcards)),
+    message:
+        "Figure of the worn surfaces of {wildcards.study}"
+    script:
+        "scripts/worn_surface.py"
+
+
+rule worn_surface_3d:
+    input:
+        summary="results/{study}/summary.csv",
+        surfaces=WORN_SURFACES,
+    output:
+        report(
+            "results/{study}/figures/worn_surface_3d.html",
+            caption="report/worn_surface_3d.rst",
+            category="Wear",
+            labels={"figure": "Worn surfaces, interactive"},
+        ),
+    log:
+        "results/{study}/logs/worn_surface_3d.log",
+    benchmark:
+        "results/{study}/logs/worn_surface_3d.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        deformed=lambda wildcards: is_deformed(study_of(wildcards)),
+    message:
+        "Interactive worn surfaces of {wildcards.study}"
+    script:
+        "scripts/worn_surface_3d.py"
+
+
+rule wear_against_travel:
+    input:
+        design="results/{study}/design.csv",
+        wear=WEAR_TABLES,
+    output:
+        figure=report(
+            "results/{study}/figures/wear_against_travel.png",
+            caption="report/wear_against_travel.rst",
+            category="Wear",
+            labels={"figure": "Wear against travel"},
+        ),
+        table="results/{study}/figures/wear_against_travel.csv",
+    log:
+        "results/{study}/logs/wear_against_travel.log",
+    benchmark:
+        "results/{study}/logs/wear_against_travel.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Figure of wear against travel of {wildcards.study}"
+    script:
+        "scripts/wear_against_travel.py"
+
+
+rule wear_split:
+    input:
+        "results/{study}/summary.csv",
+    output:
+        figure=report(
+            "results/{study}/figures/wear_split.png",
+            caption="report/wear_split.rst",
+            category="Wear",
+            labels={"figure": "Wear of base and bumps"},
+        ),
+        table="results/{study}/figures/wear_split.csv",
+    log:
+        "results/{study}/logs/wear_split.log",
+    benchmark:
+        "results/{study}/logs/wear_split.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Figure of the wear of base and bumps of {wildcards.study}"
+    script:
+        "scripts/wear_split.py"
+
+
+rule depth_distribution:
+    input:
+        design="results/{study}/design.csv",
+        depths="results/{study}/figures/worn_surface.csv",
+    output:
+        figure=report(
+            "results/{study}/figures/depth_distribution.png",
+            caption="report/depth_distribution.rst",
+            category="Wear",
+            labels={"figure": "Distribution of depth"},
+        ),
+        table="results/{study}/figures/depth_distribution.csv",
+    log:
+        "results/{study}/logs/depth_distribution.log",
+    benchmark:
+        "results/{study}/logs/depth_distribution.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        deformed=lambda wildcards: is_deformed(study_of(wildcards)),
+    message:
+        "Figure of the distribution of depth of {wildcards.study}"
+    script:
+        "scripts/depth_distribution.py"
+
+
+rule bed:
+    input:
+        summary="results/{study}/summary.csv",
+        surfaces=WORN_SURFACES,
+    output:
+        figure=report(
+            "results/{study}/figures/bed.png",
+            caption="report/bed.rst",
+            category="Bed",
+            labels={"figure": "Bed over the sample"},
+        ),
+        table="results/{study}/figures/bed.csv",
+    log:
+        "results/{study}/logs/bed.log",
+    benchmark:
+        "results/{study}/logs/bed.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Figure of the bed of {wildcards.study}"
+    script:
+        "scripts/bed.py"
+
+
+rule forces:
+    input:
+        design="results/{study}/design.csv",
+        wear=WEAR_TABLES,
+    output:
+        figure=report(
+            "results/{study}/figures/forces.png",
+            caption="report/forces.rst",
+            category="Bed",
+            labels={"figure": "Forces on the sample"},
+        ),
+        table="results/{study}/figures/forces.csv",
+    log:
+        "results/{study}/logs/forces.log",
+    benchmark:
+        "results/{study}/logs/forces.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Figure of the forces on the samples of {wildcards.study}"
+    script:
+        "scripts/forces.py"
+
+
+rule wear_law_comparison:
+    input:
+        "results/{study}/summary.csv",
+    output:
+        figure=report(
+            "results/{study}/figures/wear_law_comparison.png",
+            caption="report/wear_law_comparison.rst",
+            category="Wear laws",
+            labels={"figure": "Archard and Finnie"},
+        ),
+        table="results/{study}/figures/wear_law_comparison.csv",
+    log:
+        "results/{study}/logs/wear_law_comparison.log",
+    benchmark:
+        "results/{study}/logs/wear_law_comparison.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Figure of the wear laws of {wildcards.study}"
+    script:
+        "scripts/wear_law_comparison.py"
+
+
+rule relative_wear:
+    input:
+        summary="results/{study}/summary.csv",
+        history="results/{study}/figures/wear_against_travel.csv",
+    output:
+        figure=report(
+            "results/{study}/figures/relative_wear.png",
+            caption="report/relative_wear.rst",
+            category="Wear",
+            labels={"figure": "Convex over plain"},
+        ),
+        table="results/{study}/figures/relative_wear.csv",
+    log:
+        "results/{study}/logs/relative_wear.log",
+    benchmark:
+        "results/{study}/logs/relative_wear.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        size_ratios=lambda wildcards: equivalent_size_ratios(study_of(wildcards)),
+    message:
+        "Figure of the relative wear of {wildcards.study}"
+    script:
+        "scripts/relative_wear.py"
+
+
 rule report:
-    output: "results/{study}/report.html"
-    shell: "touch {output}"
+    input:
+        lambda wildcards: figure_files(study_of(wildcards)),
+        summary="results/{study}/summary.csv",
+        design="results/{study}/design.csv",
+        depths="results/{study}/figures/worn_surface.csv",
+        history="results/{study}/figures/wear_against_travel.csv",
+        costs=of_every_run("results/{study}/{run}/cost.csv"),
+        template=str(ROOT / "workflows" / "report" / "study.html.j2"),
+    output:
+        "results/{study}/report.html",
+    log:
+        "results/{study}/logs/report.log",
+    params:
+        study=lambda wildcards: page_parameters(study_of(wildcards)),
+    message:
+        "Page of {wildcards.study}"
+    script:
+        "scripts/report.py"

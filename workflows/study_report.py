@@ -1,7 +1,7 @@
 """Assemble a study's page: one HTML file that needs nothing else, read from what the study's jobs left.
 
-`study` is `figures.page_parameters`, `folder` is results/<study>. Numbers come from the tables beside the figures.
-"""
+`study` is `figures.page_parameters`, `folder` is results/<study>. Numbers come from the tables beside the
+figures."""
 
 from __future__ import annotations
 
@@ -32,12 +32,13 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 TEMPLATE = "study.html.j2"
 TABLE_OF = {"worn_surface_3d": "worn_surface"}  # figures that share another's table
 DETAILED = ("worn_surface_3d", "bed")  # figures that show a few design rows only
+ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
+UNDEFINED = "\u2013"  # shown for numbers that are not there
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
 PACKAGES = (
     "numpy",
     "scipy",
     "pandas",
-    "polars",
     "numba",
     "meshio",
     "gmsh",
@@ -50,7 +51,9 @@ VERSION_LINE = re.compile(r"^LIGGGHTS \((.*)\)", re.MULTILINE)
 
 
 def write_page(path: Path, study: Mapping[str, Any]) -> None:
-    """Write the page of a study beside its tables. Raises FileNotFoundError or ValueError when one is missing."""
+    """Write the page of a study beside its tables. Raises FileNotFoundError or ValueError when one is
+    missing.
+    """
     text = environment().get_template(TEMPLATE).render(page_context(study, path.parent))
     part = path.with_suffix(".html.part")
     part.write_text(text, encoding="utf-8")
@@ -75,7 +78,7 @@ def number(value: Any, digits: int = 4) -> str:
     if isinstance(value, str):
         return value.replace("_", " ")
     if value is None or value != value:
-        return "–"
+        return UNDEFINED
     if isinstance(value, bool):
         return "yes" if value else "no"
     if value == int(value) and (isinstance(value, int) or abs(value) < 1e7):
@@ -96,7 +99,8 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "study": study,
         "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "results": results.to_dict("records"),
-        "cards": cards(results),
+        "accelerated": study["settings"]["wear"]["acceleration"] != 1.0,
+        "cards": cards(results, study["settings"]["wear"]["acceleration"]),
         "run_columns": run_columns(study),
         "detailed": DETAILED,
         "results_csv": data_uri(results.to_csv(index=False).encode(), "text/csv"),
@@ -122,33 +126,30 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 def result_table(
     summary: pd.DataFrame, depths: pd.DataFrame, history: pd.DataFrame, acceleration: float
 ) -> pd.DataFrame:
-    """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated test,
-    over plain with its range over the cycles, share of the bumps, carried share, forces and depths."""
+    """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated
+    test, over plain with its range over the cycles, share of the bumps, carried share, forces and depths.
+    """
     volume = summary["archard_volume_m3"]
     table = summary[["run", "row", "surface", "travel_m", "archard_volume_m3"]].assign(
         archard_volume_per_metre_m3_per_m=volume / summary["travel_m"],
         real_volume_per_metre_m3_per_m=volume / summary["travel_m"] / acceleration,
         wear_over_plain=summary["wear_over_plain"],
         bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
-        carried_share_percent=100.0 * summary["carried_volume_m3"] / volume,
+        carried_share_percent=(100.0 * summary["carried_volume_m3"] / volume).round(ROUNDING_DIGITS).abs(),
         mean_normal_force_N=summary["mean_normal_force_N"],
     )
     ranges = cycle_ratios(history)
-    return (
-        in_display_units(table)
-        .merge(ranges, on=["row", "surface"], how="left")
-        .merge(depths, on="run", how="left")
-    )
+    return in_display_units(table).merge(ranges, on=["row", "surface"], how="left").merge(depths, on="run", how="left")
 
 
-def cards(results: pd.DataFrame) -> list[dict[str, str]]:
+def cards(results: pd.DataFrame, acceleration: float) -> list[dict[str, str]]:
     """Return the few numbers that answer the question, lowest relative wear first; none without a plain twin."""
     convex = results[(results["surface"] != "plain") & results["wear_over_plain"].notna()]
     if convex.empty:
         return []
     best = convex.sort_values("wear_over_plain", kind="stable").iloc[0]
     plain = results[(results["row"] == best["row"]) & (results["surface"] == "plain")].iloc[0]
-    rate, unit = "archard_volume_per_metre_mm3_per_m", "mm³/m (accelerated)"
+    rate, unit = "archard_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
     several = len(convex) > 1
     which = f"{best['row']}, the lowest of {len(convex)} rows" if several else best["row"]
     found = [
@@ -216,6 +217,7 @@ def run_rows(study: Mapping[str, Any]) -> list[dict[str, Any]]:
                 "run": run,
                 **(factors[names["row"]]),
                 "bed": study["bed_of"][run],
+                "particle_scale": study["parameters"][run]["particle"]["scale"],
                 "layers": derived["layers"],
                 "equivalent_size_ratio": derived["equivalent_size_ratio"],
                 "particles_about": derived["bed_particles"],
@@ -281,9 +283,7 @@ def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
     said = VERSION_LINE.search(log.read_text(errors="replace")) if log and log.is_file() else None
     found = {"LIGGGHTS": said.group(1).removeprefix("Version ") if said else "not reported"}
     found["this project"] = commit()
-    found["Python"] = (
-        f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
-    )
+    found["Python"] = f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
     for name in PACKAGES:
         try:
             found[name] = importlib.metadata.version(name)
@@ -293,13 +293,13 @@ def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
 
 
 def commit(repository: Path = REPOSITORY) -> str:
-    """Return the commit of the project, and whether files differ from it; what is known where git is not there."""
+    """Return the commit of the project, and whether files differ from it; what is known where git is not
+    there.
+    """
 
     def git(*words: str) -> str:
         command = ["git", "-c", f"safe.directory={repository}", *words]
-        return subprocess.run(
-            command, cwd=repository, capture_output=True, text=True, check=True
-        ).stdout.strip()
+        return subprocess.run(command, cwd=repository, capture_output=True, text=True, check=True).stdout.strip()
 
     try:
         changed = " with changes" if git("status", "--porcelain") else ""
@@ -313,9 +313,7 @@ def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, An
     counts: dict[str, int] = {}
     for said, count in _warnings_of(folder / run for run in study["runs"]):
         counts[said] = counts.get(said, 0) + count
-    return [
-        {"said": said, "count": count} for said, count in sorted(counts.items(), key=lambda item: -item[1])
-    ]
+    return [{"said": said, "count": count} for said, count in sorted(counts.items(), key=lambda item: -item[1])]
 
 
 def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:

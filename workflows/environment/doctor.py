@@ -263,9 +263,7 @@ def findings() -> Iterable[Finding]:
     """All checks, in the order in which things depend on each other."""
     checks: tuple[Callable[[], Finding], ...] = (
         check_python,
-        lambda: check_packages(
-            locked_versions((REPOSITORY / "requirements.txt").read_text()), installed_versions()
-        ),
+        lambda: check_packages(locked_versions((REPOSITORY / "requirements.txt").read_text()), installed_versions()),
         check_solver,
         check_mpi,
         check_rendering,

@@ -1,0 +1,73 @@
+"""Snapshots of the bed: reading the solver's particle dumps and choosing the particles a cut shows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.mesh import SurfaceMesh
+
+SHOWN_LENGTHS = 1.0  # piece of bed shown to either side of the middle of the sample, in lengths of the sample
+MOST_PARTICLES = 8_000  # drawn per picture: thicker beds become a slab behind the cut
+HEADER_LINES = 9  # of a dump custom with one frame
+NEEDED = ("id", "x", "y", "z", "vx", "vy", "vz", "radius")
+
+
+def last_snapshot(run_folder: str | Path) -> Path:
+    """Return the newest bed dump of a run's last cycle that has one. Raises FileNotFoundError when there is
+    none.
+    """
+    folders = sorted(Path(run_folder).glob("cycle_[0-9]*"), reverse=True)
+    for folder in folders:
+        dumps = sorted(folder.glob("bed_*.dump"), key=lambda path: int(path.stem.removeprefix("bed_")))
+        if dumps:
+            return dumps[-1]
+    raise FileNotFoundError(f"{run_folder}: no cycle_*/bed_*.dump found, at least one wear cycle must have been run.")
+
+
+def read_snapshot(path: str | Path) -> pd.DataFrame:
+    """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s (relative to the
+    sample).
+
+    Raises ValueError when the file is no dump of one frame or is cut short.
+    """
+    with open(path, encoding="ascii") as stream:
+        header = [stream.readline() for _ in range(HEADER_LINES)]
+    columns = header[-1].split()[2:]
+    if not header[-1].startswith("ITEM: ATOMS") or not set(NEEDED) <= set(columns):
+        raise ValueError(
+            f"{path}: line {HEADER_LINES} must be ITEM: ATOMS with {' '.join(NEEDED)}, found {header[-1].strip()!r}"
+        )
+    table = pd.read_csv(path, sep=r"\s+", skiprows=HEADER_LINES, names=columns, index_col=False)
+    expected = int(header[3])
+    if len(table) != expected or table.isna().to_numpy().any():
+        raise ValueError(f"{path}: {expected} particles announced, found {len(table)} whole or broken rows")
+    speed = np.sqrt((table[["vx", "vy", "vz"]].to_numpy() ** 2).sum(axis=1))
+    return pd.DataFrame(
+        {
+            "id": table["id"],
+            **{f"{axis}_m": table[axis] for axis in "xyz"},
+            "radius_m": table["radius"],
+            "speed_m_per_s": speed,
+        }
+    )
+
+
+def behind_cut(particles: pd.DataFrame, stretch: float, most: int) -> pd.DataFrame:
+    """Return the particles that a cut along the travel at x = 0 leaves to see from +x.
+
+    stretch: m, half the length of the piece of bed round the sample. most: particles kept; those nearest to
+    the cut stay, so a thick bed becomes a slab.
+    """
+    near = particles[(particles["x_m"] <= 0.0) & (particles["y_m"].abs() <= stretch)]
+    return near.sort_values("x_m", ascending=False, kind="stable").head(most).reset_index(drop=True)
+
+
+def shown_particles(run_folder: str | Path, mesh: SurfaceMesh) -> pd.DataFrame:
+    """Return the particles of a run's last snapshot that its figure shows, behind a cut along the travel
+    (SI).
+    """
+    stretch = SHOWN_LENGTHS * float(np.ptp(mesh.points[:, 1]))
+    return behind_cut(read_snapshot(last_snapshot(run_folder)), stretch, MOST_PARTICLES)

@@ -1,0 +1,1 @@
+"""Figures: DataFrames and arrays in, matplotlib figures out; the only place that draws."""

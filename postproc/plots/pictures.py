@@ -1,0 +1,131 @@
+"""Figures made of rendered pictures: worn surfaces and the bed, with axes, colour bars and remarks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from postproc.analysis.depth import area_quantile
+from postproc.analysis.display import in_display_units
+from postproc.mesh import SurfaceMesh
+from postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface_oblique, surface_plan, trimmed
+from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
+
+ROWS_PER_LINE = 7  # design rows side by side in small multiples
+TOP_SHARE = 0.99  # of the worn area: deeper spots share the top colour
+
+
+def colour_limits(depths: pd.DataFrame) -> tuple[float, float]:
+    """Return the colour scale (um) of all runs of a figure: 0 to the depth that 99 % of the worn area of
+    the run with the deepest wear does not exceed.
+
+    depths: as from `analysis.depth.depth_table`.
+    """
+    tops = [
+        area_quantile(faces["depth_um"].to_numpy(), faces["area_mm2"].to_numpy(), TOP_SHARE)
+        for _, faces in depths.groupby("run", sort=False)
+    ]
+    return 0.0, max([*tops, np.finfo(float).tiny])
+
+
+def worn_surface(
+    meshes: Mapping[str, SurfaceMesh],
+    runs: pd.DataFrame,
+    deformed: bool,
+    depths: pd.DataFrame,
+    quantity: str,
+    remarks: Sequence[str],
+) -> Figure:
+    """Draw worn surfaces, the runs of a design row on one colour scale: obliquely and from above for one row, else
+    from above only.
+
+    meshes: by run; runs: run, row, surface; depths: as from `analysis.depth.depth_table`; quantity: what the colour is.
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    if runs["row"].nunique() > 1:
+        _small_multiples(figure, meshes, runs, deformed, depths)
+        return figure
+    limits, bounds = colour_limits(depths), common_bounds(meshes.values())
+    grid = figure.subplots(2, len(runs), squeeze=False)
+    for column, run in enumerate(runs["run"]):
+        picture(grid[0, column], surface_oblique(meshes[run], deformed, limits, bounds))
+        grid[0, column].set_title(run.replace("_", " "))
+        picture(grid[1, column], *surface_plan(meshes[run], deformed, limits))
+        grid[1, column].set(xlabel="Across the travel, x (mm)", ylabel="y (mm)\nbed moves to +y →")
+    unit, ticks = scaled("µm", limits[1])
+    _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
+    return figure
+
+
+def _colour_bar(figure: Figure, grid: np.ndarray, limits: tuple[float, float], label: str, ticks=None) -> None:
+    bar = ScalarMappable(Normalize(*limits), MAP)
+    figure.colorbar(
+        bar, ax=grid, label=label, format=ticks, extend="max", shrink=0.85, aspect=30, pad=0.02, fraction=0.06
+    )
+
+
+def _small_multiples(
+    figure: Figure,
+    meshes: Mapping[str, SurfaceMesh],
+    runs: pd.DataFrame,
+    deformed: bool,
+    depths: pd.DataFrame,
+) -> None:
+    """Draw all runs from above without skirt, those of a design row below each other on a scale of their own."""
+    rows, surfaces = list(dict.fromkeys(runs["row"])), list(dict.fromkeys(runs["surface"]))
+    blocks = math.ceil(len(rows) / ROWS_PER_LINE)
+    columns = math.ceil(len(rows) / blocks)
+    grid = figure.subplots(blocks * len(surfaces), columns, squeeze=False)
+    scales = {row: colour_limits(depths[depths["run"].isin(found["run"])]) for row, found in runs.groupby("row")}
+    unit, ticks = scaled("µm", max(top for _, top in scales.values()))
+    for axes in grid.ravel():
+        axes.set_axis_off()
+    for run in runs.itertuples():
+        block, column = divmod(rows.index(run.row), columns)
+        axes = grid[block * len(surfaces) + surfaces.index(run.surface), column]
+        picture(axes, surface_plan(meshes[run.run], deformed, scales[run.row], 300, skirt=False)[0])
+        if run.surface == surfaces[0]:
+            axes.set_title(f"{run.row}: {ticks(float(f'{scales[run.row][1]:.2g}'), 0)}", fontsize=SMALLEST_FONT, pad=3)
+        if column == 0:
+            place = {"rotation": 90, "va": "center", "ha": "right", "fontsize": SMALLEST_FONT}
+            axes.text(-0.06, 0.5, run.surface, transform=axes.transAxes, **place)
+    label = f"Depth over the scale of its row (-)\nnumbers at the rows: their scales ({unit})"
+    _colour_bar(figure, grid, (0.0, 1.0), label)
+
+
+def bed(
+    cuts: Mapping[str, pd.DataFrame],
+    meshes: Mapping[str, SurfaceMesh],
+    remarks: Sequence[str],
+) -> Figure:
+    """Draw the bed over the sample, cut open along the travel, one picture per run; colour: speed over the
+    sample.
+
+    cuts: particles by run, as from `analysis.bed.behind_cut`; meshes: worn surfaces by run.
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    limits = (0.0, max(float(cut["speed_m_per_s"].quantile(0.98)) for cut in cuts.values()))
+    grid = figure.subplots(len(cuts), 1, squeeze=False)[:, 0]
+    bounds = bed_bounds(cuts.values(), meshes.values())
+    pictures = trimmed([bed_picture(cut, meshes[run], limits, bounds) for run, cut in cuts.items()])
+    for axes, run, pixels in zip(grid, cuts, pictures, strict=True):
+        picture(axes, pixels)
+        axes.set_title(f"{run.replace('_', ' ')}, the bed moves to the right", fontsize=SMALLEST_FONT, pad=3)
+    bar = ScalarMappable(Normalize(*limits), MAP)
+    figure.colorbar(
+        bar, ax=grid, label="Particle speed relative to the sample (m/s)", extend="max", shrink=0.85, pad=0.02
+    )
+    return figure
+
+
+def bed_table(cuts: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Return the particles of the figure `bed` in display units: run, id, place and radius in mm, speed in
+    m/s.
+    """
+    return in_display_units(pd.concat([cut.assign(run=run) for run, cut in cuts.items()], ignore_index=True))

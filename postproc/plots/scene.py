@@ -1,0 +1,179 @@
+"""Rendered pictures: worn surfaces and beds as arrays of pixels, interactive 3-D pages. Off-screen, no X
+needed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import pandas as pd
+
+from postproc.analysis.depth import face_depth
+from postproc.analysis.display import MICROMETRES, MILLIMETRES
+from postproc.mesh import SurfaceMesh, boundary_edges
+from postproc.plots.style import MAP, SKIRT_COLOUR
+from postproc.wear.update import worn_faces
+
+OBLIQUE = (0.55, -1.0, 0.75)  # from upstream, above: the bed comes towards the back
+FROM_THE_CUT = (1.0, -0.25, 0.32)  # from the side on which the bed is cut away
+MARGIN = 1.03  # -, room round what is shown
+SPHERE_SIDES = 10  # of a particle's sphere: round enough at a few pixels
+WHITE = 255  # of a pixel's background
+STEEL = "#9aa0a6"
+
+
+def load_pyvista():
+    """Return pyvista, told to render in software where nobody asked for anything else."""
+    os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
+    import pyvista  # slow to import, and only after the line above
+
+    return pyvista
+
+
+def new_plotter(size: tuple[int, int]):
+    plotter = load_pyvista().Plotter(off_screen=True, window_size=size, lighting="light kit")
+    plotter.set_background("white")
+    plotter.enable_parallel_projection()
+    return plotter
+
+
+def _poly(points: np.ndarray, triangles: np.ndarray):
+    """Return a surface in mm; nodes without a triangle are kept."""
+    return load_pyvista().PolyData.from_regular_faces(points * MILLIMETRES, triangles)
+
+
+def _outline(mesh: SurfaceMesh):
+    """Return the edge of the sample, where the skirt begins, as lines in mm."""
+    edges = boundary_edges(mesh.triangles[worn_faces(mesh)])
+    lines = np.column_stack([np.full(len(edges), 2), edges])
+    return load_pyvista().PolyData(mesh.points * MILLIMETRES, lines=lines.ravel())
+
+
+def add_sample(plotter, mesh: SurfaceMesh, depth: np.ndarray, limits: tuple[float, float]) -> None:
+    """Add a worn surface: faces that wear by depth (m; colours in um), skirt grey, edge of the sample black."""
+    worn = worn_faces(mesh)
+    surface = _poly(mesh.points, mesh.triangles[worn])
+    surface.cell_data["depth"] = depth[worn] * MICROMETRES
+    plotter.add_mesh(surface, scalars="depth", cmap=MAP, clim=limits, show_scalar_bar=False, **_matt())
+    if not worn.all():
+        plotter.add_mesh(_poly(mesh.points, mesh.triangles[~worn]), color=SKIRT_COLOUR, **_matt())
+    plotter.add_mesh(_outline(mesh), color="black", line_width=1.5)
+
+
+def _matt() -> dict[str, float]:
+    """Little shading, so that colours can be read off."""
+    return {"ambient": 0.45, "diffuse": 0.55, "specular": 0.0}
+
+
+def _look(plotter, direction: tuple[float, float, float], bounds: np.ndarray) -> None:
+    """Look from a direction, z up, at a box with these bounds (3, 2) in mm, as large as the window takes."""
+    centre = bounds.mean(axis=1)
+    corners = np.stack(np.meshgrid(*bounds), axis=-1).reshape(-1, 3) - centre
+    up = np.array([0.0, 0.0, 1.0])
+    towards = np.array(direction) / np.linalg.norm(direction)
+    right = np.cross(up, towards)
+    right /= np.linalg.norm(right)
+    half_height = np.abs(corners @ np.cross(towards, right)).max()
+    half_width = np.abs(corners @ right).max()
+    width, height = plotter.window_size
+    far = 10.0 * np.linalg.norm(corners, axis=1).max()
+    plotter.camera_position = [centre + far * towards, centre, up]
+    plotter.camera.parallel_scale = MARGIN * max(half_height, half_width * height / width)
+    plotter.renderer.ResetCameraClippingRange()
+
+
+def _pixels(plotter) -> np.ndarray:
+    pixels = np.array(plotter.screenshot(return_img=True))
+    plotter.close()
+    return pixels[..., :3]
+
+
+def common_bounds(meshes: Iterable[SurfaceMesh]) -> np.ndarray:
+    """Return the bounds (3, 2) in mm of several surfaces together: pictures of equal scale need them."""
+    points = [mesh.points for mesh in meshes]
+    low, high = (
+        np.min([each.min(axis=0) for each in points], axis=0),
+        np.max([each.max(axis=0) for each in points], axis=0),
+    )
+    return np.stack([low, high], axis=1) * MILLIMETRES
+
+
+def surface_oblique(
+    mesh: SurfaceMesh,
+    deformed: bool,
+    limits: tuple[float, float],
+    bounds: np.ndarray,
+    size: tuple[int, int] = (1300, 720),
+) -> np.ndarray:
+    """Return pixels (h, w, 3) of a worn surface seen obliquely.
+
+    limits: um, see `analysis.depth.face_depth`; bounds: (3, 2) mm, what the picture takes in.
+    """
+    plotter = new_plotter(size)
+    add_sample(plotter, mesh, face_depth(mesh, deformed), limits)
+    _look(plotter, OBLIQUE, bounds)
+    return _pixels(plotter)
+
+
+def surface_plan(
+    mesh: SurfaceMesh, deformed: bool, limits: tuple[float, float], longest: int = 900, skirt: bool = True
+) -> tuple[np.ndarray, tuple[float, float, float, float]]:
+    """Return pixels (h, w, 3) of a worn surface from above, and what they cover: x and y from, to (mm).
+
+    longest: pixels; skirt: False cuts the picture at the edge of the sample.
+    """
+    shown = mesh.points if skirt else mesh.points[np.unique(mesh.triangles[worn_faces(mesh)])]
+    low, high = shown[:, :2].min(axis=0) * MILLIMETRES, shown[:, :2].max(axis=0) * MILLIMETRES
+    width, height = np.maximum(np.round((high - low) * longest / (high - low).max()), 1).astype(int)
+    plotter = new_plotter((int(width), int(height)))
+    add_sample(plotter, mesh, face_depth(mesh, deformed), limits)
+    middle, top = (low + high) / 2.0, float(mesh.points[:, 2].max()) * MILLIMETRES
+    far = float((high - low).max())
+    plotter.camera_position = [(*middle, top + far), (*middle, top), (0.0, 1.0, 0.0)]
+    plotter.camera.parallel_scale = (high - low)[1] / 2.0
+    plotter.renderer.ResetCameraClippingRange()
+    return _pixels(plotter), (low[0], high[0], low[1], high[1])
+
+
+def bed_bounds(cuts: Iterable[pd.DataFrame], meshes: Iterable[SurfaceMesh]) -> np.ndarray:
+    """Return the bounds (3, 2) in mm of several beds and their samples together."""
+    places = [cut[["x_m", "y_m", "z_m"]].to_numpy() * MILLIMETRES for cut in cuts]
+    corners = np.concatenate([common_bounds(meshes).T, *places])
+    return np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1)
+
+
+def bed_picture(
+    particles: pd.DataFrame,
+    mesh: SurfaceMesh,
+    limits: tuple[float, float],
+    bounds: np.ndarray,
+    size: tuple[int, int] = (1600, 600),
+) -> np.ndarray:
+    """Return pixels (h, w, 3) of particles (colour: speed within limits, m/s) with the sample that they slide over.
+
+    particles: as from `analysis.bed`, already cut; bounds: (3, 2) mm, what the picture takes in.
+    """
+    cloud = load_pyvista().PolyData(particles[["x_m", "y_m", "z_m"]].to_numpy() * MILLIMETRES)
+    cloud["diameter"] = particles["radius_m"].to_numpy() * 2.0 * MILLIMETRES
+    cloud["speed"] = particles["speed_m_per_s"].to_numpy()
+    ball = load_pyvista().Sphere(radius=0.5, theta_resolution=SPHERE_SIDES, phi_resolution=SPHERE_SIDES)
+    spheres = cloud.glyph(scale="diameter", orient=False, geom=ball)
+    plotter = new_plotter(size)
+    plotter.add_mesh(
+        spheres, scalars="speed", cmap=MAP, clim=limits, show_scalar_bar=False, smooth_shading=True, **_matt()
+    )
+    plotter.add_mesh(_poly(mesh.points, mesh.triangles), color=STEEL, ambient=0.35, diffuse=0.65)
+    plotter.add_mesh(_outline(mesh), color="black", line_width=1.5)
+    _look(plotter, FROM_THE_CUT, bounds)
+    return _pixels(plotter)
+
+
+def trimmed(pictures: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Return pictures (h, w, 3) of equal size without the white margins that all of them have."""
+    drawn = np.any([(pixels < WHITE).any(axis=2) for pixels in pictures], axis=0)
+    if not drawn.any():
+        return list(pictures)
+    lines, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    inside = slice(lines[0], lines[-1] + 1), slice(columns[0], columns[-1] + 1)
+    return [pixels[inside] for pixels in pictures]

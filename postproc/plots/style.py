@@ -1,0 +1,129 @@
+"""One look for all figures: size, fonts, colours, small multiples, the remarks at the bottom."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+
+RESOLUTION = 200  # dots per inch
+WIDTH, LARGEST_HEIGHT = 8.0, 5.0  # inches: 1600 x 1000 pixels, which every report shows whole
+SMALLEST_FONT = 9.0  # pt
+REMARK_LINE = 0.16  # inches, height of a line of remarks
+LABEL_LINE = 0.2  # inches, height of a label of the whole figure
+REMARK_CHARACTERS = 108  # of a line of remarks across the figure
+SMALLEST_PLAIN, LARGEST_PLAIN = 0.01, 1e4  # numbers on an axis without a power of ten
+TOP_ROOM = 0.04  # inches above the topmost text
+MOST_FACET_COLUMNS = 5
+# distinguishable with colour-blindness and in grey (M. Okabe and K. Ito, 2008)
+COLOURS = {"convex": "#0072B2", "plain": "#D55E00"}
+OTHER_COLOUR = "#595959"
+BASE_COLOUR, BUMP_COLOUR = "#56B4E9", "#0072B2"
+MARKERS = {"convex": "o", "plain": "s"}
+MAP = "viridis"
+SKIRT_COLOUR = "#c9c9c9"
+LOOK = {
+    "font.family": "sans-serif",
+    "font.size": 10.0,
+    "axes.titlesize": 10.0,
+    "axes.labelsize": 10.0,
+    "xtick.labelsize": SMALLEST_FONT,
+    "ytick.labelsize": SMALLEST_FONT,
+    "legend.fontsize": SMALLEST_FONT,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e3e3e3",
+    "legend.frameon": False,
+    "figure.dpi": RESOLUTION,
+}
+
+
+def new_figure(remarks: Sequence[str], height: float = 4.0) -> Figure:
+    """Return an empty figure of full width with the study's remarks in small type below the drawing.
+
+    height: inches, at most `LARGEST_HEIGHT`; remarks: phrases, all are printed.
+    """
+    mpl.rcParams.update(LOOK)
+    height = min(height, LARGEST_HEIGHT)
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    lines = textwrap.wrap("; ".join(remarks), REMARK_CHARACTERS)
+    if lines:
+        text = "\n".join(lines)
+        figure.text(0.008, 0.008, text, fontsize=SMALLEST_FONT, color="#555555", va="bottom", gid="remarks")
+    taken = (REMARK_LINE * len(lines) + 0.06 * bool(lines)) / height
+    figure.get_layout_engine().set(rect=(0.0, taken, 1.0, 1.0 - taken - TOP_ROOM / height))
+    return figure
+
+
+def facets(figure: Figure, names: Sequence[str], sharey: bool = False) -> dict[str, Axes]:
+    """Return one axes per name, in a grid that is read line by line; spare places stay empty."""
+    columns = facet_columns(len(names))
+    rows = math.ceil(len(names) / columns)
+    grid = figure.subplots(rows, columns, sharex=True, sharey=sharey, squeeze=False).ravel()
+    for spare in grid[len(names) :]:
+        spare.remove()
+    for axes in grid[max(len(names) - columns, 0) : len(names)]:
+        axes.xaxis.set_tick_params(labelbottom=True)
+    return dict(zip(names, grid, strict=False))
+
+
+def facet_columns(count: int) -> int:
+    """Return the number of columns of a grid of small multiples."""
+    return count if count <= 3 else min(MOST_FACET_COLUMNS, math.ceil(math.sqrt(count * 1.6)))
+
+
+def colour(surface: str) -> str:
+    """Return the colour of a kind of surface."""
+    return COLOURS.get(surface, OTHER_COLOUR)
+
+
+def remarks_of(figure: Figure) -> str:
+    """Return the remarks printed on a figure, unwrapped."""
+    return " ".join(text.get_text().replace("\n", " ") for text in figure.texts if text.get_gid() == "remarks")
+
+
+def label_all(figure: Figure, several: bool, x: str, y: str) -> None:
+    """Label the axes: once for the whole figure when it has several, else on its only one."""
+    if several:
+        engine = figure.get_layout_engine()
+        left, bottom, width, height = engine.get()["rect"]  # above the remarks
+        room = LABEL_LINE / figure.get_figheight()
+        engine.set(rect=(left, bottom + room, width, height - room))
+        figure.supxlabel(x, y=bottom + 0.1 * room, fontsize=10.0)
+        figure.supylabel(y, fontsize=10.0)
+    else:
+        figure.axes[0].set(xlabel=x, ylabel=y)
+
+
+def scaled(unit: str, largest: float) -> tuple[str, FuncFormatter]:
+    """Return a unit with a power of ten where numbers would be hard to read, and what writes ticks in it.
+
+    largest: the largest value on the axis, in the unit itself. What is drawn stays in the unit.
+    """
+    exponent = 3 * math.floor(math.log10(largest) / 3.0 + 1e-9) if largest > 0.0 else 0
+    if SMALLEST_PLAIN <= largest < LARGEST_PLAIN or largest <= 0.0:
+        exponent = 0
+    formatter = FuncFormatter(lambda value, _: f"{value / 10.0**exponent:.4g}")
+    return (f"$10^{{{exponent}}}$ {unit}" if exponent else unit), formatter
+
+
+def save(figure: Figure, path: str | Path) -> None:
+    """Write a figure as PNG."""
+    figure.savefig(path, dpi=RESOLUTION)
+
+
+def picture(axes: Axes, pixels: np.ndarray, extent: tuple[float, float, float, float] | None = None) -> None:
+    """Show a rendered picture (h, w, 3) on axes without frame; with an extent (axes units), with its axes."""
+    axes.imshow(pixels, extent=extent, interpolation="antialiased", aspect="equal")
+    axes.grid(False)
+    if extent is None:
+        axes.set_axis_off()

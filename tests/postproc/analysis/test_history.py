@@ -1,0 +1,70 @@
+"""Wear and forces along the travel."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.analysis.history import ROWS_PER_RUN, force_history, force_summary, wear_history
+
+RELATIVE = 1e-12  # rounding of means over a thousand rows
+
+
+@pytest.fixture
+def design(tmp_path):
+    """A design of one row, whose name is a number, with its plain twin."""
+    path = tmp_path / "design.csv"
+    path.write_text("run,row,surface,height_mm\n1_convex,1,convex,6\n1_plain,1,plain,6\n")
+    return path
+
+
+def write_forces(folder, cycle, travel, normal):
+    """forces.csv of a cycle with a constant drag of 2 N."""
+    where = folder / f"cycle_{cycle:03d}"
+    where.mkdir(parents=True)
+    table = {"time_s": travel, "travel_m": travel, "force_x_N": 0.0, "force_y_N": 2.0, "force_z_N": -normal}
+    pd.DataFrame(table).to_csv(where / "forces.csv", index=False)
+
+
+def test_wear_starts_from_zero_and_keeps_units(design, tmp_path):
+    """Each run's curve begins at no travel and no wear; m and m3 become mm and mm3; names stay text."""
+    wear = pd.DataFrame(
+        {
+            "cycle": [1, 2],
+            "travel_m": [0.01, 0.02],
+            "total_archard_volume_m3": [1e-9, 3e-9],
+            "total_applied_volume_m3": [1e-9, 2e-9],
+            "carried_volume_m3": [0.0, 1e-9],
+        }
+    )
+    wear.to_csv(tmp_path / "wear.csv", index=False)
+    history = wear_history(design, [tmp_path / "wear.csv"] * 2)
+    run = history[history["run"] == "1_convex"]
+    np.testing.assert_allclose(run["travel_mm"], [0.0, 10.0, 20.0])
+    np.testing.assert_allclose(run["archard_volume_mm3"], [0.0, 1.0, 3.0])
+    np.testing.assert_allclose(run["archard_volume_mm3"], run["applied_volume_mm3"] + run["carried_volume_mm3"])
+    assert set(history["row"]) == {"1"}
+
+
+def test_forces_keep_their_mean_and_count_down_as_positive(design, tmp_path):
+    """Bunching rows keeps the mean force; pressure on the sample (force_z < 0) is a positive normal force."""
+    rows = 4 * ROWS_PER_RUN
+    normal = np.random.default_rng(3).normal(5.0, 1.0, rows)
+    travel = np.linspace(0.0, 1.0, rows)
+    for run in ("1_convex", "1_plain"):
+        write_forces(tmp_path / run, 1, travel[: rows // 2], normal[: rows // 2])
+        write_forces(tmp_path / run, 2, travel[rows // 2 :], normal[rows // 2 :])
+    table = force_history(design, [tmp_path / "1_convex", tmp_path / "1_plain"])
+    run = table[table["run"] == "1_convex"]
+    assert len(run) == ROWS_PER_RUN
+    assert run["normal_force_N"].mean() == pytest.approx(normal.mean(), rel=RELATIVE)
+    assert run["travel_mm"].is_monotonic_increasing
+    assert (table["drag_force_N"] == 2.0).all()
+    summary = force_summary(table)
+    assert summary["mean_normal_force_N"].to_numpy() == pytest.approx(normal.mean(), rel=RELATIVE)
+    assert (summary["low_normal_force_N"] < summary["high_normal_force_N"]).all()
+
+
+def test_missing_forces_are_named(design, tmp_path):
+    """A run without forces.csv is named in the message."""
+    with pytest.raises(FileNotFoundError, match="nothing"):
+        force_history(design, [tmp_path / "nothing"] * 2)

@@ -1,0 +1,130 @@
+"""Rendered pictures: right place, right colour, right scale. One sample is rendered for all tests."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib import colormaps
+
+from meshes.sample import sliding_sample
+from postproc.analysis.depth import depth_table
+from postproc.mesh import SurfaceMesh
+from postproc.plots import pictures
+from postproc.plots.page import surfaces_page
+from postproc.plots.scene import surface_plan, trimmed
+from postproc.plots.style import MAP, remarks_of
+
+REMARKS = ["particles at scale 4", "sample 40 x 40 mm of 200 x 200 mm"]
+WIDTH = 0.04  # m
+DEPTH = 2e-6  # m
+COLOUR_TOLERANCE = 0.12  # -, of full scale: light dims the colours of the map a little
+PIXEL = 1.5  # pixels: edges fall within one and are drawn with a line
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    """A plain sample with skirt, worn by DEPTH for x > 0 and not at all for x < 0."""
+    sample = sliding_sample(WIDTH, WIDTH, 0.004, None, 3e-4, np.radians(3.0))
+    thickness = np.where(sample.points[:, 0] > 1e-6, DEPTH, 0.0)
+    point_data = {"removed_thickness_m": thickness, "carried_volume_m3": np.zeros(len(sample.points))}
+    cells = {**sample.cell_data, "worn_volume_m3": np.zeros(len(sample.triangles))}
+    return SurfaceMesh(sample.points, sample.triangles, cells, point_data)
+
+
+@pytest.fixture(scope="module")
+def plan(mesh):
+    """Pixels of the sample from above and what they cover (mm)."""
+    return surface_plan(mesh, True, (0.0, DEPTH * 1e6), longest=300)
+
+
+def colour_at(plan, x, y):
+    """Colour (3,) from 0 to 1 at a place in mm."""
+    pixels, (left, right, bottom, top) = plan
+    column = int((x - left) / (right - left) * pixels.shape[1])
+    line = int((top - y) / (top - bottom) * pixels.shape[0])
+    return pixels[line, column] / 255.0
+
+
+def test_colours_follow_depth(plan):
+    """Worn faces have the top colour of the map, others its bottom colour, the skirt is grey."""
+    np.testing.assert_allclose(colour_at(plan, 12.0, 5.0), colormaps[MAP](1.0)[:3], atol=COLOUR_TOLERANCE)
+    np.testing.assert_allclose(colour_at(plan, -12.0, 5.0), colormaps[MAP](0.0)[:3], atol=COLOUR_TOLERANCE)
+    skirt = colour_at(plan, 0.0, 23.0)
+    assert np.ptp(skirt) < COLOUR_TOLERANCE
+
+
+def test_axes_of_the_plan_fit_the_picture(plan, mesh):
+    """What the axes say the pixels cover is the mesh; the sample's edge lies where its width says."""
+    pixels, extent = plan
+    np.testing.assert_allclose(extent[:2], [mesh.points[:, 0].min() * 1e3, mesh.points[:, 0].max() * 1e3])
+    line = pixels[pixels.shape[0] // 4].astype(float)
+    coloured = np.flatnonzero(np.ptp(line, axis=1) > 40.0)
+    per_pixel = (extent[1] - extent[0]) / pixels.shape[1]
+    assert abs((coloured[-1] - coloured[0] + 1) * per_pixel - WIDTH * 1e3) <= 2.0 * PIXEL * per_pixel
+
+
+def test_figure_of_worn_surfaces(mesh):
+    """The figure shows each run obliquely and from above, mm on the axes, µm on the colour bar, and the remarks."""
+    runs = pd.DataFrame({"run": ["R9_convex", "R9_plain"], "row": "R9", "surface": ["convex", "plain"]})
+    meshes = dict.fromkeys(runs["run"], mesh)
+    depths = depth_table(meshes, True)
+    limits = pictures.colour_limits(depths)
+    assert limits == (0.0, pytest.approx(DEPTH * 1e6))
+    figure = pictures.worn_surface(meshes, runs, True, depths, "Removed thickness", REMARKS)
+    *_, bar = figure.axes
+    assert bar.get_ylabel() == "Removed thickness (µm)"
+    assert bar.get_ylim() == pytest.approx(limits)
+    assert [axes.get_title() for axes in figure.axes[:2]] == ["R9 convex", "R9 plain"]
+    assert all("(mm)" in axes.get_xlabel() for axes in figure.axes[2:4])
+    assert remarks_of(figure) == "; ".join(REMARKS)
+
+
+def test_many_rows_have_a_scale_each(mesh):
+    """Of several design rows each has its own colour scale, written above it; pictures end at the sample's edge."""
+    shallow = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, dict(mesh.point_data))
+    shallow.point_data["removed_thickness_m"] = 0.5 * mesh.point_data["removed_thickness_m"]
+    runs = pd.DataFrame({"run": ["A_plain", "B_plain"], "row": ["A", "B"], "surface": "plain"})
+    meshes = {"A_plain": mesh, "B_plain": shallow}
+    figure = pictures.worn_surface(meshes, runs, True, depth_table(meshes, True), "Removed thickness", REMARKS)
+    assert [axes.get_title() for axes in figure.axes[:2]] == ["A: 2", "B: 1"]
+    assert "(µm)" in figure.axes[-1].get_ylabel()
+    first, second = (axes.images[0].get_array() for axes in figure.axes[:2])
+    np.testing.assert_array_equal(first, second)
+    assert np.ptp(first[first.shape[0] // 2, -3].astype(float)) > 40.0
+
+
+def test_figure_of_the_bed(mesh):
+    """The bed is coloured by speed in m/s; its table holds the particles drawn, in mm."""
+    random = np.random.default_rng(2)
+    cut = pd.DataFrame(random.uniform(-0.02, 0.0, (20, 3)), columns=["x_m", "y_m", "z_m"])
+    cut = cut.assign(id=range(20), radius_m=0.002, speed_m_per_s=np.linspace(0.5, 1.0, 20))
+    figure = pictures.bed({"R9_convex": cut}, {"R9_convex": mesh}, REMARKS)
+    assert "(m/s)" in figure.axes[-1].get_ylabel()
+    assert remarks_of(figure) == "; ".join(REMARKS)
+    table = pictures.bed_table({"R9_convex": cut})
+    np.testing.assert_allclose(table["x_mm"], cut["x_m"] * 1e3)
+    assert table["speed_m_per_s"].tolist() == cut["speed_m_per_s"].tolist()
+
+
+def test_interactive_page_needs_no_network(mesh, tmp_path):
+    """The page loads nothing from elsewhere and carries its colour scale and remarks in words."""
+    path = tmp_path / "page.html"
+    surfaces_page(path, {"R9_convex": mesh}, True, (0.0, 2.0), "Removed thickness", REMARKS)
+    page = path.read_text()
+    assert re.findall(r"""(?:src|href)\s*=\s*["']?https?:""", page) == []
+    assert "favicon-" not in page
+    assert "Removed thickness (µm)" in page
+    assert "; ".join(REMARKS) in page
+
+
+def test_margins_are_cut_off():
+    """Only margins that all pictures have go, so that their scales stay equal; white pictures stay as they are."""
+    white = np.full((10, 12, 3), 255, np.uint8)
+    assert trimmed([white])[0].shape == (10, 12, 3)
+    first, second = white.copy(), white.copy()
+    first[3, 4], second[6, 9] = 0, 10
+    cuts = trimmed([first, second])
+    assert [cut.shape for cut in cuts] == [(4, 6, 3)] * 2
+    assert (cuts[0][0, 0] == 0).all()
+    assert (cuts[1][3, 5] == 10).all()

@@ -1,0 +1,261 @@
+"""The page of a study: complete, self-contained, its numbers those of the tables."""
+
+import base64
+import io
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.analysis.history import wear_history
+from postproc.analysis.summary import summary_table
+from workflows.design import load_study
+from workflows.figures import figure_file, figures_of, page_parameters
+from workflows.page_text import name_and_unit, setting_rows
+from workflows.study_report import TABLE_OF, UNDEFINED, caption, commit, number, write_page
+
+CYCLES = 2
+RUN_WALL, RUN_SOLVER, BED_WALL, BED_SOLVER, OTHER_WALL = 100.0, 90.0, 50.0, 48.0, 2.0  # s, of each job
+RELATIVE = 1e-9  # numbers pass through CSV text
+PICTURE = b"\x89PNG picture of "
+INNER_PAGE = "<!doctype html><html><body><script>const text = \"a < b && 'c'\";</script></body></html>"
+
+
+def wear_table(volume):
+    """wear.csv of a run that wears `volume` m3 in each cycle and applies half of it."""
+    cycle = np.arange(1, CYCLES + 1)
+    return pd.DataFrame(
+        {
+            "cycle": cycle,
+            "time_s": 0.04 * cycle,
+            "travel_m": 0.04 * cycle,
+            "sliding_work_J": 1.0,
+            "archard_volume_m3": volume,
+            "applied_volume_m3": 0.5 * volume,
+            "carried_volume_m3": 0.5 * volume * cycle,
+            "total_archard_volume_m3": volume * cycle,
+            "total_applied_volume_m3": 0.5 * volume * cycle,
+            "base_archard_volume_m3": 0.75 * volume,
+            "bump_archard_volume_m3": 0.25 * volume,
+            "finnie_volume_m3": 0.01 * volume,
+            "mean_normal_force_N": 5.0,
+            "largest_depth_m": 1e-6,
+            "smallest_angle_deg": 30.0,
+            "balance_error": 1e-15,
+        }
+    )
+
+
+def write_results(folder, study):
+    """What the jobs of a study leave, as far as its page reads it. Convex runs wear 0.8 of plain ones."""
+    (folder / "figures").mkdir(parents=True)
+    (folder / "logs").mkdir()
+    pd.DataFrame(study.design_table()).to_csv(folder / "design.csv", index=False)
+    for run in study.runs:
+        first = folder / run.name / "cycle_001"
+        first.mkdir(parents=True)
+        wear_table(0.8e-9 if run.surface == "convex" else 1e-9).to_csv(folder / run.name / "wear.csv", index=False)
+        cost = {"cycle": [0, 1], "solver_s": RUN_SOLVER / 2, "other_s": 1.0, "steps": 1000, "particles": 500}
+        pd.DataFrame(cost).to_csv(folder / run.name / "cost.csv", index=False)
+        (first / "deck.in").write_text("# a deck with <angles> & more\n")
+        (first / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled)\n")
+        (first / "state.json").write_text(json.dumps({"solver_warnings": {"something odd": 2}}))
+    files = [folder / run.name / "wear.csv" for run in study.runs]
+    summary_table(folder / "design.csv", files).to_csv(folder / "summary.csv", index=False)
+    write_figures(folder, study, files)
+    write_costs(folder, study)
+
+
+def write_figures(folder, study, wear_files):
+    """Figures as marked bytes, tables of the two figures that the page reads."""
+    for name in figures_of(study):
+        path = folder / "figures" / figure_file(name)
+        path.write_bytes(INNER_PAGE.encode() if path.suffix == ".html" else PICTURE + name.encode())
+        (folder / "figures" / f"{name}.csv").write_text(f"name\n{name}\n")
+    faces = [{"run": run.name, "depth_um": 1.0, "area_mm2": 2.0} for run in study.runs]
+    pd.DataFrame(faces).to_csv(folder / "figures" / "worn_surface.csv", index=False)
+    history = wear_history(folder / "design.csv", wear_files)
+    history.to_csv(folder / "figures" / "wear_against_travel.csv", index=False)
+
+
+def write_costs(folder, study):
+    """Benchmark files of every job, and the cost of the beds."""
+    for bed in study.beds:
+        (folder / "beds" / bed).mkdir(parents=True)
+        (folder / "beds" / bed / "cost.csv").write_text(f"solver_s,steps,particles\n{BED_SOLVER},1000,500\n")
+    for job in page_parameters(study)["jobs"]:
+        wall = {"worn": RUN_WALL, "settled": BED_WALL}.get(job.split("_")[0], OTHER_WALL)
+        wall = OTHER_WALL if job.startswith("worn_surface") else wall
+        (folder / "logs" / f"{job}.benchmark.tsv").write_text(f"s\th:m:s\n{wall}\t0:00:01\n")
+
+
+@pytest.fixture
+def study(config):
+    """A study of two design rows, each convex and plain."""
+    return load_study("small", config.root)
+
+
+@pytest.fixture
+def page(study, tmp_path):
+    """The text of its page."""
+    folder = tmp_path / "results" / study.name
+    write_results(folder, study)
+    write_page(folder / "report.html", page_parameters(study))
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def embedded(page, name):
+    """The table behind a link for download."""
+    address = re.search(rf'download="{name}" href="data:text/csv;base64,([^"]+)"', page).group(1)
+    return pd.read_csv(io.BytesIO(base64.b64decode(address)))
+
+
+def test_each_figure_stands_once_with_its_number(page, study):
+    """Figures are numbered in order, each with its own picture or page, caption and table."""
+    names = figures_of(study)
+    assert re.findall(r'<figure id="(\w+)"', page) == names
+    assert re.findall(r"<b>Figure (\d+)\.", page) == [str(k + 1) for k in range(len(names))]
+    for name in names:
+        assert caption(name)[0].replace("'", "&#39;") in page
+        picture = base64.b64encode(PICTURE + name.encode()).decode()
+        assert page.count(f'src="data:image/png;base64,{picture}"') == (figure_file(name).endswith(".png"))
+        assert page.count(f'href="#{name}"') == 1
+
+
+def test_page_needs_nothing_else(page):
+    """No address to load from leaves the page: everything is data, an anchor or a frame's own text."""
+    loads = re.findall(r"""(?:src|href|action|poster)\s*=\s*["']([^"']*)["']""", page)
+    assert loads
+    assert [address for address in loads if not address.startswith(("data:", "#"))] == []
+    assert re.findall(r"@import|url\(", page) == []
+
+
+def test_inner_page_survives_embedding(page):
+    """The interactive page is escaped into its frame and comes out as it went in."""
+    import html
+
+    frames = re.findall(r'srcdoc="([^"]*)"', page)
+    assert [html.unescape(frame) for frame in frames] == [INNER_PAGE]
+
+
+def test_tables_round_trip(page, study):
+    """The tables behind the links are those on disk."""
+    for name in figures_of(study):
+        table = TABLE_OF.get(name, name)
+        found = embedded(page, f"{study.name}_{table}.csv")
+        if table not in ("worn_surface", "wear_against_travel"):
+            assert found["name"].tolist() == [table]
+
+
+def test_key_numbers(page, study):
+    """Relative wear, wear per metre, share of the bumps and carried share follow from what the runs wear."""
+    results = embedded(page, f"{study.name}_key_numbers.csv").set_index("run")
+    convex = results.loc["R9_convex"]
+    assert convex["wear_over_plain"] == pytest.approx(0.8, rel=RELATIVE)
+    assert convex["archard_volume_per_metre_mm3_per_m"] == pytest.approx(CYCLES * 0.8 / (CYCLES * 0.04), rel=RELATIVE)
+    assert convex["bump_share_percent"] == pytest.approx(25.0, rel=RELATIVE)
+    assert convex["carried_share_percent"] == pytest.approx(50.0, rel=RELATIVE)
+    assert convex["lowest_cycle_ratio"] == pytest.approx(0.8, rel=RELATIVE)
+    assert results.loc["R9_plain", "wear_over_plain"] == 1.0
+
+
+def test_real_volume_is_without_acceleration(config, tmp_path):
+    """A study accelerated 1e4 times prints volumes per metre as simulated and divided by 1e4."""
+    study = load_study("small", config.root, {"wear": {"acceleration": 1e4}})
+    write_results(tmp_path / "small", study)
+    write_page(tmp_path / "small" / "report.html", page_parameters(study))
+    page = (tmp_path / "small" / "report.html").read_text(encoding="utf-8")
+    results = embedded(page, "small_key_numbers.csv")
+    ratio = results["archard_volume_per_metre_mm3_per_m"] / results["real_volume_per_metre_mm3_per_m"]
+    np.testing.assert_allclose(ratio, 1e4, rtol=RELATIVE)
+    assert "accelerated 10000 times" in page
+
+
+def test_share_outside_the_solver(page, study):
+    """The number printed is (sum of wall - sum of solver) / sum of wall over all jobs."""
+    runs, beds = len(study.runs), len(study.beds)
+    others = len(page_parameters(study)["jobs"]) - runs - beds
+    wall = runs * RUN_WALL + beds * BED_WALL + others * OTHER_WALL
+    share = (wall - runs * RUN_SOLVER - beds * BED_SOLVER) / wall
+    assert f"<b>{100.0 * share:.1f} %</b>" in page
+    jobs = embedded(page, f"{study.name}_cost.csv")
+    assert len(jobs) == runs + beds + others
+    assert jobs["wall_s"].sum() == pytest.approx(wall, rel=RELATIVE)
+
+
+def test_provenance_is_there_and_escaped(page, study):
+    """Solver version, deck, every run's parameters and the solver's warnings are printed, nothing as markup."""
+    assert "LIGGGHTS-PUBLIC 3.8.0" in page
+    assert "a deck with &lt;angles&gt; &amp; more" in page
+    assert all(f"All parameters of {run.name}" in page for run in study.runs)
+    assert f">{CYCLES * len(study.runs)} times<" in page
+    for remark in page_parameters(study)["remarks"]:
+        assert remark in page
+
+
+def test_single_row_has_no_figure_of_rows(config):
+    """A figure that compares design rows is left out where there is one row, and where nothing is plain."""
+    assert figures_of(load_study("small", config.root))[0] == "relative_wear"
+    config.edit("studies/small.yaml", "surfaces: [convex, plain]", "surfaces: [convex]")
+    assert "relative_wear" not in figures_of(load_study("small", config.root))
+    config.edit("studies/small.yaml", "surfaces: [convex]", "surfaces: [convex, plain]")
+    config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30\n", "")
+    assert "relative_wear" not in figures_of(load_study("small", config.root))
+
+
+def test_captions_have_titles(tmp_path):
+    """A caption without an underlined title is refused with its name."""
+    (tmp_path / "odd.rst").write_text("Title\ntext\n")
+    with pytest.raises(ValueError, match=r"odd\.rst"):
+        caption("odd", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (0.5, "0.5"),
+        (1234567, "1\u202f234\u202f567"),
+        (20220317, "20\u202f220\u202f317"),
+        (6.3e-13, "6.300e-13"),
+        (0, "0"),
+        (True, "yes"),
+        (None, UNDEFINED),
+        (float("nan"), UNDEFINED),
+        ("along_travel", "along travel"),
+    ],
+)
+def test_numbers_for_people(value, shown):
+    """Whole numbers keep all digits, others four; what is not there is a dash."""
+    assert number(value) == shown
+
+
+@pytest.mark.parametrize(
+    ("key", "name", "unit"),
+    [
+        ("width_mm", "width", "mm"),
+        ("wear_coefficient_per_pa", "wear coefficient", "1/Pa"),
+        ("velocity_m_per_s", "velocity", "m/s"),
+        ("skirt_slope_deg", "skirt slope", "°"),
+        ("sampling_interval_steps", "sampling interval steps", "steps"),
+        ("law", "law", ""),
+    ],
+)
+def test_unit_follows_the_suffix(key, name, unit):
+    """The name and unit of a setting are those of its key."""
+    assert name_and_unit(key) == (name, unit)
+
+
+def test_settings_tell_what_differs_from_paper():
+    """The value at paper fidelity is shown only where it is another one."""
+    rows = setting_rows(
+        {"scale": 2, "bed": {"width_mm": 1, "seed": 3}}, {"scale": 1, "bed": {"width_mm": 9, "seed": 3}}
+    )
+    assert rows["study"][0]["paper"] == 1
+    assert [row["paper"] for row in rows["bed"]] == [9, None]
+
+
+def test_commit_is_not_needed(tmp_path):
+    """Outside a repository the page says that the commit is not known."""
+    assert commit(tmp_path) == "commit not known"

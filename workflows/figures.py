@@ -1,0 +1,81 @@
+"""Which figures a study has, in the order of its page, and what its page is told about it.
+
+A figure is a function in postproc/plots, a rule in report.smk, a caption in workflows/report, and its line
+here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from workflows.design import Study, figure_remarks
+
+INTERACTIVE = ("worn_surface_3d",)  # pages, not pictures; their table is that of the picture
+ALWAYS = (
+    "worn_surface",
+    "worn_surface_3d",
+    "wear_against_travel",
+    "wear_split",
+    "depth_distribution",
+    "bed",
+    "forces",
+    "wear_law_comparison",
+)
+COMPARING_ROWS = ("relative_wear",)  # of studies with more than one design row and a plain twin
+ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
+
+
+def figures_of(study: Study) -> list[str]:
+    """Return the names of a study's figures in the order of its page."""
+    several = len(study.design_rows) > 1 and any(run.surface == "plain" for run in study.runs)
+    return [*(COMPARING_ROWS if several else ()), *ALWAYS]
+
+
+def figure_file(name: str) -> str:
+    """Return the file name of a figure."""
+    return f"{name}.html" if name in INTERACTIVE else f"{name}.png"
+
+
+def figure_files(study: Study) -> list[str]:
+    """Return the paths of all figures of a study."""
+    return [f"results/{study.name}/figures/{figure_file(name)}" for name in figures_of(study)]
+
+
+def is_deformed(study: Study) -> bool:
+    """Return whether wear is applied to the samples of a study, which then lose thickness."""
+    return bool(study.settings["wear"]["deform"])
+
+
+def job_names(study: Study) -> list[str]:
+    """Return the names of all jobs behind a study's page, as their benchmark files are named."""
+    return [
+        "design_table",
+        "summary",
+        *(f"settled_bed_{bed}" for bed in study.beds),
+        *(f"{rule}_{run.name}" for run in study.runs for rule in ("surface_mesh", "worn_run")),
+        *figures_of(study),
+    ]
+
+
+def page_parameters(study: Study) -> dict[str, Any]:
+    """Return everything that a study's page says about its configuration, JSON-able."""
+    return {
+        "name": study.name,
+        "title": study.title,
+        "question": study.question,
+        "fidelity": study.fidelity,
+        "settings": study.settings,
+        "paper_settings": study.paper_settings,
+        "design_rows": list(study.design_rows),
+        "remarks": figure_remarks(study),
+        "figures": figures_of(study),
+        "jobs": job_names(study),
+        "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},
+        "parameters": {run.name: run.parameters for run in study.runs},
+        "beds": list(study.beds),
+        "bed_of": {run.name: study.bed_of(run.name) for run in study.runs},
+    }
+
+
+def equivalent_size_ratios(study: Study) -> dict[str, float | None]:
+    """Return alpha_ER by run; None for a plain one."""
+    return {run.name: run.parameters["derived"]["equivalent_size_ratio"] for run in study.runs}
