@@ -14,7 +14,7 @@ import numpy as np
 from meshes.bump import bump_element_size, bump_shell
 from meshes.pattern import ConvexPattern, bump_centres, bump_rows, pattern_faults
 from meshes.plane import PlaneMesh, mesh_plane, rectangle_rim
-from postproc.mesh import SurfaceMesh, smallest_angles
+from postproc.mesh import SurfaceMesh, nonmanifold_edges, smallest_angles
 
 SKIRT_DEPTH = 0.2  # of the height above the floor: how far the skirt reaches below the floor, so that no slit opens
 LARGEST_SKIRT_SLOPE = math.pi / 4  # a steeper ramp is a wall and would plough the bed
@@ -95,7 +95,9 @@ def _rim_element_size(width: float, length: float, element_size: float, holes: n
 
 
 def _checked(mesh: SurfaceMesh, element_size: float) -> SurfaceMesh:
-    """The mesh, if no triangle is more acute than promised; ValueError otherwise."""
+    """The mesh, if it is conforming and no triangle is more acute than promised; ValueError otherwise."""
+    if len(broken := nonmanifold_edges(mesh.triangles)):
+        raise ValueError(f"the surface has {len(broken)} edges of more than two triangles, allowed is none")
     angle = smallest_angles(mesh.points, mesh.triangles).min()
     if angle >= SMALLEST_ANGLE:
         return mesh

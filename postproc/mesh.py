@@ -224,11 +224,6 @@ def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray
     _write_atomically(path, write)
 
 
-def count_stl_triangles(path: str | os.PathLike) -> int:
-    """Number of facets in an ASCII STL. Raises ValueError when the file is cut short."""
-    return len(read_stl(path))
-
-
 def read_stl(path: str | os.PathLike) -> np.ndarray:
     """Corners of the facets of an ASCII STL, (m, 3, 3) m. Raises ValueError when cut short or not ASCII."""
     content = Path(path).read_bytes()

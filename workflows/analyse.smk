@@ -4,12 +4,12 @@
 rule design_table:
     output:
         "results/{study}/design.csv",
-    params:
-        rows=lambda wildcards: study_of(wildcards).design_table(),
     log:
         "results/{study}/logs/design_table.log",
     benchmark:
         "results/{study}/logs/design_table.benchmark.tsv"
+    params:
+        rows=lambda wildcards: study_of(wildcards).design_table(),
     message:
         "Design table of {wildcards.study}"
     script:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from postproc.mesh import read_surface, write_surface
-from postproc.readers.solver_log import thermo_table, warnings
+from postproc.readers.solver_log import solver_version, thermo_table, warnings
 from workflows import deck, state
 from workflows.accounting import LEDGER, TOUCHING, account_and_wear, worn_surface
 from workflows.chain import (
@@ -76,7 +76,12 @@ def run_cycle(chain: Chain, cycle: int, inputs: str, progress: Progress) -> None
         solver_seconds = simulate(chain, cycle, folder, len(surface.triangles), progress)
         record = {"cost": {}} if cycle == 0 else account_and_wear(chain, cycle, folder, surface)
         record["cost"] = cost(chain, cycle, folder, solver_seconds, time.monotonic() - started) | record["cost"]
-        record["solver_warnings"] = warnings(folder / SCREEN)
+        record |= {
+            "bed_travelled_m": deck.travelled(chain.parameters, cycle + 1),
+            "seed": chain.bed["seed"],
+            "solver": solver_version(folder / SCREEN),
+            "solver_warnings": warnings(folder / SCREEN),
+        }
         if inputs_digest(chain) != inputs:
             raise state.StateError(
                 f"{chain.name}: its inputs changed while {cycle_title(chain, cycle)} ran; start again."

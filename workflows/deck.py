@@ -15,6 +15,7 @@ from typing import Any
 import jinja2
 import jinja2.meta
 
+from postproc.readers.contacts import CONTACT_COLUMNS
 from postproc.wear.caps import GRAVITY
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
@@ -30,7 +31,6 @@ END_WALL_CLEARANCE = 1e-6  # m, between the end walls' upper edge and the domain
 DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
 REPORTS_PER_RUN = 50  # lines of progress per run command
 SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
-CONTACT_COLUMNS = 18  # of compute wall/gran/local with pos vel id force
 ID_COLUMNS = range(13, 16)  # of these, counted from 1: mesh, triangle, particle
 STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, before the solver's check stops the run
 

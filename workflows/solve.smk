@@ -5,14 +5,14 @@ rule settled_bed:
     output:
         restart="results/{study}/beds/{bed}/bed.restart",
         cost="results/{study}/beds/{bed}/cost.csv",
-    params:
-        bed=bed_parameters,
-        templates=template_sources("settled_bed"),
     log:
         "results/{study}/logs/settled_bed_{bed}.log",
     benchmark:
         "results/{study}/logs/settled_bed_{bed}.benchmark.tsv"
     threads: lambda wildcards: study_of(wildcards).settings["solver"]["ranks"]
+    params:
+        bed=bed_parameters,
+        templates=template_sources("settled_bed"),
     message:
         "Filling and settling {wildcards.bed}"
     script:
@@ -27,15 +27,15 @@ rule worn_run:
         wear="results/{study}/{run}/wear.csv",
         cost="results/{study}/{run}/cost.csv",
         surface="results/{study}/{run}/worn_surface.vtu",
-    params:
-        run=run_parameters,
-        bed=bed_parameters_of_run,
-        templates=[template_sources("lowered_bed"), template_sources("sliding_sample")],
     log:
         "results/{study}/logs/worn_run_{run}.log",
     benchmark:
         "results/{study}/logs/worn_run_{run}.benchmark.tsv"
     threads: lambda wildcards: study_of(wildcards).settings["solver"]["ranks"]
+    params:
+        run=run_parameters,
+        bed=bed_parameters_of_run,
+        templates=[template_sources("lowered_bed"), template_sources("sliding_sample")],
     message:
         "Wear cycles of {wildcards.run}"
     script:
@@ -45,11 +45,11 @@ rule worn_run:
 rule bed_deck:
     output:
         "results/{study}/decks/beds/{bed}/deck.in",
+    log:
+        "results/{study}/logs/bed_deck_{bed}.log",
     params:
         bed=bed_parameters,
         templates=template_sources("settled_bed"),
-    log:
-        "results/{study}/logs/bed_deck_{bed}.log",
     message:
         "Deck of {wildcards.bed}"
     script:
@@ -61,13 +61,13 @@ rule run_decks:
         "results/{study}/{run}/surface.vtu",
     output:
         "results/{study}/decks/{run}/cycle_000/deck.in",
+    log:
+        "results/{study}/logs/run_decks_{run}.log",
     params:
         run=run_parameters,
         bed=bed_parameters_of_run,
         templates=[template_sources("lowered_bed"), template_sources("sliding_sample")],
         bed_restart=lambda wildcards: f"results/{wildcards.study}/decks/beds/{study_of(wildcards).bed_of(wildcards.run)}/bed.restart",
-    log:
-        "results/{study}/logs/run_decks_{run}.log",
     message:
         "Decks of {wildcards.run}"
     script:

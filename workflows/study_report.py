@@ -24,6 +24,7 @@ from postproc.analysis.comparison import cycle_ratios, read_history, read_summar
 from postproc.analysis.cost import BENCHMARK_SUFFIX, benchmark_seconds, job_costs, outside_solver_share
 from postproc.analysis.depth import depth_summary
 from postproc.analysis.display import in_display_units
+from postproc.readers.solver_log import solver_version
 from workflows.figures import INTERACTIVE, ROWS_IN_DETAIL, figure_file
 from workflows.page_text import decks_of, name_and_unit, setting_rows, simplifications
 
@@ -47,7 +48,6 @@ PACKAGES = (
     "matplotlib",
     "snakemake",
 )
-VERSION_LINE = re.compile(r"^LIGGGHTS \((.*)\)", re.MULTILINE)
 
 
 def write_page(path: Path, study: Mapping[str, Any]) -> None:
@@ -280,8 +280,8 @@ def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
 def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
     """Return the versions of everything that made the results."""
     log = next((folder / run / "cycle_001" / "log.liggghts" for run in study["runs"]), None)
-    said = VERSION_LINE.search(log.read_text(errors="replace")) if log and log.is_file() else None
-    found = {"LIGGGHTS": said.group(1).removeprefix("Version ") if said else "not reported"}
+    said = solver_version(log) if log and log.is_file() else None
+    found = {"LIGGGHTS": said.removeprefix("Version ") if said else "not reported"}
     found["this project"] = commit()
     found["Python"] = f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
     for name in PACKAGES:

@@ -11,7 +11,6 @@ at zero.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -80,17 +79,3 @@ def read_mesh_loads(path: Path | str, n_triangles: int | None = None) -> dict[st
         )
     absent = np.full(triangle.size, np.nan)
     return {"triangle": expected, **{new: fields.get(old, absent)[order] for old, new in _NAMES.items()}}
-
-
-def mean_mesh_loads(paths: Sequence[Path | str], n_triangles: int | None = None) -> dict[str, np.ndarray]:
-    """Mean stresses over several dumps of one mesh, and its largest (latest) Finnie wear."""
-    loads = [read_mesh_loads(path, n_triangles) for path in paths]
-    if not loads:
-        raise MeshLoadsError("found no mesh/vtk dumps, allowed is one or more.")
-    stack = {name: np.stack([load[name] for load in loads]) for name in loads[0]}
-    return {
-        "triangle": loads[0]["triangle"],
-        "normal_stress_Pa": stack["normal_stress_Pa"].mean(axis=0),
-        "shear_stress_Pa": stack["shear_stress_Pa"].mean(axis=0),
-        "finnie_wear": stack["finnie_wear"].max(axis=0),
-    }

@@ -128,6 +128,13 @@ def failure(source: Path | str) -> str | None:
     return f"LIGGGHTS stopped: {said}" if cause is None else f"LIGGGHTS stopped: {said} ({cause})"
 
 
+def solver_version(path: Path | str) -> str | None:
+    """What LIGGGHTS calls itself in the first lines of its log or screen file, with version and build; None without."""
+    with open(path, encoding="utf-8", errors="replace") as stream:
+        found = re.search(r"^LIGGGHTS \((.*)\)$", stream.read(TAIL_BYTES), re.MULTILINE)
+    return found[1] if found else None
+
+
 def warnings(source: Path | str) -> dict[str, int]:
     """Distinct warnings of a screen (or log) file and how often each was given; their numbers become #."""
     text = source.read_text("utf-8", "replace") if isinstance(source, Path) else source

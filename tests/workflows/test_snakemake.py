@@ -114,6 +114,27 @@ def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
     assert not (folder / "results").exists()
 
 
+def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
+    """A study that is not asked for is left out with its sentence; the one asked for is planned."""
+    folder = workspace(tmp_path)
+    (folder / "config/studies/broken.yaml").write_text(TINY.replace("width_mm: 40", "width_cm: 4"))
+    output = finish(snakemake(folder, "tiny", "--dry-run"))
+    assert "Study broken is left out: config/studies/broken.yaml, line 8" in output
+
+
+@pytest.mark.solver
+def test_an_edited_template_renders_again(tmp_path):
+    """Decks are up to date until a template changes; then they are rendered again."""
+    folder = workspace(tmp_path)
+    finish(snakemake(folder, "tiny_decks"))
+    deck = folder / "results/tiny/decks/R9_plain/cycle_001/deck.in"
+    assert "Nothing to be done" in finish(snakemake(folder, "tiny_decks"))
+    template = folder / "templates/sliding_sample.in.j2"
+    template.write_text(template.read_text() + "# the end\n")
+    finish(snakemake(folder, "tiny_decks"))
+    assert deck.read_text().endswith("# the end\n")
+
+
 def test_paper_fidelity_dry_runs(tmp_path):
     """Sizes for a cluster are configured and planned: all jobs of the study, no solver."""
     folder = workspace(tmp_path)

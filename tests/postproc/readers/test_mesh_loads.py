@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from postproc.readers.contacts import read_contacts
-from postproc.readers.mesh_loads import MeshLoadsError, mean_mesh_loads, read_mesh_loads
+from postproc.readers.mesh_loads import MeshLoadsError, read_mesh_loads
 
 DATA = Path(__file__).parents[2] / "data"
 SIX_DIGITS = 1e-5  # of a number in a dump
@@ -46,17 +46,6 @@ def test_triangles_are_sorted_by_their_id(tmp_path):
     for name in ("normal_stress_Pa", "shear_stress_Pa", "finnie_wear"):
         np.testing.assert_array_equal(shuffled[name], plain[name][order])
         assert plain[name].any()
-
-
-def test_mean_over_dumps():
-    """Stresses are averaged over dumps; the wear, a running sum, is the largest."""
-    one, other = (read_mesh_loads(DATA / name) for name in ("slide_loads.vtk", "bed_loads.vtk"))
-    mean = mean_mesh_loads([DATA / "bed_loads.vtk", DATA / "slide_loads.vtk"], TRIANGLES)
-    for name in ("normal_stress_Pa", "shear_stress_Pa"):
-        np.testing.assert_allclose(mean[name], (one[name] + other[name]) / 2, rtol=1e-15)
-    np.testing.assert_array_equal(mean["finnie_wear"], np.maximum(one["finnie_wear"], other["finnie_wear"]))
-    with pytest.raises(MeshLoadsError, match="allowed is one or more"):
-        mean_mesh_loads([])
 
 
 def test_a_dump_without_a_field_gives_nan(tmp_path):

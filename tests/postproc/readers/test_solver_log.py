@@ -13,6 +13,7 @@ from postproc.readers.solver_log import (
     failure,
     last_step,
     reported_triangles,
+    solver_version,
     thermo_table,
     warnings,
 )
@@ -203,3 +204,9 @@ def test_liggghts_refuses_a_facet_given_twice(tmp_path):
     code, screen = run_mesh(tmp_path, [*plate_facets(), plate_facets()[3]])
     assert code != 0
     assert "two facets of the surface are the same" in failure(screen)
+
+
+def test_version_is_what_the_solver_says():
+    """Real screen output names program, version and build in its first line; other text names none."""
+    assert solver_version(DATA / "bed_screen.txt").startswith("Version LIGGGHTS-PUBLIC 3.8.0")
+    assert solver_version(DATA / "plate.stl") is None
