@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from meshes.gmsh_session import gmsh_session
+from meshes.gmsh_model import gmsh_model
 from meshes.relax import relax
 from postproc.mesh import volume_above_plane
 
@@ -64,7 +64,7 @@ def _on_ellipsoid(points: np.ndarray, semi_axes: np.ndarray) -> np.ndarray:
 
 def _gmsh_shell(semi_axes: np.ndarray, feet: int, element_size: float) -> tuple[np.ndarray, np.ndarray]:
     """A first triangulation from gmsh, `feet` edges round the foot: points (p, 3) m, triangles (t, 3)."""
-    with gmsh_session() as gmsh:
+    with gmsh_model() as gmsh:
         occ, scale = gmsh.model.occ, float(semi_axes.max())
         half_ball = occ.addSphere(0, 0, 0, 1, angle1=0, angle2=math.pi / 2)
         occ.dilate([(3, half_ball)], 0, 0, 0, *(semi_axes / scale).tolist())

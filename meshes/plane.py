@@ -8,7 +8,7 @@ from types import ModuleType
 
 import numpy as np
 
-from meshes.gmsh_session import gmsh_session
+from meshes.gmsh_model import gmsh_model
 from postproc.mesh import area_vectors
 
 GROWTH = 0.3  # growth of an edge per distance from a hole
@@ -41,7 +41,7 @@ def mesh_plane(rim: np.ndarray, holes: np.ndarray, element_size: float, frame_wi
     a `frame_width` of 0 means no frame.
     """
     prescribed = np.concatenate([rim, holes.reshape(-1, 2)])
-    with gmsh_session() as gmsh:
+    with gmsh_model() as gmsh:
         tags = [gmsh.model.geo.addPoint(x, y, 0.0, element_size) for x, y in prescribed.tolist()]
         loops = _polygons(gmsh, tags, [len(rim)] + [holes.shape[1]] * len(holes))
         surfaces = [gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(loop) for loop in loops])]

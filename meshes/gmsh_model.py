@@ -1,4 +1,4 @@
-"""One quiet, reproducible gmsh session that is always closed again."""
+"""One quiet, reproducible gmsh model that is always closed again."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ FRONTAL_DELAUNAY = 6  # gmsh's number of the plane algorithm with the best angle
 
 
 @contextmanager
-def gmsh_session() -> Iterator[ModuleType]:
+def gmsh_model() -> Iterator[ModuleType]:
     """Yield gmsh with a fresh model: silent, one thread, fixed seed, so that equal input gives equal bits."""
     import gmsh  # half a second, and needed by the builders only
 
