@@ -1,10 +1,10 @@
 """Contents page: a study's name makes its report, <study>_decks renders its decks without running the solver.
 
-    snakemake demo
+    snakemake                       the demo
     snakemake screening --config fidelity=standard
     snakemake demo_decks
 
-The profile workflows/profiles/default is chosen by `make`; give it yourself with --workflow-profile.
+Snakemake finds the choices for one machine by itself: profiles/default, which links into workflows/.
 """
 
 
@@ -20,6 +20,7 @@ for STUDY in STUDIES:
     rule:
         name:
             STUDY
+        default_target: STUDY == "demo"
         input:
             f"results/{STUDY}/report.html",
             f"results/{STUDY}/summary.csv",
