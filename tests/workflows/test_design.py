@@ -60,9 +60,21 @@ def test_screening_is_table_3_8():
 
 def test_a_thin_bed_limits_the_particle_scale():
     """A bed of 10 mm holds 3.8 layers of d50 = 2.65 mm: scale 1 passes, scale 2 does not."""
-    assert load_study("screening").run("R2_plain").parameters["derived"]["layers"] == pytest.approx(10 / 2.65)
+    paper = load_study("screening", overrides={"fidelity": "paper"})
+    assert paper.run("R2_plain").parameters["derived"]["layers"] == pytest.approx(10 / 2.65)
     with pytest.raises(ConfigError, match=r"row R2: bed_thickness_mm is 10, allowed is at least 15.9 mm"):
-        load_study("screening", overrides={"particle_scale": 2})
+        load_study("screening", overrides={"fidelity": "paper", "particle_scale": 2})
+
+
+def test_least_layers_lowers_the_scale_of_thin_beds_only():
+    """At scale 2 a bed of 10 mm gets the scale that leaves it its least layers; one of 40 mm keeps 2; never below 1."""
+    study = load_study("screening", overrides={"particle_scale": 2, "bed": {"least_layers": 3.5}})
+    thin, thick = (study.run(name).parameters for name in ("R2_plain", "R9_plain"))
+    assert thin["derived"]["layers"] == pytest.approx(3.5)
+    assert thin["particle"]["scale"] == pytest.approx(10 / (3.5 * 2.65))
+    assert thick["particle"]["scale"] == 2
+    crowded = load_study("screening", overrides={"bed": {"least_layers": 3.9}})
+    assert crowded.run("R2_plain").parameters["particle"]["scale"] == 1
 
 
 def test_an_unknown_study_is_named_with_the_nearest(config):
@@ -193,6 +205,9 @@ def test_the_design_table_has_one_row_per_run_with_units_in_the_names(config):
         "height_mm": 6,
         "velocity_m_per_s": 2,
         "bed_thickness_mm": 30,
+        "particle_scale": 2.0,
+        "layers": pytest.approx(30 / 5.3),
+        "equivalent_size_ratio": None,
     }
 
 

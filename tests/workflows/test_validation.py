@@ -82,25 +82,25 @@ BAD_KEYS = [
         SETTINGS,
         "wear:\n",
         "waer:\n",
-        "config/default.yaml, line 20: waer (a block of keys) is no known key, the nearest is wear.",
+        "config/default.yaml, line 21: waer (a block of keys) is no known key, the nearest is wear.",
     ),
     (
         SETTINGS,
         "  skirt_slope_deg: 3.0\n",
         "",
-        "config/default.yaml, line 3: sample.skirt_slope_deg is missing, allowed is a number from 0.5 to 60 deg.",
+        "config/default.yaml, line 3: sample.skirt_slope_deg is missing, allowed is a number from 0.5 to 45 deg.",
     ),
     (
         SETTINGS,
         "  law: archard\n",
         "  law: archard\n  law: archard\n",
-        "config/default.yaml, line 22: wear.law stands here and in line 21, allowed is each key once.",
+        "config/default.yaml, line 23: wear.law stands here and in line 22, allowed is each key once.",
     ),
     (
         SETTINGS,
         "  law: archard\n",
         "  law: archard\n  1: 2\n",
-        "config/default.yaml, line 22: found the key '1', allowed are words as keys.",
+        "config/default.yaml, line 23: found the key '1', allowed are words as keys.",
     ),
     (
         MATERIALS,
@@ -123,7 +123,7 @@ BAD_VALUES = [
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: true",
-        "config/default.yaml, line 23: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 24: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         STUDY,
@@ -198,37 +198,37 @@ BAD_VALUES = [
         SETTINGS,
         "cycles: 4",
         "cycles: 4.0",
-        "config/default.yaml, line 19: sliding.cycles is 4.0, allowed is a whole number from 1 to 10000.",
+        "config/default.yaml, line 20: sliding.cycles is 4.0, allowed is a whole number from 1 to 10000.",
     ),
     (
         SETTINGS,
         "cycles: 4",
         "cycles: 0",
-        "config/default.yaml, line 19: sliding.cycles is 0, allowed is a whole number from 1 to 10000.",
+        "config/default.yaml, line 20: sliding.cycles is 0, allowed is a whole number from 1 to 10000.",
     ),
     (
         SETTINGS,
         "travel_mm: 1000",
         "travel_mm: 0",
-        "config/default.yaml, line 19: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
+        "config/default.yaml, line 20: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
     ),
     (
         SETTINGS,
         "deform: true",
         "deform: yes",
-        "config/default.yaml, line 24: wear.deform is 'yes', allowed is true or false.",
+        "config/default.yaml, line 25: wear.deform is 'yes', allowed is true or false.",
     ),
     (
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: 0",
-        "config/default.yaml, line 23: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 24: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         SETTINGS,
         "rolling_friction: cdt",
         "rolling_friction: epsd",
-        "config/default.yaml, line 30: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
+        "config/default.yaml, line 31: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
     ),
     (
         SETTINGS,
@@ -363,17 +363,17 @@ BAD_COMBINATIONS = [
     ),
     (
         {"sample": {"width_mm": 110}},
-        "command line: sample.width_mm is 110 for row R9, allowed is at most 108.551 mm,"
-        " bed.width_mm less a skirt of 5.72434 mm on each side.",
+        "command line: sample.width_mm is 110 for row R9, allowed is at most 106.262 mm,"
+        " bed.width_mm less a skirt of 6.86921 mm on each side.",
     ),
     (
         {"bed": {"width_mm": 90}},
-        f"{QUICK}: sample.width_mm is 80 for row R9, allowed is at most 78.5513 mm,"
-        " bed.width_mm less a skirt of 5.72434 mm on each side.",
+        f"{QUICK}: sample.width_mm is 80 for row R9, allowed is at most 76.2616 mm,"
+        " bed.width_mm less a skirt of 6.86921 mm on each side.",
     ),
     (
         {"bed": {"behind_mm": 5}},
-        "command line: bed.behind_mm is 5 for row R9, allowed is at least 5.72434 mm, the width of the sample's skirt.",
+        "command line: bed.behind_mm is 5 for row R9, allowed is at least 6.86921 mm, the width of the sample's skirt.",
     ),
     (
         {"sample": {"element_size_mm": 2.5}},
@@ -482,7 +482,7 @@ def test_a_table_from_a_spreadsheet_is_read(config):
 def test_broken_yaml_is_refused_with_its_line(config):
     """What is no YAML is refused with file and line."""
     config.edit(SETTINGS, "  seed: 20220317\n", "  seed: 20220317\n\tx: 1\n")
-    assert message_of(config).startswith("config/default.yaml, line 19: found character '\\t'")
+    assert message_of(config).startswith("config/default.yaml, line 20: found character '\\t'")
 
 
 def test_a_file_that_is_no_mapping_is_refused(config):
