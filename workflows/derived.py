@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from meshes.sample import skirt_width
+from postproc.wear.caps import GRAVITY
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
@@ -32,6 +33,14 @@ def equivalent_size_ratio(median_diameter: float, major_radius: float, minor_rad
     The semi-ellipsoid's volume is 2/3 pi a b h. Below 1 the pattern helps (Yan 2022, Eq 4.18 and Fig 4.17).
     """
     return 0.5 * median_diameter / math.cbrt(0.5 * major_radius * minor_radius * height)
+
+
+def ramp_hop(velocity: float, slope: float) -> float:
+    """Return how far (m) a particle flies off the top of a ramp: 2 v^2 tan(slope) / g, ballistic, small slope.
+
+    velocity in m/s along the floor, slope in rad. The sample is hardly loaded over this length.
+    """
+    return 2.0 * velocity**2 * math.tan(slope) / GRAVITY
 
 
 def rolling_coefficient_for_solver(coefficient: float, rolling_radius: str, contact: str) -> float:
@@ -122,6 +131,7 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
         for fraction, diameter in zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
     )
     return {
+        "ramp_hop_m": ramp_hop(sliding["velocity_m_per_s"], sample["skirt_slope_rad"]),
         "skirt_width_m": skirt_width(sample["height_above_floor_m"], sample["skirt_slope_rad"]),
         "bed_length_m": length,
         "bed_start_m": sample["length_m"] / 2.0 + bed["behind_m"] - length,

@@ -360,6 +360,7 @@ def bed_parameters(run: Run) -> dict[str, Any]:
     }
 
 
+TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
 REDUCED = (
     ("bed", "width_mm", "bed width"),
     ("bed", "ahead_mm", "bed ahead of the sample"),
@@ -387,6 +388,9 @@ def figure_remarks(study: Study) -> list[str]:
     if thin:
         rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
         remarks.append(f"fewer than three layers of particles in the bed: {rows}")
+    hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
+    if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
+        remarks.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")
     if now["wear"]["acceleration"] != 1.0:
         remarks.append(f"wear accelerated {now['wear']['acceleration']:g} times")
     return remarks

@@ -11,6 +11,7 @@ import pytest
 from workflows.config_files import ConfigError
 from workflows.derived import (
     equivalent_size_ratio,
+    ramp_hop,
     rayleigh_time,
     rolling_coefficient_for_solver,
     whole_cycle,
@@ -439,3 +440,11 @@ def test_exactly_three_layers_are_enough(config):
     study = load_study("small", config.root, {"particle_scale": 31 / 3 / 2.65})
     assert study.run("R5_plain").parameters["derived"]["layers"] < 3.0
     assert study.run("R5_plain").parameters["derived"]["thin_bed"] is False
+
+
+def test_the_hop_off_the_ramp_is_ballistic_and_told(config):
+    """A particle leaving a slope with v tan(slope) upwards is back after 2 v tan(slope) / g; long hops are remarked."""
+    assert ramp_hop(2.0, math.atan(0.01)) == pytest.approx(2.0 * (2.0 * 2.0 * 0.01 / 9.81))
+    remarks = figure_remarks(load_study("screening"))
+    assert any(remark.startswith("particles hop off the ramp, up to 14 mm") for remark in remarks)
+    assert not any("hop" in remark for remark in figure_remarks(load_study("demo")))
