@@ -23,7 +23,7 @@ help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/\1|\2/p' Makefile | while IFS='|' read -r name text; do printf '  %-10s %s\n' "$$name" "$$text"; done
 
-setup: ## Install what is missing: Debian packages, then .venv from the lock (nothing to do: under a second)
+setup: ## Install what is missing: Debian packages, the ledger's solver, .venv from the lock (nothing to do: under a second)
 	@workflows/environment/setup.sh
 
 doctor: ## Check this machine: solver, MPI, rendering, packages, disk; says what to do

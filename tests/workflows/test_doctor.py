@@ -90,6 +90,28 @@ def test_mpi_must_join_two_processes_in_one_box(program, output, code, state):
     assert doctor.check_mpi().state == state
 
 
+@pytest.mark.parametrize(
+    ("output", "code", "state"),
+    [
+        ("Load ledger ledger: mesh plate, every contact is reported to it.", 0, "OK"),
+        ("Load ledger ledger: mesh plate, no contact yet.", 0, "wrong"),
+        ("ERROR: fix load/ledger was built for another LIGGGHTS", 1, "wrong"),
+    ],
+)
+def test_ledger_must_be_told_of_a_contact(program, monkeypatch, output, code, state):
+    """The solver with the ledger is trusted only when it ran and found itself called."""
+    monkeypatch.setattr(doctor, "LEDGER_PROGRAM", program("liggghts-ledger", says(output, code)))
+    assert doctor.check_ledger().state == state
+
+
+def test_ledger_that_was_not_built_is_missing(monkeypatch, tmp_path):
+    """Without the program: missing, and the advice says how to build it and how to go on without."""
+    monkeypatch.setattr(doctor, "LEDGER_PROGRAM", tmp_path / "liggghts-ledger")
+    found = doctor.check_ledger()
+    assert found.state == "missing"
+    assert "make -C solver" in found.advice and "ledger: dumps" in found.advice
+
+
 def test_root_flags_are_set_for_root_only(monkeypatch):
     """Open MPI's permission to run as root is given when and only when this is root."""
     monkeypatch.delenv("OMPI_ALLOW_RUN_AS_ROOT", raising=False)

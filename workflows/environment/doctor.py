@@ -65,6 +65,40 @@ region domain block 0 1 0 1 0 1 units box
 create_box 1 domain
 """
 
+LEDGER_PROGRAM = REPOSITORY / "solver" / "build" / "liggghts-ledger"
+LEDGER_PROBE_PLATE = """solid plate
+facet normal 0 0 1
+outer loop
+vertex 0.1 0.1 0.5
+vertex 0.9 0.1 0.5
+vertex 0.5 0.9 0.5
+endloop
+endfacet
+endsolid plate
+"""
+# One sphere overlapping a triangle: the ledger must find itself called.
+LEDGER_PROBE_DECK = (
+    "newton off\n"
+    + MPI_PROBE_DECK
+    + """neighbor 0.01 bin
+create_atoms 1 single 0.5 0.4 0.599 units box
+set group all diameter 0.2 density 1000
+fix youngs_modulus all property/global youngsModulus peratomtype 1e7
+fix poissons_ratio all property/global poissonsRatio peratomtype 0.3
+fix restitution all property/global coefficientRestitution peratomtypepair 1 0.5
+fix friction all property/global coefficientFriction peratomtypepair 1 0.5
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep 1e-6
+fix plate all mesh/surface file plate.stl type 1
+fix wall all wall/gran model hertz tangential history mesh n_meshes 1 meshes plate
+fix motion all nve/sphere
+fix ledger all load/ledger mesh plate file ledger.bin
+run 1
+"""
+)
+LEDGER_ADVICE = "run `make -C solver`; without it studies need `ledger: dumps` (solver/README.md)"
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -192,6 +226,20 @@ def check_mpi() -> Finding:
     return Finding("MPI", "OK", f"2 processes share one box ({shutil.which('mpirun')})")
 
 
+def check_ledger() -> Finding:
+    """The solver with the load ledger must run, fit the LIGGGHTS library and be told of a contact."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "plate.stl").write_text(LEDGER_PROBE_PLATE)
+        (Path(folder) / "deck.in").write_text(LEDGER_PROBE_DECK)
+        probe = run([str(LEDGER_PROGRAM), "-in", "deck.in"], folder, mpi_environment())
+    if probe.code is None:
+        return Finding("load ledger", "missing", probe.output, LEDGER_ADVICE)
+    if probe.code != 0 or "every contact is reported" not in probe.output:
+        stopped = re.search(r"^ERROR.*", probe.output, flags=re.MULTILINE)
+        return Finding("load ledger", "wrong", stopped[0] if stopped else last_line(probe.output), LEDGER_ADVICE)
+    return Finding("load ledger", "OK", "accounts for every contact inside the solver")
+
+
 def missing_library(text: str) -> str | None:
     """The shared library a loader error names, if it names one."""
     found = re.search(r"(lib[\w.+-]+\.so[\d.]*): cannot open shared object file", text)
@@ -266,6 +314,7 @@ def findings() -> Iterable[Finding]:
         lambda: check_packages(locked_versions((REPOSITORY / "requirements.txt").read_text()), installed_versions()),
         check_solver,
         check_mpi,
+        check_ledger,
         check_rendering,
         check_gmsh,
         check_disk,

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Installs what this project needs: Debian packages (apt-packages.txt), then .venv (requirements.txt, pinned and hashed).
+# Installs what this project needs: Debian packages (apt-packages.txt), the solver with the load ledger (solver/), then
+# .venv (requirements.txt, pinned and hashed).
 # Safe to run again at any time; does nothing, quickly, when everything is in place. Prefer `make setup`.
 set -euo pipefail
 
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
-    sed -n '2,3s/^# //p' "$0"
+    sed -n '2,4s/^# //p' "$0"
     exit 0
 fi
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -97,5 +98,14 @@ build_environment() {
         stop "the environment is built, but this machine lacks something (see above); check again with: make doctor"
 }
 
+# --- solver with the load ledger ------------------------------------------------------------------------------------
+
+# make knows by itself whether there is anything to do. A machine without the headers can still run `ledger: dumps`.
+build_solver() {
+    make --silent --directory solver ||
+        say "solver/ could not be built (see above); studies with 'ledger: solver' need it, see solver/README.md"
+}
+
 install_packages
+build_solver
 build_environment
