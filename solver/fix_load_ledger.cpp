@@ -1,4 +1,5 @@
-// What a contact adds to the ledger, step by step. Files and restart: ledger_file.cpp. Checks at the start: start_checks.cpp.
+// What a contact adds to the ledger, step by step. Files and restart: ledger_file.cpp. Checks at the start:
+// start_checks.cpp.
 
 #include "fix_load_ledger.h"
 
@@ -6,8 +7,8 @@
 #include <cmath>
 
 #include "atom.h"
-#include "contact_hook.h"
 #include "comm.h"
+#include "contact_hook.h"
 #include "error.h"
 #include "fix_mesh_surface.h"
 #include "fix_multisphere.h"
@@ -22,12 +23,12 @@ namespace load_ledger {
 
 namespace {
 
-void subtract(const double *a, const double *b, double *result) {
+void subtract(const double* a, const double* b, double* result) {
   for (int axis = 0; axis < 3; ++axis) result[axis] = a[axis] - b[axis];
 }
 
 // Weights of a triangle's corners at a point, which is projected on to the triangle's plane.
-void corner_weights(const double corner[3][3], const double *point, double *weights) {
+void corner_weights(const double corner[3][3], const double* point, double* weights) {
   double along[3], across[3], to_point[3];
   subtract(corner[1], corner[0], along);
   subtract(corner[2], corner[0], across);
@@ -46,7 +47,7 @@ double hertz_radius(double force, double radius, double effective_modulus) {
 
 }  // namespace
 
-FixLoadLedger::FixLoadLedger(LAMMPS *lammps, int narg, char **arg) : Fix(lammps, narg, arg) {
+FixLoadLedger::FixLoadLedger(LAMMPS* lammps, int narg, char** arg) : Fix(lammps, narg, arg) {
   parse(narg, arg);
   find_mesh();
   // Until the first set-up every rank holds the whole mesh, afterwards its share.
@@ -76,7 +77,7 @@ void FixLoadLedger::init() {
   find_mesh();
   check_layout();
   check_materials();
-  multisphere_ = static_cast<FixMultisphere *>(modify->find_fix_style("multisphere", 0));
+  multisphere_ = static_cast<FixMultisphere*>(modify->find_fix_style("multisphere", 0));
   listen(mesh_, this);
   observed_.clear();
   phase_ = Phase::set_up;
@@ -84,61 +85,72 @@ void FixLoadLedger::init() {
 
 // ---------------------------------------------------------------- one contact
 
-void FixLoadLedger::observe(int particle, const double *force, const double *offset, int triangle, const double *wall_velocity) {
+// The force is that of this instant, the velocities still those of half a step before; the rest follows at the end of
+// the step.
+void FixLoadLedger::observe(int particle, const double* force, const double* offset, int triangle,
+                            const double* wall_velocity) {
   // A compute that asks for contacts makes the solver evaluate them once more, without a force.
   const bool evaluated_for_output = length(force) == 0.0;
   if (phase_ == Phase::between || evaluated_for_output || !(atom->mask[particle] & groupbit)) return;
   const double distance = length(offset);
   if (distance == 0.0) return;
 
-  TriMesh *mesh = mesh_->triMesh();
+  TriMesh* mesh = mesh_->triMesh();
   Observed seen;
-  Contact &contact = seen.contact;
+  Contact& contact = seen.contact;
   double corner[3][3], point[3];
   for (int k = 0; k < 3; ++k) mesh->node(triangle, k, corner[k]);
   for (int axis = 0; axis < 3; ++axis) {
     contact.normal[axis] = -offset[axis] / distance;
     contact.force[axis] = force[axis];
-    contact.relative_velocity[axis] = atom->v[particle][axis] - wall_velocity[axis];
+    contact.velocity_before[axis] = atom->v[particle][axis] - wall_velocity[axis];
+    seen.wall_velocity[axis] = wall_velocity[axis];
     point[axis] = atom->x[particle][axis] + offset[axis];
   }
   mesh->surfaceNorm(triangle, contact.triangle_normal);
   corner_weights(corner, point, seen.weights);
+  wall_spin(triangle, seen.wall_spin);
 
   contact.radius = atom->radius[particle];
   contact.mass = atom->rmass[particle];
-  seen.signed_force = dot(force, contact.normal);
-  contact.normal_force = std::max(seen.signed_force, 0.0);
-
   // The solver's own lever arm, radius less half the overlap: with it pure rolling leaves no sliding.
-  const double lever = 0.5 * (contact.radius + distance);
-  const double approach = dot(contact.relative_velocity, contact.normal);
-  double across[3], sliding[3], spin[3], rolling[3];
-  cross(atom->omega[particle], contact.normal, across);
-  for (int axis = 0; axis < 3; ++axis)
-    sliding[axis] = contact.relative_velocity[axis] - approach * contact.normal[axis] - lever * across[axis];
-  contact.sliding_speed = length(sliding);
-  seen.approach_speed = std::abs(approach);
-
-  wall_spin(triangle, spin);
-  for (int axis = 0; axis < 3; ++axis) spin[axis] = atom->omega[particle][axis] - spin[axis];
-  cross(spin, contact.normal, rolling);
-  contact.rolling_speed = contact.radius * length(rolling);
-
+  seen.lever = 0.5 * (contact.radius + distance);
+  seen.signed_force = dot(force, contact.normal);
+  seen.approach_speed = std::abs(dot(contact.velocity_before, contact.normal));
+  contact.normal_force = std::max(seen.signed_force, 0.0);
   seen.particle = particle;
   seen.triangle = mesh->id(triangle);
-  seen.effective_modulus = effective_modulus(atom->type[particle]);
+  seen.effective_modulus = modulus_of_type_[atom->type[particle] - 1];
   seen.touch = -1;
   observed_.push_back(seen);
 }
 
+// Force times velocity is power when both are of one instant. Half a step before, a particle at rest whose spin a
+// friction law turns over in every step would seem to slide.
+void FixLoadLedger::add_motion(Observed& seen) const {
+  Contact& contact = seen.contact;
+  const double *velocity = atom->v[seen.particle], *spin = atom->omega[seen.particle];
+  double across[3], sliding[3], relative_spin[3], rolling[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    contact.velocity[axis] = velocity[axis] - seen.wall_velocity[axis];
+    relative_spin[axis] = spin[axis] - seen.wall_spin[axis];
+  }
+  const double approach = dot(contact.velocity, contact.normal);
+  cross(spin, contact.normal, across);
+  for (int axis = 0; axis < 3; ++axis)
+    sliding[axis] = contact.velocity[axis] - approach * contact.normal[axis] - seen.lever * across[axis];
+  contact.sliding_speed = length(sliding);
+  cross(relative_spin, contact.normal, rolling);
+  contact.rolling_speed = contact.radius * length(rolling);
+}
+
 // Angular velocity of a triangle from the velocities of its corners (rigid motion: v_k - v_0 = spin x edge_k).
-void FixLoadLedger::wall_spin(int triangle, double *spin) const {
+void FixLoadLedger::wall_spin(int triangle, double* spin) const {
   std::fill_n(spin, 3, 0.0);
-  TriMesh *mesh = mesh_->triMesh();
-  auto *velocities = mesh->prop().getElementProperty<MultiVectorContainer<double, 3, 3> >("v");
+  TriMesh* mesh = mesh_->triMesh();
+  auto* velocities = mesh->prop().getElementProperty<MultiVectorContainer<double, 3, 3> >("v");
   if (!velocities) return;
-  double **velocity = velocities->begin()[triangle];
+  double** velocity = velocities->begin()[triangle];
   double corner[3][3], along[3], across[3], normal[3], turn_along[3], turn_across[3], in_plane[3];
   for (int k = 0; k < 3; ++k) mesh->node(triangle, k, corner[k]);
   subtract(corner[1], corner[0], along);
@@ -153,8 +165,6 @@ void FixLoadLedger::wall_spin(int triangle, double *spin) const {
     spin[axis] = (dot(turn_across, normal) * along[axis] - dot(turn_along, normal) * across[axis]) / squared +
                  about_normal * normal[axis];
 }
-
-double FixLoadLedger::effective_modulus(int particle_type) const { return modulus_of_type_[particle_type - 1]; }
 
 // ---------------------------------------------------------------- one step
 
@@ -172,6 +182,7 @@ void FixLoadLedger::initial_integrate(int) {
 
 void FixLoadLedger::end_of_step() {
   phase_ = Phase::between;
+  for (Observed& seen : observed_) add_motion(seen);
   gather_touches();
   sum_loads();
   if (multisphere_)
@@ -192,14 +203,14 @@ void FixLoadLedger::gather_touches() {
   touches_.clear();
   touch_of_particle_.assign(atom->nlocal, -1);
   for (std::size_t k = 0; k < observed_.size(); ++k) {
-    Observed &seen = observed_[k];
-    int &touch = touch_of_particle_[seen.particle];
+    Observed& seen = observed_[k];
+    int& touch = touch_of_particle_[seen.particle];
     if (touch < 0) {
       touch = static_cast<int>(touches_.size());
       touches_.push_back({seen.particle, {0.0, 0.0, 0.0}, static_cast<int>(k)});
     }
     seen.touch = touch;
-    Touch &whole = touches_[touch];
+    Touch& whole = touches_[touch];
     for (int axis = 0; axis < 3; ++axis) whole.force[axis] += seen.contact.normal_force * seen.contact.normal[axis];
     if (seen.signed_force > observed_[whole.strongest].signed_force) whole.strongest = static_cast<int>(k);
   }
@@ -207,8 +218,8 @@ void FixLoadLedger::gather_touches() {
 
 void FixLoadLedger::sum_loads() {
   const double dt = update->dt;
-  for (const Observed &seen : observed_) {
-    const Contact &contact = seen.contact;
+  for (const Observed& seen : observed_) {
+    const Contact& contact = seen.contact;
     const int triangle = seen.triangle;
     const double impulse = contact.normal_force * dt, work = impulse * contact.sliding_speed;
     sums_.add(SLIDING_WORK, triangle, work);
@@ -227,39 +238,39 @@ void FixLoadLedger::sum_loads() {
   }
 }
 
-double FixLoadLedger::impact_energy(const Observed &strongest) const {
+double FixLoadLedger::impact_energy(const Observed& strongest) const {
   return 0.5 * strongest.contact.mass * strongest.approach_speed * strongest.approach_speed;
 }
 
 // The first touch of an episode brings its energy, to the triangle that carries most of the particle's force.
 void FixLoadLedger::sum_impacts() {
-  for (const Touch &touch : touches_) {
+  for (const Touch& touch : touches_) {
     if (touched_[touch.particle] != 0.0) continue;
-    const Observed &strongest = observed_[touch.strongest];
+    const Observed& strongest = observed_[touch.strongest];
     sums_.add(IMPACT_ENERGY, strongest.triangle, impact_energy(strongest));
   }
 }
 
 void FixLoadLedger::remember_touching() {
   std::fill_n(touched_, atom->nlocal, 0.0);
-  for (const Touch &touch : touches_) touched_[touch.particle] = 1.0;
+  for (const Touch& touch : touches_) touched_[touch.particle] = 1.0;
 }
 
 void FixLoadLedger::seed_touching() {
   remember_touching();
   bodies_.clear();
   if (!multisphere_) return;
-  for (const BodyTouch &touch : body_touches_of_all_ranks()) bodies_.push_back(touch.body);
+  for (const BodyTouch& touch : body_touches_of_all_ranks()) bodies_.push_back(touch.body);
 }
 
 // ---------------------------------------------------------------- multisphere bodies
 
-// The spheres of a body may lie on several ranks, so an episode of a body is everybody's business. Spheres without a body
-// are bodies of their own, told apart by negative numbers.
+// The spheres of a body may lie on several ranks, so an episode of a body is everybody's business. Spheres without a
+// body are bodies of their own, told apart by negative numbers.
 void FixLoadLedger::sum_body_impacts() {
   const std::vector<BodyTouch> all = body_touches_of_all_ranks();
   std::vector<double> now;
-  for (const BodyTouch &touch : all) {
+  for (const BodyTouch& touch : all) {
     now.push_back(touch.body);
     const bool lasting = std::binary_search(bodies_.begin(), bodies_.end(), touch.body);
     if (!lasting && touch.rank == comm->me) sums_.add(IMPACT_ENERGY, static_cast<int>(touch.triangle), touch.energy);
@@ -271,8 +282,8 @@ void FixLoadLedger::sum_body_impacts() {
 std::vector<FixLoadLedger::BodyTouch> FixLoadLedger::body_touches_of_all_ranks() const {
   constexpr int fields = sizeof(BodyTouch) / sizeof(double);
   std::vector<BodyTouch> mine;
-  for (const Touch &touch : touches_) {
-    const Observed &strongest = observed_[touch.strongest];
+  for (const Touch& touch : touches_) {
+    const Observed& strongest = observed_[touch.strongest];
     const int body = multisphere_->belongs_to(touch.particle);
     mine.push_back({body >= 0 ? static_cast<double>(body) : -1.0 - static_cast<double>(atom->tag[touch.particle]),
                     strongest.signed_force, impact_energy(strongest), static_cast<double>(strongest.triangle),
@@ -284,11 +295,11 @@ std::vector<FixLoadLedger::BodyTouch> FixLoadLedger::body_touches_of_all_ranks()
   for (int rank = 1; rank < comm->nprocs; ++rank) starts[rank] = starts[rank - 1] + counts[rank - 1];
   std::vector<BodyTouch> all((starts.back() + counts.back()) / fields);
   MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, world);
-  std::sort(all.begin(), all.end(), [](const BodyTouch &a, const BodyTouch &b) {
+  std::sort(all.begin(), all.end(), [](const BodyTouch& a, const BodyTouch& b) {
     if (a.body != b.body) return a.body < b.body;
     return a.signed_force != b.signed_force ? a.signed_force > b.signed_force : a.rank < b.rank;
   });
-  const auto same_body = [](const BodyTouch &a, const BodyTouch &b) { return a.body == b.body; };
+  const auto same_body = [](const BodyTouch& a, const BodyTouch& b) { return a.body == b.body; };
   all.erase(std::unique(all.begin(), all.end(), same_body), all.end());
   return all;
 }
@@ -299,12 +310,12 @@ void FixLoadLedger::grow_arrays(int particles) { memory->grow(touched_, particle
 void FixLoadLedger::copy_arrays(int from, int to, int) { touched_[to] = touched_[from]; }
 void FixLoadLedger::set_arrays(int particle) { touched_[particle] = 0.0; }
 
-int FixLoadLedger::pack_exchange(int particle, double *buffer) {
+int FixLoadLedger::pack_exchange(int particle, double* buffer) {
   buffer[0] = touched_[particle];
   return 1;
 }
 
-int FixLoadLedger::unpack_exchange(int particle, double *buffer) {
+int FixLoadLedger::unpack_exchange(int particle, double* buffer) {
   touched_[particle] = buffer[0];
   return 1;
 }

@@ -22,23 +22,23 @@ namespace load_ledger {
 
 // Columns that are sums of a contact's contributions; those of the kernels follow.
 enum Column {
-  SLIDING_WORK,      // J
-  NORMAL_IMPULSE,    // N s
-  ROLLING_WORK,      // J
-  IMPACT_ENERGY,     // J
-  CONTACT_TIME,      // s
-  BY_WORK,           // contact radius (m) and weights of the three corners (-), each times sliding work
+  SLIDING_WORK,              // J
+  NORMAL_IMPULSE,            // N s
+  ROLLING_WORK,              // J
+  IMPACT_ENERGY,             // J
+  CONTACT_TIME,              // s
+  BY_WORK,                   // contact radius (m) and weights of the three corners (-), each times sliding work
   BY_IMPULSE = BY_WORK + 4,  // the same times normal impulse, for triangles that are loaded without any sliding
   FIRST_KERNEL = BY_IMPULSE + 4
 };
 
 class FixLoadLedger : public LAMMPS_NS::Fix {
  public:
-  FixLoadLedger(LAMMPS_NS::LAMMPS *lammps, int narg, char **arg);
+  FixLoadLedger(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
   ~FixLoadLedger() override;
 
   // Called for every contact of the mesh. offset: from the centre to the contact point, m
-  void observe(int particle, const double *force, const double *offset, int triangle, const double *wall_velocity);
+  void observe(int particle, const double* force, const double* offset, int triangle, const double* wall_velocity);
 
   int setmask() override;
   void init() override;
@@ -48,31 +48,34 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   double compute_vector(int column) override;
   double memory_usage() override;
 
-  void write_restart(FILE *file) override;
-  void restart(char *stored) override;
+  void write_restart(FILE* file) override;
+  void restart(char* stored) override;
 
   // Whether a particle touched the mesh in the step before travels with it from rank to rank.
   void grow_arrays(int particles) override;
   void copy_arrays(int from, int to, int) override;
   void set_arrays(int particle) override;
-  int pack_exchange(int particle, double *buffer) override;
-  int unpack_exchange(int particle, double *buffer) override;
+  int pack_exchange(int particle, double* buffer) override;
+  int unpack_exchange(int particle, double* buffer) override;
 
  private:
   struct Observed {
     Contact contact;
-    int particle, triangle;   // local index of the particle, id of the triangle
-    double weights[3];        // -, of the triangle's corners at the contact point
-    double signed_force;      // N, along the normal, negative where the contact pulls
-    double approach_speed;    // m/s, of the centre along the normal, without sign
-    double effective_modulus; // Pa
-    int touch;                // index into touches_
+    int particle, triangle;    // local index of the particle, id of the triangle
+    double weights[3];         // -, of the triangle's corners at the contact point
+    double lever;              // m, from the centre to where the solver takes the surfaces to meet
+    double wall_velocity[3];   // m/s, at the contact point
+    double wall_spin[3];       // rad/s
+    double signed_force;       // N, along the normal, negative where the contact pulls
+    double approach_speed;     // m/s, of the centre along the normal before this force, without sign
+    double effective_modulus;  // Pa
+    int touch;                 // index into touches_
   };
   // All contacts of one particle with the mesh in one step.
   struct Touch {
-    int particle;             // local index
-    double force[3];          // N, vector sum of its normal forces
-    int strongest;            // index into observed_ of its largest normal force
+    int particle;     // local index
+    double force[3];  // N, vector sum of its normal forces
+    int strongest;    // index into observed_ of its largest normal force
   };
   // The touch of a multisphere body, as every rank knows it.
   struct BodyTouch {
@@ -80,38 +83,38 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   };
   enum class Phase { set_up, step, between };
 
-  void parse(int narg, char **arg);
+  void parse(int narg, char** arg);
   void find_mesh();
   void check_layout();
   void check_triangles();
   void check_materials();
-  void misfit(const std::string &what);
+  void misfit(const std::string& what);
   void prove_called(bool last);
-  void say(const std::string &sentence);
+  void say(const std::string& sentence);
 
   void seed_touching();
   void gather_touches();
+  void add_motion(Observed& seen) const;
   void sum_loads();
   void sum_impacts();
   void sum_body_impacts();
   void remember_touching();
   std::vector<BodyTouch> body_touches_of_all_ranks() const;
-  void wall_spin(int triangle, double *spin) const;
-  double effective_modulus(int particle_type) const;
-  double impact_energy(const Observed &strongest) const;
+  void wall_spin(int triangle, double* spin) const;
+  double impact_energy(const Observed& strongest) const;
 
   std::vector<std::string> column_names() const;
   std::string header(double contacts) const;
   std::string identity() const;
-  std::vector<std::vector<double>> table(const LedgerSums &sums) const;
+  std::vector<std::vector<double>> table(const LedgerSums& sums) const;
   void write_file();
 
   std::string mesh_id_, file_;
   std::vector<Kernel> kernels_;
   int triangles_ = 0;
 
-  LAMMPS_NS::FixMeshSurface *mesh_ = nullptr;
-  LAMMPS_NS::FixMultisphere *multisphere_ = nullptr;
+  LAMMPS_NS::FixMeshSurface* mesh_ = nullptr;
+  LAMMPS_NS::FixMultisphere* multisphere_ = nullptr;
   std::vector<double> modulus_of_type_;  // Pa, effective modulus of each particle type and the wall
 
   LedgerSums sums_{0, 0};
@@ -123,9 +126,9 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   bool proven_ = false;
   std::vector<Observed> observed_;
   std::vector<Touch> touches_;
-  std::vector<int> touch_of_particle_;   // local index of a particle -> touches_, -1 without one
-  std::vector<double> bodies_;           // sorted tags of the bodies that touched in the step before
-  double *touched_ = nullptr;            // per particle: 1 when it touched in the step before
+  std::vector<int> touch_of_particle_;  // local index of a particle -> touches_, -1 without one
+  std::vector<double> bodies_;          // sorted tags of the bodies that touched in the step before
+  double* touched_ = nullptr;           // per particle: 1 when it touched in the step before
 };
 
 }  // namespace load_ledger

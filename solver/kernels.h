@@ -9,50 +9,50 @@ namespace load_ledger {
 
 // One contact between a particle and a triangle in one time step; SI units, vectors in the simulation's frame.
 struct Contact {
-  double normal[3];             // -, from the contact point to the particle's centre
-  double triangle_normal[3];    // -, of the triangle itself
-  double force[3];              // N, on the particle, all of it
-  double relative_velocity[3];  // m/s, of the particle's centre against the wall, without spin
-  double normal_force;          // N, zero where the contact pulls
-  double sliding_speed;         // m/s, at the contact point, spin included
-  double rolling_speed;         // m/s, radius times the spin across the normal, against the wall's
-  double radius;                // m, of the particle
-  double mass;                  // kg, of the particle or of the body it belongs to
+  double normal[3];           // -, from the contact point to the particle's centre
+  double triangle_normal[3];  // -, of the triangle itself
+  double force[3];            // N, on the particle, all of it
+  double velocity[3];         // m/s, of the particle's centre against the wall, at the instant of the force
+  double velocity_before[3];  // m/s, the same half a step earlier, before this force: what the contact law sees
+  double normal_force;        // N, zero where the contact pulls
+  double sliding_speed;       // m/s, at the contact point, spin included
+  double rolling_speed;       // m/s, radius times the spin across the normal, against the wall's
+  double radius;              // m, of the particle
+  double mass;                // kg, of the particle or of the body it belongs to
 };
 
-inline double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-inline double length(const double *a) { return std::sqrt(dot(a, a)); }
+inline double length(const double* a) { return std::sqrt(dot(a, a)); }
 
-inline void cross(const double *a, const double *b, double *result) {
+inline void cross(const double* a, const double* b, double* result) {
   result[0] = a[1] * b[2] - a[2] * b[1];
   result[1] = a[2] * b[0] - a[0] * b[2];
   result[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-// Power (W) of Finnie's impact wear (Finnie 1960) as LIGGGHTS evaluates it for `wear finnie`: a function of the angle
-// between velocity and surface times speed and contact force, and only while the particle approaches. Times its
-// coefficient k (1/Pa) and summed over time it is the worn volume.
-inline double finnie_work(const Contact &contact) {
-  const double slowest = 1e-7;        // m/s, the solver's own threshold
-  const double one_third = 0.33333;   // the solver's own digits
-  const double *velocity = contact.relative_velocity;
+// Power (W) of Finnie's impact wear (Finnie 1960) as LIGGGHTS evaluates it for `wear finnie`, also at its velocities: a
+// function of the angle between velocity and surface times speed and contact force, and only while the particle
+// approaches. Times its coefficient k (1/Pa) and summed over time it is the worn volume.
+inline double finnie_work(const Contact& contact) {
+  const double slowest = 1e-7;       // m/s, the solver's own threshold
+  const double one_third = 0.33333;  // the solver's own digits
+  const double* velocity = contact.velocity_before;
   const double speed = length(velocity);
-  if (speed <= slowest || dot(contact.normal, velocity) > 0.0) return 0.0;
+  if (speed < slowest || dot(contact.normal, velocity) > 0.0) return 0.0;
   double along[3];
   cross(velocity, contact.triangle_normal, along);
   const double sine = std::min(1.0, std::abs(dot(velocity, contact.triangle_normal)) / speed);
   const double cosine = std::min(1.0, length(along) / speed);
   const bool steep = 3.0 * sine > cosine;
-  const double angle_function =
-      steep ? one_third * cosine * cosine : 2.0 * sine * cosine - 3.0 * sine * sine;
+  const double angle_function = steep ? one_third * cosine * cosine : 2.0 * sine * cosine - 3.0 * sine * sine;
   return 2.0 * angle_function * speed * length(contact.force);
 }
 
 struct Kernel {
-  const char *name;                  // in the deck, after `kernels`
-  const char *column;                // in the ledger, with its unit
-  double (*rate)(const Contact &);   // summed over time
+  const char* name;                // in the deck, after `kernels`
+  const char* column;              // in the ledger, with its unit
+  double (*rate)(const Contact&);  // summed over time
 };
 
 constexpr Kernel KERNELS[] = {

@@ -21,7 +21,7 @@ namespace load_ledger {
 
 namespace {
 
-std::string quoted(const std::string &text) {
+std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (char letter : text) {
     if (letter == '"' || letter == '\\') result += '\\';
@@ -36,7 +36,7 @@ std::vector<std::string> FixLoadLedger::column_names() const {
   std::vector<std::string> names = {"sliding_work_J",   "normal_impulse_N_s", "rolling_work_J",
                                     "impact_energy_J",  "contact_time_s",     "contact_radius_m",
                                     "contact_weight_1", "contact_weight_2",   "contact_weight_3"};
-  for (const Kernel &kernel : kernels_) names.push_back(kernel.column);
+  for (const Kernel& kernel : kernels_) names.push_back(kernel.column);
   return names;
 }
 
@@ -48,8 +48,8 @@ std::string FixLoadLedger::header(double contacts) const {
        << ", \"steps\": " << steps_ << ", \"time_s\": " << time_s_.value() << ", \"step\": " << update->ntimestep
        << ", \"contacts\": " << static_cast<std::int64_t>(contacts) << ", \"ranks\": " << comm->nprocs
        << ", \"solver\": " << quoted(universe->version) << ", \"columns\": [";
-  const char *separator = "";
-  for (const std::string &name : column_names()) {
+  const char* separator = "";
+  for (const std::string& name : column_names()) {
     text << separator << quoted(name);
     separator = ", ";
   }
@@ -59,13 +59,14 @@ std::string FixLoadLedger::header(double contacts) const {
 
 // Sums as columns of the file. Radius and position are means weighted with sliding work, with normal impulse where a
 // triangle was loaded without any sliding, and not a number where it was not loaded.
-std::vector<std::vector<double>> FixLoadLedger::table(const LedgerSums &sums) const {
+std::vector<std::vector<double>> FixLoadLedger::table(const LedgerSums& sums) const {
   std::vector<std::vector<double>> columns(column_names().size(), std::vector<double>(triangles_));
   for (int triangle = 0; triangle < triangles_; ++triangle) {
     const double work = sums.value(SLIDING_WORK, triangle), impulse = sums.value(NORMAL_IMPULSE, triangle);
     const double weight = work > 0.0 ? work : impulse;
     const int first = work > 0.0 ? BY_WORK : BY_IMPULSE;
-    for (int column = SLIDING_WORK; column <= CONTACT_TIME; ++column) columns[column][triangle] = sums.value(column, triangle);
+    for (int column = SLIDING_WORK; column <= CONTACT_TIME; ++column)
+      columns[column][triangle] = sums.value(column, triangle);
     for (int k = 0; k < 4; ++k)
       columns[BY_WORK + k][triangle] =
           weight > 0.0 ? sums.value(first + k, triangle) / weight : std::numeric_limits<double>::quiet_NaN();
@@ -83,10 +84,10 @@ void FixLoadLedger::write_file() {
   if (comm->me != 0) return;
   const std::string unfinished = file_ + ".part";
   bool written = false;
-  if (FILE *file = std::fopen(unfinished.c_str(), "wb")) {
+  if (FILE* file = std::fopen(unfinished.c_str(), "wb")) {
     const std::string first_line = header(contacts);
     written = std::fwrite(first_line.data(), 1, first_line.size(), file) == first_line.size();
-    for (const std::vector<double> &column : table(all))
+    for (const std::vector<double>& column : table(all))
       written = written && std::fwrite(column.data(), sizeof(double), column.size(), file) == column.size();
     written = std::fclose(file) == 0 && written;
   }
@@ -100,20 +101,21 @@ void FixLoadLedger::write_file() {
 std::string FixLoadLedger::identity() const {
   std::ostringstream text;
   text << "load_ledger 1 " << mesh_id_ << ' ' << triangles_;
-  for (const Kernel &kernel : kernels_) text << ' ' << kernel.name;
+  for (const Kernel& kernel : kernels_) text << ' ' << kernel.name;
   return text.str();
 }
 
-// Layout: length of what follows (int); length of the identity (int), identity, steps (int64), time (a sum), contacts (double),
-// the sums; a sum is two doubles.
-void FixLoadLedger::write_restart(FILE *file) {
+// Layout: length of what follows (int); length of the identity (int), identity, steps (int64), time (a sum), contacts
+// (double), the sums; a sum is two doubles.
+void FixLoadLedger::write_restart(FILE* file) {
   const LedgerSums all = sums_.reduced(world);
   double contacts = 0.0;
   MPI_Reduce(&contacts_, &contacts, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me != 0) return;
   const std::string whose = identity();
   const int letters = static_cast<int>(whose.size());
-  const int bytes = static_cast<int>(sizeof letters + letters + sizeof steps_ + sizeof time_s_ + sizeof contacts + all.bytes());
+  const int bytes =
+      static_cast<int>(sizeof letters + letters + sizeof steps_ + sizeof time_s_ + sizeof contacts + all.bytes());
   std::fwrite(&bytes, sizeof bytes, 1, file);
   std::fwrite(&letters, sizeof letters, 1, file);
   std::fwrite(whose.data(), 1, letters, file);
@@ -123,8 +125,8 @@ void FixLoadLedger::write_restart(FILE *file) {
   std::fwrite(all.stored(), 1, all.bytes(), file);
 }
 
-void FixLoadLedger::restart(char *stored) {
-  const auto take = [&stored](void *target, std::size_t bytes) {
+void FixLoadLedger::restart(char* stored) {
+  const auto take = [&stored](void* target, std::size_t bytes) {
     std::memcpy(target, stored, bytes);
     stored += bytes;
   };
@@ -133,7 +135,8 @@ void FixLoadLedger::restart(char *stored) {
   std::string whose(letters, ' ');
   take(&whose[0], letters);
   if (whose != identity()) {
-    say("Load ledger " + std::string(id) + ": the restart file holds another ledger (" + whose + "), this one starts empty.");
+    say("Load ledger " + std::string(id) + ": the restart file holds another ledger (" + whose +
+        "), this one starts empty.");
     return;
   }
   take(&steps_, sizeof steps_);

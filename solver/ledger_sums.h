@@ -46,8 +46,8 @@ class LedgerSums {
   }
 
   std::size_t bytes() const { return sums_.size() * sizeof(CompensatedSum); }
-  const void *stored() const { return sums_.data(); }
-  void restore(const char *stored) { std::memcpy(static_cast<void *>(sums_.data()), stored, bytes()); }
+  const void* stored() const { return sums_.data(); }
+  void restore(const char* stored) { std::memcpy(static_cast<void*>(sums_.data()), stored, bytes()); }
 
  private:
   std::size_t index(int column, int triangle) const { return static_cast<std::size_t>(column) * triangles_ + triangle; }

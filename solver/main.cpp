@@ -19,20 +19,23 @@ namespace {
 using LAMMPS_NS::Fix;
 using LAMMPS_NS::LAMMPS;
 using LAMMPS_NS::Modify;
-using FixStyles = std::map<std::string, Fix *(*)(LAMMPS *, int, char **)>;
+using FixStyles = std::map<std::string, Fix* (*)(LAMMPS*, int, char**)>;
 
-// The solver offers no call to add a fix style, and its list of styles is a private member. An explicit instantiation may
-// name private members (C++ standard, [temp.spec]), which hands the list out without touching the solver's headers.
-template <FixStyles *Modify::*list>
+// The solver offers no call to add a fix style, and its list of styles is a private member. An explicit instantiation
+// may name private members (C++ standard, [temp.spec]), which hands the list out without touching the solver's headers.
+template <FixStyles* Modify::* list>
 struct StyleListAccess {
-  friend FixStyles *style_list(Modify *modify) { return modify->*list; }
+  friend FixStyles* style_list(Modify* modify) { return modify->*list; }
 };
-FixStyles *style_list(Modify *modify);
+FixStyles* style_list(Modify* modify);
 template struct StyleListAccess<&Modify::fix_map>;
 
-Fix *create_load_ledger(LAMMPS *lammps, int narg, char **arg) { return new load_ledger::FixLoadLedger(lammps, narg, arg); }
+Fix* create_load_ledger(LAMMPS* lammps, int narg, char** arg) {
+  return new load_ledger::FixLoadLedger(lammps, narg, arg);
+}
 
-// As the plain program does: a first signal ends the run after the next step, with a restart file if the deck asks for one.
+// As the plain program does: a first signal ends the run after the next step, with a restart file if the deck asks for
+// one.
 void handle_signals() {
   std::signal(SIGINT, LAMMPS_NS::SignalHandler::int_handler);
   std::signal(SIGTERM, LAMMPS_NS::SignalHandler::int_handler);
@@ -41,11 +44,11 @@ void handle_signals() {
 
 }  // namespace
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // or a fatal message would vanish in a pipe
   handle_signals();
   MPI_Init(&argc, &argv);
-  LAMMPS *lammps = new LAMMPS(argc, argv, MPI_COMM_WORLD);
+  LAMMPS* lammps = new LAMMPS(argc, argv, MPI_COMM_WORLD);
   (*style_list(lammps->modify))["load/ledger"] = create_load_ledger;
   lammps->input->file();
   delete lammps;

@@ -34,22 +34,24 @@ constexpr int PROOF_INTERVAL = 1000;     // steps between two looks for a first 
 
 std::string kernel_names() {
   std::string names;
-  for (const Kernel &kernel : KERNELS) names += (names.empty() ? "" : ", ") + std::string(kernel.name);
+  for (const Kernel& kernel : KERNELS) names += (names.empty() ? "" : ", ") + std::string(kernel.name);
   return names;
 }
 
 }  // namespace
 
-void FixLoadLedger::parse(int narg, char **arg) {
-  const auto stop = [this](const std::string &sentence) { error->all(FLERR, ("fix load/ledger: " + sentence).c_str()); };
+void FixLoadLedger::parse(int narg, char** arg) {
+  const auto stop = [this](const std::string& sentence) {
+    error->all(FLERR, ("fix load/ledger: " + sentence).c_str());
+  };
   for (int k = 3; k < narg;) {
     const std::string key = arg[k++];
     if ((key == "mesh" || key == "file") && k < narg) {
       (key == "mesh" ? mesh_id_ : file_) = arg[k++];
     } else if (key == "kernels") {
       for (; k < narg; ++k) {
-        const Kernel *found = nullptr;
-        for (const Kernel &kernel : KERNELS)
+        const Kernel* found = nullptr;
+        for (const Kernel& kernel : KERNELS)
           if (!std::strcmp(kernel.name, arg[k])) found = &kernel;
         if (!found) stop("found kernel '" + std::string(arg[k]) + "', allowed are " + kernel_names() + ".");
         kernels_.push_back(*found);
@@ -60,46 +62,54 @@ void FixLoadLedger::parse(int narg, char **arg) {
   }
   if (mesh_id_.empty() || file_.empty()) stop("it needs mesh MESH_ID and file FILE.");
   if (!atom->sphere_flag && !atom->radius_flag) stop("it needs spheres or multispheres.");
-  if (atom->superquadric_flag || atom->shapetype_flag) stop("found particles that are not spheres; allowed are spheres and multispheres.");
+  if (atom->superquadric_flag || atom->shapetype_flag)
+    stop("found particles that are not spheres; allowed are spheres and multispheres.");
 }
 
 void FixLoadLedger::find_mesh() {
-  Fix *found = modify->find_fix_id(mesh_id_.c_str());
-  mesh_ = dynamic_cast<FixMeshSurface *>(found);
+  Fix* found = modify->find_fix_id(mesh_id_.c_str());
+  mesh_ = dynamic_cast<FixMeshSurface*>(found);
   if (!mesh_) error->all(FLERR, ("fix load/ledger: found no mesh/surface fix with the id '" + mesh_id_ + "'.").c_str());
   if (!mesh_->contactHistory())
-    error->all(FLERR, ("fix load/ledger: no wall/gran fix before it uses the mesh '" + mesh_id_ + "', so nothing can touch it.").c_str());
+    error->all(FLERR, ("fix load/ledger: no wall/gran fix before it uses the mesh '" + mesh_id_ +
+                       "', so nothing can touch it.")
+                          .c_str());
 }
 
 // Fields read through our headers are compared with what the solver's own compiled code gives for them.
 void FixLoadLedger::check_layout() {
   if (!std::strstr(universe->version, LIGGGHTS_VERSION_BUILT_FOR)) {
-    error->all(FLERR, (std::string("fix load/ledger was built for LIGGGHTS ") + LIGGGHTS_VERSION_BUILT_FOR + " and runs with '" +
-                       universe->version + "'; build it for that version (make -C solver).").c_str());
+    error->all(FLERR, (std::string("fix load/ledger was built for ") + LIGGGHTS_VERSION_BUILT_FOR +
+                       " and runs with '" + universe->version + "'; build it for that version (make -C solver).")
+                          .c_str());
   }
   std::string wrong;
-  const auto same = [&wrong](bool equal, const char *what) {
+  const auto same = [&wrong](bool equal, const char* what) {
     if (!equal) wrong += (wrong.empty() ? "" : ", ") + std::string(what);
   };
   same(lammps_extract_global(lmp, "dt") == &update->dt, "update");
   same(lammps_extract_global(lmp, "nlocal") == &atom->nlocal, "atom");
   same(lammps_extract_atom(lmp, "x") == atom->x && lammps_extract_atom(lmp, "v") == atom->v, "motion of particles");
   same(lammps_extract_atom(lmp, "omega") == atom->omega, "spin of particles");
-  same(lammps_extract_atom(lmp, "radius") == atom->radius && lammps_extract_atom(lmp, "rmass") == atom->rmass, "size of particles");
-  same(lammps_extract_atom(lmp, "type") == atom->type && lammps_extract_atom(lmp, "mask") == atom->mask, "type of particles");
+  same(lammps_extract_atom(lmp, "radius") == atom->radius && lammps_extract_atom(lmp, "rmass") == atom->rmass,
+       "size of particles");
+  same(lammps_extract_atom(lmp, "type") == atom->type && lammps_extract_atom(lmp, "mask") == atom->mask,
+       "type of particles");
   same(mesh_id_ == mesh_->id, "fix");
   if (*hook_fault()) same(false, hook_fault());
   if (!wrong.empty()) misfit(wrong);
 }
 
-void FixLoadLedger::misfit(const std::string &what) {
-  error->one(FLERR, ("fix load/ledger does not fit this LIGGGHTS (" + what + "); build it against the headers of the solver in use "
-                     "(make -C solver).").c_str());
+void FixLoadLedger::misfit(const std::string& what) {
+  error->one(FLERR, ("fix load/ledger does not fit this LIGGGHTS (" + what +
+                     "); build it against the headers of the solver in use "
+                     "(make -C solver).")
+                        .c_str());
 }
 
 // The same for the mesh, once the set-up has shared it out between the ranks: areas and ids as the solver keeps them.
 void FixLoadLedger::check_triangles() {
-  TriMesh *mesh = mesh_->triMesh();
+  TriMesh* mesh = mesh_->triMesh();
   if (mesh->sizeGlobal() != triangles_) misfit("number of triangles");
   for (int triangle = 0; triangle < mesh->sizeLocal(); ++triangle) {
     double corner[3][3], along[3], across[3], normal[3];
@@ -118,8 +128,9 @@ void FixLoadLedger::check_triangles() {
 // Effective modulus of each particle type and the wall: 1/E* = sum of (1 - nu^2)/E (Hertz 1882).
 void FixLoadLedger::check_materials() {
   const int types = atom->get_properties()->max_type();
-  const auto property = [&](const char *name) {
-    return static_cast<FixPropertyGlobal *>(modify->find_fix_property(name, "property/global", "peratomtype", types, 0, style));
+  const auto property = [&](const char* name) {
+    return static_cast<FixPropertyGlobal*>(
+        modify->find_fix_property(name, "property/global", "peratomtype", types, 0, style));
   };
   FixPropertyGlobal *modulus = property("youngsModulus"), *ratio = property("poissonsRatio");
   const auto compliance = [&](int type) {
@@ -131,8 +142,8 @@ void FixLoadLedger::check_materials() {
     modulus_of_type_.push_back(1.0 / (compliance(type) + compliance(mesh_->atomTypeWall())));
 }
 
-// The solver must call us for every contact that it sees. Without a contact there is nothing to prove yet: the first one
-// is looked for now and then, and at the end of the run.
+// The solver must call us for every contact that it sees. Without a contact there is nothing to prove yet: the first
+// one is looked for now and then, and at the end of the run.
 void FixLoadLedger::prove_called(bool last) {
   const bool starting = phase_ == Phase::set_up;
   if (!starting && !last && update->ntimestep % PROOF_INTERVAL) return;
@@ -141,8 +152,9 @@ void FixLoadLedger::prove_called(bool last) {
   double local[2] = {static_cast<double>(touching), static_cast<double>(hook_calls())}, all[2];
   MPI_Allreduce(local, all, 2, MPI_DOUBLE, MPI_SUM, world);
   if (all[0] > 0 && all[1] == 0)
-    error->all(FLERR, "fix load/ledger: the solver sees contacts with meshes and reports none of them to the ledger; build it "
-                      "against the solver in use (make -C solver).");
+    error->all(FLERR,
+               "fix load/ledger: the solver sees contacts with meshes and reports none of them to the ledger; build it "
+               "against the solver in use (make -C solver).");
   std::ostringstream text;
   text << "Load ledger " << id << ": mesh " << mesh_id_ << " with " << triangles_ << " triangles, "
        << LIGGGHTS_VERSION_BUILT_FOR << " and its class layout as built for, ";
@@ -154,7 +166,7 @@ void FixLoadLedger::prove_called(bool last) {
   }
 }
 
-void FixLoadLedger::say(const std::string &sentence) {
+void FixLoadLedger::say(const std::string& sentence) {
   if (comm->me != 0) return;
   if (screen) fprintf(screen, "%s\n", sentence.c_str());
   if (logfile) fprintf(logfile, "%s\n", sentence.c_str());

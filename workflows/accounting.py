@@ -1,4 +1,4 @@
-"""What a simulated cycle did to the surface: dumps become a load ledger, the ledger wear, the wear a new surface."""
+"""What a simulated cycle did to the surface: its loads become a ledger, the ledger wear, the wear a new surface."""
 
 from __future__ import annotations
 
@@ -11,22 +11,19 @@ import numpy as np
 import pandas as pd
 
 from postproc.mesh import SurfaceMesh, areas, read_surface, write_surface
-from postproc.readers.contacts import read_contact_batches
 from postproc.readers.mesh_loads import read_mesh_loads
 from postproc.readers.solver_log import thermo_table
 from postproc.wear.caps import step_limit
 from postproc.wear.laws import worn_volume
-from postproc.wear.ledger import LedgerBuilder
 from postproc.wear.update import lost_volume, recession_fault, volume_balance, wear_update, worn_faces
 from workflows import state
 from workflows.chain import SURFACE, Chain
+from workflows.ledgers import producer
 from workflows.solver import LOG
 
-LEDGER, FORCES, TOUCHING = "ledger.parquet", "forces.csv", "touching.npy"
-CONTACTS, SPINS = "contacts.dump", "spins.dump"
+LEDGER, FORCES = "ledger.parquet", "forces.csv"
 SETUP_LOADS, SETUP_BED = "loads_0.vtk", "bed_0.dump"  # of the cycle's first instant: the last one of the cycle before
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J", "finnie_wear")
-SAMPLE_MESH = 0  # index of the sample among the meshes of the wall fix
 
 
 class WearError(RuntimeError):
@@ -34,50 +31,28 @@ class WearError(RuntimeError):
 
 
 def account_and_wear(chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh) -> dict[str, Any]:
-    """Turn a cycle's dumps into its ledger and worn surface; return its record. The dumps are removed."""
-    dump_bytes = sum((folder / name).stat().st_size for name in (CONTACTS, SPINS))
-    ledger = account(chain, cycle, folder, len(surface.triangles))
+    """Turn what the solver wrote in a cycle into its ledger and worn surface; return its record.
+
+    What only the ledger was made from is removed.
+    """
+    source = producer(chain.parameters)
+    ledger_bytes = source.written_bytes(folder)
+    ledger = account(chain, cycle, folder, surface)
     write_forces(chain, cycle, folder)
     row = wear(chain, cycle, folder, surface, ledger)
-    for name in (CONTACTS, SPINS, SETUP_LOADS, SETUP_BED):
+    for name in (*source.files, SETUP_LOADS, SETUP_BED):
         (folder / name).unlink()
-    return {"wear": row, "cost": {"dump_bytes": dump_bytes}}
+    return {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}
 
 
-def account(chain: Chain, cycle: int, folder: Path, triangles: int) -> pd.DataFrame:
-    """Sum the sampled contacts of a cycle into its ledger, the solver's own measures beside it; write and return it."""
-    parameters = chain.parameters
-    interval = parameters["solver"]["sampling_interval_steps"] * parameters["derived"]["time_step_s"]
-    builder = LedgerBuilder(
-        triangles,
-        SAMPLE_MESH,
-        effective_modulus(parameters),
-        parameters["particle"]["density_kg_per_m3"],
-        touching=_touching_before(chain, cycle),
-    )
-    for batch in read_contact_batches(folder / CONTACTS, folder / SPINS, after_step=0):
-        builder.add_batch(batch, interval)
-    expected = parameters["derived"]["cycle_steps"] // parameters["solver"]["sampling_interval_steps"]
-    if builder.samples != expected:
-        raise WearError(f"{folder / CONTACTS}: found {builder.samples} samples of the contacts, allowed is {expected}.")
-    own = read_mesh_loads(folder / f"loads_{parameters['derived']['cycle_steps']}.vtk", triangles)
-    ledger = pd.DataFrame({"triangle": own.pop("triangle"), **builder.table(), **own})
+def account(chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh) -> pd.DataFrame:
+    """Write a cycle's ledger, the solver's own measures beside it, and return it. Raises the producer's errors."""
+    columns = producer(chain.parameters).columns(chain, cycle, folder, surface)
+    steps = chain.parameters["derived"]["cycle_steps"]
+    own = read_mesh_loads(folder / f"loads_{steps}.vtk", len(surface.triangles))
+    ledger = pd.DataFrame({"triangle": own.pop("triangle"), **columns, **own})
     ledger.to_parquet(folder / LEDGER, index=False)
-    touching = builder.touching
-    np.save(folder / TOUCHING, np.zeros(0, np.int64) if touching is None else touching)
     return ledger
-
-
-def _touching_before(chain: Chain, cycle: int) -> np.ndarray | None:
-    path = state.cycle_folder(chain.folder, cycle - 1) / TOUCHING
-    return np.load(path) if path.exists() else None
-
-
-def effective_modulus(parameters: Mapping[str, Any]) -> float:
-    """Return E* (Pa) of particle and sample as simulated: 1/E* = sum of (1 - nu^2)/E (Hertz 1882)."""
-    moduli = parameters["derived"]["youngs_modulus_pa"]
-    pairs = ((name, parameters[name]["poissons_ratio"]) for name in ("particle", "sample_material"))
-    return 1.0 / sum((1.0 - ratio**2) / moduli[name] for name, ratio in pairs)
 
 
 def write_forces(chain: Chain, cycle: int, folder: Path) -> None:

@@ -9,6 +9,7 @@ from snakemake.utils import min_version
 from workflows.deck import template_sources
 from workflows.design import ConfigError, list_studies, load_study
 from workflows.job import let_jobs_import
+from workflows.solver import CYCLE_EXECUTABLES, missing_program
 
 min_version("9.0")
 
@@ -40,6 +41,14 @@ def checked_studies():
 
 
 STUDIES = checked_studies()
+
+
+onstart:
+    # before the first job: a bed takes minutes to fill, and without its solver no run can follow
+    for job in workflow.dag.needrun_jobs():
+        if job.rule.name == "worn_run":
+            if fault := missing_program(CYCLE_EXECUTABLES[run_parameters(job.wildcards)["ledger"]]):
+                raise WorkflowError(fault)
 
 
 def study_of(wildcards):

@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from postproc.mesh import read_surface, write_surface
+from postproc.readers.load_ledger import announcement
 from postproc.readers.solver_log import solver_version, thermo_table, warnings
 from workflows import deck, state
-from workflows.accounting import LEDGER, TOUCHING, account_and_wear, worn_surface
+from workflows.accounting import LEDGER, account_and_wear, worn_surface
 from workflows.chain import (
     RESTART,
     SURFACE,
@@ -27,8 +28,9 @@ from workflows.chain import (
     write_cycle,
     write_end_wall,
 )
+from workflows.ledgers import producer
 from workflows.progress import Progress
-from workflows.solver import LOG, SCREEN, run_deck
+from workflows.solver import CYCLE_EXECUTABLES, EXECUTABLE, LOG, SCREEN, SolverError, missing_program, run_deck
 from workflows.tables import write_table
 
 WORN_SURFACE = "worn_surface.vtu"
@@ -45,6 +47,8 @@ def run_chain(chain: Chain) -> None:
         if moved := state.set_aside_others(chain.folder, inputs):
             announce(moved)
         finished = state.finished_cycles(chain.folder, inputs)
+        if finished <= chain.cycles and (missing := missing_program(cycle_executable(chain, 1))):
+            raise SolverError(missing)  # before the run-in, which needs the plain solver only
         progress = Progress(chain.name, total_steps(chain), sum(cycle_steps(chain, k) for k in range(finished)))
         if 0 < finished <= chain.cycles:
             announce(f"resumes after {cycle_title(chain, finished - 1)}")
@@ -80,13 +84,14 @@ def run_cycle(chain: Chain, cycle: int, inputs: str, progress: Progress) -> None
             "bed_travelled_m": deck.travelled(chain.parameters, cycle + 1),
             "seed": chain.bed["seed"],
             "solver": solver_version(folder / SCREEN),
+            "solver_ledger": announcement(folder / SCREEN),
             "solver_warnings": warnings(folder / SCREEN),
         }
         if inputs_digest(chain) != inputs:
             raise state.StateError(
                 f"{chain.name}: its inputs changed while {cycle_title(chain, cycle)} ran; start again."
             )
-        files = (RESTART,) if cycle == 0 else (RESTART, SURFACE, LEDGER, TOUCHING)
+        files = (RESTART,) if cycle == 0 else (RESTART, SURFACE, LEDGER, *producer(chain.parameters).kept)
         state.write_state(folder, inputs, files, record)
 
 
@@ -98,7 +103,13 @@ def simulate(chain: Chain, cycle: int, folder: Path, triangles: int, progress: P
         chain.ranks,
         lambda step: progress.update(before + step, cycle_title(chain, cycle)),
         triangles={f"sample_{cycle}": triangles},
+        executable=cycle_executable(chain, cycle),
     )
+
+
+def cycle_executable(chain: Chain, cycle: int) -> str:
+    """Return the program that simulates a cycle; only wear cycles have a ledger."""
+    return CYCLE_EXECUTABLES[chain.parameters["ledger"]] if cycle else EXECUTABLE
 
 
 def cost(chain: Chain, cycle: int, folder: Path, solver_seconds: float, all_seconds: float) -> dict[str, float]:
@@ -112,7 +123,7 @@ def cost(chain: Chain, cycle: int, folder: Path, solver_seconds: float, all_seco
         "particles": int(thermo["Atoms"][-1]),
         "triangles": int(read_surface(chain.surface).triangles.shape[0]),
         "ranks": chain.ranks,
-        "dump_bytes": 0,
+        "ledger_bytes": 0,
     }
 
 

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import jinja2
@@ -17,6 +18,7 @@ import jinja2.meta
 
 from postproc.readers.contacts import CONTACT_COLUMNS
 from postproc.wear.caps import GRAVITY
+from postproc.wear.laws import law_kernels
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
@@ -60,18 +62,42 @@ def pair_table(rows: Sequence[Sequence[float]]) -> str:
     return " &\n".join("     " + " ".join(f"{value:.9g}" for value in row) for row in rows)
 
 
-def template_parts(template: str, folder: Path = TEMPLATES) -> list[str]:
-    """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
+def _trees(template: str, folder: Path, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Template]:
+    """Return {file name: syntax tree} of a template and its partials, without branches that `words` do not take.
+
+    That is decided for branches `{% if name == "word" %}` whose name `words` has; all others count as taken.
+    """
     environment = _environment(folder)
+    trees: dict[str, jinja2.nodes.Template] = {}
     names = [f"{template}.in.j2"]
     for name in names:
         try:
             source = environment.loader.get_source(environment, name)[0]
         except jinja2.TemplateNotFound as missing:
             raise DeckError(f"templates/{missing.name}: no such template.") from missing
-        found = jinja2.meta.find_referenced_templates(environment.parse(source))
+        trees[name] = environment.parse(source)
+        for branch in trees[name].find_all(jinja2.nodes.If):
+            _prune(branch, words)
+        found = jinja2.meta.find_referenced_templates(trees[name])
         names.extend(part for part in found if part and part not in names)
-    return names
+    return trees
+
+
+def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> None:
+    """Empty the part of a branch that `words` do not take."""
+    test = branch.test
+    if not (isinstance(test, jinja2.nodes.Compare) and isinstance(test.expr, jinja2.nodes.Name)):
+        return
+    if len(test.ops) != 1 or test.ops[0].op != "eq" or not isinstance(test.ops[0].expr, jinja2.nodes.Const):
+        return
+    if test.expr.name in words:
+        taken = words[test.expr.name] == test.ops[0].expr.value
+        branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
+
+
+def template_parts(template: str, folder: Path = TEMPLATES) -> list[str]:
+    """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
+    return list(_trees(template, folder, {}))
 
 
 def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
@@ -79,16 +105,16 @@ def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
     return {name: (folder / name).read_text() for name in template_parts(template, folder)}
 
 
-def template_variables(template: str, folder: Path = TEMPLATES) -> set[str]:
-    """Return the names of all parameters that a template and its partials use."""
-    environment = _environment(folder)
-    sources = template_sources(template, folder).values()
-    return set().union(*(jinja2.meta.find_undeclared_variables(environment.parse(text)) for text in sources))
+def template_variables(
+    template: str, folder: Path = TEMPLATES, words: Mapping[str, Any] = MappingProxyType({})
+) -> set[str]:
+    """Return the names of all parameters that a template and its partials use, in the branches that `words` take."""
+    return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, folder, words).values()))
 
 
 def render(template: str, parameters: Mapping[str, Any], folder: Path = TEMPLATES) -> str:
     """Return the deck of a template, e.g. "settled_bed". Raises DeckError for missing and for unused parameters."""
-    wanted = template_variables(template, folder)
+    wanted = template_variables(template, folder, parameters)
     for names, fault in (
         (wanted - set(parameters), "is not given"),
         (set(parameters) - wanted, "is never used"),
@@ -153,17 +179,35 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
 def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, run_restart: str) -> dict[str, Any]:
     """Return the parameters of the deck of one wear cycle (1, 2, ...); arguments as for `lowered_bed`."""
     derived = run["derived"]
-    contact_columns = range(1, CONTACT_COLUMNS + 1)
     return {
         **_integration(run["solver"], derived["time_step_s"], run["particle"], derived["cycle_steps"]),
         **_sliding(run, bed, cycle),
         "run_restart": run_restart,
         "cycle_steps": derived["cycle_steps"],
-        "sampling_interval_steps": run["solver"]["sampling_interval_steps"],
         "picture_steps": min(derived["picture_interval_steps"], derived["cycle_steps"]),
-        "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in contact_columns),
-        "contact_format": " ".join("%.0f" if column in ID_COLUMNS else "%g" for column in contact_columns),
+        "ledger": run["ledger"],
+        **LEDGERS[run["ledger"]](run),
     }
+
+
+def _exact_ledger(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a deck needs to sum every contact in the solver."""
+    kernels = law_kernels(run["wear"]["law"])
+    return {"ledger_kernels": " ".join(["", "kernels", *kernels]) if kernels else ""}
+
+
+def _sampled_contacts(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a deck needs to write sampled contacts."""
+    columns = range(1, CONTACT_COLUMNS + 1)
+    return {
+        "sampling_interval_steps": run["solver"]["sampling_interval_steps"],
+        "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in columns),
+        "contact_format": " ".join("%.0f" if column in ID_COLUMNS else "%g" for column in columns),
+    }
+
+
+# Producers of the load ledger -> what their part of the deck is filled with.
+LEDGERS = {"solver": _exact_ledger, "dumps": _sampled_contacts}
 
 
 def travelled(run: Mapping[str, Any], cycle: int) -> float:

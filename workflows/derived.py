@@ -155,7 +155,8 @@ def _derived_times(parameters: dict[str, Any]) -> dict[str, Any]:
     )
     largest = solver["rayleigh_fraction"] * rayleigh
     duration = sliding["travel_m"] / sliding["cycles"] / sliding["velocity_m_per_s"]
-    cycle_steps, time_step = whole_cycle(duration, largest, solver["sampling_interval_steps"])
+    # only sampled contacts ask for whole samples in a cycle
+    cycle_steps, time_step = whole_cycle(duration, largest, solver.get("sampling_interval_steps", 1))
     travel_per_step = sliding["velocity_m_per_s"] * time_step
     return {
         "rayleigh_time_s": rayleigh,

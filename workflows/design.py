@@ -53,8 +53,8 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 class Run:
     """One simulation: a row of the design with one surface.
 
-    `parameters` holds the sections sample, pattern (None for a plain plate), bed, sliding, wear, solver,
-    particle, sample_material, floor_material and derived; SI, the unit is the suffix of the key.
+    `parameters` holds ledger (solver or dumps) and the sections sample, pattern (None for a plain plate), bed,
+    sliding, wear, solver, particle, sample_material, floor_material and derived; SI, the unit is the suffix of the key.
     """
 
     name: str
@@ -283,6 +283,7 @@ def run_parameters(
     si, factors = to_si(settings), to_si(row)
     scale = row_particle_scale(settings, materials, factors["bed_thickness_m"])
     parameters = {
+        "ledger": si["ledger"],
         "sample": si["sample"],
         "pattern": _pattern(si["pattern"], factors) if surface == "convex" else None,
         "bed": {**si["bed"], "thickness_m": factors["bed_thickness_m"]},
@@ -291,7 +292,7 @@ def run_parameters(
             **si["wear"],
             "accelerated_wear_coefficient_per_pa": si["wear"]["wear_coefficient_per_pa"] * si["wear"]["acceleration"],
         },
-        "solver": si["solver"],
+        "solver": {k: v for k, v in si["solver"].items() if si["ledger"] == "dumps" or k != "sampling_interval_steps"},
         "particle": _particle(settings["bed"]["material"], materials, scale),
         "sample_material": _wall(settings["sample"]["material"], materials),
         "floor_material": _wall(settings["bed"]["floor_material"], materials),
@@ -370,7 +371,7 @@ REDUCED = (
 
 
 def figure_remarks(study: Study) -> list[str]:
-    """Return what every figure must say: what is smaller than at paper fidelity, thin beds, acceleration."""
+    """Return what every figure must say: what is smaller than at paper fidelity, thin beds, law, acceleration."""
     now, full = study.settings, study.paper_settings
     remarks = []
     scales = sorted({round(run.parameters["particle"]["scale"], 3) for run in study.runs})
@@ -391,6 +392,8 @@ def figure_remarks(study: Study) -> list[str]:
     hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
     if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
         remarks.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")
+    if now["wear"]["law"] != "archard":
+        remarks.append(f"worn by the law {now['wear']['law']}, whose volume stands where Archard's is named")
     if now["wear"]["acceleration"] != 1.0:
         remarks.append(f"wear accelerated {now['wear']['acceleration']:g} times")
     return remarks

@@ -24,6 +24,13 @@ UNITS = (
     ("_pa", "Pa"),
     ("_s", "s"),
 )
+LAW_WORDS = {
+    "archard": "volume = coefficient times normal force times sliding path, coefficient {} 1/Pa, the same for all "
+    "particles and places. Rolling and impact are recorded but take no volume.",
+    "finnie": "volume = coefficient times a function of the impact angle times force and velocity of the particle's "
+    "centre, coefficient {} 1/Pa, the same for all particles and places. Where figures and columns name Archard's "
+    "volume, it is this law's.",
+}  # what a law takes, the coefficient left open
 SPOKEN = {"_fraction", "_steps"}  # suffixes that belong to the name as well
 EXTRA_UNITS = {
     "particle_scale": NO_UNIT,
@@ -71,11 +78,7 @@ def simplifications(study: Mapping[str, Any], summary: pd.DataFrame) -> list[tup
         ("Reduced scale", f"{reduced}."),
         *_wear_simplifications(settings, summary),
         ("Particles", _particles(study)),
-        (
-            "Sampled contacts",
-            f"Loads are summed from contacts sampled every {settings['solver']['sampling_interval_steps']} steps "
-            f"({_sampled_travel(study)} mm of travel), not from every step.",
-        ),
+        *_sampling(study),
         (
             "Skirt not counted",
             f"A ramp of {settings['sample']['skirt_slope_deg']:g}° leads from the floor on to the sample. It is not "
@@ -86,12 +89,19 @@ def simplifications(study: Mapping[str, Any], summary: pd.DataFrame) -> list[tup
             f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel. Runs of "
             "equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
         ),
-        (
-            "LIGGGHTS' Finnie differs",
-            "The solver's own wear model is Finnie's impact wear with the velocity of the particle's centre, without "
-            "spin; it tends to zero for pure sliding. It stands beside Archard's law for comparison and wears nothing.",
-        ),
+        *_comparison(settings["wear"]["law"]),
     ]
+
+
+def _comparison(law: str) -> list[tuple[str, str]]:
+    """Return what the solver's own wear measure is; nothing where the study wears by that law itself."""
+    if law == "finnie":
+        return []
+    how = (
+        "The solver's own wear model is Finnie's impact wear with the velocity of the particle's centre, without "
+        "spin; it tends to zero for pure sliding. It stands beside Archard's law for comparison and wears nothing."
+    )
+    return [("LIGGGHTS' Finnie differs", how)]
 
 
 def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame) -> list[tuple[str, str]]:
@@ -99,9 +109,7 @@ def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame) ->
     wear = settings["wear"]
     law = (
         "Wear law",
-        f"{wear['law'].capitalize()}: volume = coefficient times normal force times sliding path, coefficient "
-        f"{wear['wear_coefficient_per_pa']:.3g} 1/Pa, the same for all particles and places. "
-        "Rolling and impact are recorded but take no volume.",
+        f"{wear['law'].capitalize()}: " + LAW_WORDS[wear["law"]].format(f"{wear['wear_coefficient_per_pa']:.3g}"),
     )
     factor = wear["acceleration"]
     accelerated = (
@@ -121,6 +129,18 @@ def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame) ->
         f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
     )
     return [law, acceleration, caps]
+
+
+def _sampling(study: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what sampled contacts leave out; nothing where the solver sums every step."""
+    settings = study["settings"]
+    if settings["ledger"] == "solver":
+        return []
+    how = (
+        f"Loads are summed from contacts sampled every {settings['solver']['sampling_interval_steps']} steps "
+        f"({_sampled_travel(study)} mm of travel), not from every step."
+    )
+    return [("Sampled contacts", how)]
 
 
 def _particles(study: Mapping[str, Any]) -> str:

@@ -17,6 +17,8 @@ from postproc.readers.solver_log import SolverLogError, failure, last_step, repo
 
 DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
 EXECUTABLE = "liggghts"
+LEDGER_EXECUTABLE = str(Path(__file__).resolve().parents[1] / "solver" / "build" / "liggghts-ledger")
+CYCLE_EXECUTABLES = {"solver": LEDGER_EXECUTABLE, "dumps": EXECUTABLE}  # of wear cycles, by the ledger's producer
 POLL_SECONDS = 0.25  # between two looks at the log
 LAST_LINES = 12  # of the solver's output, shown when it fails
 _PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
@@ -26,9 +28,21 @@ class SolverError(RuntimeError):
     """LIGGGHTS failed; the message gives its last words and, where known, the cause."""
 
 
-def solver_command(ranks: int) -> list[str]:
+def missing_program(executable: str) -> str | None:
+    """Return a sentence that says what to do where a program is missing, None where it is there."""
+    if shutil.which(executable) is not None:
+        return None
+    if executable == LEDGER_EXECUTABLE:
+        return (
+            f"{executable}: there is no such program; `make setup` (or `make -C solver`) builds it, and a study with "
+            "`ledger: dumps` does without."
+        )
+    return f"{executable} is not on the PATH; `make setup` installs it and `make doctor` checks it."
+
+
+def solver_command(ranks: int, executable: str = EXECUTABLE) -> list[str]:
     """Return the command that runs a deck; output is line-buffered, or fatal messages would vanish in a pipe."""
-    deck = ["stdbuf", "-oL", EXECUTABLE, "-in", DECK, "-log", LOG]
+    deck = ["stdbuf", "-oL", executable, "-in", DECK, "-log", LOG]
     return deck if ranks == 1 else ["mpirun", "--bind-to", "none", "-n", str(ranks), *deck]
 
 
@@ -43,20 +57,22 @@ def run_deck(
     ranks: int = 1,
     on_step: Callable[[int], None] = lambda step: None,
     triangles: Mapping[str, int] | None = None,
+    executable: str = EXECUTABLE,
 ) -> float:
     """Run `deck.in` of a folder to its end and return the wall time in s.
 
     on_step: called with the last time step reported, several times a second
     triangles: {mesh fix id: number of triangles written for it}; the run is stopped when the solver reports fewer
+    executable: name on the PATH, or path, of the LIGGGHTS that runs it
 
     Raises SolverError.
     """
-    if shutil.which(EXECUTABLE) is None:
-        raise SolverError(f"{EXECUTABLE} is not on the PATH; `make setup` installs it and `make doctor` checks it.")
+    if missing := missing_program(executable):
+        raise SolverError(missing)
     started, unchecked = time.monotonic(), dict(triangles or {})
     with open(folder / SCREEN, "wb") as screen:
         process = subprocess.Popen(
-            solver_command(ranks),
+            solver_command(ranks, executable),
             cwd=folder,
             env=solver_environment(),
             stdin=subprocess.DEVNULL,

@@ -9,7 +9,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import LARGEST_HEIGHT, MARKERS, SMALLEST_FONT, colour, facets, label_all, new_figure, scaled
+from postproc.plots.style import (
+    COLOURS,
+    LARGEST_HEIGHT,
+    MARKERS,
+    OTHER_COLOUR,
+    SMALLEST_FONT,
+    colour,
+    facets,
+    label_all,
+    new_figure,
+    scaled,
+)
 
 FEW_ROWS = 2  # design rows that are drawn in full; more become small multiples or means
 
@@ -120,4 +131,27 @@ def forces(history: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     for axes in grid.ravel():
         axes.axhline(0.0, color="#888888", linewidth=0.6)
     _legend(figure, list(dict.fromkeys(history["surface"])), {})
+    return figure
+
+
+def sampling_error(errors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw the error (%) of sampled sliding work against the stride (steps).
+
+    errors: as from `analysis.sampling.sampling_errors`. The error of short windows is against stride 1.
+    """
+    figure = new_figure(remarks)
+    axes = figure.subplots()
+    lines = {
+        "map_error": ("map over the triangles, whole travel", "o-", COLOURS["convex"]),
+        "short_window_error": ("total of a tenth of the travel", "s-", COLOURS["plain"]),
+        "total_error": ("total of the whole travel", "^-", OTHER_COLOUR),
+    }
+    for column, (label, style, shade) in lines.items():
+        drawn = errors[errors[column] > 0.0] if column != "short_window_error" else errors[errors["stride_steps"] > 1]
+        axes.plot(drawn["stride_steps"], 100.0 * drawn[column], style, color=shade, label=label)
+    axes.set(xscale="log", yscale="log", xlabel="Steps between two samples of the contacts")
+    axes.set_ylabel("Error of the sliding work (%)")
+    axes.set_xticks(errors["stride_steps"], [str(stride) for stride in errors["stride_steps"]])
+    axes.minorticks_off()
+    axes.legend()
     return figure

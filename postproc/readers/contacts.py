@@ -27,17 +27,16 @@ _CONTACT_ENDINGS = [f"{k}]" for k in range(1, CONTACT_COLUMNS + 1)]
 _MESH, _TRIANGLE, _PARTICLE = 12, 13, 14
 
 
-@dataclass(frozen=True, eq=False)
-class Contacts:
-    """Contacts between particles and mesh triangles at one sampled time step.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _ContactArrays:
+    """What is known of n contacts between particles and mesh triangles.
 
-    step: time step; triangle, mesh, particle: (n,) int64 (triangle 0-based = facet order of the STL file)
+    triangle, mesh, particle: (n,) int64 (triangle 0-based = facet order of the STL file)
     contact_point, centre: (n, 3) m; radius: (n,) m
     wall_velocity, particle_velocity: (n, 3) m/s; angular_velocity: (n, 3) rad/s
     force: (n, 3) N, on the particle
     """
 
-    step: int
     triangle: np.ndarray
     mesh: np.ndarray
     particle: np.ndarray
@@ -50,34 +49,31 @@ class Contacts:
     radius: np.ndarray
 
 
-CONTACT_FIELDS = tuple(Contacts.__dataclass_fields__)[1:]
+CONTACT_FIELDS = tuple(_ContactArrays.__dataclass_fields__)
 
 
-@dataclass(frozen=True, eq=False)
-class ContactBatch:
-    """Contacts of consecutive samples in one piece: the arrays of `Contacts`, and the rows of each sample.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Contacts(_ContactArrays):
+    """Contacts at one sampled time step; step: the time step."""
+
+    step: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ContactBatch(_ContactArrays):
+    """Contacts of consecutive samples in one piece, and the rows of each sample.
 
     steps: (f,) int64; starts: (f + 1,) int64, rows of sample k are starts[k]:starts[k + 1]
     """
 
     steps: np.ndarray
     starts: np.ndarray
-    triangle: np.ndarray
-    mesh: np.ndarray
-    particle: np.ndarray
-    contact_point: np.ndarray
-    centre: np.ndarray
-    wall_velocity: np.ndarray
-    particle_velocity: np.ndarray
-    angular_velocity: np.ndarray
-    force: np.ndarray
-    radius: np.ndarray
 
     def __iter__(self) -> Iterator[Contacts]:
-        arrays = [getattr(self, name) for name in CONTACT_FIELDS]
+        arrays = {name: getattr(self, name) for name in CONTACT_FIELDS}
         bounds = self.starts.tolist()
         for step, first, last in zip(self.steps.tolist(), bounds, bounds[1:], strict=False):
-            yield Contacts(step, *(array[first:last] for array in arrays))
+            yield Contacts(step=step, **{name: array[first:last] for name, array in arrays.items()})
 
 
 def _after(batches: Iterator[FrameBatch], after_step: int | None) -> Iterator[FrameBatch]:

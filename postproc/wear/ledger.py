@@ -1,15 +1,18 @@
 """Load ledger: what particles did to each triangle of one mesh during a cycle, free of any wear coefficient.
 
-All sums run over sampled contacts, each standing for the interval between two samples. Wear laws that are
-linear in them (Archard 1953) are arithmetic on the finished table.
+Either the solver sums it at every step (`columns_of_solver`), or `LedgerBuilder` sums sampled contacts, each standing
+for the interval between two samples. Wear laws that are linear in the sums (Archard 1953) are arithmetic on the
+finished table; others add a sum of their own (kernels.py).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from types import SimpleNamespace
 
 import numpy as np
+
+from postproc.wear.kernels import KERNELS, kernel_column
 
 CONTACTS_PER_BATCH = 100_000
 LEDGER_FIELDS = (
@@ -37,16 +40,18 @@ _ARRAYS = (
 )
 
 
-def contact_kinematics(contacts) -> SimpleNamespace:
+def contact_kinematics(contacts, wall_angular_velocity=(0.0, 0.0, 0.0)) -> SimpleNamespace:
     """Normal, normal force and relative velocities of each contact.
 
     contacts: anything with the arrays of `postproc.readers.contacts.Contacts`, n rows
+    wall_angular_velocity: (3,) rad/s, of a mesh that rotates; `contacts.wall_velocity` is that at the contact point
     Returns
+    relative_velocity: (n, 3) m/s, of the centre over the wall at the contact point, spin left out
     normal: (n, 3), from contact point to centre
     signed_force: (n,) N, force along the normal
     normal_force: (n,) N, the same, zero where the contact pulls
     sliding_speed: (n,) m/s, at the contact point, spin included
-    rolling_speed: (n,) m/s, R times the part of the spin about axes in the surface (the wall carries no spin)
+    rolling_speed: (n,) m/s, R times the part of the spin, relative to the wall's, about axes in the surface
     approach_speed: (n,) m/s, of the centre along the normal, without sign
 
     The lever arm is R - overlap/2, the one LIGGGHTS itself uses: with it pure rolling leaves nothing.
@@ -59,13 +64,15 @@ def contact_kinematics(contacts) -> SimpleNamespace:
     relative = contacts.particle_velocity - contacts.wall_velocity
     approach = np.einsum("ij,ij->i", relative, normal)
     sliding = relative - approach[:, None] * normal - lever[:, None] * spin_across
+    rolling = spin_across - np.cross(np.asarray(wall_angular_velocity, np.float64), normal)
     signed_force = np.einsum("ij,ij->i", contacts.force, normal)
     return SimpleNamespace(
+        relative_velocity=relative,
         normal=normal,
         signed_force=signed_force,
         normal_force=np.maximum(signed_force, 0.0),
         sliding_speed=np.sqrt(np.einsum("ij,ij->i", sliding, sliding)),
-        rolling_speed=contacts.radius * np.sqrt(np.einsum("ij,ij->i", spin_across, spin_across)),
+        rolling_speed=contacts.radius * np.sqrt(np.einsum("ij,ij->i", rolling, rolling)),
         approach_speed=np.abs(approach),
     )
 
@@ -80,6 +87,24 @@ def hertz_elastic_energy(force, radius, effective_modulus):
     return 0.4 * force * hertz_contact_radius(force, radius, effective_modulus) ** 2 / radius
 
 
+def columns_of_solver(
+    columns: Mapping[str, np.ndarray], corners: np.ndarray, kernels: Sequence[str] = ()
+) -> dict[str, np.ndarray]:
+    """Return the ledger that the solver has summed: the columns that `LedgerBuilder.table` returns.
+
+    columns: {name: (n,)}, as `postproc.readers.load_ledger.LoadLedger.columns`; contact points are barycentric
+        there, contact_weight_1 ... 3 in the order of the corners
+    corners: (n, 3, 3) m, corners of the triangles where the positions are wanted
+    kernels: names of the kernels whose sums are wanted
+
+    Raises KeyError when a column is missing, ValueError for an unknown kernel.
+    """
+    weights = np.column_stack([columns[f"contact_weight_{k}"] for k in (1, 2, 3)])
+    position = np.einsum("ik,ikj->ij", weights, corners)
+    found = {**columns, **{name: position[:, axis] for axis, name in enumerate(LEDGER_FIELDS[6:])}}
+    return {name: found[name] for name in (*LEDGER_FIELDS, *map(kernel_column, kernels))}
+
+
 class LedgerBuilder:
     """Sums the loads of sampled contacts per triangle.
 
@@ -90,16 +115,37 @@ class LedgerBuilder:
     touching: ids of the particles that touch the mesh in the sample before the first one (carry it from the
         previous cycle's builder, so that a lasting contact is no new impact); None: unknown, so nothing in
         the first sample counts as an impact
+    kernels: names of `postproc.wear.kernels.KERNELS` to sum as well, one column each
+    face_normals: (n_triangles, 3) normals of the triangles, needed by kernels only
+    wall_angular_velocity: (3,) rad/s, of a mesh that rotates
+
+    Raises ValueError for an unknown kernel and for kernels without normals of every triangle.
     """
 
-    def __init__(self, n_triangles: int, mesh_index: int, effective_modulus: float, density: float, touching=None):
+    def __init__(
+        self,
+        n_triangles: int,
+        mesh_index: int,
+        effective_modulus: float,
+        density: float,
+        touching=None,
+        kernels: Sequence[str] = (),
+        face_normals=None,
+        wall_angular_velocity=(0.0, 0.0, 0.0),
+    ):
         self.n_triangles, self.mesh_index = n_triangles, mesh_index
         self.effective_modulus, self.density = effective_modulus, density
+        self.wall_angular_velocity = wall_angular_velocity
+        self._kernels = {kernel_column(name): KERNELS[name] for name in kernels}
+        self._face_normals = None if face_normals is None else np.asarray(face_normals, np.float64)
+        found = None if self._face_normals is None else self._face_normals.shape
+        if kernels and found != (n_triangles, 3):
+            raise ValueError(f"face_normals for kernels have the shape {found}, allowed is {(n_triangles, 3)}.")
         self._touching = None if touching is None else np.unique(np.asarray(touching, np.int64))
         self._samples, self._time_s = 0, 0.0
         self._sums = {
             name: np.zeros(n_triangles)
-            for name in (*LEDGER_FIELDS[:5], *(f"{kind}_{what}" for kind in "wf" for what in "axyz"))
+            for name in (*LEDGER_FIELDS[:5], *self._kernels, *(f"{kind}_{what}" for kind in "wf" for what in "axyz"))
         }
         self._buffer: list = []
         self._buffered, self._interval_s = 0, None
@@ -142,7 +188,7 @@ class LedgerBuilder:
         self._account(batch, np.diff(batch.starts), interval_s)
 
     def table(self) -> dict[str, np.ndarray]:
-        """The ledger: one (n_triangles,) array per field of LEDGER_FIELDS, units in the names.
+        """The ledger: one (n_triangles,) array per field of LEDGER_FIELDS and per kernel, units in the names.
 
         Contact radius and position are means weighted with the sliding work (with the normal impulse on
         triangles loaded without any sliding), NaN on triangles that were not loaded.
@@ -154,7 +200,8 @@ class LedgerBuilder:
         for letter, name in zip("axyz", LEDGER_FIELDS[5:], strict=True):
             moment = np.where(slid, sums[f"w_{letter}"], sums[f"f_{letter}"])
             means[name] = np.divide(moment, weight, out=np.full(weight.size, np.nan), where=weight > 0.0)
-        return {**{name: sums[name].copy() for name in LEDGER_FIELDS[:5]}, **means}
+        copies = {name: sums[name].copy() for name in (*LEDGER_FIELDS[:5], *self._kernels)}
+        return {name: {**copies, **means}[name] for name in (*LEDGER_FIELDS, *self._kernels)}
 
     def _flush(self) -> None:
         if not self._buffer:
@@ -177,7 +224,7 @@ class LedgerBuilder:
                 f"mesh {self.mesh_index}: found triangles {triangle.min()} ... {triangle.max()}, "
                 f"allowed are 0 ... {self.n_triangles - 1}."
             )
-        motion = contact_kinematics(contacts)
+        motion = contact_kinematics(contacts, self.wall_angular_velocity)
         pairs = _pairs(sample, contacts.particle, motion)
         work = motion.normal_force * motion.sliding_speed * interval_s
         impulse = motion.normal_force * interval_s
@@ -185,6 +232,8 @@ class LedgerBuilder:
         self._sum("normal_impulse_N_s", triangle, impulse)
         self._sum("rolling_work_J", triangle, motion.normal_force * motion.rolling_speed * interval_s)
         self._sum("contact_time_s", triangle, np.full(triangle.size, interval_s))
+        for name, kernel in self._kernels.items():
+            self._sum(name, triangle, kernel(contacts, motion, self._face_normals[triangle]) * interval_s)
         pair_force = pairs.force[pairs.of_contact]
         contact_radius = hertz_contact_radius(pair_force, contacts.radius, self.effective_modulus)
         for kind, weight in (("w", work), ("f", impulse)):

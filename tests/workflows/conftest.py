@@ -81,6 +81,7 @@ solver:
   rolling_radius: full
   sampling_interval_steps: 20
   picture_interval_mm: 20
+ledger: solver
 """
 MATERIALS = """\
 particles:

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from tiny import tiny_study
 
+from postproc.wear.laws import LAWS
 from workflows import deck
 from workflows.design import list_studies, load_study
 
@@ -27,9 +28,10 @@ def test_every_variable_of_the_templates_is_in_their_readme():
 
 @pytest.mark.parametrize("name", list_studies())
 @pytest.mark.parametrize("rolling_friction", ["cdt", "epsd2"])
-def test_every_deck_of_every_study_renders(name, rolling_friction):
+@pytest.mark.parametrize("ledger", ["solver", "dumps"])
+def test_every_deck_of_every_study_renders(name, rolling_friction, ledger):
     """No deck has an open word, a missing or an unused parameter, or a tab."""
-    study = load_study(name, overrides={"solver": {"rolling_friction": rolling_friction}})
+    study = load_study(name, overrides={"solver": {"rolling_friction": rolling_friction}, "ledger": ledger})
     texts = [deck.render("settled_bed", deck.settled_bed(bed)) for bed in study.beds.values()]
     for run in study.runs:
         parameters, bed = run_and_bed(study, run.name)
@@ -45,6 +47,78 @@ def test_golden_deck():
     parameters, bed = run_and_bed(tiny_study())
     text = deck.render("sliding_sample", deck.sliding_sample(parameters, bed, 2, "../cycle_001/run.restart"))
     assert text == GOLDEN.read_text()
+
+
+def cycle_deck(**changes):
+    parameters, bed = run_and_bed(tiny_study(**changes))
+    return deck.render("sliding_sample", deck.sliding_sample(parameters, bed, 2, "run.restart"))
+
+
+def position(text, start):
+    """Place of the only line that begins so."""
+    found = [place for place, line in enumerate(text.splitlines()) if re.sub(" +", " ", line).startswith(start)]
+    assert len(found) == 1, f"{start}: lines {found}"
+    return found[0]
+
+
+def test_the_exact_ledger_stands_where_the_solver_wants_it():
+    """After mesh and wall, before the steps are reset; gone before the last restart file; no dump of contacts."""
+    text = cycle_deck()
+    order = (
+        *("fix sample_2 all mesh/surface/stress", "fix walls all wall/gran"),
+        *("fix load_ledger all load/ledger mesh sample_2 file load_ledger.bin", "reset_timestep", "run "),
+        *("unfix load_ledger", "write_restart run.restart"),
+    )
+    places = [position(text, start) for start in order]
+    assert places == sorted(places)
+    assert "solver/build/liggghts-ledger -in deck.in" in text.split("\n\n")[0]
+    for word in ("contacts.dump", "spins.dump", "wall/gran/local", "sampling"):
+        assert word not in text
+
+
+def test_sampled_contacts_run_with_any_liggghts():
+    """With ledger: dumps no trace of the fix is left, and spins stand before contacts, after the steps are reset."""
+    text = cycle_deck(ledger="dumps")
+    order = ("reset_timestep", "compute wall_contact", "dump spins", "dump contacts", "run ", "write_restart")
+    places = [position(text, start) for start in order]
+    assert places == sorted(places)
+    assert "# Runs by hand: liggghts -in deck.in" in text.split("\n\n")[0]
+    assert "ledger" not in text
+
+
+def test_a_law_with_a_kernel_asks_the_solver_for_it():
+    """The fix gets the names of exactly the kernels that the law needs."""
+    ends = {law: cycle_deck(wear={"law": law}).split("load_ledger.bin")[2].split("\n")[0] for law in LAWS}
+    assert ends == {law: "".join(f" kernels {name}" for name in LAWS[law].kernels) for law in LAWS}
+
+
+def test_the_producer_adds_its_own_parameters_only():
+    """A parameter of the other producer is one that is never used."""
+    parameters, bed = run_and_bed(tiny_study())
+    given = deck.sliding_sample(parameters, bed, 1, "run.restart")
+    with pytest.raises(deck.DeckError, match=r"parameter contact_format is never used"):
+        deck.render("sliding_sample", {**given, "contact_format": "%g"})
+    with pytest.raises(deck.DeckError, match=r"parameter ledger_kernels is not given"):
+        deck.render("sliding_sample", {key: value for key, value in given.items() if key != "ledger_kernels"})
+
+
+@pytest.mark.parametrize(
+    ("words", "used"),
+    [
+        ({}, {"kind", "often", "a", "b", "c"}),
+        ({"kind": "one"}, {"kind", "often", "a", "c"}),
+        ({"kind": "two"}, {"kind", "often", "b", "c"}),
+        ({"kind": "one", "often": 3}, {"kind", "often", "a", "c"}),
+    ],
+)
+def test_a_branch_not_taken_asks_for_nothing(tmp_path, words, used):
+    """Only what the branch taken uses is wanted, its partials included; other conditions count as taken."""
+    (tmp_path / "case.in.j2").write_text(
+        '{% if kind == "one" %}{% include "part.in.j2" %}{% else %}{{ b }}{% endif %}\n'
+        "{% if often > 2 %}{{ c }}{% endif %}"
+    )
+    (tmp_path / "part.in.j2").write_text("{{ a }}")
+    assert deck.template_variables("case", tmp_path, words) == used
 
 
 def test_missing_and_unused_parameters_are_errors():

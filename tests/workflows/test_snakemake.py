@@ -36,6 +36,7 @@ def workspace(folder: Path) -> Path:
             shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy(source, folder / name)
+    (folder / "solver").symlink_to(REPOSITORY / "solver")
     for study in (folder / "config" / "studies").iterdir():
         study.unlink()
     (folder / "config" / "studies" / "tiny.yaml").write_text(TINY)
@@ -89,7 +90,7 @@ def test_killed_snakemake_started_again_gives_the_same_summary(undisturbed, tmp_
     folder = workspace(tmp_path)
     process = snakemake(folder, "results/tiny/summary.csv")
     deadline = time.monotonic() + TIMEOUT
-    while not list(folder.glob("results/tiny/*/cycle_001.part/contacts.dump")):
+    while not list(folder.glob("results/tiny/*/cycle_001.part/bed_0.dump")):
         assert process.poll() is None and time.monotonic() < deadline
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGKILL)
@@ -133,6 +134,19 @@ def test_an_edited_template_renders_again(tmp_path):
     template.write_text(template.read_text() + "# the end\n")
     finish(snakemake(folder, "tiny_decks"))
     assert deck.read_text().endswith("# the end\n")
+
+
+def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):
+    """Without the program that its wear cycles need a study is planned and rendered, but no bed is filled for it."""
+    folder = workspace(tmp_path)
+    (folder / "solver").unlink()
+    finish(snakemake(folder, "tiny", "--dry-run"))
+    process = snakemake(folder, "tiny")
+    output, _ = process.communicate(timeout=TIMEOUT)
+    assert process.returncode != 0
+    assert "liggghts-ledger: there is no such program; `make setup` (or `make -C solver`) builds it" in output
+    assert "Traceback" not in output
+    assert not (folder / "results").exists()
 
 
 def test_paper_fidelity_dry_runs(tmp_path):

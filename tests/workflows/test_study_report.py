@@ -195,6 +195,27 @@ def test_provenance_is_there_and_escaped(page, study):
         assert remark in page
 
 
+def test_the_page_says_how_the_loads_were_summed(config, page, tmp_path):
+    """Sampled contacts are a simplification with their interval; the solver's sum of every step is none."""
+    assert "sampled" not in page
+    study = load_study("small", config.root, {"ledger": "dumps", "solver": {"sampling_interval_steps": 40}})
+    write_results(tmp_path / "sampled", study)
+    write_page(tmp_path / "sampled" / "report.html", page_parameters(study))
+    text = (tmp_path / "sampled" / "report.html").read_text(encoding="utf-8")
+    assert "contacts sampled every 40 steps" in text
+
+
+def test_the_page_tells_the_law(config, page, tmp_path):
+    """Archard's words or Finnie's; the solver's own measure beside Archard's only; figures name another law."""
+    assert "Archard: volume = coefficient times normal force" in page and "wears nothing" in page
+    study = load_study("small", config.root, {"wear": {"law": "finnie"}})
+    write_results(tmp_path / "finnie", study)
+    write_page(tmp_path / "finnie" / "report.html", page_parameters(study))
+    text = (tmp_path / "finnie" / "report.html").read_text(encoding="utf-8")
+    assert "Finnie: volume = coefficient times a function of the impact angle" in text and "wears nothing" not in text
+    assert any("worn by the law finnie" in remark for remark in page_parameters(study)["remarks"])
+
+
 def test_single_row_has_no_figure_of_rows(config):
     """A figure that compares design rows is left out where there is one row, and where nothing is plain."""
     assert figures_of(load_study("small", config.root))[0] == "relative_wear"

@@ -6,9 +6,14 @@ import re
 
 import pytest
 
+from postproc.wear.laws import LAWS
 from workflows.config_files import ConfigError, command_line_layer, dotted, merge, read_yaml
 from workflows.config_readme import readme
+from workflows.deck import LEDGERS
 from workflows.design import load_study
+from workflows.ledgers import PRODUCERS
+from workflows.page_text import LAW_WORDS
+from workflows.solver import CYCLE_EXECUTABLES
 from workflows.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer, leaves, load_schema
 
 SETTINGS = "default.yaml"
@@ -69,7 +74,7 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, sample, pattern, bed, sliding, wear, solver.",
+        " allowed are particle_scale, ledger, sample, pattern, bed, sliding, wear, solver.",
     ),
     (
         SETTINGS,
@@ -232,6 +237,18 @@ BAD_VALUES = [
     ),
     (
         SETTINGS,
+        "ledger: solver",
+        "ledger: dump",
+        "config/default.yaml, line 35: ledger is 'dump', allowed is one of solver, dumps.",
+    ),
+    (
+        SETTINGS,
+        "law: archard",
+        "law: oka",
+        "config/default.yaml, line 22: wear.law is 'oka', allowed is one of archard, finnie.",
+    ),
+    (
+        SETTINGS,
         "fidelity: quick",
         "fidelity: paper",
         "config/default.yaml, line 1: fidelity is 'paper', allowed is one of quick, standard,"
@@ -386,7 +403,7 @@ BAD_COMBINATIONS = [
         " the radius of the smallest particle.",
     ),
     (
-        {"solver": {"sampling_interval_steps": 30000}},
+        {"ledger": "dumps", "solver": {"sampling_interval_steps": 30000}},
         "command line: solver.sampling_interval_steps is 30000 for row R9, allowed is below 28992,"
         " the time steps of a cycle.",
     ),
@@ -419,7 +436,7 @@ BAD_COMBINATIONS = [
     ),
     (
         {"title": "x"},
-        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, sample,"
+        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, ledger, sample,"
         " pattern, bed, sliding, wear, solver.",
     ),
 ]
@@ -544,6 +561,21 @@ def test_every_number_has_a_range_a_unit_and_a_meaning(name):
         bounds = [key for key in schema if re.fullmatch(r"(exclusive)?(minimum|maximum)", key, re.IGNORECASE)]
         assert len(bounds) == 2, dotted(path)
         assert {"x-unit", "description"} <= set(schema), dotted(path)
+
+
+def test_the_sampling_interval_matters_to_sampled_contacts_only(config):
+    """With the solver's ledger no cycle is too short to be sampled, and the interval is no parameter of any run."""
+    study = load_study("small", config.root, {"solver": {"sampling_interval_steps": 30000}})
+    assert all("sampling_interval_steps" not in run.parameters["solver"] for run in study.runs)
+    other = load_study("small", config.root, {"solver": {"sampling_interval_steps": 7}})
+    assert [run.parameters for run in other.runs] == [run.parameters for run in study.runs]
+
+
+def test_every_law_and_every_producer_can_be_chosen():
+    """The schema offers the wear laws and the producers of ledgers that there are, and no others."""
+    properties = load_schema("settings")["properties"]
+    assert set(properties["wear"]["properties"]["law"]["enum"]) == set(LAWS) == set(LAW_WORDS)
+    assert set(properties["ledger"]["enum"]) == set(PRODUCERS) == set(LEDGERS) == set(CYCLE_EXECUTABLES)
 
 
 def test_a_plain_sample_needs_elements_too(config):

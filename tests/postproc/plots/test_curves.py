@@ -133,3 +133,18 @@ def test_powers_of_ten_move_into_the_unit(largest, unit, tick):
     """Where numbers would be hard to read the unit takes a power of 1000; ticks are divided by it."""
     found, formatter = scaled("mm³", largest)
     assert (found, formatter(2.0, 0)) == (unit, tick)
+
+
+def test_sampling_errors_are_drawn_in_percent_at_their_stride():
+    """Each error is drawn where it was measured; the short window, measured against stride 1, has no point there."""
+    errors = pd.DataFrame(
+        {
+            "stride_steps": [1, 10, 100],
+            "total_error": [1e-6, 1e-4, 1e-3],
+            "short_window_error": [0.0, 0.01, 0.1],
+            "map_error": [1e-5, 0.02, 0.2],
+        }
+    )
+    drawn = {label: points for (label, _), points in lines_of(curves.sampling_error(errors, REMARKS)).items()}
+    np.testing.assert_allclose(drawn["map over the triangles, whole travel"][:, 1], [1e-3, 2.0, 20.0])
+    np.testing.assert_array_equal(drawn["total of a tenth of the travel"][:, 0], [10, 100])

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from postproc.wear.laws import LAWS, archard, worn_volume
+from postproc.wear.kernels import KERNELS, kernel_column
+from postproc.wear.laws import LAWS, archard, finnie, law_kernels, worn_volume
 
 ALPHA = 6.3e-13  # 1/Pa, steel on a pin-on-disc rig (Yan 2022, chapter 5)
 
@@ -17,17 +18,66 @@ def test_archard_is_coefficient_times_sliding_work():
     assert volume[1] == 0.0
 
 
-def test_every_law_scales_with_the_ledger_length():
-    """A law returns one float64 volume per triangle."""
-    columns = {"sliding_work_J": np.arange(4, dtype=np.float32)}
-    for law in LAWS:
-        volume = worn_volume(law, columns, {"wear_coefficient_per_pa": ALPHA})
-        assert volume.shape == (4,) and volume.dtype == np.float64
+def columns_for(law, m=4, seed=3):
+    """Ledger columns that a law needs, as float32."""
+    random = np.random.default_rng(seed)
+    names = ("sliding_work_J", *map(kernel_column, law_kernels(law)))
+    return {name: random.uniform(0.0, 5.0, m).astype(np.float32) for name in names}
+
+
+def test_finnie_is_coefficient_times_finnie_work():
+    """V = k sum(2 E v F dt); the work of sliding has no part in it."""
+    volume = worn_volume("finnie", {"finnie_work_J": np.array([3.0, 0.0])}, {"wear_coefficient_per_pa": ALPHA})
+    assert volume.tolist() == [3.0 * ALPHA, 0.0]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_every_law_returns_one_volume_per_triangle(law):
+    """(m,) float64, also from float32 columns."""
+    volume = worn_volume(law, columns_for(law), {"wear_coefficient_per_pa": ALPHA})
+    assert volume.shape == (4,) and volume.dtype == np.float64
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_zero_load_wears_nothing(law):
+    """V = 0, exactly."""
+    nothing = {name: np.zeros(4) for name in columns_for(law)}
+    assert not worn_volume(law, nothing, {"wear_coefficient_per_pa": ALPHA}).any()
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_every_law_is_linear_in_the_ledger_and_the_coefficient(law):
+    """Two cycles wear the sum of each; twice the coefficient wears twice. Powers of two keep it exact."""
+    once = worn_volume(law, columns_for(law), {"wear_coefficient_per_pa": ALPHA})
+    twice = worn_volume(law, {name: 2 * v for name, v in columns_for(law).items()}, {"wear_coefficient_per_pa": ALPHA})
+    np.testing.assert_array_equal(twice, 2.0 * once)
+    np.testing.assert_array_equal(worn_volume(law, columns_for(law), {"wear_coefficient_per_pa": 2 * ALPHA}), twice)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_laws_follow_the_order_of_the_triangles(law):
+    """Face-order invariance."""
+    order = np.array([2, 0, 3, 1])
+    shuffled = {name: values[order] for name, values in columns_for(law).items()}
+    parameters = {"wear_coefficient_per_pa": ALPHA}
+    np.testing.assert_array_equal(
+        worn_volume(law, shuffled, parameters), worn_volume(law, columns_for(law), parameters)[order]
+    )
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_laws_need_kernels_that_exist_and_nothing_more(law):
+    """The kernels that a law names suffice for it, and both producers of a ledger know them."""
+    assert set(law_kernels(law)) <= set(KERNELS)
+    for missing in law_kernels(law):
+        columns = {name: v for name, v in columns_for(law).items() if name != kernel_column(missing)}
+        with pytest.raises(KeyError, match=kernel_column(missing)):
+            worn_volume(law, columns, {"wear_coefficient_per_pa": ALPHA})
 
 
 def test_unknown_law_names_the_allowed_ones():
     """An unknown law is refused with one sentence naming it and the allowed ones."""
-    with pytest.raises(ValueError, match=r"wear law 'oka' is unknown, allowed are: archard"):
+    with pytest.raises(ValueError, match=r"wear law 'oka' is unknown, allowed are: archard, finnie"):
         worn_volume("oka", {}, {})
 
 
@@ -53,3 +103,5 @@ def test_impossible_coefficient_is_refused(coefficient):
     """A negative or non-finite wear coefficient would let the surface grow or vanish."""
     with pytest.raises(ValueError, match="wear_coefficient_per_pa is"):
         archard({"sliding_work_J": np.ones(1)}, {"wear_coefficient_per_pa": coefficient})
+    with pytest.raises(ValueError, match="wear_coefficient_per_pa is"):
+        finnie({"finnie_work_J": np.ones(1)}, {"wear_coefficient_per_pa": coefficient})

@@ -8,6 +8,7 @@ import pytest
 from postproc.wear.ledger import (
     LEDGER_FIELDS,
     LedgerBuilder,
+    columns_of_solver,
     hertz_contact_radius,
     hertz_elastic_energy,
 )
@@ -362,3 +363,50 @@ def test_contacts_of_unknown_past_are_no_impacts():
     crowd = [sample(2), sample(3)]
     table = ledger(crowd)
     assert np.flatnonzero(table["impact_energy_J"]).tolist() == [2]
+
+
+def test_on_a_turning_wall_only_the_difference_of_spins_rolls():
+    """A particle that turns with the wall does not roll; held still on it, it rolls R times the wall's spin."""
+    spin = [0.0, 40.0, 0.0]
+    carried = ledger([sample(angular_velocity=[spin])], wall_angular_velocity=spin)
+    held = ledger([sample()], wall_angular_velocity=spin)
+    assert carried["rolling_work_J"][0] == 0.0
+    assert held["rolling_work_J"][0] == pytest.approx(2.0 * RADIUS * 40.0 * 1e-3, rel=ROUND_OFF)
+
+
+def test_the_wall_spin_changes_the_rolling_only():
+    """The wall's velocity at the contact point holds its rotation already; torsion of the wall rolls nothing."""
+    crowd = random_samples()
+    plain, turning = ledger(crowd), ledger(crowd, wall_angular_velocity=[3.0, -2.0, 1.0])
+    assert_same(turning, plain, [name for name in LEDGER_FIELDS if name != "rolling_work_J"])
+    about_normal = ledger([sample()], wall_angular_velocity=[0.0, 0.0, 9.0])
+    assert about_normal["rolling_work_J"][0] == 0.0
+
+
+def test_kernels_add_their_sum_and_change_nothing_else():
+    """finnie_work_J = sum of 2 E v F dt per triangle; batches give the same."""
+    crowd, options = random_samples(), {"kernels": ("finnie_work",), "face_normals": np.tile([0.0, 0.0, 1.0], (12, 1))}
+    table = ledger(crowd, **options)
+    assert list(table) == [*LEDGER_FIELDS, "finnie_work_J"]
+    assert_same(table, ledger(crowd))
+    whole = LedgerBuilder(12, 0, EFFECTIVE_MODULUS, DENSITY, **options)
+    whole.add_batch(batch_of(crowd), 1e-3)
+    assert_same(whole.table(), table, ["finnie_work_J"])
+    falling = sample(particle_velocity=[[0.4, 0.0, -0.3]])  # sin gamma 0.6, cos gamma 0.8: the steep branch
+    single = ledger([falling], **options)["finnie_work_J"]
+    assert single[0] == pytest.approx(2.0 * 0.33333 * 0.64 * 0.5 * 2.0 * 1e-3, rel=ROUND_OFF)
+    assert not single[1:].any()
+
+
+def test_columns_of_the_solver_are_those_of_the_samples():
+    """Same names in the same order; weights 1, 0, 0 lie on the first corner, thirds on the centroid."""
+    corners = np.random.default_rng(2).normal(size=(3, 3, 3))
+    columns = {name: np.arange(3.0) for name in (*ADDITIVE, "contact_radius_m", "finnie_work_J")}
+    weights = np.array([[1.0, 0.0, 0.0], [1 / 3, 1 / 3, 1 / 3], [np.nan] * 3])
+    columns |= {f"contact_weight_{k + 1}": weights[:, k] for k in range(3)}
+    table = columns_of_solver(columns, corners)
+    assert list(table) == list(LEDGER_FIELDS) == list(ledger([sample()]))
+    found = np.column_stack([table[name] for name in LEDGER_FIELDS[6:]])
+    np.testing.assert_allclose(found[:2], [corners[0, 0], corners[1].mean(axis=0)], rtol=ROUND_OFF)
+    assert np.isnan(found[2]).all()
+    assert list(columns_of_solver(columns, corners, ("finnie_work",)))[-1] == "finnie_work_J"

@@ -1,0 +1,42 @@
+"""The bed that the ledger's benchmarks share: the demo's convex sample, run in, with one wear cycle to simulate."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from postproc.mesh import SurfaceMesh, read_surface, write_surface
+from workflows import state
+from workflows.chain import RESTART, Chain, cycle_steps, write_cycle, write_end_wall
+from workflows.cycles import fill_bed, inputs_digest, run_cycle
+from workflows.design import load_study
+from workflows.geometry import sample_surface
+from workflows.progress import Progress
+
+STUDY, RUN = "demo", "R9_convex"
+
+
+def prepared_chain(folder: Path, particle_scale: float) -> Chain:
+    """Return the chain of the case; fills its bed and runs it in unless that was done in this folder before."""
+    study = load_study(STUDY, overrides={"particle_scale": particle_scale, "fidelity": "quick"})
+    parameters, bed_name = study.run(RUN).parameters, study.bed_of(RUN)
+    bed_folder, surface = folder / "bed", folder / RUN / "surface.vtu"
+    if not (bed_folder / "bed.restart").exists():
+        fill_bed(bed_name, study.beds[bed_name], bed_folder)
+    if not surface.exists():
+        surface.parent.mkdir(parents=True, exist_ok=True)
+        write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
+    chain = Chain(RUN, surface.parent, parameters, study.beds[bed_name], surface, bed_folder / "bed.restart")
+    if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
+        run_cycle(chain, 0, inputs_digest(chain), Progress(RUN, cycle_steps(chain, 0)))
+    return chain
+
+
+def cycle_deck(chain: Chain, name: str) -> tuple[Path, SurfaceMesh, str]:
+    """Return a new folder beside the run's cycles with what its first wear cycle reads, its surface, and the deck."""
+    folder, surface = chain.folder / name, read_surface(chain.surface)
+    folder.mkdir(exist_ok=True)
+    write_end_wall(chain)
+    write_cycle(chain, 1, folder, surface)
+    return folder, surface, (folder / "deck.in").read_text()

@@ -1,0 +1,91 @@
+"""How far a sampled load ledger is from the exact one: a bed's contacts at every step, accounted at several strides.
+
+    python benchmarks/sampling_error.py --output docs
+
+One run of the demo's bed writes every contact of every step into dumps and sums them in the solver as well, so that
+both see the same motion. The dumps are then accounted at strides of 1 to 100 steps. Writes sampling_error.csv and .png.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+from bed_case import cycle_deck, prepared_chain
+
+from postproc.analysis.sampling import sampling_errors
+from postproc.plots.curves import sampling_error
+from postproc.plots.style import save
+from postproc.readers.contacts import read_contact_batches
+from postproc.readers.load_ledger import read_load_ledger
+from postproc.wear.ledger import LedgerBuilder
+from workflows.chain import Chain, deck_text
+from workflows.ledgers import CONTACTS, LOAD_LEDGER, SAMPLE_MESH, SPINS, effective_modulus
+from workflows.solver import LEDGER_EXECUTABLE, run_deck
+
+PARTICLE_SCALE = 2.0  # of the demo at its quick fidelity
+STRIDES = (1, 5, 10, 50, 100)  # steps between two samples
+BLOCKS = 10  # windows into which the travel is cut, for the error of a short one
+RESET_LINE = re.compile(r"^reset_timestep ", re.MULTILINE)
+LEDGER_LINE = f"fix load_ledger all load/ledger mesh sample_1 file {LOAD_LEDGER}\n\n"
+
+
+def deck_of_both(chain: Chain) -> str:
+    """Return the deck of the first wear cycle that dumps every contact of every step and has the ledger as well."""
+    parameters = chain.parameters
+    every_step = {**parameters, "ledger": "dumps", "solver": {**parameters["solver"], "sampling_interval_steps": 1}}
+    text = deck_text(replace(chain, parameters=every_step), 1)
+    return RESET_LINE.sub(lambda found: LEDGER_LINE + found[0], text)
+
+
+def sampled_work(folder: Path, chain, triangles: int, strides, blocks: int) -> dict[int, np.ndarray]:
+    """Return {stride: (blocks, triangles) sliding work in J} of the dumps; one pass over them."""
+    steps, dt = chain.parameters["derived"]["cycle_steps"], chain.parameters["derived"]["time_step_s"]
+    length = steps // blocks
+    density = chain.parameters["particle"]["density_kg_per_m3"]
+    arguments = (triangles, SAMPLE_MESH, effective_modulus(chain.parameters), density)
+    builders = {stride: [LedgerBuilder(*arguments) for _ in range(blocks)] for stride in strides}
+    for batch in read_contact_batches(folder / CONTACTS, folder / SPINS, after_step=0):
+        for contacts in batch:
+            block = (contacts.step - 1) // length
+            for stride in strides:
+                if block < blocks and contacts.step % stride == 0:
+                    builders[stride][block].add(contacts, stride * dt)
+    return {
+        stride: np.array([builder.table()["sliding_work_J"] for builder in of_blocks])
+        for stride, of_blocks in builders.items()
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/sampling_error"))
+    parser.add_argument("--output", type=Path, default=Path("docs"))
+    given = parser.parse_args()
+    chain = prepared_chain(given.folder, PARTICLE_SCALE)
+    folder, surface, _ = cycle_deck(chain, "every_step")
+    (folder / "deck.in").write_text(deck_of_both(chain))
+    if not (folder / LOAD_LEDGER).exists():
+        run_deck(folder, executable=LEDGER_EXECUTABLE)
+    derived, triangles = chain.parameters["derived"], len(surface.triangles)
+    exact = read_load_ledger(folder / LOAD_LEDGER, "sample_1", triangles, derived["cycle_steps"])
+    sampled = sampled_work(folder, chain, triangles, STRIDES, BLOCKS)
+    dump_bytes = sum((folder / name).stat().st_size for name in (CONTACTS, SPINS))
+    table = sampling_errors(sampled, exact.columns["sliding_work_J"], dump_bytes, (folder / LOAD_LEDGER).stat().st_size)
+    travel = derived["cycle_steps"] * derived["time_step_s"] * chain.parameters["sliding"]["velocity_m_per_s"]
+    remarks = [
+        f"convex sample of the demo, particle scale {PARTICLE_SCALE:g}, one cycle of {1e3 * travel:.0f} mm travel "
+        f"({derived['cycle_steps']} steps), short windows of {1e3 * travel / BLOCKS:.0f} mm, {triangles} triangles",
+        f"made by benchmarks/sampling_error.py, {date.today():%Y-%m-%d}, {exact.header['solver'].split(',')[0]}",
+    ]
+    table.to_csv(given.output / "sampling_error.csv", index=False, float_format="%.4g")
+    save(sampling_error(table, remarks), given.output / "sampling_error.png")
+    print(table.to_string(index=False))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,54 @@
+"""Contact kernels: what a wear law that is not linear in the ledger's sums takes from every contact.
+
+A kernel is one function and one line in `KERNELS`. It returns a value per contact and unit time; the ledger sums it,
+times the time step, over the contacts of every triangle. The solver has kernels of the same names
+(`solver/kernels.h`), so that both producers of a ledger write the same columns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+
+import numpy as np
+
+Kernel = Callable[[SimpleNamespace, SimpleNamespace, np.ndarray], np.ndarray]
+
+SLOWEST = 1e-7  # m/s; the solver's Finnie wear ignores contacts that move slower
+IMPACT_BRANCH = 0.33333  # -, of cos^2: the factor as the solver writes it, not 1/3
+
+
+def finnie_work(contacts, motion: SimpleNamespace, face_normal: np.ndarray) -> np.ndarray:
+    """Return 2 E(gamma) |v_rel| |F| of each contact in W: the sum that Finnie's wear is proportional to.
+
+    contacts: anything with `contact_point`, `centre` (n, 3) m and `force` (n, 3) N
+    motion: with `relative_velocity` (n, 3) m/s, of the particle's centre over the wall, spin left out
+    face_normal: (n, 3), normal of the triangle that is touched; its sign does not matter
+
+    Counted as the solver's `wear finnie` counts: only while the centre approaches the contact point, with the whole
+    contact force. gamma is the angle between v_rel and the triangle; E = sin 2 gamma - 3 sin^2 gamma where
+    3 sin gamma <= cos gamma, 0.33333 cos^2 gamma otherwise (I. Finnie, Wear 3 (1960) 87).
+    """
+    velocity = motion.relative_velocity
+    speed = np.sqrt(np.einsum("ij,ij->i", velocity, velocity))
+    approaching = np.einsum("ij,ij->i", contacts.contact_point - contacts.centre, velocity) >= 0.0
+    counts = approaching & (speed >= SLOWEST)
+    moving = np.where(counts, speed, 1.0)
+    length = np.sqrt(np.einsum("ij,ij->i", face_normal, face_normal))
+    sine = np.minimum(np.abs(np.einsum("ij,ij->i", velocity, face_normal)) / (moving * length), 1.0)
+    across = np.cross(velocity, face_normal)
+    cosine = np.minimum(np.sqrt(np.einsum("ij,ij->i", across, across)) / (moving * length), 1.0)
+    steep = 3.0 * sine > cosine
+    share = np.where(steep, IMPACT_BRANCH * cosine**2, 2.0 * sine * cosine - 3.0 * sine**2)
+    force = np.sqrt(np.einsum("ij,ij->i", contacts.force, contacts.force))
+    return np.where(counts, 2.0 * share * speed * force, 0.0)
+
+
+KERNELS: dict[str, Kernel] = {"finnie_work": finnie_work}
+
+
+def kernel_column(name: str) -> str:
+    """Return the ledger column of a kernel, unit included. Raises ValueError for a name that is no kernel."""
+    if name not in KERNELS:
+        raise ValueError(f"contact kernel '{name}' is unknown, allowed are: {', '.join(sorted(KERNELS))}")
+    return f"{name}_J"

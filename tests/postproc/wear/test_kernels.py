@@ -1,0 +1,114 @@
+"""Contact kernels against closed forms."""
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from postproc.wear.kernels import KERNELS, finnie_work, kernel_column
+from postproc.wear.ledger import LedgerBuilder
+
+ROUND_OFF = 1e-12  # a few products in float64
+CONTINUITY = 1e-4  # relative; 0.33333 of the solver is not 1/3
+UP = np.array([[0.0, 0.0, 1.0]])
+KINK = np.arctan(1.0 / 3.0)  # angle of impact at which the two branches meet
+FORCE = np.array([[3.0, 0.0, 4.0]])
+
+
+def contact(centre=(0.0, 0.0, 1e-3), force=FORCE):
+    """One contact at the origin."""
+    return SimpleNamespace(contact_point=np.zeros((1, 3)), centre=np.array([centre]), force=np.asarray(force))
+
+
+def moving(velocity):
+    return SimpleNamespace(relative_velocity=np.asarray(velocity, np.float64).reshape(-1, 3))
+
+
+def at_angle(angle, speed=2.0):
+    """Velocity that meets the triangle under an angle (rad)."""
+    return moving([speed * np.cos(angle), 0.0, -speed * np.sin(angle)])
+
+
+def test_a_shallow_impact_cuts():
+    """Below the kink: 2 (sin 2 gamma - 3 sin^2 gamma) v F (Finnie 1960), with the whole force, friction included."""
+    angle = 0.2
+    expected = 2.0 * (np.sin(2.0 * angle) - 3.0 * np.sin(angle) ** 2) * 2.0 * 5.0
+    assert finnie_work(contact(), at_angle(angle), UP)[0] == pytest.approx(expected, rel=ROUND_OFF)
+
+
+def test_a_steep_impact_takes_a_third_of_cos_squared():
+    """Above the kink: 2 0.33333 cos^2 gamma v F."""
+    angle = 0.9
+    expected = 2.0 * 0.33333 * np.cos(angle) ** 2 * 2.0 * 5.0
+    assert finnie_work(contact(), at_angle(angle), UP)[0] == pytest.approx(expected, rel=ROUND_OFF)
+
+
+def test_both_branches_meet_at_the_kink():
+    """tan gamma = 1/3: the function is continuous but for the digits of 0.33333."""
+    below, above = (finnie_work(contact(), at_angle(KINK * (1.0 + sign * 1e-9)), UP)[0] for sign in (-1.0, 1.0))
+    assert below == pytest.approx(above, rel=CONTINUITY)
+
+
+@pytest.mark.parametrize("angle", [0.0, np.pi / 2.0])
+def test_grazing_and_normal_impacts_take_nothing(angle):
+    """sin 2 gamma vanishes at 0, cos gamma at 90 degrees."""
+    assert finnie_work(contact(), at_angle(angle), UP)[0] == pytest.approx(0.0, abs=ROUND_OFF)
+
+
+def test_only_approaching_contacts_count():
+    """A particle that leaves, or hardly moves, takes nothing; sliding along the surface still counts as approach."""
+    assert finnie_work(contact(), moving([1.0, 0.0, 0.3]), UP)[0] == 0.0
+    assert finnie_work(contact(), moving([0.5e-7, 0.0, -0.5e-7]), UP)[0] == 0.0
+    assert finnie_work(contact(), moving([1.0, 0.0, -0.1]), UP)[0] > 0.0
+
+
+def test_neither_the_sign_nor_the_length_of_the_normal_matters():
+    """Facets may be wound either way; twice the area is as good as one."""
+    expected = finnie_work(contact(), at_angle(0.2), UP)
+    for factor in (-1.0, 7.0, -1e-8):
+        np.testing.assert_allclose(finnie_work(contact(), at_angle(0.2), factor * UP), expected, rtol=ROUND_OFF)
+
+
+def test_the_triangle_decides_the_angle_not_the_contact():
+    """At an edge the direction to the centre differs from the triangle's normal; gamma is against the triangle."""
+    leaning = contact(centre=(6e-4, 0.0, 8e-4))
+    expected = finnie_work(contact(), moving([-1.0, 0.0, -0.2]), UP)
+    np.testing.assert_allclose(finnie_work(leaning, moving([-1.0, 0.0, -0.2]), UP), expected, rtol=ROUND_OFF)
+
+
+def test_units_are_neutral():
+    """Speed times force: mm, ms and kN give the same power in their unit."""
+    small = finnie_work(contact(), at_angle(0.2, 2.0), UP)
+    large = finnie_work(contact(force=FORCE * 1e-3), at_angle(0.2, 2.0 * 1e3), UP)
+    np.testing.assert_allclose(small, large, rtol=ROUND_OFF)
+
+
+def test_every_kernel_has_a_column_and_takes_no_contacts():
+    """Names carry the unit; an empty sample gives an empty array."""
+    nothing = SimpleNamespace(contact_point=np.zeros((0, 3)), centre=np.zeros((0, 3)), force=np.zeros((0, 3)))
+    for name, kernel in KERNELS.items():
+        assert kernel_column(name) == f"{name}_J"
+        assert kernel(nothing, moving(np.zeros((0, 3))), np.zeros((0, 3))).shape == (0,)
+
+
+def test_the_solver_has_the_same_kernels():
+    """Names and columns of solver/kernels.h and of the registry here are the same, so either producer serves a law."""
+    source = (Path(__file__).parents[3] / "solver" / "kernels.h").read_text()
+    listed = re.search(r"KERNELS\[\] = \{(.*?)^\};", source, re.DOTALL | re.MULTILINE)[1]
+    found = dict(re.findall(r'\{"(\w+)", "(\w+)"', listed))
+    assert found == {name: kernel_column(name) for name in KERNELS}
+
+
+def test_an_unknown_kernel_is_named():
+    """With those that there are."""
+    with pytest.raises(ValueError, match=r"contact kernel 'oka_work' is unknown, allowed are: finnie_work"):
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels=("oka_work",), face_normals=np.zeros((4, 3)))
+
+
+@pytest.mark.parametrize("normals", [None, np.zeros((3, 3))])
+def test_kernels_without_normals_are_refused(normals):
+    """One normal per triangle, or the angle of impact is unknown."""
+    with pytest.raises(ValueError, match=r"face_normals for kernels have the shape .*, allowed is \(4, 3\)"):
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels=("finnie_work",), face_normals=normals)
