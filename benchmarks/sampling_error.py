@@ -34,6 +34,14 @@ RESET_LINE = re.compile(r"^reset_timestep ", re.MULTILINE)
 LEDGER_LINE = f"fix load_ledger all load/ledger mesh sample_1 file {LOAD_LEDGER}\n\n"
 
 
+def with_whole_windows(chain: Chain) -> Chain:
+    """Return the chain with a cycle in which every window holds the same number of samples at every stride."""
+    derived = chain.parameters["derived"]
+    window = BLOCKS * max(STRIDES)
+    steps = derived["cycle_steps"] // window * window
+    return replace(chain, parameters={**chain.parameters, "derived": {**derived, "cycle_steps": steps}})
+
+
 def deck_of_both(chain: Chain) -> str:
     """Return the deck of the first wear cycle that dumps every contact of every step and has the ledger as well."""
     parameters = chain.parameters
@@ -66,7 +74,7 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/sampling_error"))
     parser.add_argument("--output", type=Path, default=Path("docs"))
     given = parser.parse_args()
-    chain = prepared_chain(given.folder, PARTICLE_SCALE)
+    chain = with_whole_windows(prepared_chain(given.folder, PARTICLE_SCALE))
     folder, surface, _ = cycle_deck(chain, "every_step")
     (folder / "deck.in").write_text(deck_of_both(chain))
     if not (folder / LOAD_LEDGER).exists():

@@ -135,12 +135,12 @@ def forces(history: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
 
 def sampling_error(errors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw the error (%) of sampled sliding work against the stride (steps).
+    """Draw the error (%) of sampled sliding work against the stride (steps), and the numbers beside it.
 
     errors: as from `analysis.sampling.sampling_errors`. The error of short windows is against stride 1.
     """
     figure = new_figure(remarks)
-    axes = figure.subplots()
+    axes, numbers = figure.subplots(1, 2, width_ratios=(3, 2))
     lines = {
         "map_error": ("map over the triangles, whole travel", "o-", COLOURS["convex"]),
         "short_window_error": ("total of a tenth of the travel", "s-", COLOURS["plain"]),
@@ -151,7 +151,18 @@ def sampling_error(errors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         axes.plot(drawn["stride_steps"], 100.0 * drawn[column], style, color=shade, label=label)
     axes.set(xscale="log", yscale="log", xlabel="Steps between two samples of the contacts")
     axes.set_ylabel("Error of the sliding work (%)")
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xticks(errors["stride_steps"], [str(stride) for stride in errors["stride_steps"]])
     axes.minorticks_off()
     axes.legend()
+    numbers.set_axis_off()
+    cells = [
+        [f"{row['stride_steps']:.0f}", *(f"{100.0 * row[column]:.2g}" for column in lines), f"{row['dumps_MB']:.3g}"]
+        for _, row in errors.iterrows()
+    ]
+    heads = ["steps", "map\n(%)", "tenth\n(%)", "total\n(%)", "dumps\n(MB)"]
+    table = numbers.table(cells, colLabels=heads, loc="center", edges="horizontal")
+    table.auto_set_font_size(False)
+    table.set_fontsize(SMALLEST_FONT)
+    table.scale(1.0, 1.8)
     return figure

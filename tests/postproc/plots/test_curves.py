@@ -143,6 +143,7 @@ def test_sampling_errors_are_drawn_in_percent_at_their_stride():
             "total_error": [1e-6, 1e-4, 1e-3],
             "short_window_error": [0.0, 0.01, 0.1],
             "map_error": [1e-5, 0.02, 0.2],
+            "dumps_MB": [100.0, 10.0, 1.0],
         }
     )
     drawn = {label: points for (label, _), points in lines_of(curves.sampling_error(errors, REMARKS)).items()}
