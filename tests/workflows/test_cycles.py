@@ -32,9 +32,9 @@ STL_ROUNDING = 1e-9  # m; %.9g of coordinates below 0.1 m is good to 5e-11
 FORCE_TOLERANCE = 0.1  # relative; ledger and log sample the same fluctuating force at different steps
 RANKS_TOLERANCE = 1e-2  # relative; rounding differs between ranks and chaos lets it grow over 580 steps
 ROUND_OFF = 1e-9  # relative; sums of 580 equal time steps
-# Relative, of totals. A dump has end-of-step velocities and forces evaluated again with them; the rolling model cdt
-# turns the spin of a slow particle back and forth in every step (seen 0.004 and 0.04; 0.0015 for both with epsd2).
-IMPULSE_TOLERANCE, WORK_TOLERANCE = 0.02, 0.15
+# Relative, of totals: a dump evaluates forces once more, with the velocities of the end of the step, and damping is part
+# of the normal force (seen 0.0035, 0.0011 and 0.015).
+DUMP_TOLERANCES = {"normal_impulse_N_s": 0.02, "sliding_work_J": 0.02, "rolling_work_J": 0.05}
 FINNIE_TOLERANCE = 1e-6  # of the largest triangle; the solver's file has six digits
 KILL_TIMEOUT = 120.0  # s, for a chain that takes seconds
 DRIVER = """
@@ -159,13 +159,13 @@ def both_ledgers(finished, tmp_path_factory):
 
 
 def test_both_producers_write_the_same_ledger(both_ledgers):
-    """Same columns, same contacts at every step of the same simulation; the dump has end-of-step velocities."""
+    """Same columns, same contacts at every step of the same simulation; the dump's forces are evaluated once more."""
     exact, sampled = both_ledgers["solver"], both_ledgers["dumps"]
     assert list(exact.dtypes.items()) == list(sampled.dtypes.items())
     np.testing.assert_array_equal(exact["finnie_wear"], sampled["finnie_wear"])  # the solver's own: one simulation
     np.testing.assert_allclose(exact["contact_time_s"], sampled["contact_time_s"], rtol=ROUND_OFF)
     np.testing.assert_array_equal(exact.isna(), sampled.isna())
-    for field, tolerance in (("normal_impulse_N_s", IMPULSE_TOLERANCE), ("sliding_work_J", WORK_TOLERANCE)):
+    for field, tolerance in DUMP_TOLERANCES.items():
         assert sampled[field].sum() == pytest.approx(exact[field].sum(), rel=tolerance)
 
 
