@@ -32,8 +32,8 @@ STL_ROUNDING = 1e-9  # m; %.9g of coordinates below 0.1 m is good to 5e-11
 FORCE_TOLERANCE = 0.1  # relative; ledger and log sample the same fluctuating force at different steps
 RANKS_TOLERANCE = 1e-2  # relative; rounding differs between ranks and chaos lets it grow over 580 steps
 ROUND_OFF = 1e-9  # relative; sums of 580 equal time steps
-# Relative, of totals: a dump evaluates forces once more, with the velocities of the end of the step, and damping is part
-# of the normal force (seen 0.0035, 0.0011 and 0.015).
+# Relative, of totals: a dump evaluates forces once more, with the velocities of the end of the step, and damping is
+# part of the normal force (seen 0.0035, 0.0011 and 0.015).
 DUMP_TOLERANCES = {"normal_impulse_N_s": 0.02, "sliding_work_J": 0.02, "rolling_work_J": 0.05}
 FINNIE_TOLERANCE = 1e-6  # of the largest triangle; the solver's file has six digits
 KILL_TIMEOUT = 120.0  # s, for a chain that takes seconds

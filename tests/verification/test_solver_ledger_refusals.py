@@ -1,0 +1,103 @@
+"""What the solver's load ledger refuses: every case stops, with one sentence that says what is wrong."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from meshes.plate import flat_plate
+from tests.verification.ledger_cases import (
+    FRAME,
+    LEDGER_LINE,
+    PIN_MOTION,
+    REPOSITORY,
+    command,
+    environment,
+    pin,
+    write_case,
+)
+
+pytestmark = pytest.mark.solver
+
+
+def said_when_refused(folder, solver=None, ledger=LEDGER_LINE, without=()):
+    """Run a small case that must fail; return all that it said. without: beginnings of lines left out of the frame."""
+    write_case(folder, flat_plate(0.004, 0.004, 1e-3), pin(1.3e-4, 0.7e-4), PIN_MOTION, steps=50)
+    (folder / "ledger.in").write_text(ledger + "\n")
+    lines = FRAME.read_text().splitlines(keepends=True)
+    kept = [line for line in lines if not line.startswith(tuple(without))]
+    assert len(kept) == len(lines) - len(without)
+    (folder / FRAME.name).write_text("".join(kept))
+    words = command() if solver is None else command(solver=solver)
+    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, timeout=120)
+    said = (done.stdout + done.stderr).decode("utf-8", "replace")
+    assert done.returncode != 0, said
+    assert not (folder / "load_ledger.bin").exists()
+    return said
+
+
+def test_the_plain_solver_does_not_know_the_ledger(tmp_path):
+    """LIGGGHTS itself stops at the line, so no run goes on without a ledger that the deck asks for."""
+    assert "Invalid fix style" in said_when_refused(tmp_path, solver=shutil.which("liggghts"))
+
+
+@pytest.mark.parametrize(
+    ("ledger", "sentence"),
+    [
+        (LEDGER_LINE.replace("mesh sample", "mesh other"), r"found no mesh/surface fix with the id 'other'"),
+        (LEDGER_LINE.replace("mesh sample", "mesh wall"), r"found no mesh/surface fix with the id 'wall'"),
+        (LEDGER_LINE + " oka", r"found kernel 'oka', allowed are .*finnie_work"),
+        ("fix load_ledger all load/ledger mesh sample", r"it needs mesh MESH_ID and file FILE"),
+        ("fix load_ledger all load/ledger file load_ledger.bin", r"it needs mesh MESH_ID and file FILE"),
+        (LEDGER_LINE.replace("file ", "path "), r"found 'path', allowed are mesh MESH_ID, file FILE and kernels"),
+    ],
+)
+def test_a_wrong_word_in_the_deck(tmp_path, ledger, sentence):
+    """Unknown mesh, a fix that is no mesh, unknown kernel, missing and unknown keywords: each is named."""
+    assert re.search(sentence, said_when_refused(tmp_path, ledger=ledger))
+
+
+def test_a_mesh_that_no_wall_uses(tmp_path):
+    """A mesh without wall/gran can touch nothing: its ledger would stay empty without anyone noticing."""
+    said = said_when_refused(tmp_path, without=("fix wall ", "compute wall_contact "))
+    assert re.search(r"no wall/gran fix before it uses the mesh 'sample'", said)
+
+
+def test_a_file_that_cannot_be_written(tmp_path):
+    """A ledger that cannot be written stops the run, naming the file."""
+    ledger = LEDGER_LINE.replace("load_ledger.bin", "missing/load_ledger.bin")
+    assert "cannot write missing/load_ledger.bin" in said_when_refused(tmp_path, ledger=ledger)
+
+
+def build(folder, edit=None, **settings):
+    """Build the solver from a copy of its sources; edit: (file, old, new). Returns the executable."""
+    sources = folder / "solver"
+    shutil.copytree(REPOSITORY / "solver", sources, ignore=shutil.ignore_patterns("build"))
+    if edit is not None:
+        name, old, new = edit
+        text = (sources / name).read_text()
+        assert old in text, f"{name} no longer holds what this test takes out"
+        (sources / name).write_text(text.replace(old, new))
+    words = ["make", "-C", str(sources), "BUILD=build", *(f"{name}={value}" for name, value in settings.items())]
+    subprocess.run(words, check=True, capture_output=True)
+    return sources / "build" / "liggghts-ledger"
+
+
+@pytest.mark.verify
+def test_built_for_another_version(tmp_path):
+    """An executable built for another version of LIGGGHTS than the library that it finds stops and names both."""
+    solver = build(tmp_path, LIGGGHTS_VERSION="9.9")
+    said = said_when_refused(tmp_path / "run", solver=solver)
+    assert re.search(r"was built for (LIGGGHTS )?9\.9 and runs with 'Version LIGGGHTS-PUBLIC 3\.8\.0", said)
+
+
+@pytest.mark.verify
+def test_a_solver_that_does_not_report_its_contacts(tmp_path):
+    """An executable without the override that the library calls stops instead of counting nothing."""
+    text = (REPOSITORY / "solver" / "contact_hook.cpp").read_text()
+    override = text[text.index("void FixMeshSurface::add_particle_contribution(") :]
+    override = override[: override.index("\n}\n") + 3]
+    solver = build(tmp_path, edit=("contact_hook.cpp", override, ""))
+    said = said_when_refused(tmp_path / "run", solver=solver)
+    assert re.search(r"the solver sees contacts|uses its own FixMeshSurface::add_particle_contribution", said)
