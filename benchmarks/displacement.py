@@ -1,4 +1,4 @@
-"""Processor time of a conserving displacement on a bumpy sheet of 100,000 triangles (one core, best of five).
+"""Processor time of spreading and displacing on a bumpy sheet of 100,000 triangles (one core, best of five).
 
 Run in the root of the repository: python -m benchmarks.displacement
 """
@@ -9,14 +9,18 @@ import time
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh
+from postproc.mesh import SurfaceMesh, edge_lengths_per_triangle
 from postproc.wear.caps import step_limit
-from postproc.wear.displacement import displace, rim_directions
+from postproc.wear.directions import rim_directions
+from postproc.wear.displacement import displace
+from postproc.wear.patch import ContactPatch, spread
 from postproc.wear.update import wear_update
 
 SEED = 20220317
 CELLS = 224  # per side; two triangles each: 100,352
 SPACING = 1.0e-3  # m
+LOADED = 20_000  # triangles with contacts
+LARGEST_SECONDS = 0.5  # goal for patch and displacement together, patches of one edge
 
 
 def bumpy_sheet(cells: int, spacing: float) -> tuple[np.ndarray, np.ndarray]:
@@ -53,9 +57,39 @@ def main() -> None:
             f"mean step {step_over_edge:g} of the edge: {seconds:.3f} s, "
             f"carried {result.carried_volume.sum() / volume.sum():.2e} of the wear"
         )
+    time_patches(points, triangles, rim, limit, random)
     mesh = SurfaceMesh(points, triangles)
     seconds = best_time(lambda: wear_update(mesh, mesh, volume, limit), repeats=2)
     print(f"whole update with the three depth fields: {seconds:.3f} s")
+
+
+def time_patches(points, triangles, rim, limit, random) -> None:
+    """Spread and displace contacts on a part of the triangles, for several patch radii."""
+    loaded = random.random(len(triangles)) < LOADED / len(triangles)
+    volume = loaded * random.random(len(triangles)) * 1e-2 * SPACING**3
+    position = np.einsum("mc,mcx->mx", random.dirichlet((1.0, 1.0, 1.0), len(triangles)), points[triangles])
+    edge = edge_lengths_per_triangle(points, triangles).mean()
+    for radius_over_edge in (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0):
+        patch = ContactPatch(position, np.full(len(triangles), radius_over_edge * edge))
+
+        def update(patch=patch):
+            return displace(
+                points,
+                triangles,
+                spread(points, triangles, volume, patch),
+                None,
+                limit,
+                rim,
+                label=np.zeros(len(triangles)),
+            )
+
+        update()  # compiles once
+        spreading = best_time(lambda patch=patch: spread(points, triangles, volume, patch), repeats=3)
+        seconds = best_time(update, repeats=3)
+        goal = "" if radius_over_edge > 1.0 else f" (goal {LARGEST_SECONDS} s)"
+        print(
+            f"{loaded.sum()} patches of {radius_over_edge:g} edges: {spreading:.3f} s, displaced {seconds:.3f} s{goal}"
+        )
 
 
 if __name__ == "__main__":

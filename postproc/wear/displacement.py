@@ -7,8 +7,9 @@ cubics. Node n therefore removes
 
     S_n(d) = -d_n u_n . sum_{i at n} Abar_i(d) / 3 ,      sum_n S_n = swept volume, exactly,
 
-and the steps follow from S_n(d) = T_n, T_n = sum_{i at n} V_i / 3 + carried_n, by a fixed point. Its first
-pass is the first-order volume gradient d_n = T_n / |sum A_i / 3|. Balancing node by node keeps wear where it
+and the steps follow from S_n(d) = T_n, T_n = sum of the volumes at the corners of the faces there (V_i / 3 each
+without a contact patch) + carried_n, by a fixed point. Its first pass is the first-order volume gradient
+d_n = T_n / |sum A_i / 3|. Balancing node by node keeps wear where it
 fell: a global factor would move it from one label to another.
 
 A node whose step would exceed its limit stops there and carries T_n - S_n into the next cycle. Nothing is
@@ -23,7 +24,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from postproc.mesh import boundary_nodes, edge_lengths_per_triangle, shortest_edge_at_nodes
+from postproc.mesh import edge_lengths_per_triangle, shortest_edge_at_nodes
+from postproc.wear.directions import LabelParting, loaded_directions
 
 CONVERGENCE = 1e-12  # -, summed volume errors of all nodes over the total volume; rounding is near 1e-15
 MOST_ITERATIONS = 200  # -, a step of a tenth of an edge needs about ten
@@ -72,56 +74,6 @@ def swept_volume(points: np.ndarray, motion: np.ndarray, triangles: np.ndarray) 
     return -np.einsum("ij,ij->i", mean_motion, mean_area_vectors(points, motion, triangles))
 
 
-def inward_directions(
-    points: np.ndarray,
-    triangles: np.ndarray,
-    worn: np.ndarray | None = None,
-    directions: np.ndarray | None = None,
-) -> np.ndarray:
-    """Unit directions (n, 3) into the body: minus the area-weighted normal of the worn faces at each node.
-
-    Parameters
-    ----------
-    points : (n, 3) m
-    triangles : (m, 3)
-    worn : (m,) bool, faces that wear; None: all
-    directions : (n, 3), replaces the direction where a row is finite (any length); None: nowhere
-
-    Returns zero rows for nodes of no worn face and where the normals cancel.
-    """
-    worn = np.ones(len(triangles), dtype=bool) if worn is None else np.asarray(worn, dtype=bool)
-    faces = triangles[worn]
-    area = 0.5 * _cross(*_edges(points.T, faces))
-    vectors = -(_incidence(faces, len(points)) @ area.T)
-    if directions is not None:
-        touched = np.zeros(len(points), dtype=bool)
-        touched[faces] = True
-        replaced = touched & np.isfinite(directions).all(axis=1)
-        vectors[replaced] = directions[replaced]
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
-
-
-def rim_directions(
-    points: np.ndarray,
-    triangles: np.ndarray,
-    worn: np.ndarray | None = None,
-    wall: tuple[float, float, float] = (0.0, 0.0, -1.0),
-) -> np.ndarray:
-    """Directions (n, 3) for `displace`: `wall` at rim nodes of the worn faces, NaN elsewhere.
-
-    A rim node is shared with a face that does not wear (the holder) or lies on an open boundary. It slides
-    along the holder's wall; faces of the holder follow because the node is shared, so no slit opens.
-    """
-    worn = np.ones(len(triangles), dtype=bool) if worn is None else np.asarray(worn, dtype=bool)
-    in_holder = np.zeros(len(points), dtype=bool)
-    in_holder[triangles[~worn]] = True
-    rim = np.union1d(boundary_nodes(triangles[worn]), triangles[worn][in_holder[triangles[worn]]])
-    result = np.full((len(points), 3), np.nan)
-    result[rim] = wall
-    return result
-
-
 def displace(
     points: np.ndarray,
     triangles: np.ndarray,
@@ -130,6 +82,7 @@ def displace(
     step_limit: np.ndarray | None = None,
     directions: np.ndarray | None = None,
     worn: np.ndarray | None = None,
+    label: np.ndarray | None = None,
 ) -> Displacement:
     """Move nodes inward so that the worn faces sweep exactly the worn volume; what limits forbid is carried.
 
@@ -137,11 +90,13 @@ def displace(
     ----------
     points : (n, 3) m
     triangles : (m, 3), normals out of the body
-    worn_volume : (m,) m3, >= 0; entries of faces that do not wear are ignored
+    worn_volume : (m,) m3, >= 0, a third at each corner, or (m, 3) m3 per corner, see `postproc.wear.patch`;
+        entries of faces that do not wear are ignored
     carried_volume : (n,) m3, from the update before; None: none
     step_limit : (n,) m, >= 0, largest step of each node; None: no caps, but too large a step is refused
     directions : (n, 3), inward directions that replace the normals where finite, see `rim_directions`
     worn : (m,) bool, faces that wear; None: all
+    label : (m,) int; where two labels meet, each loses its own volume, see `LabelParting`; None: one label
 
     Returns
     -------
@@ -156,25 +111,36 @@ def displace(
     """
     worn = np.ones(len(triangles), dtype=bool) if worn is None else np.asarray(worn, dtype=bool)
     carried = np.zeros(len(points)) if carried_volume is None else np.asarray(carried_volume, np.float64)
-    _check(points, triangles, worn_volume, carried, step_limit, worn)
+    _check(points, triangles, worn_volume, carried, step_limit, worn, label)
     faces = triangles[worn]
     incidence = _incidence(faces, len(points))
-    target = incidence @ (np.asarray(worn_volume, dtype=np.float64)[worn] / 3.0) + carried
-    inward = inward_directions(points, triangles, worn, directions)
+    corner_volume = volume_at_corners(worn_volume)[worn]
+    target = np.bincount(faces.ravel(), corner_volume.ravel(), len(points)) + carried
+    inward = loaded_directions(points, faces, corner_volume, carried, directions)
+    parting = None
+    if label is not None:
+        parting = LabelParting(points, faces, corner_volume, np.asarray(label)[worn], carried, directions)
+    resistance = _Resistance(points, faces, incidence, inward, parting)
     if step_limit is None:
-        _refuse_large_step(points, faces, incidence, inward, target)
-    step, moved = _move(points, triangles, faces, incidence, inward, target, step_limit)
+        _refuse_large_step(points, faces, resistance, target)
+    step, moved = _move(points, triangles, faces, resistance, target, step_limit)
     applied = _shares(points, moved - points, faces, incidence)
     return Displacement(moved, step, applied, target - applied)
 
 
-def _move(points, triangles, faces, incidence, inward, target, step_limit) -> tuple[np.ndarray, np.ndarray]:
+def volume_at_corners(worn_volume: np.ndarray) -> np.ndarray:
+    """Volume (m, 3) in m3 at the corners: a third each of (m,), or (m, 3) as it is."""
+    volume = np.asarray(worn_volume, dtype=np.float64)
+    return np.tile(volume[:, None] / 3.0, 3) if volume.ndim == 1 else volume
+
+
+def _move(points, triangles, faces, resistance, target, step_limit) -> tuple[np.ndarray, np.ndarray]:
     """Steps (n,) and new points (n, 3) in m; limits are lowered where a face would turn over."""
     limit = np.full(len(points), np.inf) if step_limit is None else np.array(step_limit, dtype=np.float64)
     for guard in range(MOST_FOLD_GUARDS):
-        step = _solve(points, faces, incidence, inward, target, limit)
-        moved = np.where((step > 0.0)[:, None], points + step[:, None] * inward, points)
-        turning = _turning_nodes(points, moved, triangles, step)
+        step = _solve(points, faces, resistance, target, limit)
+        moved = np.where((step > 0.0)[:, None], points + step[:, None] * resistance.inward.T, points)
+        turning = turning_nodes(points, moved, triangles, step)
         if not turning.any():
             return step, moved
         if step_limit is None:
@@ -186,9 +152,8 @@ def _move(points, triangles, faces, incidence, inward, target, step_limit) -> tu
     )
 
 
-def _solve(points, faces, incidence, inward, target, limit) -> np.ndarray:
+def _solve(points, faces, resistance, target, limit) -> np.ndarray:
     """Steps (n,) m with S_n = T_n, or at their limit with S_n < T_n, or 0 where the node cannot move."""
-    resistance = _Resistance(points, faces, incidence, inward)
     wanted = np.maximum(target, 0.0)
     total = wanted.sum()
     step = np.zeros(len(points))
@@ -212,10 +177,13 @@ def _solve(points, faces, incidence, inward, target, limit) -> np.ndarray:
 
 
 class _Resistance:
-    """Area -u_n . sum Abar_i(d) / 3 in m2 that each node sweeps per step, as a function of all steps."""
+    """Area -u_n . sum Abar_i(d) / 3 in m2 that each node sweeps per step, as a function of all steps.
 
-    def __init__(self, points, faces, incidence, inward):
-        self.faces, self.incidence = faces, incidence
+    Where labels meet, every call turns `inward` (3, n) so that with those steps they part exactly.
+    """
+
+    def __init__(self, points, faces, incidence, inward, parting=None):
+        self.faces, self.incidence, self.parting = faces, incidence, parting
         self.inward = np.ascontiguousarray(inward.T)
         self.first, self.second = _edges(np.ascontiguousarray(points.T), faces)
         self.gross = incidence @ np.sqrt((_cross(self.first, self.second) ** 2).sum(axis=0)) / 6.0
@@ -223,6 +191,9 @@ class _Resistance:
     def __call__(self, step: np.ndarray) -> np.ndarray:
         motion = _edges(step * self.inward, self.faces)
         area = _mean_area(self.first, self.second, *motion)
+        if self.parting is not None and self.parting.near.size:
+            nodes, directions = self.parting(area[:, self.parting.near].T)
+            self.inward[:, nodes] = directions.T
         gathered = self.incidence @ np.ascontiguousarray(area.T)
         return -np.einsum("ij,ji->j", self.inward, gathered) / 3.0
 
@@ -258,7 +229,7 @@ def _shares(points, motion, faces, incidence) -> np.ndarray:
     return -np.einsum("ij,ij->i", motion, gathered) / 3.0
 
 
-def _turning_nodes(points, moved, triangles, step) -> np.ndarray:
+def turning_nodes(points, moved, triangles, step) -> np.ndarray:
     """Mask (n,) of moving nodes at faces whose normal turns by 90 degrees or more."""
     before, after = _cross(*_edges(points.T, triangles)), _cross(*_edges(moved.T, triangles))
     turned = ((before * after).sum(axis=0) <= 0.0) & (before != 0.0).any(axis=0)
@@ -267,9 +238,8 @@ def _turning_nodes(points, moved, triangles, step) -> np.ndarray:
     return result & (step > 0.0)
 
 
-def _refuse_large_step(points, faces, incidence, inward, target) -> None:
+def _refuse_large_step(points, faces, resistance, target) -> None:
     """Without limits: raise if a first-order step exceeds half the shortest altitude at its node."""
-    resistance = _Resistance(points, faces, incidence, inward)
     area = resistance(np.zeros(len(points)))
     mobile = (target > 0.0) & (area > LEAST_DIRECTION_COSINE * resistance.gross)
     step = np.divide(target, area, out=np.zeros_like(area), where=mobile)
@@ -286,11 +256,15 @@ def _refuse_large_step(points, faces, incidence, inward, target) -> None:
         )
 
 
-def _check(points, triangles, worn_volume, carried, step_limit, worn) -> None:
+def _check(points, triangles, worn_volume, carried, step_limit, worn, label) -> None:
     """Shapes and signs; one sentence each."""
+    if np.shape(worn_volume) not in ((len(triangles),), (len(triangles), 3)):
+        raise ValueError(
+            f"worn_volume has shape {np.shape(worn_volume)}, allowed is ({len(triangles)},) or ({len(triangles)}, 3)"
+        )
     for name, array, length in (
-        ("worn_volume", worn_volume, len(triangles)),
         ("worn", worn, len(triangles)),
+        ("label", label, len(triangles)),
         ("carried_volume", carried, len(points)),
         ("step_limit", step_limit, len(points)),
     ):

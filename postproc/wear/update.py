@@ -6,7 +6,9 @@ import numpy as np
 
 from postproc.mesh import SurfaceMesh, smallest_angles, volume_above_plane
 from postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
-from postproc.wear.displacement import displace, inward_directions, rim_directions
+from postproc.wear.directions import inward_directions, rim_directions
+from postproc.wear.patch import ContactPatch, spread
+from postproc.wear.schemes import scheme_of
 
 BALANCE_TOLERANCE = 1e-9  # -, of alpha * work: rounding in sums over 1e6 triangles stays far below, a loss not
 GEOMETRY_ROUNDING = 1e-13  # -, of the volume under a sample: its sum over 1e5 triangles is good to about 1e-14
@@ -34,6 +36,8 @@ def wear_update(
     worn_volume: np.ndarray,
     step_limit: np.ndarray | None = None,
     wall: tuple[float, float, float] | None = (0.0, 0.0, -1.0),
+    patch: ContactPatch | None = None,
+    scheme: str = "conserving",
 ) -> tuple[SurfaceMesh, dict[str, float]]:
     """Wear the mesh by one cycle.
 
@@ -44,28 +48,39 @@ def wear_update(
     worn_volume : (m,) m3 >= 0 of this cycle; ignored on the holder
     step_limit : (n,) m, see `postproc.wear.caps`; None: no caps, too large a step is refused
     wall : direction in which nodes at the rim of the worn faces slide; None: along their normal, like others
+    patch : contact positions, in the frame of the mesh, and radii over which the wear is spread, see
+        `postproc.wear.patch`; None: a third of each triangle's wear goes to each of its corners
+    scheme : name in `postproc.wear.schemes.SCHEMES`
 
     Returns
     -------
     mesh : new points; point data `removed_thickness_m`, `height_loss_m`, `ray_depth_m`, `carried_volume_m3`
     record : worn_volume_m3 (this cycle, worn faces only), applied_volume_m3 (this cycle), carried_volume_m3
-        (now), largest_step_m, smallest_angle_deg (worn faces), largest_depth_m (of the removed thickness)
+        (now), excess_volume_m3 (applied this cycle beyond what was due and is not carried: rounding for
+        `conserving`, several times the wear for `per_triangle`), largest_step_m, smallest_angle_deg (worn
+        faces), largest_depth_m (of the removed thickness)
 
     Raises
     ------
-    ValueError, StepTooLargeError : see `displace`.
+    ValueError, StepTooLargeError : see `displace`, `spread` and `scheme_of`.
     """
     worn = worn_faces(mesh)
     carried = _point_data(mesh, CARRIED_VOLUME)
     rim = None if wall is None else rim_directions(mesh.points, mesh.triangles, worn, wall)
-    moved = displace(mesh.points, mesh.triangles, worn_volume, carried, step_limit, rim, worn)
+    volume = worn_volume if patch is None else spread(mesh.points, mesh.triangles, worn_volume, patch, worn)
+    part = mesh.cell_data.get("part")
+    moved = scheme_of(scheme)(mesh.points, mesh.triangles, volume, carried, step_limit, rim, worn, part)
     thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
     fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
     fields |= _depths(moved.points, mesh.triangles, worn, thickness, pristine)
+    law, applied, left = (
+        float(v) for v in (np.sum(worn_volume, where=worn), moved.applied_volume.sum(), moved.carried_volume.sum())
+    )
     record = {
-        "worn_volume_m3": float(np.sum(worn_volume, where=worn)),
-        "applied_volume_m3": float(moved.applied_volume.sum()),
-        "carried_volume_m3": float(moved.carried_volume.sum()),
+        "worn_volume_m3": law,
+        "applied_volume_m3": applied,
+        "carried_volume_m3": left,
+        "excess_volume_m3": applied + left - float(carried.sum()) - law,
         "largest_step_m": float(moved.step.max(initial=0.0)),
         "smallest_angle_deg": float(smallest_angles(moved.points, mesh.triangles[worn]).min(initial=60.0)),
         "largest_depth_m": float(thickness.max(initial=0.0)),

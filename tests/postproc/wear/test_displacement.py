@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from meshes.pattern import ConvexPattern
 from meshes.plate import closed_box, flat_plate, sphere
-from meshes.sample import sliding_sample
+from meshes.sample import sample_top, sliding_sample
 from postproc.mesh import (
     area_vectors,
     areas,
@@ -19,14 +19,8 @@ from postproc.mesh import (
     unit_normals,
     volume_above_plane,
 )
-from postproc.wear.displacement import (
-    StepTooLargeError,
-    displace,
-    inward_directions,
-    mean_area_vectors,
-    rim_directions,
-    swept_volume,
-)
+from postproc.wear.directions import inward_directions, rim_directions
+from postproc.wear.displacement import StepTooLargeError, displace, mean_area_vectors, swept_volume
 
 SEED = 20220317
 ROUNDING = 1e-12  # relative: the solver's own convergence, and sums over a few thousand numbers
@@ -184,6 +178,110 @@ def test_uniform_wear_of_a_sphere_shrinks_its_radius(subdivisions):
     error = (1.1 / 2**subdivisions) ** 2 + depth / radius
     np.testing.assert_allclose(shrunk, depth, rtol=error)
     assert result.applied_volume.sum() == pytest.approx(volume.sum(), rel=GEOMETRY)
+
+
+def test_uniform_wear_of_a_sphere_cap_keeps_its_shape():
+    """An open cap worn evenly stays a cap of the same centre, its radius less by V / A, at its rim too."""
+    radius, depth, subdivisions = 0.05, 1e-4, 4
+    mesh = sphere(radius, subdivisions)
+    worn = mesh.points[mesh.triangles].mean(axis=1)[:, 2] > 0.4 * radius
+    volume = depth * areas(mesh.points, mesh.triangles)
+    result = displace(mesh.points, mesh.triangles, volume, worn=worn)
+    nodes = np.unique(mesh.triangles[worn])
+    shrunk = radius - np.linalg.norm(result.points[nodes], axis=1)
+    np.testing.assert_allclose(shrunk, depth, rtol=(1.1 / 2**subdivisions) ** 2 + depth / radius)
+    swept = swept_volume(mesh.points, result.points - mesh.points, mesh.triangles)[worn].sum()
+    assert swept == pytest.approx(volume[worn].sum(), rel=GEOMETRY)
+
+
+@pytest.mark.parametrize("subdivisions", [3, 4])
+def test_uniform_wear_of_an_ellipsoid_keeps_its_shape(subdivisions):
+    """Even wear moves every point of an ellipsoid by V / A along the ellipsoid's own normal, and takes exactly V."""
+    axes, depth = np.array([0.05, 0.03, 0.025]), 1e-4
+    ball = sphere(1.0, subdivisions)
+    points, triangles = ball.points * axes, ball.triangles
+    volume = depth * areas(points, triangles)
+    result = displace(points, triangles, volume)
+    normal = ball.points / axes
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    motion = result.points - points
+    inward = -np.einsum("ij,ij->i", motion, normal)
+    error = 1.5 * (1.1 / 2**subdivisions) ** 2 + depth * axes.max() / axes.min() ** 2  # facets; largest curvature
+    np.testing.assert_allclose(inward, depth, rtol=error)
+    assert np.linalg.norm(motion + inward[:, None] * normal, axis=1).max() < 2.0 * error * depth
+    lost = enclosed_volume(points, triangles) - enclosed_volume(result.points, triangles)
+    assert lost == pytest.approx(volume.sum(), rel=GEOMETRY)
+
+
+@pytest.mark.parametrize("plate", [flat_plate, lambda *size: sample_top(*size, None)], ids=["regular", "irregular"])
+@pytest.mark.parametrize("at_corners", [False, True])
+def test_a_depth_field_on_a_plane_is_recovered_to_second_order(plate, at_corners):
+    """Volumes of a smooth depth field give that depth at the nodes; halving the edge quarters the error."""
+
+    def depth(at):
+        return 5e-5 * np.exp(-((at[..., 0] / 5e-3) ** 2)) * (1.0 + 0.5 * np.cos(at[..., 1] / 4e-3))
+
+    def largest_error(edge):
+        mesh = plate(0.04, 0.03, edge)
+        weights = (np.ones((3, 3)) + 3.0 * np.eye(3)) / 6.0  # quadrature exact for quadratics
+        volume = depth(weights @ mesh.points[mesh.triangles]) * areas(mesh.points, mesh.triangles)[:, None] / 3.0
+        volume = volume @ weights if at_corners else volume.sum(axis=1)
+        rim = rim_directions(mesh.points, mesh.triangles)
+        result = displace(mesh.points, mesh.triangles, volume, directions=rim)
+        inside = (np.abs(mesh.points[:, :2]) < (0.018, 0.013)).all(axis=1)  # rim nodes average over one side only
+        return np.abs(-result.points[:, 2] - depth(mesh.points))[inside].max()
+
+    errors = [largest_error(edge) for edge in (2e-3, 1e-3, 0.5e-3)]
+    assert errors[0] > SECOND_ORDER * errors[1] > SECOND_ORDER**2 * errors[2]
+
+
+def test_volumes_at_corners_are_those_of_their_faces():
+    """A third at each corner is the same as the volume per face; all at one corner moves that node alone."""
+    mesh = sphere(0.05, 3)
+    volume = random_volumes(mesh, 2e-4)
+    whole = displace(mesh.points, mesh.triangles, volume)
+    thirds = displace(mesh.points, mesh.triangles, np.tile(volume[:, None] / 3.0, 3))
+    np.testing.assert_array_equal(thirds.points, whole.points)
+    corner = np.zeros((len(volume), 3))
+    corner[7, 1] = 1e-9
+    alone = displace(mesh.points, mesh.triangles, corner)
+    assert np.flatnonzero(alone.step).tolist() == [mesh.triangles[7, 1]]
+    assert alone.applied_volume.sum() == pytest.approx(1e-9, rel=GEOMETRY)
+
+
+@settings(max_examples=25, deadline=None, derandomize=True)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    step_over_edge=st.floats(1e-6, 1.0),
+    limit_over_edge=st.floats(1e-3, 0.5),
+    loaded=st.floats(0.01, 1.0),
+    carried=st.floats(0.0, 1.0),
+)
+def test_any_corner_volumes_labels_and_caps(seed, step_over_edge, limit_over_edge, loaded, carried):
+    """Random volumes at corners, labels and carry: conserved, within the cap, no face turned, faces in any order."""
+    mesh, random = sphere(0.05, 2), np.random.default_rng(seed)
+    points = mesh.points * (1.0 + 0.1 * random.random((len(mesh.points), 1)))
+    edge = shortest_edge_at_nodes(points, mesh.triangles)
+    limit = limit_over_edge * edge * random.random(len(edge))
+    volume = (
+        step_over_edge * edge.min() * areas(points, mesh.triangles)[:, None] * random.random((len(mesh.triangles), 3))
+    )
+    volume *= random.random((len(volume), 1)) < loaded
+    owed = carried * volume.mean() * random.random(len(points))
+    label = random.integers(0, 3, len(mesh.triangles))
+    result = displace(points, mesh.triangles, volume, owed, limit, label=label)
+    total = volume.sum() + owed.sum()
+    lost = enclosed_volume(points, mesh.triangles) - enclosed_volume(result.points, mesh.triangles)
+    rounding = 1e-13 * enclosed_volume(points, mesh.triangles)
+    assert abs(lost + result.carried_volume.sum() - total) <= ROUNDING * total + rounding
+    assert (result.step >= 0.0).all() and (result.step <= limit).all()
+    outward = np.einsum("mcx,mx->mc", (result.points - points)[mesh.triangles], unit_normals(points, mesh.triangles))
+    assert outward[volume > 0.0].max(initial=0.0) <= 1e-8 * edge.max()
+    before, after = (area_vectors(p, mesh.triangles) for p in (points, result.points))
+    assert (np.einsum("ij,ij->i", before, after) > 0.0).all()
+    order = random.permutation(len(mesh.triangles))
+    mixed = displace(points, mesh.triangles[order], volume[order], owed, limit, label=label[order])
+    np.testing.assert_allclose(mixed.points, result.points, rtol=0.0, atol=1e-6 * edge.min())
 
 
 @pytest.mark.parametrize("element_size", [2e-3, 1e-3, 0.5e-3])

@@ -9,9 +9,11 @@ from meshes.sample import sliding_sample
 from postproc.mesh import SurfaceMesh, areas, smallest_angles
 from postproc.wear.caps import step_limit
 from postproc.wear.displacement import StepTooLargeError, swept_volume
+from postproc.wear.patch import ContactPatch
 from postproc.wear.update import (
     BALANCE_TOLERANCE,
     BalanceError,
+    lost_volume,
     recession_fault,
     volume_balance,
     wear_update,
@@ -123,6 +125,28 @@ def test_other_point_data_survive(sample):
     marked = SurfaceMesh(sample.points, sample.triangles, sample.cell_data, {"mark": np.arange(len(sample.points))})
     worn, _ = wear_update(marked, sample, random_volume(sample, 1e-5))
     assert np.array_equal(worn.point_data["mark"], marked.point_data["mark"])
+
+
+def test_patch_spreads_and_the_balance_still_closes(sample):
+    """With a contact patch more nodes move than without, base and bumps in sum lose the same volume."""
+    volume = random_volume(sample, 1e-5) * (np.arange(len(sample.triangles)) % 7 == 0)
+    centres = sample.points[sample.triangles].mean(axis=1)
+    patch = ContactPatch(centres, np.full(len(centres), 6e-3))
+    limit = step_limit(sample.points, sample.triangles, 0.1, 0.01, 0.2)
+    spread_mesh, spread_record = wear_update(sample, sample, volume, limit, patch=patch)
+    mesh, record = wear_update(sample, sample, volume, limit)
+    assert spread_record["worn_volume_m3"] == record["worn_volume_m3"] == pytest.approx(volume.sum(), rel=ROUNDING)
+    moved, spread_moved = ((each.point_data["removed_thickness_m"] > 0.0).sum() for each in (mesh, spread_mesh))
+    assert spread_moved > moved
+    lost, rounding = lost_volume(sample, spread_mesh)
+    assert volume_balance(lost, spread_record["carried_volume_m3"], volume.sum(), rounding) < BALANCE_TOLERANCE
+    assert abs(spread_record["excess_volume_m3"]) < ROUNDING * volume.sum()
+
+
+def test_unknown_scheme_is_refused(sample):
+    """The message names the allowed ones."""
+    with pytest.raises(ValueError, match="scheme 'other' is unknown, allowed are: conserving, per_triangle"):
+        wear_update(sample, sample, np.zeros(len(sample.triangles)), scheme="other")
 
 
 def test_too_large_a_step_is_refused(sample):
