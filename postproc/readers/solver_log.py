@@ -33,7 +33,7 @@ KNOWN_CAUSES = (
     (r"mesh elements have been lost / left the domain", "part of the mesh lies outside the simulation box"),
     (r"Cannot open mesh file", "the surface file is missing or not readable from the folder of the deck"),
     (r"could not find fix mesh id", "the wall names a mesh that the deck does not define"),
-    (r"Invalid fix style: \"load/ledger\"", "this deck runs with solver/build/liggghts-ledger, which `make setup` builds"),
+    (r"Invalid fix style: \"load/ledger", "this deck runs with solver/build/liggghts-ledger; `make setup` builds it"),
     (r"Cannot open restart file", "the restart file is missing: the cycle before did not finish"),
     (
         r"header section of restart file",
