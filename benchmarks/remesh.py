@@ -40,11 +40,12 @@ def main() -> None:
         middle = time.process_time()
         result = remesh(mesh)
         seconds = time.process_time() - middle
+        volumes = [volume_above_plane(surface.points, surface.triangles, -WAVE) for surface in (result.mesh, mesh)]
         print(
             f"{len(mesh.triangles)} triangles, {label}: faults found in {middle - start:.2f} s, remeshed in "
             f"{seconds:.1f} s; bad faces {before.faces.sum()} -> {result.faults.faces.sum()}, smallest angle "
             f"{before.smallest_angle_deg:.2f} -> {result.faults.smallest_angle_deg:.2f} degrees, volume changed by "
-            f"{volume_above_plane(result.mesh.points, result.mesh.triangles, -WAVE) / volume_above_plane(mesh.points, mesh.triangles, -WAVE) - 1:.1e}, "
+            f"{volumes[0] / volumes[1] - 1:.1e}, "
             f"outside by {result.largest_outward:.4f} edges"
         )
 

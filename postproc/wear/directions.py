@@ -152,6 +152,14 @@ class LabelParting:
         return np.bincount(self._faces.ravel(), per_corner, len(self._nodes))
 
 
+def between_labels(faces: np.ndarray, label: np.ndarray, n_points: int) -> np.ndarray:
+    """Mask (n,) of the nodes at which faces (m, 3) of different labels (m,) meet."""
+    mask, of_face = np.zeros(n_points, dtype=bool), np.zeros(n_points, dtype=np.int64)
+    of_face[faces] = label[:, None]  # one of its faces: another one differs where labels meet
+    mask[faces[of_face[faces] != label[:, None]]] = True
+    return mask
+
+
 def _label_range(faces, label, n_points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Lowest and highest label (n,) of the faces at each node, and where it has these two and no third one (n,)."""
     lowest, highest = np.full(n_points, np.iinfo(np.int64).max), np.full(n_points, np.iinfo(np.int64).min)

@@ -8,7 +8,8 @@ cubics. Node n therefore removes
     S_n(d) = -d_n u_n . sum_{i at n} Abar_i(d) / 3 ,      sum_n S_n = swept volume, exactly,
 
 and the steps follow from S_n(d) = T_n, T_n = sum of the volumes at the corners of the faces there (V_i / 3 each
-without a contact patch) + carried_n, by a fixed point. Its first pass is the first-order volume gradient
+without a contact patch, less what hollows hand over to their walls, see `postproc.wear.hollows`) + carried_n, by a
+fixed point. Its first pass is the first-order volume gradient
 d_n = T_n / |sum A_i / 3|. Balancing node by node keeps wear where it
 fell: a global factor would move it from one label to another.
 
@@ -25,7 +26,8 @@ import numpy as np
 from scipy import sparse
 
 from postproc.mesh import edge_lengths_per_triangle, shortest_edge_at_nodes
-from postproc.wear.directions import LabelParting, loaded_directions
+from postproc.wear.directions import LabelParting, between_labels, loaded_directions
+from postproc.wear.hollows import handed_over
 
 CONVERGENCE = 1e-12  # -, summed volume errors of all nodes over the total volume; rounding is near 1e-15
 MOST_ITERATIONS = 200  # -, a step of a tenth of an edge needs about ten
@@ -114,7 +116,8 @@ def displace(
     _check(points, triangles, worn_volume, carried, step_limit, worn, label)
     faces = triangles[worn]
     incidence = _incidence(faces, len(points))
-    corner_volume = volume_at_corners(worn_volume)[worn]
+    kept = _keep_their_wear(faces, len(points), directions, None if label is None else np.asarray(label)[worn])
+    corner_volume = handed_over(points, faces, volume_at_corners(worn_volume)[worn], incidence, kept)
     target = np.bincount(faces.ravel(), corner_volume.ravel(), len(points)) + carried
     inward = loaded_directions(points, faces, corner_volume, carried, directions)
     parting = None
@@ -126,6 +129,16 @@ def displace(
     step, moved = _move(points, triangles, faces, resistance, target, step_limit)
     applied = _shares(points, moved - points, faces, incidence)
     return Displacement(moved, step, applied, target - applied)
+
+
+def _keep_their_wear(faces, n_points, directions, label) -> np.ndarray:
+    """Mask (n,) of nodes on given directions or between labels, which hand over no wear (see `handed_over`)."""
+    mask = np.zeros(n_points, dtype=bool)
+    if directions is not None:
+        mask |= np.isfinite(directions).all(axis=1)
+    if label is not None:
+        mask |= between_labels(faces, label, n_points)
+    return mask
 
 
 def volume_at_corners(worn_volume: np.ndarray) -> np.ndarray:

@@ -1,0 +1,293 @@
+"""What is wrong with a worn surface: stated bounds on its triangles, folds, and faces that cut one another.
+
+* angle: smallest interior angle of a face; aspect: longest edge over smallest altitude (1.15 when equilateral);
+* edge: length over the target, the mean target of its two nodes (`TARGET_EDGE`, kept with the mesh);
+* folded: the normals of two faces at an edge differ by more than `Bounds.largest_fold_deg`, or a face has no area;
+* intersecting: an edge of one face passes through another face that it does not touch by a shared node.
+
+Faces of the holder never wear: they count in the search for folds and intersections, not in the other bounds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from postproc.mesh import (
+    SurfaceMesh,
+    area_vectors,
+    areas,
+    edge_lengths_per_triangle,
+    smallest_angles,
+    sum_over_nodes,
+)
+from postproc.wear.remesh_patch import border_nodes, neighbours
+from postproc.wear.update import worn_faces
+
+TARGET_EDGE = "target_edge_m"  # point data: edge length that the mesh should have at a node
+SIZE_CLASS_RATIO = 2.0  # -, faces are searched in classes of alike size, so few candidates are far away
+LARGEST_PAIR_BLOCK = 500_000  # pairs of faces handled at once: bounds the memory at some 300 MB
+INSIDE_TOLERANCE = 1e-12  # -, barycentric: an edge through a corner must not slip between faces
+IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
+METRES_TO_MM = 1e3
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """When a face counts as bad.
+
+    smallest_angle_deg: degrees; largest_aspect: longest edge over smallest altitude; smallest_edge and largest_edge:
+    over the target edge; largest_fold_deg: between the normals of two faces at an edge, degrees. Raises ValueError
+    when no triangle could be good.
+    """
+
+    smallest_angle_deg: float = 15.0
+    largest_aspect: float = 10.0
+    smallest_edge: float = 0.3
+    largest_edge: float = 2.5
+    largest_fold_deg: float = 165.0
+
+    def __post_init__(self) -> None:
+        for name, low, high in (
+            ("smallest_angle_deg", 0.0, 30.0),
+            ("largest_aspect", 3.0, np.inf),
+            ("smallest_edge", 0.0, 0.5),
+            ("largest_edge", 2.0, np.inf),
+            ("largest_fold_deg", 90.0, 180.0),
+        ):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise ValueError(f"bound {name} is {value}, allowed is {low} <= value <= {high}")
+
+
+DEFAULT_BOUNDS = Bounds()
+
+
+@dataclass(frozen=True, eq=False)
+class MeshFaults:
+    """Faults of a surface; masks are (m,) bool over its faces.
+
+    smallest_angle_deg, largest_aspect, smallest_edge, largest_edge: worst of the worn faces, units as in `Bounds`;
+    acute, stretched, edges: faces beyond the bounds of angle, aspect and edge length; folded: faces at an edge folded
+    too far, or without area; intersecting: (p, 2) pairs of faces that cut one another.
+    """
+
+    smallest_angle_deg: float
+    largest_aspect: float
+    smallest_edge: float
+    largest_edge: float
+    acute: np.ndarray
+    stretched: np.ndarray
+    edges: np.ndarray
+    folded: np.ndarray
+    intersecting: np.ndarray
+
+    @property
+    def tangled(self) -> np.ndarray:
+        """Faces (m,) that no solver may see: folded or intersecting."""
+        mask = self.folded.copy()
+        mask[self.intersecting.ravel()] = True
+        return mask
+
+    @property
+    def faces(self) -> np.ndarray:
+        """All bad faces, (m,)."""
+        return self.acute | self.stretched | self.edges | self.tangled
+
+
+def with_target_edges(mesh: SurfaceMesh, target_edge_m: float | np.ndarray | None = None) -> SurfaceMesh:
+    """The mesh with its target edge as point data, which remeshing hands on.
+
+    target_edge_m: scalar or (n,) m; None: the mean length of the edges that meet at each node now. Call it once, on
+    the pristine mesh. Raises ValueError when a target is not above 0.
+    """
+    if target_edge_m is None:
+        lengths = edge_lengths_per_triangle(mesh.points, mesh.triangles)
+        at_corner = 0.5 * (lengths + np.roll(lengths, 1, axis=1))  # edges 0-1 and 2-0 meet in corner 0
+        total, count = (
+            np.bincount(mesh.triangles.ravel(), weights=values.ravel(), minlength=len(mesh.points))
+            for values in (at_corner, np.ones_like(at_corner))
+        )
+        target_edge_m = np.where(count > 0, total / np.maximum(count, 1), lengths.mean())
+    target = np.broadcast_to(np.asarray(target_edge_m, dtype=np.float64), len(mesh.points)).copy()
+    if not (target > 0.0).all():
+        raise ValueError(f"the target edge is {target.min()} m somewhere, allowed is a length above 0")
+    return SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, mesh.point_data | {TARGET_EDGE: target})
+
+
+def mesh_faults(
+    mesh: SurfaceMesh,
+    bounds: Bounds = DEFAULT_BOUNDS,
+    among: np.ndarray | None = None,
+    known: np.ndarray | None = None,
+) -> MeshFaults:
+    """Faults of a surface against the bounds; without target edges (`with_target_edges`) edges are never bad.
+
+    Pairs of faces that cut one another are looked for `among` (m,) bool only, if given, and taken over from `known`
+    (p, 2) elsewhere.
+    """
+    points, triangles = mesh.points, mesh.triangles
+    worn = worn_faces(mesh)
+    angle = smallest_angles(points, triangles)
+    aspect = aspects(points, triangles)
+    relative = edges_over_target(mesh)
+    edge = worn & ~((relative >= bounds.smallest_edge) & (relative <= bounds.largest_edge)).all(axis=1)
+    return MeshFaults(
+        float(angle[worn].min(initial=60.0)),
+        float(aspect[worn].max(initial=0.0)),
+        float(relative[worn].min(initial=1.0)),
+        float(relative[worn].max(initial=1.0)),
+        worn & (angle < bounds.smallest_angle_deg),
+        worn & (aspect > bounds.largest_aspect),
+        edge,
+        folded_faces(points, triangles, bounds.largest_fold_deg),
+        _cuts(points, triangles, among, known),
+    )
+
+
+def _cuts(points, triangles, among, known) -> np.ndarray:
+    """Pairs of faces that cut one another, found `among` (None: all) or `known` before."""
+    found = intersecting_faces(points, triangles, among)
+    return found if known is None else np.unique(np.concatenate([found, known]), axis=0)
+
+
+def tangle_message(mesh: SurfaceMesh, faults: MeshFaults) -> str:
+    """One phrase: cause and place (mm) of the first tangled face, and how many there are."""
+    count = np.count_nonzero(faults.tangled)
+    if len(faults.intersecting):
+        first, second = faults.intersecting[0]
+        cause = f"faces {first} and {second} of the worn surface cut one another"
+    else:
+        first = int(np.argmax(faults.folded))
+        cause = f"face {first} of the worn surface is folded over or has no area"
+    place = ", ".join(f"{value:.4g}" for value in METRES_TO_MM * mesh.points[mesh.triangles[first]].mean(axis=0))
+    return f"{cause} at ({place}) mm; {count} such faces"
+
+
+def aspects(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Longest edge over smallest altitude of each triangle, (m,), infinite without area."""
+    longest, area = edge_lengths_per_triangle(points, triangles).max(axis=1), areas(points, triangles)
+    return np.divide(longest**2, 2.0 * area, out=np.full(len(triangles), np.inf), where=area > 0.0)
+
+
+def edges_over_target(mesh: SurfaceMesh) -> np.ndarray:
+    """Lengths of the edges 0-1, 1-2, 2-0 over their target, (m, 3); ones where the mesh has no targets.
+
+    Edges whose length remeshing may not change, those between two boundary nodes of the worn faces, count as 1.
+    """
+    if TARGET_EDGE not in mesh.point_data:
+        return np.ones((len(mesh.triangles), 3))
+    target = np.asarray(mesh.point_data[TARGET_EDGE])[mesh.triangles]
+    lengths = edge_lengths_per_triangle(mesh.points, mesh.triangles)
+    kept = np.zeros(len(mesh.points), dtype=bool)
+    kept[border_nodes(mesh.triangles[worn_faces(mesh)])] = True
+    at_corner = kept[mesh.triangles]
+    return np.where(
+        at_corner & np.roll(at_corner, -1, axis=1), 1.0, 2.0 * lengths / (target + np.roll(target, -1, axis=1))
+    )
+
+
+def folded_faces(points: np.ndarray, triangles: np.ndarray, largest_fold_deg: float) -> np.ndarray:
+    """Mask (m,) of faces at an edge whose two normals differ by more than that many degrees, or of no area."""
+    vectors = area_vectors(points, triangles)
+    size = np.linalg.norm(vectors, axis=1)
+    result = ~(size > 0.0)
+    normals = np.divide(vectors, size[:, None], out=np.zeros_like(vectors), where=size[:, None] > 0.0)
+    pairs, _ = neighbours(triangles)
+    cosine = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)
+    result[pairs[cosine < np.cos(np.radians(largest_fold_deg))].ravel()] = True
+    return result
+
+
+def intersecting_faces(points: np.ndarray, triangles: np.ndarray, among: np.ndarray | None = None) -> np.ndarray:
+    """Pairs of faces that cut one another, (p, 2), lower index first.
+
+    among: (m,) bool, only pairs with at least one of these; None: all. Neighbours at an edge never count (see
+    `folded_faces`); of faces that share one node the edges opposite to it are tested. Coplanar overlap is not found:
+    it comes with folds.
+    """
+    low, high = points[triangles].min(axis=1), points[triangles].max(axis=1)
+    found = [np.empty((0, 2), dtype=np.int64)]
+    for candidates in _close_pairs(points, triangles, among):
+        first, second = candidates.T
+        keep = ((low[first] <= high[second]) & (low[second] <= high[first])).all(axis=1) & (first != second)
+        near = candidates[keep]
+        for start in range(0, len(near), LARGEST_PAIR_BLOCK):
+            block = near[start : start + LARGEST_PAIR_BLOCK]
+            found.append(block[_cutting(points, triangles, block)])
+    return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
+
+
+def _close_pairs(points: np.ndarray, triangles: np.ndarray, among: np.ndarray | None):
+    """Yield arrays (p, 2) of faces whose circles round the centroid overlap, one of them `among` (None: any)."""
+    corners = points[triangles]
+    centre = corners.mean(axis=1)
+    size = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
+    exponent = np.floor(np.log(np.maximum(size, np.finfo(float).tiny)) / np.log(SIZE_CLASS_RATIO))
+    classes = [np.flatnonzero(exponent == value) for value in np.unique(exponent)]
+    trees = [cKDTree(centre[members]) for members in classes]
+    for k, (members, tree) in enumerate(zip(classes, trees, strict=True)):
+        ours, our_tree, reach = members, tree, size[members].max()
+        if among is not None:
+            ours = members[among[members]]
+            our_tree = cKDTree(centre[ours])
+        else:
+            yield members[tree.query_pairs(2.0 * reach, output_type="ndarray")].reshape(-1, 2)
+        for j in range(k if among is None else len(classes)):
+            distance = reach + size[classes[j]].max()
+            both = our_tree.sparse_distance_matrix(trees[j], distance, output_type="ndarray")
+            yield np.column_stack([ours[both["i"]], classes[j][both["j"]]])
+
+
+def _cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """Mask (p,) of the pairs of which one face's edge passes through the other; neighbours at an edge never do."""
+    first, second = triangles[pairs[:, 0]], triangles[pairs[:, 1]]
+    equal = first[:, :, None] == second[:, None, :]
+    rows = np.flatnonzero(equal.sum(axis=(1, 2)) < 2)
+    rows = rows[_planes_cross(points, first[rows], second[rows])]
+    result = np.zeros(len(pairs), dtype=bool)
+    for ours, theirs, shared in (
+        (first[rows], second[rows], equal[rows].any(axis=2)),
+        (second[rows], first[rows], equal[rows].any(axis=1)),
+    ):
+        for k in range(3):
+            free = ~(shared[:, k] | shared[:, (k + 1) % 3])
+            hit = _segment_hits(points[ours[:, k]], points[ours[:, (k + 1) % 3]], points[theirs])
+            result[rows[free & hit]] = True
+    return result
+
+
+def _planes_cross(points: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Mask of pairs of triangles (k, 3) each of which has corners clearly on both sides of the other's plane."""
+    result = np.ones(len(first), dtype=bool)
+    for ours, theirs in ((first, second), (second, first)):
+        normal = area_vectors(points, theirs)
+        height = np.einsum("kcj,kj->kc", points[ours] - points[theirs[:, :1]], normal)
+        reach = np.linalg.norm(points[ours] - points[theirs[:, :1]], axis=2).max(axis=1)
+        least = IN_PLANE * reach * np.linalg.norm(normal, axis=1)
+        result &= (height.min(axis=1) < -least) & (height.max(axis=1) > least)
+    return result
+
+
+def _segment_hits(start: np.ndarray, end: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Mask (k,): the segment passes through the triangle (k, 3, 3), its edges included.
+
+    Source: T. Moeller and B. Trumbore, J. Graphics Tools 2 (1997) 21.
+    """
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    direction, offset = end - start, start - corners[:, 0]
+    p, q = np.cross(direction, second), np.cross(offset, first)
+    determinant = np.einsum("ij,ij->i", first, p)
+    scale = np.divide(1.0, determinant, out=np.full(len(p), np.nan), where=determinant != 0.0)
+    u, v, t = (np.einsum("ij,ij->i", a, b) * scale for a, b in ((offset, p), (direction, q), (second, q)))
+    low, high = -INSIDE_TOLERANCE, 1.0 + INSIDE_TOLERANCE
+    return (u >= low) & (v >= low) & (u + v <= high) & (t >= low) & (t <= high)
+
+
+def node_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Outward unit normal (n, 3) at each node, area-weighted; zero where the normals cancel."""
+    vectors = sum_over_nodes(triangles, area_vectors(points, triangles), len(points))
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)

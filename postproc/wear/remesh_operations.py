@@ -1,0 +1,385 @@
+"""Split, collapse, flip and shift: the local operations of remeshing, many independent ones at a time.
+
+Every round picks operations that share no face (each is the most urgent one near it), tries all of them at once and
+takes back those that make the patch worse: a smaller angle, a turned face, or a place outside the old surface. A split
+leaves the shape as it is. A shift keeps the volume exactly: a node alone sweeps w . G, where G, the gradient of the
+volume, depends on the ring round the node only, so w is chosen square to G. A collapse of two free nodes puts the new
+one where the volume stays (P. Lindstrom and G. Turk, IEEE Visualization 1998, 279). What flips and collapses on to a
+curve change in volume is left to `postproc.wear.remesh`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from postproc.mesh import area_vectors, smallest_angles, sum_over_nodes
+from postproc.wear.remesh_patch import (
+    CURVE,
+    FIXED,
+    INNER,
+    Edges,
+    OldSurface,
+    Patch,
+    adjacency,
+    edges_of,
+    freedom,
+    lowest_beside,
+)
+
+LARGEST_OUTWARD = 0.01  # -, over the target edge: how far the new surface may stand outside the old one
+OUTWARD_BY_OPERATIONS = 0.005  # -, the part of it for the operations; the rest is for restoring the volume
+SPLIT_ABOVE = 2.0  # -, edge over target
+SPLIT_ACUTE = 1.6  # -, the same at an acute face; halves are then longer than COLLAPSE_BELOW
+COLLAPSE_BELOW = 0.45  # -, edge over target
+COLLAPSE_ACUTE = 0.9  # -, the same for the shortest edge of an acute face
+PINCH_BELOW = 0.35  # -, the same across a strip of one label that has become so narrow: its sides are joined
+FEWEST_FACES = 4  # of one label in a patch, which are not collapsed
+GOOD_ANGLE = 25.0  # degrees; an operation may not bring an angle below it, or below what there was
+LEAST_GAIN = 1.0  # degrees, of the smallest angle, that makes a flip worthwhile
+LEAST_COSINE = 0.5  # -, between a new face and the mean normal of the old ones: 60 degrees
+COSINE_SLACK = 0.05  # -, by which a knife edge may become sharper in one operation
+SINK = 0.4  # -, of the edge, by which a merged node may go into the body
+SHIFT = 0.7  # -, of the way to the middle of the ring
+SHIFTS = ((1.0, 0.0), (1.0, 0.01), (1.0, 0.03), (0.3, 0.0))  # -, tried: part of the shift, depth over the target
+SETS = 4  # independent sets of nodes in a sweep of shifts
+SWEEPS = 4  # of all operations
+ROUNDS = 4  # of collapses or flips in a sweep
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How far operations may leave the old surface, over the target edge, -; acute_deg: what counts as acute;
+    collapse_below: edges over their target that are merged."""
+
+    outside: float
+    inside: float
+    acute_deg: float
+    collapse_below: float = COLLAPSE_BELOW
+
+
+def improve(patch: Patch, old: OldSurface, limits: Limits, erode: bool = False) -> Patch:
+    """Sweeps of splits, collapses, flips and shifts (M. Botsch and L. Kobbelt, Symp. Geom. Proc. 2004, 185)."""
+    for sweep in range(SWEEPS):
+        patch, _ = split(patch, limits)
+        patch, _ = collapse(patch, old, limits)
+        patch, _ = flip(patch, old, limits)
+        patch = shift(patch, old, limits, sweep, erode)
+    return patch
+
+
+def split(patch: Patch, limits: Limits) -> tuple[Patch, int]:
+    """Halve the long edges, the longest of each face first. Border edges stay."""
+    edges = edges_of(patch)
+    relative = _relative_lengths(patch, edges)
+    acute = smallest_angles(patch.points, patch.triangles) < limits.acute_deg
+    limit = np.where(acute[edges.faces].any(axis=1), SPLIT_ACUTE, SPLIT_ABOVE)
+    wanted = (relative > limit) & (edges.faces[:, 1] >= 0)
+    chosen = _first_of_faces(edges, wanted, -relative, len(patch.triangles))
+    ends, count = edges.ends[chosen], len(chosen)
+    if not count:
+        return patch, 0
+    middle = len(patch.points) + np.arange(count)
+    triangles, extra, faces = patch.triangles.copy(), [], edges.faces[chosen]
+    for side in range(2):
+        old = patch.triangles[faces[:, side]]
+        triangles[faces[:, side]] = np.where(old == ends[:, 1, None], middle[:, None], old)
+        extra.append(np.where(old == ends[:, 0, None], middle[:, None], old))
+    return patch.changed(
+        points=np.concatenate([patch.points, patch.points[ends].mean(axis=1)]),
+        triangles=np.concatenate([triangles, *extra]),
+        label=np.concatenate([patch.label, *(patch.label[faces[:, side]] for side in range(2))]),
+        size=np.concatenate([patch.size, patch.size[ends].mean(axis=1)]),
+        fixed=np.concatenate([patch.fixed, np.zeros(count, dtype=bool)]),
+        origin=np.concatenate([patch.origin, np.full(count, -1)]),
+    ), count
+
+
+def collapse(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
+    """Merge the ends of short edges."""
+    refused, total = np.empty((0, 2), dtype=np.int64), 0
+    for _ in range(ROUNDS):
+        patch, tried, done, refused = _collapse_round(patch, old, limits, refused)
+        total += done
+        if not tried:
+            break
+    return _without_loose_nodes(patch), total
+
+
+def _collapse_round(patch, old, limits, refused):
+    """One set of independent collapses: the new patch, the tried, the done, the refused pairs of nodes."""
+    edges = edges_of(patch)
+    kind = freedom(patch, edges)
+    wanted, relative = _collapsible(patch, edges, kind, limits)
+    wanted &= ~_is_among(edges.ends, refused, len(patch.points))
+    chosen = _alone_in_ring(edges, wanted, relative, len(patch.points))
+    if not len(chosen):
+        return patch, 0, 0, refused
+    ends = edges.ends[chosen]
+    kept = np.where(kind[ends[:, 1]] > kind[ends[:, 0]], ends[:, 1], ends[:, 0])
+    gone = ends.sum(axis=1) - kept
+    operation = np.full(len(patch.points), -1)
+    operation[ends] = np.arange(len(ends))[:, None]
+    of_face = operation[patch.triangles].max(axis=1)
+    vanish = (operation[patch.triangles] >= 0).sum(axis=1) == 2
+    renamed = np.arange(len(patch.points))
+    renamed[gone] = kept
+    triangles, points = renamed[patch.triangles], patch.points.copy()
+    good = np.zeros(len(ends), dtype=bool)
+    for places in _merged_points(patch, ends, kept, kind, triangles, of_face, vanish):
+        points[kept[~good]] = places[~good]
+        tried = patch.changed(points=points, triangles=triangles)
+        open_faces = np.where((of_face >= 0) & ~good[of_face], of_face, -1)
+        good |= _acceptable(patch, tried, open_faces, ~vanish, len(ends), old, limits)
+        if good.all():
+            break
+    triangles = np.where((of_face >= 0)[:, None] & good[of_face][:, None], triangles, patch.triangles)
+    points[kept[~good]] = patch.points[kept[~good]]
+    stay = ~(vanish & good[of_face])
+    result = patch.changed(points=points, triangles=triangles[stay], label=patch.label[stay])
+    return result, len(ends), int(good.sum()), np.concatenate([refused, ends[~good]])
+
+
+def _collapsible(patch: Patch, edges: Edges, kind, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
+    """Mask (e,) of edges that are short and may be collapsed, and all lengths over their target."""
+    relative = _relative_lengths(patch, edges)
+    acute = smallest_angles(patch.points, patch.triangles) < limits.acute_deg
+    limit = np.where(acute[edges.faces].any(axis=1), COLLAPSE_ACUTE, limits.collapse_below)
+    ends = kind[edges.ends]
+    wanted = (relative < limit) & (edges.faces[:, 1] >= 0) & (ends.min(axis=1) != FIXED)
+    wanted &= (ends.min(axis=1) == INNER) | edges.curve | (relative < PINCH_BELOW)
+    few = np.bincount(patch.label)[patch.label] <= FEWEST_FACES  # no label may vanish
+    wanted &= ~few[edges.faces].any(axis=1)
+    found = np.flatnonzero(wanted)
+    near = adjacency(edges, len(patch.points))
+    common = near[edges.ends[found, 0]].multiply(near[edges.ends[found, 1]]).sum(axis=1)
+    wanted[found] = np.asarray(common).ravel() == 2  # else two sheets would be joined
+    return wanted, relative
+
+
+def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[np.ndarray]:
+    """Places (k, 3) m of the merged nodes to try: where the volume stays, halfway, at
+    one end or the other, and a little deeper.
+
+    A node less free than the other stays in its place.
+    """
+    middle = patch.points[ends].mean(axis=1)
+    alike = kind[ends[:, 0]] == kind[ends[:, 1]]
+    inner = alike & (kind[ends[:, 0]] == INNER)
+    rows = np.flatnonzero(of_face >= 0)
+    group = of_face[rows]
+    local = patch.points[patch.triangles[rows]] - middle[group][:, None]
+    before = np.bincount(group, weights=_determinants(local), minlength=len(ends))
+    left = rows[~vanish[rows]]
+    group, row = of_face[left], np.arange(len(left))
+    at = (triangles[left] == kept[group][:, None]).argmax(axis=1)
+    first, second = (patch.points[triangles[left][row, (at + k) % 3]] - middle[group] for k in (1, 2))
+    gradient = np.zeros((len(ends), 3))
+    np.add.at(gradient, group, np.cross(first, second))
+    square = (gradient**2).sum(axis=1)
+    factor = np.divide(before, square, out=np.zeros_like(before), where=inner & (square > 0.0))
+    sunk = middle - SINK * np.linalg.norm(np.diff(patch.points[ends], axis=1)[:, 0], axis=1, keepdims=True) * np.divide(
+        gradient, np.sqrt(square)[:, None], out=np.zeros_like(gradient), where=square[:, None] > 0.0
+    )
+    places = [middle + factor[:, None] * gradient, middle, *patch.points[ends.T], sunk]
+    return [np.where(alike[:, None], place, patch.points[kept]) for place in places]
+
+
+def _determinants(corners: np.ndarray) -> np.ndarray:
+    return np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+
+
+def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
+    """Turn the common edge of two faces of one label, one of them acute, where that raises their smallest angle."""
+    refused, total = np.empty((0, 2), dtype=np.int64), 0
+    for _ in range(ROUNDS):
+        edges = edges_of(patch)
+        quads, gain = _flippable(patch, edges, limits.acute_deg)
+        gain[_is_among(edges.ends, refused, len(patch.points))] = 0.0
+        chosen = _first_of_faces(edges, gain > LEAST_GAIN, -gain, len(patch.triangles))
+        _, unique = np.unique(np.sort(edges.opposite[chosen], axis=1), axis=0, return_index=True)
+        chosen = chosen[np.sort(unique)]  # two flips to the same edge would join two sheets
+        if not len(chosen):
+            break
+        faces, triangles = edges.faces[chosen], patch.triangles.copy()
+        triangles[faces] = quads[chosen]
+        of_face = np.full(len(triangles), -1)
+        of_face[faces] = np.arange(len(chosen))[:, None]
+        tried = patch.changed(triangles=triangles)
+        good = _acceptable(patch, tried, of_face, of_face >= 0, len(chosen), old, limits)
+        triangles[faces[~good]] = patch.triangles[faces[~good]]
+        patch, total = patch.changed(triangles=triangles), total + int(good.sum())
+        refused = np.concatenate([refused, edges.ends[chosen[~good]]])
+    return patch, total
+
+
+def flipped_faces(patch: Patch, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
+    """The two new faces (e, 2, 3) of each edge if it were flipped, and the mask (e,) of edges that may be."""
+    (a, b), (c, d) = edges.ends.T, edges.opposite.T
+    quads = np.stack([np.stack([a, d, c], axis=1), np.stack([d, b, c], axis=1)], axis=1)
+    allowed = (edges.faces[:, 1] >= 0) & ~edges.curve & (c != d)
+    return quads, allowed & ~_is_among(edges.opposite, edges.ends, len(patch.points))
+
+
+def _flippable(patch: Patch, edges: Edges, acute_deg: float) -> tuple[np.ndarray, np.ndarray]:
+    """The new faces of each edge, see `flipped_faces`, and the gain (e,) of the smallest angle, degrees."""
+    quads, allowed = flipped_faces(patch, edges)
+    gain = np.zeros(len(quads))
+    now = smallest_angles(patch.points, patch.triangles)[edges.faces].min(axis=1)
+    rows = np.flatnonzero(allowed & (now < acute_deg))
+    now = now[rows]
+    then = smallest_angles(patch.points, quads[rows].reshape(-1, 3)).reshape(-1, 2).min(axis=1)
+    gain[rows] = then - now
+    return quads, gain
+
+
+def shift(patch: Patch, old: OldSurface, limits: Limits, seed: int, erode: bool = False) -> Patch:
+    """Move nodes of acute faces towards the middle of their ring, curve nodes along the curve, and keep the volume.
+
+    Where that would stand out (in a hollow) the node also goes into the body a little.
+    erode: nodes off the curves may also sink to that middle, into the body and never out of it (to untangle).
+    """
+    edges = edges_of(patch)
+    kind = freedom(patch, edges)
+    waiting = np.zeros(len(kind), dtype=bool)
+    waiting[patch.triangles[erode | (smallest_angles(patch.points, patch.triangles) < limits.acute_deg)]] = True
+    waiting &= kind != FIXED
+    order = np.random.default_rng(seed).permutation(len(kind)).astype(np.float64)
+    for _ in range(SETS):
+        rank = np.where(waiting, order, np.inf)
+        chosen = np.flatnonzero(rank < lowest_beside(rank, edges))
+        if not len(chosen):
+            break
+        waiting[chosen] = False
+        operation = np.full(len(kind), -1)
+        operation[chosen] = np.arange(len(chosen))
+        of_face = operation[patch.triangles].max(axis=1)
+        motion, inward = _motion(patch, edges, kind, chosen, erode)
+        for factor, depth in SHIFTS:
+            points = patch.points.copy()
+            points[chosen] += factor * motion + depth * patch.size[chosen, None] * inward
+            tried = patch.changed(points=points)
+            good = _acceptable(patch, tried, of_face, of_face >= 0, len(chosen), old, limits)
+            points[chosen[~good]] = patch.points[chosen[~good]]
+            patch = patch.changed(points=points)
+            motion[good], inward[good] = 0.0, 0.0
+    return patch
+
+
+def _motion(patch: Patch, edges: Edges, kind, chosen, erode: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Shifts (k, 3) m of the chosen nodes, square to the gradient of the volume, or falling along it to `erode`.
+
+    Returns them and the unit directions (k, 3) into the body.
+    """
+    vectors = area_vectors(patch.points, patch.triangles)
+    density = np.linalg.norm(vectors, axis=1) / patch.size[patch.triangles].mean(axis=1) ** 2
+    centre = patch.points[patch.triangles].mean(axis=1)
+    count = len(patch.points)
+    weight = sum_over_nodes(patch.triangles, density, count)[chosen, None]
+    moment = sum_over_nodes(patch.triangles, density[:, None] * centre, count)[chosen]
+    target = np.divide(moment, weight, out=patch.points[chosen], where=weight > 0.0)
+    gradient = sum_over_nodes(patch.triangles, vectors, count)[chosen]
+    motion = SHIFT * (target - patch.points[chosen])
+    on_curve = kind[chosen] == CURVE
+    motion[on_curve] = _along_curve(patch, edges, chosen[on_curve])
+    square = (gradient**2).sum(axis=1, keepdims=True)
+    across = (motion * gradient).sum(axis=1, keepdims=True)
+    across[(across[:, 0] < 0.0) & erode & ~on_curve] = 0.0
+    motion -= np.divide(across, square, out=np.zeros_like(square), where=square > 0.0) * gradient
+    return motion, -np.divide(gradient, np.sqrt(square), out=np.zeros_like(gradient), where=square > 0.0)
+
+
+def _along_curve(patch: Patch, edges: Edges, nodes: np.ndarray) -> np.ndarray:
+    """Shifts (k, 3) m of curve nodes along the chord between their two neighbours, towards its middle."""
+    ends = edges.ends[edges.curve]
+    both = np.concatenate([ends, ends[:, ::-1]])
+    both = both[np.argsort(both[:, 0], kind="stable")]
+    first = np.searchsorted(both[:, 0], nodes)
+    before, after = patch.points[both[first, 1]], patch.points[both[first + 1, 1]]
+    chord = after - before
+    square = (chord**2).sum(axis=1, keepdims=True)
+    along = ((0.5 * (before + after) - patch.points[nodes]) * chord).sum(axis=1, keepdims=True)
+    return SHIFT * np.divide(along, square, out=np.zeros_like(square), where=square > 0.0) * chord
+
+
+def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: OldSurface, limits: Limits) -> np.ndarray:
+    """Mask (count,) of the operations that leave the patch sound. `of_face` (m,): operation of a face, or -1."""
+    rows = np.flatnonzero(of_face >= 0)
+    group = of_face[rows]
+    good = np.zeros(count, dtype=bool)
+    good[group] = True
+    angle_before = np.full(count, np.inf)
+    np.minimum.at(angle_before, group, smallest_angles(before.points, before.triangles[rows]))
+    vectors = area_vectors(before.points, before.triangles[rows])
+    mean = np.zeros((count, 3))
+    np.add.at(mean, group, vectors)
+    cosine_before = np.full(count, np.inf)
+    np.minimum.at(cosine_before, group, _cosines(vectors, mean[group]))
+    left = np.flatnonzero((of_face >= 0) & alive)
+    group = of_face[left]
+    angle = smallest_angles(after.points, after.triangles[left])
+    good[group[angle < np.minimum(angle_before, GOOD_ANGLE)[group]]] = False
+    cosine = _cosines(area_vectors(after.points, after.triangles[left]), mean[group])
+    good[group[~(cosine >= np.minimum(cosine_before, LEAST_COSINE)[group] - COSINE_SLACK)]] = False
+    left = left[good[group]]
+    reach = old.range_over_faces(after.points, after.triangles[left], after.size)
+    good[of_face[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
+    return good
+
+
+def _cosines(vectors: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Cosine of the angle between rows, (k,); -1 where one of them is zero."""
+    length = np.linalg.norm(vectors, axis=1) * np.linalg.norm(others, axis=1)
+    return np.divide((vectors * others).sum(axis=1), length, out=np.full(len(length), -1.0), where=length > 0.0)
+
+
+def _relative_lengths(patch: Patch, edges: Edges) -> np.ndarray:
+    """Length of each edge over the mean target of its ends, (e,)."""
+    length = np.linalg.norm(patch.points[edges.ends[:, 1]] - patch.points[edges.ends[:, 0]], axis=1)
+    return length / patch.size[edges.ends].mean(axis=1)
+
+
+def _ranks(wanted: np.ndarray, urgency: np.ndarray) -> np.ndarray:
+    """Rank 0, 1, … of the wanted entries by increasing urgency value, infinite for others."""
+    rank = np.full(len(wanted), np.inf)
+    rows = np.flatnonzero(wanted)
+    rank[rows[np.argsort(urgency[rows], kind="stable")]] = np.arange(len(rows))
+    return rank
+
+
+def _first_of_faces(edges: Edges, wanted, urgency, n_faces: int) -> np.ndarray:
+    """Edges that are first in both of their faces: no two of them share a face."""
+    rank = _ranks(wanted, urgency)
+    first = np.full(n_faces + 1, np.inf)  # the last entry takes the missing faces of border edges
+    np.minimum.at(first, edges.faces, rank[:, None])
+    return np.flatnonzero(wanted & (rank[:, None] == first[edges.faces]).all(axis=1))
+
+
+def _alone_in_ring(edges: Edges, wanted, urgency, n_points: int) -> np.ndarray:
+    """Edges that are first at their ends and at all neighbours of these: no two stars share a face."""
+    rank = _ranks(wanted, urgency)
+    at_node = np.full(n_points, np.inf)
+    np.minimum.at(at_node, edges.ends, rank[:, None])
+    first = np.minimum(at_node, lowest_beside(at_node, edges))
+    return np.flatnonzero(wanted & (rank[:, None] == first[edges.ends]).all(axis=1))
+
+
+def _is_among(pairs: np.ndarray, others: np.ndarray, n_points: int) -> np.ndarray:
+    """Mask of the node pairs that occur in `others`, in either sense."""
+    keys, known = (np.sort(x, axis=1) @ np.array([n_points + 1, 1]) for x in (pairs, others))
+    return np.isin(keys, known)
+
+
+def _without_loose_nodes(patch: Patch) -> Patch:
+    """The patch without nodes of no triangle; fixed nodes stay."""
+    used = patch.fixed.copy()
+    used[patch.triangles] = True
+    index = np.cumsum(used) - 1
+    return patch.changed(
+        points=patch.points[used],
+        triangles=index[patch.triangles],
+        size=patch.size[used],
+        fixed=patch.fixed[used],
+        origin=patch.origin[used],
+    )

@@ -1,0 +1,119 @@
+"""Faults of a surface: angles, aspects, edges, folds and faces that cut one another."""
+
+import numpy as np
+import pytest
+
+from meshes.plate import flat_plate, sphere
+from postproc.mesh import SurfaceMesh
+from postproc.wear.mesh_faults import (
+    Bounds,
+    aspects,
+    folded_faces,
+    intersecting_faces,
+    mesh_faults,
+    tangle_message,
+    with_target_edges,
+)
+
+SEED = 20220317
+EXACT = 1e-12  # relative: closed forms of single triangles
+
+
+def crossing_sheets():
+    """Two triangles that share no node; an edge of the second passes through the first at its centroid."""
+    points = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0], [1, 1, -1], [1, 1, 2], [5, 5, 2.0]])
+    return points, np.array([[0, 1, 2], [3, 4, 5]])
+
+
+def test_sound_surfaces_have_no_faults():
+    """Plate and sphere: no bad face; edges are at their own target."""
+    for mesh in (flat_plate(0.06, 0.039, 0.003), sphere(0.01, 3)):
+        faults = mesh_faults(with_target_edges(mesh))
+        assert not faults.faces.any()
+        assert len(faults.intersecting) == 0
+
+
+def test_aspect_of_an_equilateral_triangle():
+    """Longest edge over smallest altitude: 2 / sqrt 3 when equilateral, infinite without area."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [0.5, np.sqrt(0.75), 0], [2, 0, 0.0]])
+    found = aspects(points, np.array([[0, 1, 2], [0, 1, 3]]))
+    assert found[0] == pytest.approx(2.0 / np.sqrt(3.0), rel=EXACT)
+    assert found[1] == np.inf
+
+
+def test_cutting_faces_are_found_in_any_order():
+    """An edge through a face is found whichever face comes first; shifted away it is not."""
+    points, triangles = crossing_sheets()
+    for order in ([0, 1], [1, 0]):
+        assert intersecting_faces(points, triangles[order]).tolist() == [[0, 1]]
+    points[3:] += (3.0, 3.0, 0.0)
+    assert len(intersecting_faces(points, triangles)) == 0
+
+
+def test_faces_of_unlike_size_cut():
+    """A face a hundred times smaller that pierces a large one is found: size classes hide nothing."""
+    points, triangles = crossing_sheets()
+    points[3:] = np.array([1.0, 1.0, 0.0]) + 0.01 * (points[3:] - points[3])
+    points[3:, 2] -= 0.005
+    assert intersecting_faces(points, triangles).tolist() == [[0, 1]]
+
+
+def test_faces_with_a_common_node():
+    """Of faces that share one node the opposite edges are tested: piercing is found, mere touching at it is none."""
+    points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, 1], [1, 1, -1], [-1, -1, 1], [-2, -1, 1.0]])
+    assert intersecting_faces(points, np.array([[0, 1, 2], [0, 3, 4]])).tolist() == [[0, 1]]
+    assert len(intersecting_faces(points, np.array([[0, 1, 2], [0, 5, 6]]))) == 0
+
+
+def test_search_among_some_faces():
+    """Only pairs with one of the named faces are looked for, and all of those are found."""
+    random = np.random.default_rng(SEED)
+    corners = random.random((60, 3, 3))
+    points, triangles = corners.reshape(-1, 3), np.arange(180).reshape(-1, 3)
+    pairs = intersecting_faces(points, triangles)
+    among = np.arange(60) < 10
+    expected = pairs[among[pairs].any(axis=1)]
+    assert len(pairs) > len(expected) > 0
+    assert np.array_equal(intersecting_faces(points, triangles, among), expected)
+
+
+def test_fold_of_two_faces():
+    """Two faces at an edge fold when their normals differ by more than the bound; a face without area always."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 1, 0.1], [2, 0, 0.0]])
+    folded = np.array([[0, 1, 2], [1, 0, 3]])  # the second lies back over the first
+    assert folded_faces(points, folded, 165.0).all()
+    points[3] = (0.0, -1.0, 0.1)
+    assert not folded_faces(points, folded, 165.0).any()
+    assert folded_faces(points, np.array([[0, 1, 4]]), 165.0).all()
+
+
+def test_edges_against_their_target():
+    """An edge beyond the bounds over the mean target of its ends makes its faces bad; kept boundary edges do not."""
+    plate = flat_plate(0.02, 0.02, 0.004)
+    assert mesh_faults(with_target_edges(plate, 0.02)).edges.sum() > 0
+    assert not mesh_faults(with_target_edges(plate, 0.004)).edges.any()
+    with pytest.raises(ValueError, match="allowed is a length above 0"):
+        with_target_edges(plate, 0.0)
+
+
+def test_holder_counts_only_when_tangled():
+    """Acute faces of the holder are no fault."""
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, -0.05, 0.0]])
+    mesh = SurfaceMesh(points, np.array([[0, 1, 2], [0, 3, 1]]), {"part": np.array([0, -1])})
+    assert not mesh_faults(mesh).faces.any()
+    worn = SurfaceMesh(points, mesh.triangles, {"part": np.array([0, 0])})
+    assert mesh_faults(worn).acute.tolist() == [False, True]
+
+
+def test_message_names_place_and_cause():
+    """The phrase gives the faces, the place in mm and the count."""
+    points, triangles = crossing_sheets()
+    mesh = SurfaceMesh(points * 1e-3, triangles)
+    message = tangle_message(mesh, mesh_faults(mesh))
+    assert message == "faces 0 and 1 of the worn surface cut one another at (1, 1, 0) mm; 2 such faces"
+
+
+def test_bounds_out_of_range():
+    """A bound no triangle can meet is refused with its name and range."""
+    with pytest.raises(ValueError, match="smallest_angle_deg is 61, allowed is"):
+        Bounds(smallest_angle_deg=61)
