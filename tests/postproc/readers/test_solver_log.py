@@ -24,6 +24,7 @@ MESSAGES = dict(
     re.findall(r"^=== (\w+)\n(.*?)(?=^===|\Z)", (DATA / "solver_failures.txt").read_text(), re.MULTILINE | re.DOTALL)
 )
 CAUSES = {
+    "ledger_refused": "this deck runs with solver/build/liggghts-ledger",
     "unknown_command": "a command that this LIGGGHTS does not know",
     "no_property": "does not define this material property",
     "badtypes": "one value for each pair of materials",
