@@ -50,7 +50,10 @@ def write_drag(folder, case, outputs=(), **variables):
 
 
 def kill_in_the_middle(folder, by=signal.SIGKILL):
-    """Run until a second restart file is there and send a signal; return the name of the newest restart file."""
+    """Run until a second restart file is there and send a signal; return the name of the newest whole restart file.
+
+    SIGKILL may cut a file off while it is written; that is why there are two.
+    """
     running = subprocess.Popen(command(), cwd=folder, env=environment(), stdout=subprocess.DEVNULL)
     deadline = time.monotonic() + PATIENCE
     while not (folder / "b.restart").exists() and running.poll() is None and time.monotonic() < deadline:
@@ -58,8 +61,11 @@ def kill_in_the_middle(folder, by=signal.SIGKILL):
     running.send_signal(by)
     assert running.wait() == (-by if by == signal.SIGKILL else 0)
     assert not (folder / "load_ledger.bin").exists(), "the run ended before it could be killed"
-    kept = [*folder.glob("?.restart"), *folder.glob("restart_forced_*")]
-    return max(kept, key=lambda path: path.stat().st_mtime_ns).name
+    if forced := list(folder.glob("restart_forced_*")):
+        return forced[0].name
+    kept = list(folder.glob("?.restart"))
+    whole = max(path.stat().st_size for path in kept)
+    return max((path for path in kept if path.stat().st_size == whole), key=lambda path: path.stat().st_mtime_ns).name
 
 
 def assert_same_ledger(found, expected, tolerance=RESUME_TOLERANCE):
