@@ -12,6 +12,7 @@ import numpy as np
 
 from postproc.mesh import SurfaceMesh, read_surface, write_stl
 from workflows import deck, state
+from workflows.schedule import Span, first_span, known_spans, next_span
 from workflows.solver import DECK
 
 SURFACE, SURFACE_STL, END_WALL, RESTART = "surface.vtu", "surface.stl", "end_wall.stl", "run.restart"
@@ -30,53 +31,48 @@ class Chain:
     bed_restart: Path
     ranks: int = 1
 
-    @property
-    def cycles(self) -> int:
-        """Number of wear cycles."""
-        return self.parameters["sliding"]["cycles"]
-
-    @property
-    def worn_folder(self) -> Path:
-        """Folder of the last wear cycle."""
-        return state.cycle_folder(self.folder, self.cycles)
-
 
 def surface_before(chain: Chain, cycle: int) -> Path:
     """Return the surface that a cycle starts from."""
     return chain.surface if cycle <= 1 else state.cycle_folder(chain.folder, cycle - 1) / SURFACE
 
 
-def cycle_steps(chain: Chain, cycle: int) -> int:
-    """Return the time steps of a cycle."""
-    derived = chain.parameters["derived"]
-    if cycle:
-        return derived["cycle_steps"]
+def span_of(chain: Chain, cycle: int) -> Span | None:
+    """Return the span of a wear cycle (1, 2, ...) whose predecessors are finished; None after the last one."""
+    if cycle == 1:
+        return first_span(chain.parameters)
+    before = state.read_state(chain.folder, cycle - 1)
+    return next_span(chain.parameters, Span(**before["span"]), before["wear"])
+
+
+def run_in_steps(chain: Chain) -> int:
+    """Return the time steps of cycle 0."""
     lowering = deck.lowered_bed(chain.parameters, chain.bed, "")["lowering_steps"]
-    return lowering + derived["run_in_steps"]
+    return lowering + chain.parameters["derived"]["run_in_steps"]
+
+
+def steps_before(chain: Chain, span: Span | None) -> int:
+    """Return the time steps of a run before a wear cycle; before cycle 0 (None) there are none."""
+    return run_in_steps(chain) + span.first_step if span else 0
 
 
 def total_steps(chain: Chain) -> int:
     """Return the time steps of a whole run."""
-    return sum(cycle_steps(chain, cycle) for cycle in range(chain.cycles + 1))
+    return run_in_steps(chain) + chain.parameters["derived"]["travel_steps"]
 
 
-def cycle_title(chain: Chain, cycle: int) -> str:
-    """Return what people call a cycle."""
-    return f"cycle {cycle} of {chain.cycles}" if cycle else "lowering and run-in"
-
-
-def deck_text(chain: Chain, cycle: int) -> str:
-    """Return the deck of a cycle; paths in it are relative to the cycle's folder."""
-    if cycle:
-        restart = f"../{state.cycle_folder(chain.folder, cycle - 1).name}/{RESTART}"
-        return deck.render("sliding_sample", deck.sliding_sample(chain.parameters, chain.bed, cycle, restart))
+def deck_text(chain: Chain, span: Span | None) -> str:
+    """Return the deck of a wear cycle, or of cycle 0 (None); paths in it are relative to the cycle's folder."""
+    if span:
+        restart = f"../{state.cycle_folder(chain.folder, span.cycle - 1).name}/{RESTART}"
+        return deck.render("sliding_sample", deck.sliding_sample(chain.parameters, chain.bed, span, restart))
     restart = os.path.relpath(chain.bed_restart, state.cycle_folder(chain.folder, 0))
     return deck.render("lowered_bed", deck.lowered_bed(chain.parameters, chain.bed, restart))
 
 
-def write_cycle(chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh) -> None:
-    """Write the deck and the surface of a cycle into its folder, where they run by hand."""
-    (folder / DECK).write_text(deck_text(chain, cycle))
+def write_cycle(chain: Chain, span: Span | None, folder: Path, surface: SurfaceMesh) -> None:
+    """Write the deck and the surface of a wear cycle, or of cycle 0 (None), into its folder, where they run by hand."""
+    (folder / DECK).write_text(deck_text(chain, span))
     write_stl(folder / SURFACE_STL, surface.points, surface.triangles)
 
 
@@ -98,11 +94,14 @@ def write_bed(bed: Mapping[str, Any], folder: Path) -> None:
 
 
 def write_decks(chain: Chain) -> None:
-    """Write every deck of a run with what it reads, without running the solver; they run by hand in their order."""
+    """Write the decks of a run with what they read, without running the solver; they run by hand in their order.
+
+    Of adaptive cycles only the first is known beforehand.
+    """
     surface = read_surface(chain.surface)
     chain.folder.mkdir(parents=True, exist_ok=True)
     write_end_wall(chain)
-    for cycle in range(chain.cycles + 1):
-        folder = state.cycle_folder(chain.folder, cycle)
+    for span in (None, *known_spans(chain.parameters)):
+        folder = state.cycle_folder(chain.folder, span.cycle if span else 0)
         folder.mkdir(parents=True, exist_ok=True)
-        write_cycle(chain, cycle, folder, surface)
+        write_cycle(chain, span, folder, surface)

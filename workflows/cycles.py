@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +16,14 @@ from postproc.mesh import read_surface, write_surface
 from postproc.readers.load_ledger import announcement
 from postproc.readers.solver_log import solver_version, thermo_table, warnings
 from workflows import deck, state
-from workflows.accounting import LEDGER, account_and_wear, worn_surface
+from workflows.accounting import LEDGER, account_and_wear
 from workflows.chain import (
     RESTART,
     SURFACE,
     Chain,
-    cycle_steps,
-    cycle_title,
+    run_in_steps,
+    span_of,
+    steps_before,
     surface_before,
     total_steps,
     write_bed,
@@ -30,8 +32,10 @@ from workflows.chain import (
 )
 from workflows.ledgers import producer
 from workflows.progress import Progress
+from workflows.schedule import Span, first_span, title
 from workflows.solver import CYCLE_EXECUTABLES, EXECUTABLE, LOG, SCREEN, SolverError, missing_program, run_deck
 from workflows.tables import write_table
+from workflows.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"
 
@@ -47,14 +51,20 @@ def run_chain(chain: Chain) -> None:
         if moved := state.set_aside_others(chain.folder, inputs):
             announce(moved)
         finished = state.finished_cycles(chain.folder, inputs)
-        if finished <= chain.cycles and (missing := missing_program(cycle_executable(chain, 1))):
+        span = span_of(chain, finished) if finished else None
+        unfinished = finished == 0 or span is not None
+        if unfinished and (missing := missing_program(cycle_executable(chain, first_span(chain.parameters)))):
             raise SolverError(missing)  # before the run-in, which needs the plain solver only
-        progress = Progress(chain.name, total_steps(chain), sum(cycle_steps(chain, k) for k in range(finished)))
-        if 0 < finished <= chain.cycles:
-            announce(f"resumes after {cycle_title(chain, finished - 1)}")
-        for cycle in range(finished, chain.cycles + 1):
-            run_cycle(chain, cycle, inputs, progress)
-        write_products(chain)
+        progress = Progress(chain.name, total_steps(chain), steps_before(chain, span))
+        if finished and unfinished:
+            announce(f"resumes after {title(chain.parameters, finished - 1)}")
+        if not finished:
+            run_cycle(chain, None, inputs, progress)
+            finished, span = 1, span_of(chain, 1)
+        while span:
+            run_cycle(chain, span, inputs, progress)
+            finished, span = finished + 1, span_of(chain, span.cycle + 1)
+        write_products(chain, finished)
 
 
 def inputs_digest(chain: Chain) -> str:
@@ -64,24 +74,30 @@ def inputs_digest(chain: Chain) -> str:
     return state.digest(
         {**parameters, "solver": solver},
         deck.render("lowered_bed", deck.lowered_bed(parameters, bed, bed_restart="")),
-        deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle=1, run_restart="")),
+        deck.render("sliding_sample", deck.sliding_sample(parameters, bed, first_span(parameters), run_restart="")),
         state.file_digest(chain.surface),
         state.file_digest(chain.bed_restart),
     )
 
 
-def run_cycle(chain: Chain, cycle: int, inputs: str, progress: Progress) -> None:
-    """Simulate, account, wear and displace one cycle; cycle 0 lowers the bed on to the sample and runs it in."""
-    started = time.monotonic()
+def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:
+    """Simulate, account, wear and displace one cycle; cycle 0 (None) lowers the bed on to the sample and runs it in."""
+    started, cycle = time.monotonic(), span.cycle if span else 0
     with state.working_folder(chain.folder, cycle) as folder:
         surface = read_surface(surface_before(chain, cycle))
         write_end_wall(chain)
-        write_cycle(chain, cycle, folder, surface)
-        solver_seconds = simulate(chain, cycle, folder, len(surface.triangles), progress)
-        record = {"cost": {}} if cycle == 0 else account_and_wear(chain, cycle, folder, surface)
-        record["cost"] = cost(chain, cycle, folder, solver_seconds, time.monotonic() - started) | record["cost"]
+        write_cycle(chain, span, folder, surface)
+        solver_seconds = simulate(chain, span, folder, len(surface.triangles), progress)
+        record = account_and_wear(chain, span, folder, surface) if span else {"cost": {}}
+        record["cost"] = (
+            cost(chain, span, folder, len(surface.triangles), solver_seconds, time.monotonic() - started)
+            | record["cost"]
+        )
         record |= {
-            "bed_travelled_m": deck.travelled(chain.parameters, cycle + 1),
+            "span": asdict(span) if span else None,
+            "bed_travelled_m": deck.travelled(
+                chain.parameters, chain.parameters["derived"]["run_in_steps"] + (span.end if span else 0)
+            ),
             "seed": chain.bed["seed"],
             "solver": solver_version(folder / SCREEN),
             "solver_ledger": announcement(folder / SCREEN),
@@ -89,50 +105,52 @@ def run_cycle(chain: Chain, cycle: int, inputs: str, progress: Progress) -> None
         }
         if inputs_digest(chain) != inputs:
             raise state.StateError(
-                f"{chain.name}: its inputs changed while {cycle_title(chain, cycle)} ran; start again."
+                f"{chain.name}: its inputs changed while {title(chain.parameters, cycle)} ran; start again."
             )
-        files = (RESTART,) if cycle == 0 else (RESTART, SURFACE, LEDGER, *producer(chain.parameters).kept)
+        files = (RESTART,) if span is None else (RESTART, SURFACE, LEDGER, *producer(chain.parameters).kept)
         state.write_state(folder, inputs, files, record)
 
 
-def simulate(chain: Chain, cycle: int, folder: Path, triangles: int, progress: Progress) -> float:
+def simulate(chain: Chain, span: Span | None, folder: Path, triangles: int, progress: Progress) -> float:
     """Run the solver on a cycle's deck and return its wall time in s. Raises SolverError."""
-    before = sum(cycle_steps(chain, earlier) for earlier in range(cycle))
+    cycle, before = span.cycle if span else 0, steps_before(chain, span)
     return run_deck(
         folder,
         chain.ranks,
-        lambda step: progress.update(before + step, cycle_title(chain, cycle)),
+        lambda step: progress.update(before + step, title(chain.parameters, cycle)),
         triangles={f"sample_{cycle}": triangles},
-        executable=cycle_executable(chain, cycle),
+        executable=cycle_executable(chain, span),
     )
 
 
-def cycle_executable(chain: Chain, cycle: int) -> str:
+def cycle_executable(chain: Chain, span: Span | None) -> str:
     """Return the program that simulates a cycle; only wear cycles have a ledger."""
-    return CYCLE_EXECUTABLES[chain.parameters["ledger"]] if cycle else EXECUTABLE
+    return CYCLE_EXECUTABLES[chain.parameters["ledger"]] if span else EXECUTABLE
 
 
-def cost(chain: Chain, cycle: int, folder: Path, solver_seconds: float, all_seconds: float) -> dict[str, float]:
+def cost(
+    chain: Chain, span: Span | None, folder: Path, triangles: int, solver_seconds: float, all_seconds: float
+) -> dict[str, float]:
     """Return what a cycle cost: wall times in s and the sizes that they depend on."""
     thermo = thermo_table(folder / LOG)
     return {
-        "cycle": cycle,
+        "cycle": span.cycle if span else 0,
         "solver_s": round(solver_seconds, 3),
         "other_s": round(all_seconds - solver_seconds, 3),
-        "steps": cycle_steps(chain, cycle),
+        "steps": span.steps if span else run_in_steps(chain),
         "particles": int(thermo["Atoms"][-1]),
-        "triangles": int(read_surface(chain.surface).triangles.shape[0]),
+        "triangles": triangles,
         "ranks": chain.ranks,
         "ledger_bytes": 0,
     }
 
 
-def write_products(chain: Chain) -> None:
-    """Write wear.csv, cost.csv and worn_surface.vtu of a finished run from what its cycles left."""
-    states = [state.read_state(chain.folder, cycle) for cycle in range(chain.cycles + 1)]
+def write_products(chain: Chain, finished: int) -> None:
+    """Write wear.csv, cost.csv and worn_surface.vtu of a run from what its finished cycles left."""
+    states = [state.read_state(chain.folder, cycle) for cycle in range(finished)]
     write_table(chain.folder / "wear.csv", [found["wear"] for found in states[1:]])
     write_table(chain.folder / "cost.csv", [found["cost"] for found in states])
-    write_surface(chain.folder / WORN_SURFACE, worn_surface(chain))
+    write_surface(chain.folder / WORN_SURFACE, worn_surface(chain, Span(**states[-1]["span"])))
 
 
 def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1) -> None:

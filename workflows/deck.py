@@ -19,6 +19,7 @@ import jinja2.meta
 from postproc.readers.contacts import CONTACT_COLUMNS
 from postproc.wear.caps import GRAVITY
 from postproc.wear.laws import law_kernels
+from workflows.schedule import Span
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
@@ -169,22 +170,22 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
     lowering = steps(LOWERING_FREE_FALLS * math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY), step)
     return {
         **_integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
-        **_sliding(run, bed, cycle=0),
+        **_sliding(run, bed, cycle=0, steps_before=0),
         "bed_restart": bed_restart,
         "lowering_steps": lowering,
         "run_in_steps": derived["run_in_steps"],
     }
 
 
-def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, run_restart: str) -> dict[str, Any]:
-    """Return the parameters of the deck of one wear cycle (1, 2, ...); arguments as for `lowered_bed`."""
+def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, run_restart: str) -> dict[str, Any]:
+    """Return the parameters of the deck of one wear cycle; arguments as for `lowered_bed`."""
     derived = run["derived"]
     return {
-        **_integration(run["solver"], derived["time_step_s"], run["particle"], derived["cycle_steps"]),
-        **_sliding(run, bed, cycle),
+        **_integration(run["solver"], derived["time_step_s"], run["particle"], span.steps),
+        **_sliding(run, bed, span.cycle, derived["run_in_steps"] + span.first_step),
         "run_restart": run_restart,
-        "cycle_steps": derived["cycle_steps"],
-        "picture_steps": min(derived["picture_interval_steps"], derived["cycle_steps"]),
+        "cycle_steps": span.steps,
+        "picture_steps": min(derived["picture_interval_steps"], span.steps),
         "ledger": run["ledger"],
         **LEDGERS[run["ledger"]](run),
     }
@@ -210,11 +211,9 @@ def _sampled_contacts(run: Mapping[str, Any]) -> dict[str, Any]:
 LEDGERS = {"solver": _exact_ledger, "dumps": _sampled_contacts}
 
 
-def travelled(run: Mapping[str, Any], cycle: int) -> float:
-    """Return how far (m) the bed has travelled when a cycle starts; cycle 0 starts at rest, 1 after the run-in."""
-    derived = run["derived"]
-    total = derived["run_in_steps"] + (cycle - 1) * derived["cycle_steps"] if cycle else 0
-    return run["sliding"]["velocity_m_per_s"] * derived["time_step_s"] * total
+def travelled(run: Mapping[str, Any], steps: int) -> float:
+    """Return how far (m) the bed has travelled after that many time steps since it was set in motion."""
+    return run["sliding"]["velocity_m_per_s"] * run["derived"]["time_step_s"] * steps
 
 
 def steps(duration: float, time_step: float) -> int:
@@ -298,11 +297,11 @@ def _pairs(with_particle: Iterable[float]) -> list[list[float]]:
     return [[particle, sample, floor], [sample, sample, floor], [floor, floor, floor]]
 
 
-def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int) -> dict[str, Any]:
+def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, steps_before: int) -> dict[str, Any]:
     """Return what both sliding decks need: materials, where the bed's ends are, the sample's fix id."""
     coefficient = run["wear"]["accelerated_wear_coefficient_per_pa"]
     convention = {key: run["solver"][key] for key in ("rolling_radius", "rolling_friction")}
-    ahead = travelled(run, cycle)
+    ahead = travelled(run, steps_before)
     return {
         **_materials(run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}),
         "finnie_coefficient_per_pa": _pairs([coefficient] * 3),

@@ -7,9 +7,11 @@ from typing import Any
 
 from meshes.sample import skirt_width
 from postproc.wear.caps import GRAVITY
+from postproc.wear.patch import physical_radius
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
+ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
 
 
@@ -68,15 +70,14 @@ def rolling_coefficient_for_solver(coefficient: float, rolling_radius: str, cont
     return coefficient * factors[rolling_radius, contact]
 
 
-def whole_cycle(cycle_duration: float, largest_time_step: float, sampling_interval: int) -> tuple[int, float]:
-    """Return (steps, time step in s) of a wear cycle: whole samples, and exactly the duration asked for.
+def whole_steps(duration: float, largest_time_step: float, multiple: int) -> tuple[int, float]:
+    """Return (steps, time step in s) of a duration: a multiple of `multiple` steps, and exactly the duration asked for.
 
-    The time step is the largest one, not above `largest_time_step` (s), of which a multiple of
-    `sampling_interval` steps lasts `cycle_duration` (s).
+    The time step is the largest one, not above `largest_time_step` (s), of which that many steps last `duration` (s).
     """
-    samples = math.ceil(cycle_duration / (largest_time_step * sampling_interval) * (1.0 - ROUNDING))
-    steps = max(samples, 1) * sampling_interval
-    return steps, cycle_duration / steps
+    count = math.ceil(duration / (largest_time_step * multiple) * (1.0 - ROUNDING))
+    steps = max(count, 1) * multiple
+    return steps, duration / steps
 
 
 def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -86,6 +87,7 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
         "layers": layers,
         "thin_bed": layers < THIN_BED_LAYERS * (1.0 - ROUNDING),
         "equivalent_size_ratio": _size_ratio(parameters),
+        "physical_patch_factor": _physical_patch_factor(parameters),
         **_derived_materials(parameters),
         **_derived_geometry(parameters),
         **_derived_times(parameters),
@@ -98,6 +100,23 @@ def _size_ratio(parameters: dict[str, Any]) -> float | None:
         return None
     lengths = (pattern["major_radius_m"], pattern["minor_radius_m"], pattern["height_m"])
     return equivalent_size_ratio(parameters["particle"]["median_diameter_m"], *lengths)
+
+
+def _physical_patch_factor(parameters: dict[str, Any]) -> float:
+    """Return the true contact's Hertz radius over the simulated one (-); 1 where the study does not ask for it."""
+    modulus = parameters["wear"].get("physical_shear_modulus_pa")
+    if modulus is None:
+        return 1.0
+    particle, wall = parameters["particle"], parameters["sample_material"]
+    pair = [(particle["shear_modulus_pa"], modulus), (wall["shear_modulus_pa"],) * 2]
+    compliances = [
+        sum(
+            (1.0 - section["poissons_ratio"] ** 2) / youngs_modulus(moduli[kind], section["poissons_ratio"])
+            for section, moduli in zip((particle, wall), pair, strict=True)
+        )
+        for kind in (0, 1)
+    ]
+    return float(physical_radius(1.0, 1.0 / compliances[0], 1.0 / compliances[1], particle["scale"]))
 
 
 def _derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -154,16 +173,19 @@ def _derived_times(parameters: dict[str, Any]) -> dict[str, Any]:
         particle["poissons_ratio"],
     )
     largest = solver["rayleigh_fraction"] * rayleigh
-    duration = sliding["travel_m"] / sliding["cycles"] / sliding["velocity_m_per_s"]
-    # only sampled contacts ask for whole samples in a cycle
-    cycle_steps, time_step = whole_cycle(duration, largest, solver.get("sampling_interval_steps", 1))
+    sampled = solver.get("sampling_interval_steps", 1)  # only sampled contacts ask for whole samples in a cycle
+    cycles = 1 if sliding["cycles"] == ADAPTIVE else sliding["cycles"]
+    steps, time_step = whole_steps(sliding["travel_m"] / sliding["velocity_m_per_s"], largest, sampled * cycles)
     travel_per_step = sliding["velocity_m_per_s"] * time_step
+    first = steps // cycles
+    if sliding["cycles"] == ADAPTIVE:
+        first = min(max(round(sliding["first_cycle_m"] / travel_per_step / sampled), 1) * sampled, steps)
     return {
         "rayleigh_time_s": rayleigh,
         "largest_time_step_s": largest,
         "time_step_s": time_step,
-        "cycle_duration_s": duration,
-        "cycle_steps": cycle_steps,
+        "travel_steps": steps,
+        "first_cycle_steps": first,
         "run_in_steps": round(sliding["run_in_m"] / travel_per_step),
         "picture_interval_steps": max(round(solver["picture_interval_m"] / travel_per_step), 1),
     }

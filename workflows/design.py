@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from workflows.config_files import ConfigError, Layer, command_line_layer, merge, read_yaml
-from workflows.derived import derived_parameters, rolling_coefficient_for_solver
+from workflows.derived import ADAPTIVE, derived_parameters, rolling_coefficient_for_solver
 from workflows.run_checks import Case, check_run
 from workflows.validation import (
     check_layer,
@@ -34,7 +34,6 @@ __all__ = [
     "Run",
     "Study",
     "bed_parameters",
-    "figure_remarks",
     "list_studies",
     "load_study",
     "rolling_coefficient_for_solver",
@@ -287,11 +286,9 @@ def run_parameters(
         "sample": si["sample"],
         "pattern": _pattern(si["pattern"], factors) if surface == "convex" else None,
         "bed": {**si["bed"], "thickness_m": factors["bed_thickness_m"]},
-        "sliding": {**si["sliding"], "velocity_m_per_s": factors["velocity_m_per_s"]},
-        "wear": {
-            **si["wear"],
-            "accelerated_wear_coefficient_per_pa": si["wear"]["wear_coefficient_per_pa"] * si["wear"]["acceleration"],
-        },
+        "sliding": {**_sliding(si["sliding"]), "velocity_m_per_s": factors["velocity_m_per_s"]},
+        "wear": _wear(si["wear"], materials["particles"][settings["bed"]["material"]]),
+        "remeshing": si["remeshing"],
         "solver": {k: v for k, v in si["solver"].items() if si["ledger"] == "dumps" or k != "sampling_interval_steps"},
         "particle": _particle(settings["bed"]["material"], materials, scale),
         "sample_material": _wall(settings["sample"]["material"], materials),
@@ -307,6 +304,19 @@ def row_particle_scale(settings: dict[str, Any], materials: dict[str, Any], thic
     return min(scale, max(thickness / (layers * diameter), 1.0)) if layers else scale
 
 
+def _sliding(sliding: dict[str, Any]) -> dict[str, Any]:
+    """Return the section without the length of the first cycle where all are equal: it then changes nothing."""
+    return {k: v for k, v in sliding.items() if sliding["cycles"] == ADAPTIVE or k != "first_cycle_m"}
+
+
+def _wear(wear: dict[str, Any], particle: dict[str, Any]) -> dict[str, Any]:
+    """Return the section with the accelerated coefficient, and of the patch only what its choice needs."""
+    kept = {k: v for k, v in wear.items() if k != "patch_radius_m" or wear["patch"] == "radius"}
+    if wear["patch"] == "physical":
+        kept["physical_shear_modulus_pa"] = particle.get("physical_shear_modulus_pa")
+    return {**kept, "accelerated_wear_coefficient_per_pa": wear["wear_coefficient_per_pa"] * wear["acceleration"]}
+
+
 def _pattern(pattern: dict[str, Any], factors: dict[str, Any]) -> dict[str, Any]:
     names = ("major_radius_m", "minor_radius_m", "height_m", "column_spacing_m")
     return {**pattern, **{name: factors[name] for name in names}}
@@ -315,6 +325,7 @@ def _pattern(pattern: dict[str, Any], factors: dict[str, Any]) -> dict[str, Any]
 def _particle(name: str, materials: dict[str, Any], scale: float) -> dict[str, Any]:
     """Return the particle's material; its lengths are coarse-grained, `scale` times the real ones."""
     particle = to_si(materials["particles"][name])
+    particle.pop("physical_shear_modulus_pa", None)  # concerns wear alone, and no bed is filled again for it
     distribution = particle.pop("size_distribution")
     median_diameter = scale * particle.pop("median_diameter_m")
     return {
@@ -331,7 +342,7 @@ def _wall(name: str, materials: dict[str, Any]) -> dict[str, Any]:
     return {"name": name, **to_si(materials["walls"][name])}
 
 
-# ---------------------------------------------------------------- beds and remarks
+# ---------------------------------------------------------------- beds
 
 
 def bed_parameters(run: Run) -> dict[str, Any]:
@@ -359,41 +370,3 @@ def bed_parameters(run: Run) -> dict[str, Any]:
         "youngs_modulus_pa": {name: derived["youngs_modulus_pa"][name] for name in ("particle", "floor_material")},
         "time_step_s": derived["largest_time_step_s"],
     }
-
-
-TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
-REDUCED = (
-    ("bed", "width_mm", "bed width"),
-    ("bed", "ahead_mm", "bed ahead of the sample"),
-    ("sliding", "run_in_mm", "run-in"),
-    ("sliding", "travel_mm", "travel"),
-)  # settings whose reduction every figure tells
-
-
-def figure_remarks(study: Study) -> list[str]:
-    """Return what every figure must say: what is smaller than at paper fidelity, thin beds, law, acceleration."""
-    now, full = study.settings, study.paper_settings
-    remarks = []
-    scales = sorted({round(run.parameters["particle"]["scale"], 3) for run in study.runs})
-    if scales[0] != scales[-1]:
-        remarks.append(f"particles at scale {scales[0]:g} to {scales[-1]:g}, different from row to row")
-    elif scales != [1.0]:
-        remarks.append(f"particles at scale {scales[0]:g}")
-    sizes, whole = (f"{s['sample']['width_mm']:g} x {s['sample']['length_mm']:g} mm" for s in (now, full))
-    if sizes != whole:
-        remarks.append(f"sample {sizes} of {whole}")
-    for section, key, words in REDUCED:
-        if now[section][key] != full[section][key]:
-            remarks.append(f"{words} {now[section][key]:g} mm of {full[section][key]:g} mm")
-    thin = {run.row: run.parameters["derived"]["layers"] for run in study.runs if run.parameters["derived"]["thin_bed"]}
-    if thin:
-        rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
-        remarks.append(f"fewer than three layers of particles in the bed: {rows}")
-    hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
-    if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
-        remarks.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")
-    if now["wear"]["law"] != "archard":
-        remarks.append(f"worn by the law {now['wear']['law']}, whose volume stands where Archard's is named")
-    if now["wear"]["acceleration"] != 1.0:
-        remarks.append(f"wear accelerated {now['wear']['acceleration']:g} times")
-    return remarks

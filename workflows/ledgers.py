@@ -20,6 +20,7 @@ from postproc.wear.laws import law_kernels
 from postproc.wear.ledger import LedgerBuilder, columns_of_solver
 from workflows import state
 from workflows.chain import Chain
+from workflows.schedule import Span
 
 LOAD_LEDGER = "load_ledger.bin"
 CONTACTS, SPINS, TOUCHING = "contacts.dump", "spins.dump", "touching.npy"
@@ -36,12 +37,12 @@ class SamplesError(RuntimeError):
 class Producer:
     """A producer of load ledgers.
 
-    columns: (chain, cycle, its folder, its surface) -> {column: (m,) array}, units in the names
+    columns: (chain, span of the cycle, its folder, its surface) -> {column: (m,) array}, units in the names
     files: what the solver writes for it; of no use once the ledger is written
     kept: what it leaves for the next cycle
     """
 
-    columns: Callable[[Chain, int, Path, SurfaceMesh], Columns]
+    columns: Callable[[Chain, Span, Path, SurfaceMesh], Columns]
     files: tuple[str, ...]
     kept: tuple[str, ...] = ()
 
@@ -55,20 +56,20 @@ def producer(parameters: Mapping[str, Any]) -> Producer:
     return PRODUCERS[parameters["ledger"]]
 
 
-def summed_by_solver(chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh) -> Columns:
+def summed_by_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Columns:
     """Return the ledger that the solver has summed. Raises LoadLedgerError where it is not that of this cycle."""
     parameters = chain.parameters
     loads = read_load_ledger(
         folder / LOAD_LEDGER,
-        mesh=f"sample_{cycle}",
+        mesh=f"sample_{span.cycle}",
         n_triangles=len(surface.triangles),
-        steps=parameters["derived"]["cycle_steps"],
+        steps=span.steps,
     )
     corners = surface.points[surface.triangles]
     return columns_of_solver(loads.columns, corners, law_kernels(parameters["wear"]["law"]))
 
 
-def summed_from_dumps(chain: Chain, cycle: int, folder: Path, surface: SurfaceMesh) -> Columns:
+def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Columns:
     """Return the ledger of the sampled contacts; leaves the ids of the particles that touch at the end.
 
     Raises ContactDumpError, SamplesError.
@@ -81,13 +82,13 @@ def summed_from_dumps(chain: Chain, cycle: int, folder: Path, surface: SurfaceMe
         SAMPLE_MESH,
         effective_modulus(parameters),
         parameters["particle"]["density_kg_per_m3"],
-        touching=_touching_before(chain, cycle),
+        touching=_touching_before(chain, span.cycle),
         kernels=law_kernels(parameters["wear"]["law"]),
         face_normals=np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
     )
     for batch in read_contact_batches(folder / CONTACTS, folder / SPINS, after_step=0):
         builder.add_batch(batch, every * derived["time_step_s"])
-    expected = derived["cycle_steps"] // every
+    expected = span.steps // every
     if builder.samples != expected:
         raise SamplesError(
             f"{folder / CONTACTS}: found {builder.samples} samples of the contacts, allowed is {expected}."

@@ -11,13 +11,13 @@ from typing import Any
 
 from meshes.pattern import pattern_faults
 from workflows.config_files import ConfigError, Layer
-from workflows.derived import THIN_BED_LAYERS
+from workflows.derived import ADAPTIVE, THIN_BED_LAYERS
 from workflows.geometry import convex_pattern
+from workflows.schedule import LEAST_CYCLE_STEPS
 from workflows.validation import locate, show
 
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
-MINIMUM_STEPS_PER_CYCLE = 100  # fewer time steps do not resolve a single contact, let alone a cycle
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
 
@@ -142,14 +142,20 @@ def bump_in_bed(case: Case) -> Fault | None:
 def cycle_long_enough(case: Case) -> Fault | None:
     """A wear cycle has at least a hundred time steps."""
     steps = _raw_steps(case)
-    if steps >= MINIMUM_STEPS_PER_CYCLE:
+    if steps >= LEAST_CYCLE_STEPS:
         return None
-    most = int(case.settings["sliding"]["cycles"] * steps / MINIMUM_STEPS_PER_CYCLE)
+    if case.settings["sliding"]["cycles"] == ADAPTIVE and steps < _raw_steps(case, whole_travel=True):
+        return (
+            "sliding.first_cycle_mm",
+            f"at least {_millimetres(_least_travel(case))}, {LEAST_CYCLE_STEPS} time steps",
+        )
+    most = int(_raw_steps(case, whole_travel=True) / LEAST_CYCLE_STEPS)
     if most < 1:
-        derived, velocity = case.parameters["derived"], case.parameters["sliding"]["velocity_m_per_s"]
-        least = MINIMUM_STEPS_PER_CYCLE * derived["largest_time_step_s"] * velocity
-        return "sliding.travel_mm", f"at least {_millimetres(least)}, {MINIMUM_STEPS_PER_CYCLE} time steps"
-    return "sliding.cycles", f"at most {most}, so that a cycle has {MINIMUM_STEPS_PER_CYCLE} time steps"
+        return (
+            "sliding.travel_mm",
+            f"at least {_millimetres(_least_travel(case))}, {LEAST_CYCLE_STEPS} time steps",
+        )
+    return "sliding.cycles", f"at most {most}, so that a cycle has {LEAST_CYCLE_STEPS} time steps"
 
 
 def sampled_in_cycle(case: Case) -> Fault | None:
@@ -160,9 +166,30 @@ def sampled_in_cycle(case: Case) -> Fault | None:
     return "solver.sampling_interval_steps", f"below {int(steps)}, the time steps of a cycle"
 
 
-def _raw_steps(case: Case) -> float:
-    derived = case.parameters["derived"]
-    return derived["cycle_duration_s"] / derived["largest_time_step_s"]
+def _raw_steps(case: Case, whole_travel: bool = False) -> float:
+    """Time steps of the first wear cycle, or of the whole travel, before rounding to whole ones."""
+    derived, sliding = case.parameters["derived"], case.parameters["sliding"]
+    travel = sliding["travel_m"]
+    if not whole_travel:
+        adaptive = sliding["cycles"] == ADAPTIVE
+        travel = min(sliding["first_cycle_m"], travel) if adaptive else travel / sliding["cycles"]
+    return travel / sliding["velocity_m_per_s"] / derived["largest_time_step_s"]
+
+
+def _least_travel(case: Case) -> float:
+    step = case.parameters["derived"]["largest_time_step_s"]
+    return LEAST_CYCLE_STEPS * step * case.parameters["sliding"]["velocity_m_per_s"]
+
+
+def physical_modulus_known(case: Case) -> Fault | None:
+    """A patch of the true contact needs the particle's true modulus."""
+    wear = case.parameters["wear"]
+    if wear["patch"] != "physical" or wear["physical_shear_modulus_pa"] is not None:
+        return None
+    return (
+        "wear.patch",
+        f"none, simulated or radius, because {case.settings['bed']['material']} has no physical_shear_modulus_pa",
+    )
 
 
 def pattern_fits(case: Case) -> Fault | None:
@@ -186,4 +213,5 @@ RUN_CHECKS: tuple[Callable[[Case], Fault | None], ...] = (
     element_resolves_bump,
     cycle_long_enough,
     sampled_in_cycle,
+    physical_modulus_known,
 )

@@ -158,7 +158,8 @@ def wrong_value(path: KeyPath, value: Any, schema: dict[str, Any]) -> str:
             return _unit_in_value(path, with_unit["number"], with_unit["unit"], schema)
         if NUMBER.match(value.strip()):
             return f"{name} is the text {value!r}, allowed is {allowed_text(schema)}, without quotation marks"
-    found = repr(value) if isinstance(value, float) and schema.get("type") == "integer" else show(value)
+    whole = schema.get("type") == "integer" or "anyOf" in schema
+    found = repr(value) if isinstance(value, float) and whole else show(value)
     return f"{name} is {found}, allowed is {allowed_text(schema)}"
 
 

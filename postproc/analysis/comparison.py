@@ -54,17 +54,20 @@ def law_comparison(summary: pd.DataFrame) -> pd.DataFrame:
 def cycle_ratios(history: pd.DataFrame) -> pd.DataFrame:
     """Return row, surface, lowest and highest ratio to the plain run over the single cycles of each run.
 
-    history: as from `wear_history`. The range shows the scatter along the travel, not an uncertainty of the
-    mean.
+    history: as from `wear_history`; where the plain run has cycles of other lengths, its volume is interpolated along
+    the travel. The range shows the scatter along the travel, not an uncertainty of the mean.
     """
-    steps = history.assign(volume=history.groupby("run", sort=False)["archard_volume_mm3"].diff()).dropna(
-        subset=["volume"]
-    )
-    plain = steps[steps["surface"] == PLAIN][["row", "cycle", "volume"]]
-    joined = steps[steps["surface"] != PLAIN].merge(plain, on=["row", "cycle"], suffixes=("", "_plain"))
-    joined["ratio"] = joined["volume"] / joined["volume_plain"]
-    grouped = joined.groupby(["row", "surface"], sort=False)["ratio"]
-    return grouped.agg(lowest_cycle_ratio="min", highest_cycle_ratio="max").reset_index()
+    plain = {row: table for row, table in history[history["surface"] == PLAIN].groupby("row", sort=False)}
+    rows = []
+    for (row, surface), run in history[history["surface"] != PLAIN].groupby(["row", "surface"], sort=False):
+        if row not in plain:
+            continue
+        twin = np.interp(run["travel_mm"], plain[row]["travel_mm"], plain[row]["archard_volume_mm3"])
+        ratio = np.diff(run["archard_volume_mm3"]) / np.diff(twin)
+        rows.append(
+            {"row": row, "surface": surface, "lowest_cycle_ratio": ratio.min(), "highest_cycle_ratio": ratio.max()}
+        )
+    return pd.DataFrame(rows, columns=["row", "surface", "lowest_cycle_ratio", "highest_cycle_ratio"])
 
 
 def relative_wear_table(

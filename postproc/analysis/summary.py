@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 SUMMED = (
@@ -23,6 +24,7 @@ def run_summary(wear: pd.DataFrame) -> dict[str, float]:
 
     wear: rows of wear.csv, cycle by cycle.
     """
+    duration = np.diff(wear["time_s"], prepend=0.0)
     totals = {name: float(wear[name].sum()) for name in SUMMED}
     last = {name: float(wear[name].iloc[-1]) for name in AT_THE_END}
     return {
@@ -30,7 +32,7 @@ def run_summary(wear: pd.DataFrame) -> dict[str, float]:
         **last,
         **totals,
         "archard_volume_per_metre_m3_per_m": totals["archard_volume_m3"] / last["travel_m"],
-        "mean_normal_force_N": float(wear["mean_normal_force_N"].mean()),
+        "mean_normal_force_N": float(np.average(wear["mean_normal_force_N"], weights=duration)),
         "largest_balance_error": float(wear["balance_error"].max()),
     }
 

@@ -14,6 +14,8 @@ import numpy as np
 from postproc.mesh import shortest_edge_at_nodes
 
 GRAVITY = 9.81  # m/s2
+AIMED_DEMAND = 0.8  # -, of the cap, that the next cycle is planned for: rates change from cycle to cycle
+LEAST_CYCLE_FACTOR, LARGEST_CYCLE_FACTOR = 0.2, 2.0  # -, of the length of the cycle before
 LARGEST_EDGE_FRACTION = 0.5  # -, two neighbours moving half an edge each towards one another meet
 
 
@@ -62,5 +64,50 @@ def step_limit(
         if not value > 0.0:
             raise ValueError(f"{name} is {value}, allowed is a number above 0")
     by_time = gap_closing_step(gap_closing_time_fraction, cycle_duration_s, gravity)
-    by_edge = edge_fraction * shortest_edge_at_nodes(points, triangles)
-    return np.fmin(by_edge, by_time)
+    return np.fmin(edge_limit(points, triangles, edge_fraction), by_time)
+
+
+def edge_limit(points: np.ndarray, triangles: np.ndarray, edge_fraction: float) -> np.ndarray:
+    """Cap (n,) m of every node from the mesh alone: a fraction of the shortest edge there (NaN without one)."""
+    return edge_fraction * shortest_edge_at_nodes(points, triangles)
+
+
+def wanted_step(
+    step: np.ndarray, carried_before: np.ndarray, carried_after: np.ndarray, area: np.ndarray
+) -> np.ndarray:
+    """Step (n,) m that the wear of one cycle asked of each node, caps and what was carried before left aside.
+
+    Parameters
+    ----------
+    step : (n,) m, taken
+    carried_before, carried_after : (n,) m3
+    area : (n,) m2, that recedes with each node; 0 at nodes that do not wear
+    """
+    held_back = np.divide(carried_after - carried_before, area, out=np.zeros_like(area), where=area > 0.0)
+    return np.where(area > 0.0, np.maximum(step + held_back, 0.0), 0.0)
+
+
+def next_cycle_factor(
+    wanted: np.ndarray, limit: np.ndarray, cycle_duration_s: float, gap_closing_time_fraction: float
+) -> float:
+    """Length of the next cycle over that of the last one, -, for wear that goes on as fast.
+
+    Parameters
+    ----------
+    wanted : (n,) m, as from `wanted_step`
+    limit : (n,) m, cap from the edges alone (`edge_limit`)
+    cycle_duration_s : of the last cycle, s; gap_closing_time_fraction : -, see `step_limit`
+
+    The step grows with the length T, the cap from the edges stays, the cap from the closing gap grows with T^2. So a
+    cycle is as long as the edges allow. Where the gap would still hold that back, no length applies all the wear, and
+    the one at which both caps meet applies most. `AIMED_DEMAND` leaves room for change; changes are bounded.
+    """
+    demand = np.divide(wanted, limit, out=np.zeros_like(wanted), where=limit > 0.0)
+    most = int(np.argmax(demand)) if demand.size else 0
+    if not demand.size or not demand[most] > 0.0:
+        return LARGEST_CYCLE_FACTOR
+    factor = AIMED_DEMAND / demand[most]
+    aimed, gap = factor * wanted[most], gap_closing_step(gap_closing_time_fraction, cycle_duration_s, GRAVITY)
+    if aimed > gap * factor**2:
+        factor = np.sqrt(aimed / gap)
+    return float(np.clip(factor, LEAST_CYCLE_FACTOR, LARGEST_CYCLE_FACTOR))

@@ -66,7 +66,7 @@ bed:
   least_layers: 0
   allow_thin_bed: false
   seed: 20220317
-sliding: {run_in_mm: 300, travel_mm: 1000, cycles: 4}
+sliding: {run_in_mm: 300, travel_mm: 1000, cycles: 4, first_cycle_mm: 10}
 wear:
   law: archard
   wear_coefficient_per_pa: 6.3e-13
@@ -74,6 +74,9 @@ wear:
   deform: true
   largest_step_edge_fraction: 0.1
   gap_closing_fraction: 0.01
+  scheme: conserving
+  patch: simulated
+  patch_radius_mm: 1.0
 solver:
   ranks: 1
   rayleigh_fraction: 0.2
@@ -82,6 +85,7 @@ solver:
   sampling_interval_steps: 20
   picture_interval_mm: 20
 ledger: solver
+remeshing: {smallest_angle_deg: 15, largest_aspect: 10, smallest_edge: 0.3, largest_edge: 2.5}
 """
 MATERIALS = """\
 particles:

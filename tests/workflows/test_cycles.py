@@ -19,12 +19,14 @@ from tiny import tiny_chain, tiny_study
 from postproc.analysis.summary import run_summary
 from postproc.mesh import areas, read_stl, read_surface
 from postproc.wear.update import BALANCE_TOLERANCE
-from workflows import cycles, state
-from workflows.accounting import account, law_volume
+from workflows import cycles, state, wear_step
+from workflows.accounting import account
 from workflows.chain import write_cycle, write_end_wall
 from workflows.ledgers import PRODUCERS
 from workflows.progress import Progress
+from workflows.schedule import first_span
 from workflows.solver import SolverError
+from workflows.wear_step import law_volume
 
 pytestmark = pytest.mark.solver
 
@@ -60,6 +62,10 @@ def twin(chain, folder: Path):
     return replace(chain, folder=copy, surface=copy / "surface.vtu")
 
 
+def wear_cycles(chain) -> int:
+    return chain.parameters["sliding"]["cycles"]
+
+
 def wear_table(chain) -> pd.DataFrame:
     return pd.read_csv(chain.folder / "wear.csv")
 
@@ -67,7 +73,7 @@ def wear_table(chain) -> pd.DataFrame:
 def test_every_cycle_leaves_its_contract(finished):
     """Deck, log, restart and state in every cycle; ledger, worn surface and forces in every wear cycle; nothing that
     the ledger was made from."""
-    for cycle in range(finished.cycles + 1):
+    for cycle in range(wear_cycles(finished) + 1):
         folder = state.cycle_folder(finished.folder, cycle)
         names = {path.name for path in folder.iterdir()}
         assert {"deck.in", "log.liggghts", "run.restart", "surface.stl", "state.json"} <= names
@@ -112,7 +118,8 @@ def test_ledger_impulse_agrees_with_the_solver_own_force(finished):
     cycles.run_chain(plain)
     forces = pd.read_csv(state.cycle_folder(plain.folder, 1) / "forces.csv")
     ledger = pd.read_parquet(state.cycle_folder(plain.folder, 1) / "ledger.parquet")
-    summed = ledger["normal_impulse_N_s"].sum() / plain.parameters["derived"]["cycle_duration_s"]
+    derived = plain.parameters["derived"]
+    summed = ledger["normal_impulse_N_s"].sum() / (derived["travel_steps"] * derived["time_step_s"])
     assert -forces["force_z_N"].mean() == pytest.approx(summed, rel=FORCE_TOLERANCE)
 
 
@@ -127,6 +134,32 @@ def test_a_rigid_sample_carries_all_its_wear(finished, tmp_path):
     )
 
 
+def test_adaptive_cycles_end_with_the_travel(finished, tmp_path):
+    """Cycles of unequal length add up to the travel; each is planned from the one before, and the balance closes."""
+    changes = {"sliding": {"cycles": "adaptive", "first_cycle_mm": 4}, "wear": {"largest_step_edge_fraction": 3e-5}}
+    chain = tiny_chain(tiny_study(**changes), tmp_path)
+    cycles.run_chain(chain)
+    table, derived = wear_table(chain), chain.parameters["derived"]
+    spans = [state.read_state(chain.folder, cycle)["span"] for cycle in table["cycle"]]
+    assert len({span["steps"] for span in spans}) > 1
+    assert sum(span["steps"] for span in spans) == derived["travel_steps"]
+    assert table["travel_m"].iloc[-1] == pytest.approx(chain.parameters["sliding"]["travel_m"])
+    assert (table["step_demand"] > 0).all() and (table["balance_error"] < 1e-6).all()
+
+
+@pytest.mark.parametrize("wear", [{"patch": "none"}, {"patch": "physical"}, {"scheme": "per_triangle"}])
+def test_other_ways_to_wear_run_too(finished, tmp_path, wear):
+    """Without a patch, with that of the true contact, and by the per-triangle rule: a worn sample and its balance."""
+    chain = twin(finished, tmp_path)
+    shutil.copytree(state.cycle_folder(finished.folder, 1), state.cycle_folder(chain.folder, 1))
+    chain = replace(chain, parameters=tiny_study(wear=wear).run(chain.name).parameters)
+    ledger = pd.read_parquet(state.cycle_folder(finished.folder, 1) / "ledger.parquet")
+    row = wear_step.wear(chain, first_span(chain.parameters), tmp_path, read_surface(chain.surface), ledger)
+    assert row["applied_volume_m3"] > 0
+    excess = row["total_excess_volume_m3"] / row["archard_volume_m3"]
+    assert (excess > 0.1) == (wear.get("scheme") == "per_triangle")
+
+
 def first_ledger(chain, finished) -> pd.DataFrame:
     """Ledger of a chain's first wear cycle, from the restart file of the undisturbed run."""
     shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))
@@ -134,9 +167,10 @@ def first_ledger(chain, finished) -> pd.DataFrame:
     folder.mkdir()
     surface = read_surface(chain.surface)
     write_end_wall(chain)
-    write_cycle(chain, 1, folder, surface)
-    cycles.simulate(chain, 1, folder, len(surface.triangles), Progress(chain.name, 1))
-    return account(chain, 1, folder, surface)
+    span = first_span(chain.parameters)
+    write_cycle(chain, span, folder, surface)
+    cycles.simulate(chain, span, folder, len(surface.triangles), Progress(chain.name, 1))
+    return account(chain, span, folder, surface)
 
 
 def test_two_ranks_write_the_same_ledger(finished, tmp_path):
@@ -276,7 +310,7 @@ def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):
     )
     cycles.run_chain(doubled)
     assert (chain.folder / "wear.csv").read_bytes() != (finished.folder / "wear.csv").read_bytes()
-    assert len(list(chain.folder.glob("superseded/*/cycle_???"))) == chain.cycles + 1
+    assert len(list(chain.folder.glob("superseded/*/cycle_???"))) == wear_cycles(chain) + 1
     old = (state.cycle_folder(finished.folder, 1) / "log.liggghts").read_bytes()
     cycles.run_chain(chain)
     assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
@@ -284,7 +318,7 @@ def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):
 
 
 def copy_cycles(source, target) -> None:
-    for cycle in range(source.cycles + 1):
+    for cycle in range(wear_cycles(source) + 1):
         shutil.copytree(state.cycle_folder(source.folder, cycle), state.cycle_folder(target.folder, cycle))
 
 
@@ -293,12 +327,12 @@ def test_a_damaged_cycle_is_done_again(finished, tmp_path):
     chain = twin(finished, tmp_path)
     copy_cycles(finished, chain)
     inputs = cycles.inputs_digest(chain)
-    assert state.finished_cycles(chain.folder, inputs) == chain.cycles + 1
+    assert state.finished_cycles(chain.folder, inputs) == wear_cycles(chain) + 1
     with open(state.cycle_folder(chain.folder, 1) / "run.restart", "ab") as restart:
         restart.write(b"damage")
     assert state.finished_cycles(chain.folder, inputs) == 1
     cycles.run_chain(chain)
-    assert state.finished_cycles(chain.folder, inputs) == chain.cycles + 1
+    assert state.finished_cycles(chain.folder, inputs) == wear_cycles(chain) + 1
     assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
 
 
@@ -320,7 +354,7 @@ def test_a_kill_while_cycles_are_moved_loses_nothing(finished, tmp_path, monkeyp
             state.set_aside_others(chain.folder, "f" * 64)
     state.set_aside_others(chain.folder, "f" * 64)
     kept = sorted(path.name for path in chain.folder.glob("superseded/*/cycle_*"))
-    assert kept == [f"cycle_{cycle:03d}" for cycle in range(chain.cycles + 1)]
+    assert kept == [f"cycle_{cycle:03d}" for cycle in range(wear_cycles(chain) + 1)]
 
 
 def test_a_failed_solver_shows_its_last_words_and_the_run_resumes(finished, tmp_path, monkeypatch):
@@ -347,10 +381,11 @@ def test_missing_triangles_stop_the_run(finished, tmp_path):
     folder.mkdir()
     surface = read_surface(chain.surface)
     write_end_wall(chain)
-    write_cycle(chain, 1, folder, surface)
+    span = first_span(chain.parameters)
+    write_cycle(chain, span, folder, surface)
     count = len(surface.triangles)
     with pytest.raises(SolverError, match=re.escape(f"keeps {count} of the {count + 1} triangles of mesh sample_1")):
-        cycles.simulate(chain, 1, folder, count + 1, Progress("test", 1))
+        cycles.simulate(chain, span, folder, count + 1, Progress("test", 1))
 
 
 def test_a_second_driver_waits_for_the_first(finished, tmp_path):

@@ -9,6 +9,7 @@ from tiny import tiny_study
 from postproc.wear.laws import LAWS
 from workflows import deck
 from workflows.design import list_studies, load_study
+from workflows.schedule import known_spans
 
 TEMPLATES = sorted(path.name.removesuffix(".in.j2") for path in deck.TEMPLATES.glob("*.in.j2"))
 README = (deck.TEMPLATES / "README.md").read_text()
@@ -36,7 +37,9 @@ def test_every_deck_of_every_study_renders(name, rolling_friction, ledger):
     for run in study.runs:
         parameters, bed = run_and_bed(study, run.name)
         texts.append(deck.render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")))
-        texts.append(deck.render("sliding_sample", deck.sliding_sample(parameters, bed, 1, "run.restart")))
+        texts.append(
+            deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart"))
+        )
     for text in texts:
         assert f"rolling_friction {rolling_friction}" in text
         assert not re.search(r"\{\{|\}\}|\{%|%\}|\t|\bNone\b|\bnan\b", text)
@@ -45,13 +48,21 @@ def test_every_deck_of_every_study_renders(name, rolling_friction, ledger):
 def test_golden_deck():
     """The deck of the tiny chain's second cycle, word for word; a change of it is a decision."""
     parameters, bed = run_and_bed(tiny_study())
-    text = deck.render("sliding_sample", deck.sliding_sample(parameters, bed, 2, "../cycle_001/run.restart"))
+    text = deck.render(
+        "sliding_sample",
+        deck.sliding_sample(parameters, bed, cycle(parameters, 2), "../cycle_001/run.restart"),
+    )
     assert text == GOLDEN.read_text()
+
+
+def cycle(parameters, number):
+    """Span of a wear cycle."""
+    return known_spans(parameters)[number - 1]
 
 
 def cycle_deck(**changes):
     parameters, bed = run_and_bed(tiny_study(**changes))
-    return deck.render("sliding_sample", deck.sliding_sample(parameters, bed, 2, "run.restart"))
+    return deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 2), "run.restart"))
 
 
 def position(text, start):
@@ -95,7 +106,7 @@ def test_a_law_with_a_kernel_asks_the_solver_for_it():
 def test_the_producer_adds_its_own_parameters_only():
     """A parameter of the other producer is one that is never used."""
     parameters, bed = run_and_bed(tiny_study())
-    given = deck.sliding_sample(parameters, bed, 1, "run.restart")
+    given = deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")
     with pytest.raises(deck.DeckError, match=r"parameter contact_format is never used"):
         deck.render("sliding_sample", {**given, "contact_format": "%g"})
     with pytest.raises(deck.DeckError, match=r"parameter ledger_kernels is not given"):
@@ -155,9 +166,10 @@ def test_bed_has_travelled_run_in_and_all_earlier_cycles():
     sliding = parameters["sliding"]
     cycle = sliding["travel_m"] / sliding["cycles"]
     assert deck.travelled(parameters, 0) == 0.0
-    for number in (1, 2, 3):
-        expected = sliding["run_in_m"] + (number - 1) * cycle
-        assert deck.travelled(parameters, number) == pytest.approx(expected, rel=1e-3)
+    for span in known_spans(parameters):
+        expected = sliding["run_in_m"] + (span.cycle - 1) * cycle
+        steps = parameters["derived"]["run_in_steps"] + span.first_step
+        assert deck.travelled(parameters, steps) == pytest.approx(expected, rel=1e-3)
 
 
 def test_every_particle_pair_keeps_its_own_property():

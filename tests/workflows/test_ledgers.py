@@ -14,6 +14,7 @@ from postproc.wear.ledger import LEDGER_FIELDS
 from workflows import cycles
 from workflows.chain import Chain
 from workflows.ledgers import CONTACTS, LOAD_LEDGER, PRODUCERS, SPINS, TOUCHING, SamplesError, producer
+from workflows.schedule import known_spans
 from workflows.solver import CYCLE_EXECUTABLES, EXECUTABLE, LEDGER_EXECUTABLE, SolverError, missing_program, run_deck
 
 ROUND_OFF = 1e-9  # relative; the dump has nine digits and what is compared is one contact
@@ -32,7 +33,12 @@ def chain_of(folder, ledger, **changes):
 
 
 def time_of(chain):
-    return chain.parameters["derived"]["cycle_steps"] * chain.parameters["derived"]["time_step_s"]
+    return chain.parameters["derived"]["first_cycle_steps"] * chain.parameters["derived"]["time_step_s"]
+
+
+def cycle(chain, number):
+    """Span of a wear cycle."""
+    return known_spans(chain.parameters)[number - 1]
 
 
 def weights():
@@ -50,7 +56,7 @@ def write_load_ledger(chain, folder, **changes):
     sums["contact_time_s"] = [time_of(chain), 0.0]
     columns = {**sums, RADIUS: [1e-4, np.nan]}
     columns |= {name: [weight, np.nan] for name, weight in zip(WEIGHTS, weights(), strict=True)}
-    steps = chain.parameters["derived"]["cycle_steps"]
+    steps = chain.parameters["derived"]["first_cycle_steps"]
     header = {"load_ledger": 1, "mesh": "sample_1", "triangles": 2, "steps": steps, "time_s": time_of(chain)}
     header |= {"columns": list(columns), **changes}
     numbers = np.array(list(columns.values()), "<f8").tobytes()
@@ -61,7 +67,10 @@ def write_dumps(chain, folder, samples=None):
     """The same contact as sampled: the set-up's sample, then one per interval."""
     radius = 0.004
     row = [*POINT, *POINT[:2], radius, 0, 0, 0, SPEED, 0, 0, 0, 0, 7, 0, 0, FORCE]
-    every, total = chain.parameters["solver"]["sampling_interval_steps"], chain.parameters["derived"]["cycle_steps"]
+    every, total = (
+        chain.parameters["solver"]["sampling_interval_steps"],
+        chain.parameters["derived"]["first_cycle_steps"],
+    )
     head = "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF {}\n1\nITEM: BOX BOUNDS pp ff fm\n0 1\n0 1\n0 1\nITEM: {} {}\n{}\n"
     names = " ".join(f"c_wall_contact[{k}]" for k in range(1, 19))
     contacts, spins = [], []
@@ -79,7 +88,7 @@ def columns_of(ledger, folder, **changes):
     folder.mkdir(parents=True, exist_ok=True)
     chain = chain_of(folder.parent, ledger, **changes)
     WRITERS[ledger](chain, folder)
-    return producer(chain.parameters).columns(chain, 1, folder, SURFACE)
+    return producer(chain.parameters).columns(chain, cycle(chain, 1), folder, SURFACE)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -142,7 +151,7 @@ def test_the_ledger_of_another_cycle_is_refused(tmp_path, changes, words):
     chain = chain_of(tmp_path, "solver")
     write_load_ledger(chain, tmp_path, **changes)
     with pytest.raises(LoadLedgerError, match=words):
-        producer(chain.parameters).columns(chain, 1, tmp_path, SURFACE)
+        producer(chain.parameters).columns(chain, cycle(chain, 1), tmp_path, SURFACE)
 
 
 def test_missing_samples_are_refused(tmp_path):
@@ -150,7 +159,7 @@ def test_missing_samples_are_refused(tmp_path):
     chain = chain_of(tmp_path, "dumps")
     write_dumps(chain, tmp_path, samples=5)
     with pytest.raises(SamplesError, match=r"contacts\.dump: found 4 samples of the contacts, allowed is \d+\."):
-        producer(chain.parameters).columns(chain, 1, tmp_path, SURFACE)
+        producer(chain.parameters).columns(chain, cycle(chain, 1), tmp_path, SURFACE)
 
 
 def test_only_sampled_contacts_seed_the_next_cycle(tmp_path):
@@ -161,7 +170,11 @@ def test_only_sampled_contacts_seed_the_next_cycle(tmp_path):
     chain = chain_of(tmp_path, "dumps")
     (tmp_path / "cycle_002").mkdir()
     write_dumps(chain, tmp_path / "cycle_002")
-    assert not producer(chain.parameters).columns(chain, 2, tmp_path / "cycle_002", SURFACE)["impact_energy_J"].any()
+    assert (
+        not producer(chain.parameters)
+        .columns(chain, cycle(chain, 2), tmp_path / "cycle_002", SURFACE)["impact_energy_J"]
+        .any()
+    )
     assert PRODUCERS["solver"].kept == ()
 
 

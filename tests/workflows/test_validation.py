@@ -74,7 +74,7 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, ledger, sample, pattern, bed, sliding, wear, solver.",
+        " allowed are particle_scale, ledger, sample, pattern, bed, sliding, wear, remeshing, solver.",
     ),
     (
         SETTINGS,
@@ -203,13 +203,13 @@ BAD_VALUES = [
         SETTINGS,
         "cycles: 4",
         "cycles: 4.0",
-        "config/default.yaml, line 20: sliding.cycles is 4.0, allowed is a whole number from 1 to 10000.",
+        "config/default.yaml, line 20: sliding.cycles is 4.0, allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         SETTINGS,
         "cycles: 4",
         "cycles: 0",
-        "config/default.yaml, line 20: sliding.cycles is 0, allowed is a whole number from 1 to 10000.",
+        "config/default.yaml, line 20: sliding.cycles is 0, allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         SETTINGS,
@@ -233,13 +233,13 @@ BAD_VALUES = [
         SETTINGS,
         "rolling_friction: cdt",
         "rolling_friction: epsd",
-        "config/default.yaml, line 31: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
+        "config/default.yaml, line 34: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
     ),
     (
         SETTINGS,
         "ledger: solver",
         "ledger: dump",
-        "config/default.yaml, line 35: ledger is 'dump', allowed is one of solver, dumps.",
+        "config/default.yaml, line 38: ledger is 'dump', allowed is one of solver, dumps.",
     ),
     (
         SETTINGS,
@@ -437,7 +437,7 @@ BAD_COMBINATIONS = [
     (
         {"title": "x"},
         "command line: title ('x') is no known key, allowed are fidelity, particle_scale, ledger, sample,"
-        " pattern, bed, sliding, wear, solver.",
+        " pattern, bed, sliding, wear, remeshing, solver.",
     ),
 ]
 

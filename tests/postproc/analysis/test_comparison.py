@@ -45,6 +45,7 @@ def history_of(*volumes):
                 "row": "A",
                 "surface": surface,
                 "cycle": range(4),
+                "travel_mm": np.arange(4) * 10.0,
                 "archard_volume_mm3": np.cumsum([0, *steps]),
             }
         )
@@ -71,6 +72,15 @@ def test_range_over_cycles():
     """Ratios are formed cycle by cycle from increments, not from sums."""
     found = cycle_ratios(history_of([1.0, 2.0, 3.0], [2.0, 2.0, 2.0]))
     assert found.loc[0, ["lowest_cycle_ratio", "highest_cycle_ratio"]].tolist() == [0.5, 1.5]
+
+
+def test_cycles_of_other_lengths_are_compared_over_the_same_travel():
+    """A plain twin worn in other cycles is interpolated: the same wear per travel is a ratio of one throughout."""
+    history = history_of([1.0, 2.0, 3.0], [1.0, 1.0, 4.0])
+    convex = history["surface"] == "convex"
+    history.loc[convex, ["travel_mm", "archard_volume_mm3"]] = [[0, 0], [5, 0.5], [20, 2.0], [30, 6.0]]
+    found = cycle_ratios(history)
+    np.testing.assert_allclose(found.loc[0, ["lowest_cycle_ratio", "highest_cycle_ratio"]].astype(float), 1.0)
 
 
 def test_relative_wear_keeps_rows_without_history(summary):

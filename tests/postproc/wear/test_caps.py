@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from meshes.plate import flat_plate
-from postproc.wear.caps import gap_closing_step, step_limit
+from postproc.wear.caps import (
+    AIMED_DEMAND,
+    LARGEST_CYCLE_FACTOR,
+    gap_closing_step,
+    next_cycle_factor,
+    step_limit,
+    wanted_step,
+)
 
 ROUNDING = 1e-12  # relative: a handful of products
 
@@ -60,3 +67,25 @@ def test_numbers_out_of_range_are_named(numbers, name):
 def _plate():
     mesh = flat_plate(6.0, 4.0, 1.0)
     return mesh.points, mesh.triangles
+
+
+def test_wanted_step_is_what_was_taken_and_newly_held_back():
+    """Volume carried from before is no demand of this cycle, applying it later neither; holder nodes want nothing."""
+    step, area = np.array([1e-5, 2e-5, 0.0, 9.0]), np.array([1e-6, 1e-6, 1e-6, 0.0])
+    before, after = np.array([0.0, 5e-12, 5e-12, 0.0]), np.array([3e-12, 0.0, 5e-12, 1.0])
+    np.testing.assert_allclose(wanted_step(step, before, after, area), [1.3e-5, 1.5e-5, 0.0, 0.0], rtol=ROUNDING)
+
+
+@pytest.mark.parametrize(("wanted", "factor"), [(4e-5, 2.0), (8e-5, 1.0), (1.6e-4, 0.5), (1e-2, 0.2), (0.0, 2.0)])
+def test_next_cycle_aims_below_the_cap_from_the_edges(wanted, factor):
+    """Where gaps close in no time the step is scaled to 0.8 of the cap, within a fifth and twice the length."""
+    assert next_cycle_factor(np.array([0.0, wanted]), np.full(2, 1e-4), 1.0, 0.5) == pytest.approx(factor)
+
+
+def test_next_cycle_is_not_shortened_where_the_gap_is_what_holds_back():
+    """A shorter cycle gives gaps less time: where both caps bind, the length at which they meet is the best one."""
+    duration, fraction, limit = 0.01, 0.01, 1e-7
+    gap = gap_closing_step(fraction, duration, 9.81)
+    factor = next_cycle_factor(np.array([1e-6]), np.array([limit]), duration, fraction)
+    assert factor == pytest.approx(min(np.sqrt(AIMED_DEMAND * limit / gap), LARGEST_CYCLE_FACTOR))
+    assert factor > 1.0
