@@ -36,7 +36,7 @@ LAYERS = {
 }
 LIBRARY = ("postproc", "meshes")
 WORKFLOW_MODULES = {"snakemake", "jinja2", "workflows"}
-DRAWING_MODULES = {"matplotlib", "pyvista", "vtk", "vtkmodules"}
+DRAWING_MODULES = {"matplotlib", "PIL", "pyvista", "vtk", "vtkmodules"}
 WEAR_MAY_IMPORT = {"numpy", "scipy", "numba", "igl", "postproc"}
 FILE_MODULES = {"pathlib", "os", "io", "csv", "json", "pandas", "polars", "pyarrow", "meshio"}
 WORDS_OF_AN_INDEX = re.compile(r"https?://|--(extra-)?index|--find-links|--trusted-host|\.whl\b|@ *git")
@@ -158,7 +158,7 @@ def test_imports_go_one_way():
 
 
 def test_drawing_stays_in_plots():
-    """matplotlib, pyvista and vtk are imported below postproc/plots only."""
+    """matplotlib, Pillow, pyvista and vtk are imported below postproc/plots only."""
     outside = [path for path in python_files() if not inside(module_of(path), ("postproc.plots",))]
     guilty = {name_of(path): roots(imported(path.read_text())) & DRAWING_MODULES for path in outside}
     assert {name: found for name, found in guilty.items() if found} == {}
@@ -183,7 +183,7 @@ def test_snakemake_object_stays_in_scripts():
 def test_third_party_imports_are_direct_requirements():
     """What is imported is named in requirements.in, not there by some other package's grace."""
     lines = [line.partition("#")[0].strip() for line in text_of("requirements.in").splitlines()]
-    required = {re.sub(r"\[.*", "", line).replace("-", "_") for line in lines} | {"yaml", "igl"}
+    required = {re.sub(r"\[.*", "", line).replace("-", "_") for line in lines} | {"yaml", "PIL", "igl"}
     ours = {path.name for path in REPOSITORY.iterdir()}
     siblings = {path.stem for path in tracked("*.py")}
     sources = {name_of(path): path.read_text() for path in tracked("*.py")}

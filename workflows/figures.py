@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from workflows.design import Study, figure_remarks
+from workflows.design import Study
+from workflows.remarks import figure_remarks
 
 INTERACTIVE = ("worn_surface_3d",)  # pages, not pictures; their table is that of the picture
+FILMS = ("worn_film",)  # animated pictures
 ALWAYS = (
     "worn_surface",
     "worn_surface_3d",
@@ -20,6 +22,7 @@ ALWAYS = (
     "forces",
     "wear_law_comparison",
 )
+OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
 COMPARING_ROWS = ("relative_wear",)  # of studies with more than one design row and a plain twin
 ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
 
@@ -27,12 +30,12 @@ ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lo
 def figures_of(study: Study) -> list[str]:
     """Return the names of a study's figures in the order of its page."""
     several = len(study.design_rows) > 1 and any(run.surface == "plain" for run in study.runs)
-    return [*(COMPARING_ROWS if several else ()), *ALWAYS]
+    return [*(COMPARING_ROWS if several else ()), *ALWAYS, *(OF_WEAR_UPDATES if is_deformed(study) else ())]
 
 
 def figure_file(name: str) -> str:
     """Return the file name of a figure."""
-    return f"{name}.html" if name in INTERACTIVE else f"{name}.png"
+    return f"{name}.{'html' if name in INTERACTIVE else 'gif' if name in FILMS else 'png'}"
 
 
 def figure_files(study: Study) -> list[str]:

@@ -1,6 +1,6 @@
 """Figures of a study, and its page."""
 
-from workflows.design import figure_remarks
+from workflows.remarks import figure_remarks
 from workflows.figures import equivalent_size_ratios, figure_files, is_deformed, page_parameters
 
 WORN_SURFACES = of_every_run("results/{study}/{run}/worn_surface.vtu")
@@ -174,6 +174,58 @@ rule forces:
         "Figure of the forces on the samples of {wildcards.study}"
     script:
         "scripts/forces.py"
+
+
+rule wear_updates:
+    input:
+        design="results/{study}/design.csv",
+        wear=WEAR_TABLES,
+    output:
+        figure=report(
+            "results/{study}/figures/wear_updates.png",
+            caption="report/wear_updates.rst",
+            category="Wear",
+            labels={"figure": "What each wear update did"},
+        ),
+        table="results/{study}/figures/wear_updates.csv",
+    log:
+        "results/{study}/logs/wear_updates.log",
+    benchmark:
+        "results/{study}/logs/wear_updates.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        angle_bound=lambda wildcards: study_of(wildcards).settings["remeshing"]["smallest_angle_deg"],
+    message:
+        "Figure of the wear updates of {wildcards.study}"
+    script:
+        "scripts/wear_updates.py"
+
+
+rule worn_film:
+    input:
+        summary="results/{study}/summary.csv",
+        # the surfaces of the cycles, whose number may follow from the wear, lie beside these
+        wear=WEAR_TABLES,
+        surfaces=WORN_SURFACES,
+        pristine=of_every_run("results/{study}/{run}/surface.vtu"),
+    output:
+        figure=report(
+            "results/{study}/figures/worn_film.gif",
+            caption="report/worn_film.rst",
+            category="Wear",
+            labels={"figure": "The sample wears, a film"},
+        ),
+        table="results/{study}/figures/worn_film.csv",
+    log:
+        "results/{study}/logs/worn_film.log",
+    benchmark:
+        "results/{study}/logs/worn_film.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Film of the wear of {wildcards.study}"
+    script:
+        "scripts/worn_film.py"
 
 
 rule wear_law_comparison:

@@ -32,7 +32,7 @@ REPORT_FOLDER = Path(__file__).resolve().parent / "report"
 REPOSITORY = Path(__file__).resolve().parents[1]
 TEMPLATE = "study.html.j2"
 TABLE_OF = {"worn_surface_3d": "worn_surface"}  # figures that share another's table
-DETAILED = ("worn_surface_3d", "bed")  # figures that show a few design rows only
+DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 UNDEFINED = "\u2013"  # shown for numbers that are not there
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
@@ -178,7 +178,7 @@ def figure(name: str, index: int, folder: Path) -> dict[str, Any]:
         "title": title,
         "caption": paragraphs,
         "page": file.read_text(encoding="utf-8") if interactive else None,
-        "picture": None if interactive else data_uri(file.read_bytes(), "image/png"),
+        "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
         "table_name": table.name,
         "table": data_uri(table.read_bytes(), "text/csv") if embedded else f"figures/{table.name}",
         "embedded": embedded,
@@ -222,7 +222,7 @@ def run_rows(study: Mapping[str, Any]) -> list[dict[str, Any]]:
                 "equivalent_size_ratio": derived["equivalent_size_ratio"],
                 "particles_about": derived["bed_particles"],
                 "time_step_us": derived["time_step_s"] * 1e6,
-                "steps_per_cycle": derived["cycle_steps"],
+                "steps_of_first_cycle": derived["first_cycle_steps"],
             }
         )
     return rows

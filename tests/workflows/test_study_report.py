@@ -87,7 +87,7 @@ def write_costs(folder, study):
         (folder / "beds" / bed / "cost.csv").write_text(f"solver_s,steps,particles\n{BED_SOLVER},1000,500\n")
     for job in page_parameters(study)["jobs"]:
         wall = {"worn": RUN_WALL, "settled": BED_WALL}.get(job.split("_")[0], OTHER_WALL)
-        wall = OTHER_WALL if job.startswith("worn_surface") else wall
+        wall = OTHER_WALL if job.startswith(("worn_surface", "worn_film")) else wall
         (folder / "logs" / f"{job}.benchmark.tsv").write_text(f"s\th:m:s\n{wall}\t0:00:01\n")
 
 
@@ -120,7 +120,8 @@ def test_each_figure_stands_once_with_its_number(page, study):
     for name in names:
         assert caption(name)[0].replace("'", "&#39;") in page
         picture = base64.b64encode(PICTURE + name.encode()).decode()
-        assert page.count(f'src="data:image/png;base64,{picture}"') == (figure_file(name).endswith(".png"))
+        kind = figure_file(name).rpartition(".")[2]
+        assert page.count(f'src="data:image/{kind};base64,{picture}"') == (kind in ("png", "gif"))
         assert page.count(f'href="#{name}"') == 1
 
 
@@ -224,6 +225,14 @@ def test_single_row_has_no_figure_of_rows(config):
     config.edit("studies/small.yaml", "surfaces: [convex]", "surfaces: [convex, plain]")
     config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30\n", "")
     assert "relative_wear" not in figures_of(load_study("small", config.root))
+
+
+def test_only_what_deforms_has_updates_and_a_film(config):
+    """The wear updates and the film, a GIF, are of studies that apply wear to the shape."""
+    deforming = figures_of(load_study("small", config.root))
+    rigid = figures_of(load_study("small", config.root, {"wear": {"deform": False}}))
+    assert [name for name in deforming if name not in rigid] == ["worn_film", "wear_updates"]
+    assert figure_file("worn_film").endswith(".gif")
 
 
 def test_captions_have_titles(tmp_path):
