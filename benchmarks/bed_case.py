@@ -8,11 +8,12 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from postproc.mesh import SurfaceMesh, read_surface, write_surface
 from workflows import state
-from workflows.chain import RESTART, Chain, cycle_steps, write_cycle, write_end_wall
+from workflows.chain import RESTART, Chain, run_in_steps, write_cycle, write_end_wall
 from workflows.cycles import fill_bed, inputs_digest, run_cycle
 from workflows.design import load_study
 from workflows.geometry import sample_surface
 from workflows.progress import Progress
+from workflows.schedule import first_span
 
 STUDY, RUN = "demo", "R9_convex"
 
@@ -29,7 +30,7 @@ def prepared_chain(folder: Path, particle_scale: float) -> Chain:
         write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
     chain = Chain(RUN, surface.parent, parameters, study.beds[bed_name], surface, bed_folder / "bed.restart")
     if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
-        run_cycle(chain, 0, inputs_digest(chain), Progress(RUN, cycle_steps(chain, 0)))
+        run_cycle(chain, None, inputs_digest(chain), Progress(RUN, run_in_steps(chain)))
     return chain
 
 
@@ -38,5 +39,5 @@ def cycle_deck(chain: Chain, name: str) -> tuple[Path, SurfaceMesh, str]:
     folder, surface = chain.folder / name, read_surface(chain.surface)
     folder.mkdir(exist_ok=True)
     write_end_wall(chain)
-    write_cycle(chain, 1, folder, surface)
+    write_cycle(chain, first_span(chain.parameters), folder, surface)
     return folder, surface, (folder / "deck.in").read_text()

@@ -20,6 +20,7 @@ import numpy as np
 from bed_case import cycle_deck, prepared_chain
 
 from workflows.chain import Chain, deck_text
+from workflows.schedule import first_span
 from workflows.solver import CYCLE_EXECUTABLES, SCREEN, run_deck
 
 PARTICLE_SCALE = 1.85  # makes some 20,000 particles of the demo's bed
@@ -40,11 +41,11 @@ class Variant:
 def variants(chain: Chain, steps: int) -> dict[str, Variant]:
     """Return the three ways to run the first wear cycle, `steps` long, without pictures and restart file."""
     solver = {**chain.parameters["solver"], "sampling_interval_steps": SAMPLING_INTERVAL}
-    derived = {**chain.parameters["derived"], "cycle_steps": steps}
+    derived = {**chain.parameters["derived"], "first_cycle_steps": steps}
     texts = {}
     for ledger in CYCLE_EXECUTABLES:
         parameters = {**chain.parameters, "ledger": ledger, "solver": solver, "derived": derived}
-        texts[ledger] = OTHER_OUTPUT.sub("", deck_text(replace(chain, parameters=parameters), 1))
+        texts[ledger] = OTHER_OUTPUT.sub("", deck_text(replace(chain, parameters=parameters), first_span(parameters)))
     ways = {ledger: Variant(text, CYCLE_EXECUTABLES[ledger]) for ledger, text in texts.items()}
     return {"plain": Variant(OF_LEDGER.sub("", texts["solver"]), CYCLE_EXECUTABLES["dumps"]), **ways}
 

@@ -25,6 +25,7 @@ from postproc.readers.load_ledger import read_load_ledger
 from postproc.wear.ledger import LedgerBuilder
 from workflows.chain import Chain, deck_text
 from workflows.ledgers import CONTACTS, LOAD_LEDGER, SAMPLE_MESH, SPINS, effective_modulus
+from workflows.schedule import first_span
 from workflows.solver import LEDGER_EXECUTABLE, run_deck
 
 PARTICLE_SCALE = 2.0  # of the demo at its quick fidelity
@@ -38,21 +39,21 @@ def with_whole_windows(chain: Chain) -> Chain:
     """Return the chain with a cycle in which every window holds the same number of samples at every stride."""
     derived = chain.parameters["derived"]
     window = BLOCKS * max(STRIDES)
-    steps = derived["cycle_steps"] // window * window
-    return replace(chain, parameters={**chain.parameters, "derived": {**derived, "cycle_steps": steps}})
+    steps = derived["first_cycle_steps"] // window * window
+    return replace(chain, parameters={**chain.parameters, "derived": {**derived, "first_cycle_steps": steps}})
 
 
 def deck_of_both(chain: Chain) -> str:
     """Return the deck of the first wear cycle that dumps every contact of every step and has the ledger as well."""
     parameters = chain.parameters
     every_step = {**parameters, "ledger": "dumps", "solver": {**parameters["solver"], "sampling_interval_steps": 1}}
-    text = deck_text(replace(chain, parameters=every_step), 1)
+    text = deck_text(replace(chain, parameters=every_step), first_span(every_step))
     return RESET_LINE.sub(lambda found: LEDGER_LINE + found[0], text)
 
 
 def sampled_work(folder: Path, chain, triangles: int, strides, blocks: int) -> dict[int, np.ndarray]:
     """Return {stride: (blocks, triangles) sliding work in J} of the dumps; one pass over them."""
-    steps, dt = chain.parameters["derived"]["cycle_steps"], chain.parameters["derived"]["time_step_s"]
+    steps, dt = chain.parameters["derived"]["first_cycle_steps"], chain.parameters["derived"]["time_step_s"]
     length = steps // blocks
     density = chain.parameters["particle"]["density_kg_per_m3"]
     arguments = (triangles, SAMPLE_MESH, effective_modulus(chain.parameters), density)
@@ -80,14 +81,14 @@ def main() -> None:
     if not (folder / LOAD_LEDGER).exists():
         run_deck(folder, executable=LEDGER_EXECUTABLE)
     derived, triangles = chain.parameters["derived"], len(surface.triangles)
-    exact = read_load_ledger(folder / LOAD_LEDGER, "sample_1", triangles, derived["cycle_steps"])
+    exact = read_load_ledger(folder / LOAD_LEDGER, "sample_1", triangles, derived["first_cycle_steps"])
     sampled = sampled_work(folder, chain, triangles, STRIDES, BLOCKS)
     dump_bytes = sum((folder / name).stat().st_size for name in (CONTACTS, SPINS))
     table = sampling_errors(sampled, exact.columns["sliding_work_J"], dump_bytes, (folder / LOAD_LEDGER).stat().st_size)
-    travel = derived["cycle_steps"] * derived["time_step_s"] * chain.parameters["sliding"]["velocity_m_per_s"]
+    travel = derived["first_cycle_steps"] * derived["time_step_s"] * chain.parameters["sliding"]["velocity_m_per_s"]
     remarks = [
         f"convex sample of the demo, particle scale {PARTICLE_SCALE:g}, one cycle of {1e3 * travel:.0f} mm travel "
-        f"({derived['cycle_steps']} steps), short windows of {1e3 * travel / BLOCKS:.0f} mm, {triangles} triangles",
+        f"({derived['first_cycle_steps']} steps), short windows of {1e3 * travel / BLOCKS:.0f} mm, {triangles} triangles",
         f"made by benchmarks/sampling_error.py, {date.today():%Y-%m-%d}, {exact.header['solver'].split(',')[0]}",
     ]
     table.to_csv(given.output / "sampling_error.csv", index=False, float_format="%.4g")
