@@ -88,7 +88,8 @@ def main() -> None:
     travel = derived["first_cycle_steps"] * derived["time_step_s"] * chain.parameters["sliding"]["velocity_m_per_s"]
     remarks = [
         f"convex sample of the demo, particle scale {PARTICLE_SCALE:g}, one cycle of {1e3 * travel:.0f} mm travel "
-        f"({derived['first_cycle_steps']} steps), short windows of {1e3 * travel / BLOCKS:.0f} mm, {triangles} triangles",
+        f"({derived['first_cycle_steps']} steps), short windows of {1e3 * travel / BLOCKS:.0f} mm, "
+        f"{triangles} triangles",
         f"made by benchmarks/sampling_error.py, {date.today():%Y-%m-%d}, {exact.header['solver'].split(',')[0]}",
     ]
     table.to_csv(given.output / "sampling_error.csv", index=False, float_format="%.4g")
