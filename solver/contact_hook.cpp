@@ -23,7 +23,6 @@ struct Listener {
 };
 
 std::vector<Listener> listeners;
-long calls = 0;
 
 Contribution original() {
   static const auto found = reinterpret_cast<Contribution>(dlsym(RTLD_NEXT, SYMBOL));
@@ -37,7 +36,6 @@ namespace LAMMPS_NS {
 // The ledgers look first: the solver's own stress and wear turn the sign of the force.
 void FixMeshSurface::add_particle_contribution(int particle, double* force, double* offset, int triangle,
                                                double* wall_velocity) {
-  ++calls;
   for (const Listener& listener : listeners)
     if (listener.mesh == this) listener.ledger->observe(particle, force, offset, triangle, wall_velocity);
   original()(this, particle, force, offset, triangle, wall_velocity);
@@ -56,8 +54,6 @@ void forget(FixLoadLedger* ledger) {
   const auto of_ledger = [ledger](const Listener& listener) { return listener.ledger == ledger; };
   listeners.erase(std::remove_if(listeners.begin(), listeners.end(), of_ledger), listeners.end());
 }
-
-long hook_calls() { return calls; }
 
 const char* hook_fault() {
   if (!original())

@@ -11,9 +11,6 @@ class FixLoadLedger;
 void listen(LAMMPS_NS::FixMeshSurface* mesh, FixLoadLedger* ledger);
 void forget(FixLoadLedger* ledger);
 
-// Calls so far on this rank, of all meshes; not one while the solver sees contacts means that it does not call us.
-long hook_calls();
-
 // Why the solver cannot be calling us, as a phrase; empty when all is well.
 const char* hook_fault();
 

@@ -52,6 +52,7 @@ FixLoadLedger::FixLoadLedger(LAMMPS* lammps, int narg, char** arg) : Fix(lammps,
   find_mesh();
   // Until the first set-up every rank holds the whole mesh, afterwards its share.
   triangles_ = std::max(mesh_->triMesh()->sizeLocal(), mesh_->triMesh()->sizeGlobal());
+  triangles_of_ = mesh_->triMesh();
   sums_ = LedgerSums(FIRST_KERNEL + static_cast<int>(kernels_.size()), triangles_);
   nevery = 1;
   restart_global = 1;
@@ -75,6 +76,7 @@ int FixLoadLedger::setmask() { return FixConst::INITIAL_INTEGRATE | FixConst::EN
 
 void FixLoadLedger::init() {
   find_mesh();
+  check_deck();
   check_layout();
   check_materials();
   multisphere_ = static_cast<FixMultisphere*>(modify->find_fix_style("multisphere", 0));
@@ -89,11 +91,13 @@ void FixLoadLedger::init() {
 // the step.
 void FixLoadLedger::observe(int particle, const double* force, const double* offset, int triangle,
                             const double* wall_velocity) {
+  ++reported_;
   // A compute that asks for contacts makes the solver evaluate them once more, without a force.
   const bool evaluated_for_output = length(force) == 0.0;
   if (phase_ == Phase::between || evaluated_for_output || !(atom->mask[particle] & groupbit)) return;
   const double distance = length(offset);
-  if (distance == 0.0) return;
+  const bool apart = distance > atom->radius[particle];  // held by a liquid bridge, for example
+  if (distance == 0.0 || apart) return;
 
   TriMesh* mesh = mesh_->triMesh();
   Observed seen;

@@ -85,6 +85,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
 
   void parse(int narg, char** arg);
   void find_mesh();
+  void check_deck();
   void check_layout();
   void check_triangles();
   void check_materials();
@@ -114,6 +115,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   int triangles_ = 0;
 
   LAMMPS_NS::FixMeshSurface* mesh_ = nullptr;
+  LAMMPS_NS::TriMesh* triangles_of_ = nullptr;  // the mesh that the sums belong to
   LAMMPS_NS::FixMultisphere* multisphere_ = nullptr;
   std::vector<double> modulus_of_type_;  // Pa, effective modulus of each particle type and the wall
 
@@ -124,6 +126,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
 
   Phase phase_ = Phase::between;
   bool proven_ = false;
+  std::int64_t reported_ = 0;  // contacts that the solver has told this ledger of, on this rank
   std::vector<Observed> observed_;
   std::vector<Touch> touches_;
   std::vector<int> touch_of_particle_;  // local index of a particle -> touches_, -1 without one

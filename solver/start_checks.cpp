@@ -2,6 +2,7 @@
 // solver calls us. Whatever does not hold stops the run with one sentence.
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <sstream>
 
@@ -29,8 +30,9 @@ namespace load_ledger {
 
 namespace {
 
-constexpr double AREA_TOLERANCE = 1e-9;  // relative; rounding of a cross product
-constexpr int PROOF_INTERVAL = 1000;     // steps between two looks for a first contact
+constexpr double AREA_TOLERANCE = 1e-9;             // relative; rounding of a cross product
+constexpr std::size_t LARGEST_RECORD = 2000000000;  // bytes; restart files count them in an int
+constexpr int PROOF_INTERVAL = 1000;                // steps between two looks for a first contact
 
 std::string kernel_names() {
   std::string names;
@@ -76,11 +78,27 @@ void FixLoadLedger::find_mesh() {
                           .c_str());
 }
 
+// A ledger belongs to the mesh that it was defined for, and its file to nobody else.
+void FixLoadLedger::check_deck() {
+  const auto stop = [this](const std::string& sentence) {
+    error->all(FLERR, ("fix load/ledger " + std::string(id) + ": " + sentence).c_str());
+  };
+  if (mesh_->triMesh() != triangles_of_)
+    stop("the mesh '" + mesh_id_ + "' was defined again after it; unfix the ledger before, and define it anew.");
+  for (int k = 0; k < modify->nfix; ++k) {
+    const auto* other = dynamic_cast<FixLoadLedger*>(modify->fix[k]);
+    if (other && other != this && other->file_ == file_)
+      stop("fix " + std::string(other->id) + " writes to " + file_ + " as well.");
+  }
+  if (sums_.bytes() > LARGEST_RECORD) stop("the mesh has too many triangles for a restart file.");
+  if (comm->me == 0) std::remove(file_.c_str());  // of an earlier run; this one writes its own when it is complete
+}
+
 // Fields read through our headers are compared with what the solver's own compiled code gives for them.
 void FixLoadLedger::check_layout() {
   if (!std::strstr(universe->version, LIGGGHTS_VERSION_BUILT_FOR)) {
-    error->all(FLERR, (std::string("fix load/ledger was built for ") + LIGGGHTS_VERSION_BUILT_FOR +
-                       " and runs with '" + universe->version + "'; build it for that version (make -C solver).")
+    error->all(FLERR, (std::string("fix load/ledger was built for ") + LIGGGHTS_VERSION_BUILT_FOR + " and runs with '" +
+                       universe->version + "'; build it for that version (make -C solver).")
                           .c_str());
   }
   std::string wrong;
@@ -149,7 +167,7 @@ void FixLoadLedger::prove_called(bool last) {
   if (!starting && !last && update->ntimestep % PROOF_INTERVAL) return;
   int touching = 0;
   mesh_->contactHistory()->n_contacts(touching);
-  double local[2] = {static_cast<double>(touching), static_cast<double>(hook_calls())}, all[2];
+  double local[2] = {static_cast<double>(touching), static_cast<double>(reported_)}, all[2];
   MPI_Allreduce(local, all, 2, MPI_DOUBLE, MPI_SUM, world);
   if (all[0] > 0 && all[1] == 0)
     error->all(FLERR,
