@@ -4,17 +4,21 @@ import re
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
 
 from meshes.plate import flat_plate
+from postproc.mesh import write_stl
 from tests.verification.ledger_cases import (
     FRAME,
     LEDGER_LINE,
+    MESH_LINE,
     PIN_MOTION,
     REPOSITORY,
     command,
     environment,
     pin,
+    run,
     write_case,
 )
 
@@ -62,6 +66,41 @@ def test_a_mesh_that_no_wall_uses(tmp_path):
     """A mesh without wall/gran can touch nothing: its ledger would stay empty without anyone noticing."""
     said = said_when_refused(tmp_path, without=("fix wall ", "compute wall_contact "))
     assert re.search(r"no wall/gran fix before it uses the mesh 'sample'", said)
+
+
+def test_two_ledgers_in_one_file(tmp_path):
+    """Two ledgers that write the same file would overwrite one another: the second is refused."""
+    ledger = f"{LEDGER_LINE}\n{LEDGER_LINE.replace('fix load_ledger', 'fix second')}"
+    assert "writes to load_ledger.bin as well" in said_when_refused(tmp_path, ledger=ledger)
+
+
+def test_a_mesh_defined_again_under_its_ledger(tmp_path):
+    """Sums of two surfaces never mix: a mesh that is replaced while its ledger lives stops the next run."""
+    again = [
+        "run 10",
+        "uncompute wall_contact",
+        "unfix wall",
+        "unfix sample",
+        MESH_LINE,
+        "fix wall all wall/gran model hertz tangential history mesh n_meshes 1 meshes sample store_force yes",
+    ]
+    write_case(tmp_path, flat_plate(0.004, 0.004, 1e-3), pin(1.3e-4, 0.7e-4), PIN_MOTION, outputs=again, steps=50)
+    with pytest.raises(RuntimeError, match="the mesh 'sample' was defined again"):
+        run(tmp_path)
+
+
+def test_a_contact_with_another_mesh_proves_nothing(tmp_path):
+    """Each ledger vouches for its own mesh: one that nothing touches says so, however busy its neighbour is."""
+    far = flat_plate(0.004, 0.004, 1e-3)
+    write_stl(tmp_path / "far.stl", far.points + np.array([0.0, 0.0, 0.015]), far.triangles)
+    mesh_lines = [MESH_LINE.replace("fix sample", "fix far").replace("sample.stl", "far.stl")]
+    outputs = ["fix far_ledger all load/ledger mesh far file far.bin"]
+    settings = {"meshes": "2 meshes sample far", "steps": 50}
+    plate = flat_plate(0.004, 0.004, 1e-3)
+    write_case(tmp_path, plate, pin(1.3e-4, 0.7e-4), PIN_MOTION, mesh_lines=mesh_lines, outputs=outputs, **settings)
+    said = run(tmp_path)
+    assert re.search(r"Load ledger far_ledger: .* no contact yet", said)
+    assert re.search(r"Load ledger load_ledger: .* every contact is reported to it", said)
 
 
 def test_a_file_that_cannot_be_written(tmp_path):
