@@ -11,6 +11,7 @@ from postproc.mesh import SurfaceMesh
 from postproc.readers.mesh_loads import read_mesh_loads
 from postproc.readers.solver_log import thermo_table
 from workflows.chain import Chain
+from workflows.derived import WALLS
 from workflows.ledgers import producer
 from workflows.schedule import Span
 from workflows.solver import LOG
@@ -29,7 +30,7 @@ def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
     ledger_bytes = source.written_bytes(folder)
     ledger = account(chain, span, folder, surface)
     write_forces(chain, span, folder)
-    row = wear(chain, span, folder, surface, ledger)
+    row = wear(chain, span, folder, surface, ledger) | drive(chain, folder)
     for name in (*source.files, SETUP_LOADS, SETUP_BED):
         (folder / name).unlink()
     return {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}
@@ -42,6 +43,14 @@ def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.
     ledger = pd.DataFrame({"triangle": own.pop("triangle"), **columns, **own})
     ledger.to_parquet(folder / LEDGER, index=False)
     return ledger
+
+
+def drive(chain: Chain, folder: Path) -> dict[str, float]:
+    """Return the bed's mean velocity over a cycle, over its floor's (-), where friction alone takes the bed along."""
+    if chain.parameters["bed"]["ends"] == WALLS:
+        return {}
+    pace = thermo_table(folder / LOG)["bed_pace"][1:].mean()
+    return {"bed_over_floor_velocity": float(pace / chain.parameters["sliding"]["velocity_m_per_s"])}
 
 
 def write_forces(chain: Chain, span: Span, folder: Path) -> None:

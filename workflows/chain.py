@@ -12,6 +12,7 @@ import numpy as np
 
 from postproc.mesh import SurfaceMesh, read_surface, write_stl
 from workflows import deck, state
+from workflows.derived import WALLS
 from workflows.schedule import Span, first_span, known_spans, next_span
 from workflows.solver import DECK
 
@@ -77,7 +78,9 @@ def write_cycle(chain: Chain, span: Span | None, folder: Path, surface: SurfaceM
 
 
 def write_end_wall(chain: Chain) -> None:
-    """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0."""
+    """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0, where it has ends."""
+    if chain.bed["ends"] != WALLS:
+        return
     half_width, bottom, top = deck.end_wall_corners(chain.bed)
     corners = [(-half_width, bottom), (half_width, bottom), (half_width, top), (-half_width, top)]
     points = np.array([(x, 0.0, z) for x, z in corners])

@@ -19,6 +19,7 @@ import jinja2.meta
 from postproc.readers.contacts import CONTACT_COLUMNS
 from postproc.wear.caps import GRAVITY
 from postproc.wear.laws import law_kernels
+from workflows.derived import WALLS
 from workflows.schedule import Span
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
@@ -146,7 +147,7 @@ def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
         "temporary_floor_m": floor,
         "fill_bottom_m": floor + gap,
         "fill_top_m": floor + gap + filled,
-        "fill_gap_m": gap,
+        "fill_gap_m": gap if bed["ends"] == WALLS else 0.0,
         "fill_fraction": FILL_FRACTION,
         "fall_speed_m_per_s": FALL_SPEED,
         "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
@@ -252,12 +253,15 @@ def _integration(
 def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
     """Return the box of a bed, long enough for its whole travel and high enough for bulk piling up at a sample."""
     margin = DOMAIN_MARGIN_DIAMETERS * max(bed["particle"]["diameters_m"])
+    beyond = margin if bed["ends"] == WALLS else 0.0
     filled = bed["thickness_m"] * bed["particle"]["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
     return {
+        "ends": bed["ends"],
         "half_width_m": bed["width_m"] / 2.0,
         "bed_start_m": bed["start_m"],
         "bed_end_m": bed["start_m"] + bed["length_m"],
-        "domain_end_m": bed["start_m"] + bed["length_m"] + bed["travel_m"],
+        "domain_start_m": bed["start_m"] - beyond,
+        "domain_end_m": bed["start_m"] + bed["length_m"] + bed["travel_m"] + beyond,
         "domain_margin_m": margin,
         "domain_top_m": bed["temporary_floor_m"] + max(filled, PILE_UP * bed["thickness_m"]) + 2.0 * margin,
     }
@@ -301,15 +305,24 @@ def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, steps_b
     """Return what both sliding decks need: materials, where the bed's ends are, the sample's fix id."""
     coefficient = run["wear"]["accelerated_wear_coefficient_per_pa"]
     convention = {key: run["solver"][key] for key in ("rolling_radius", "rolling_friction")}
-    ahead = travelled(run, steps_before)
     return {
         **_materials(run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}),
         "finnie_coefficient_per_pa": _pairs([coefficient] * 3),
         "velocity_m_per_s": run["sliding"]["velocity_m_per_s"],
+        "cycle": cycle,
+        **_ends(bed, travelled(run, steps_before)),
+    }
+
+
+def _ends(bed: Mapping[str, Any], ahead: float) -> dict[str, Any]:
+    """Return where the walls at the bed's ends are when it has travelled so far (m); a periodic bed has none."""
+    if bed["ends"] != WALLS:
+        return {"ends": bed["ends"]}
+    return {
+        "ends": bed["ends"],
         "upstream_end_m": bed["start_m"] + ahead,
         "downstream_end_m": bed["start_m"] + bed["length_m"] + ahead,
         "end_wall_file": "../end_wall.stl",
-        "cycle": cycle,
     }
 
 

@@ -11,6 +11,7 @@ from postproc.wear.patch import physical_radius
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
+WALLS, PERIODIC = "walls", "periodic"  # values of bed.ends: two walls that push the bed along, or none
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
 
@@ -140,10 +141,14 @@ def _derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
-    """Return the skirt's width, and the bed's length (the whole travel and its ends), mass and particles."""
+    """Return the skirt's width, and the bed's length, mass and particles.
+
+    A bed between end walls is as long as the whole travel and its ends; a periodic one comes round again.
+    """
     sample, bed, sliding = parameters["sample"], parameters["bed"], parameters["sliding"]
     particle = parameters["particle"]
-    length = math.fsum([bed["ahead_m"], bed["behind_m"], sample["length_m"], sliding["run_in_m"], sliding["travel_m"]])
+    travel = sliding["run_in_m"] + sliding["travel_m"] if bed["ends"] == WALLS else 0.0  # of the bed within its domain
+    length = math.fsum([bed["ahead_m"], bed["behind_m"], sample["length_m"], travel])
     solid_volume = length * bed["width_m"] * bed["thickness_m"] * particle["bulk_solid_fraction"]
     per_volume = math.fsum(
         fraction / (math.pi / 6.0 * diameter**3)
@@ -154,7 +159,7 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
         "skirt_width_m": skirt_width(sample["height_above_floor_m"], sample["skirt_slope_rad"]),
         "bed_length_m": length,
         "bed_start_m": sample["length_m"] / 2.0 + bed["behind_m"] - length,
-        "total_travel_m": sliding["run_in_m"] + sliding["travel_m"],
+        "bed_travel_m": travel,
         "highest_point_m": sample["height_above_floor_m"]
         + (parameters["pattern"] or {"height_m": 0.0})["height_m"]
         + HEADROOM_DIAMETERS * max(particle["diameters_m"]),

@@ -349,7 +349,8 @@ def bed_parameters(run: Run) -> dict[str, Any]:
     """Return exactly what determines the settled bed of a run (SI); runs with equal ones share a bed.
 
     `start_m` is the y of the upstream end before the travel: the sample is at y = 0, the bed moves in +y over
-    `travel_m`. The bed settles with the largest time step, which does not depend on the run's velocity.
+    `travel_m`, or goes round (`ends` periodic, travel_m 0). It settles with the largest time step, which does not
+    depend on the run's velocity.
     """
     parameters, derived = run.parameters, run.parameters["derived"]
     return {
@@ -358,7 +359,8 @@ def bed_parameters(run: Run) -> dict[str, Any]:
         "width_m": parameters["bed"]["width_m"],
         "length_m": derived["bed_length_m"],
         "start_m": derived["bed_start_m"],
-        "travel_m": derived["total_travel_m"],
+        "travel_m": derived["bed_travel_m"],
+        "ends": parameters["bed"]["ends"],
         "thickness_m": parameters["bed"]["thickness_m"],
         "seed": parameters["bed"]["seed"],
         "rolling_friction": parameters["solver"]["rolling_friction"],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from workflows.derived import PERIODIC
 from workflows.design import Study
 
 TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
@@ -28,6 +29,9 @@ def figure_remarks(study: Study) -> list[str]:
     for section, key, words in REDUCED:
         if now[section][key] != full[section][key]:
             remarks.append(f"{words} {now[section][key]:g} mm of {full[section][key]:g} mm")
+    if now["bed"]["ends"] == PERIODIC:
+        length = study.runs[0].parameters["derived"]["bed_length_m"]
+        remarks.append(f"bed in a channel of {1000.0 * length:g} mm that closes on itself")
     thin = {run.row: run.parameters["derived"]["layers"] for run in study.runs if run.parameters["derived"]["thin_bed"]}
     if thin:
         rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())

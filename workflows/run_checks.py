@@ -5,19 +5,21 @@ Each check returns None, or (key at fault, what is allowed). To add one: a funct
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from meshes.pattern import pattern_faults
 from workflows.config_files import ConfigError, Layer
-from workflows.derived import ADAPTIVE, THIN_BED_LAYERS
+from workflows.derived import ADAPTIVE, THIN_BED_LAYERS, WALLS
 from workflows.geometry import convex_pattern
 from workflows.schedule import LEAST_CYCLE_STEPS
 from workflows.validation import locate, show
 
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
+TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
 
@@ -80,6 +82,28 @@ def skirt_in_bed(case: Case) -> Fault | None:
         if case.parameters["bed"][f"{key}_m"] < skirt:
             return f"bed.{key}_mm", f"at least {_millimetres(skirt)}, the width of the sample's skirt"
     return None
+
+
+def floor_drives_bed(case: Case) -> Fault | None:
+    """In a periodic bed the friction of the moving floor exceeds that of the sample and its skirt, which stand still.
+
+    Each carries the weight of the bed above it: mu_floor (L W - A) >= mu_sample A, A the area of sample and skirt.
+    """
+    bed, sample, skirt = (case.parameters[name] for name in ("bed", "sample", "derived"))
+    if bed["ends"] == WALLS:
+        return None
+    covered = math.prod(sample[side] + 2.0 * skirt["skirt_width_m"] for side in ("width_m", "length_m"))
+    floor, own = (
+        case.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "sample_material")
+    )
+    if floor * (bed["width_m"] * skirt["bed_length_m"] - covered) >= own * covered:
+        return None
+    missing = covered * (floor + own) / max(floor, TINY_FRICTION) / bed["width_m"] - skirt["bed_length_m"]
+    return (
+        "bed.ahead_mm",
+        f"at least {_millimetres(bed['ahead_m'] + missing)} with bed.ends: periodic, so that the friction of the floor"
+        " exceeds that of the sample and its skirt",
+    )
 
 
 def enough_layers(case: Case) -> Fault | None:
@@ -209,6 +233,7 @@ RUN_CHECKS: tuple[Callable[[Case], Fault | None], ...] = (
     no_particle_between,
     sample_in_bed,
     skirt_in_bed,
+    floor_drives_bed,
     element_resolves_sample,
     element_resolves_bump,
     cycle_long_enough,

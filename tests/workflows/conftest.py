@@ -61,6 +61,7 @@ bed:
   material: river_gravel
   floor_material: perspex
   width_mm: 300
+  ends: walls
   ahead_mm: 200
   behind_mm: 300
   least_layers: 0

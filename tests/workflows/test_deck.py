@@ -29,10 +29,11 @@ def test_every_variable_of_the_templates_is_in_their_readme():
 
 @pytest.mark.parametrize("name", list_studies())
 @pytest.mark.parametrize("rolling_friction", ["cdt", "epsd2"])
-@pytest.mark.parametrize("ledger", ["solver", "dumps"])
-def test_every_deck_of_every_study_renders(name, rolling_friction, ledger):
+@pytest.mark.parametrize(("ledger", "ends"), [("solver", "walls"), ("dumps", "walls"), ("solver", "periodic")])
+def test_every_deck_of_every_study_renders(name, rolling_friction, ledger, ends):
     """No deck has an open word, a missing or an unused parameter, or a tab."""
-    study = load_study(name, overrides={"solver": {"rolling_friction": rolling_friction}, "ledger": ledger})
+    changes = {"solver": {"rolling_friction": rolling_friction}, "ledger": ledger, "bed": {"ends": ends}}
+    study = load_study(name, overrides=changes)
     texts = [deck.render("settled_bed", deck.settled_bed(bed)) for bed in study.beds.values()]
     for run in study.runs:
         parameters, bed = run_and_bed(study, run.name)
@@ -177,3 +178,21 @@ def test_every_particle_pair_keeps_its_own_property():
     table = deck.settled_bed(run_and_bed(tiny_study())[1])["sliding_friction"]
     assert table[0][0] == 0.21 and table[0][2] == 0.38
     assert all(table[i][j] == table[j][i] for i in range(3) for j in range(3))
+
+
+def test_a_periodic_bed_has_no_ends():
+    """No wall at an end in any deck; the domain is periodic along the travel and exactly as long as the bed."""
+    parameters, bed = run_and_bed(tiny_study(bed={"ends": "periodic", "ahead_mm": 80}))
+    settled = deck.settled_bed(bed)
+    texts = [
+        deck.render("settled_bed", settled),
+        deck.render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
+        deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
+    ]
+    for text in texts:
+        assert "boundary        p p fm" in text
+        assert not re.search(r"upstream_end|downstream_end|end_wall|move/mesh", text)
+    for text in texts[1:]:
+        assert "shear y ${velocity}" in text and "v_bed_pace" in text
+    assert settled["domain_end_m"] - settled["domain_start_m"] == pytest.approx(0.02 + 0.04 + 0.08, rel=1e-12)
+    assert settled["fill_gap_m"] == 0.0

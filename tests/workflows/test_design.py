@@ -305,6 +305,20 @@ def test_the_bed_is_what_the_sample_travels_through(config):
     assert p["derived"]["bed_start_m"] + 1.84 == pytest.approx(0.045 + 0.3, rel=ROUNDING)
 
 
+def test_a_periodic_bed_comes_round_again(config):
+    """ahead 150 + behind 300 + sample 90 mm whatever the travel, which needs no room and no other bed."""
+    studies = [
+        load_study("small", config.root, {"bed": {"ends": "periodic"}, "sliding": {"travel_mm": travel}})
+        for travel in (1000, 50000)
+    ]
+    for study in studies:
+        derived = study.run("R9_convex").parameters["derived"]
+        assert derived["bed_length_m"] == pytest.approx(0.54, rel=ROUNDING)
+        assert derived["bed_start_m"] == pytest.approx(-(0.045 + 0.15), rel=ROUNDING)
+    assert studies[0].beds == studies[1].beds
+    assert all(bed["travel_m"] == 0.0 for bed in studies[0].beds.values())
+
+
 def test_the_bed_holds_the_mass_of_its_volume(config):
     """mass = length x width x thickness x solid fraction x density, and the particles make up that mass."""
     p = parameters_of(config)
@@ -349,6 +363,7 @@ def test_velocity_and_pattern_do_not_make_another_bed(config):
         {"bed": {"seed": 7}},
         {"bed": {"width_mm": 130}},
         {"bed": {"ahead_mm": 151}},
+        {"bed": {"ends": "periodic"}},
         {"bed": {"floor_material": "steel"}},
         {"sliding": {"travel_mm": 900}},
         {"solver": {"rolling_friction": "epsd2"}},

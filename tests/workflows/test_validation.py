@@ -87,7 +87,7 @@ BAD_KEYS = [
         SETTINGS,
         "wear:\n",
         "waer:\n",
-        "config/default.yaml, line 21: waer (a block of keys) is no known key, the nearest is wear.",
+        "config/default.yaml, line 22: waer (a block of keys) is no known key, the nearest is wear.",
     ),
     (
         SETTINGS,
@@ -99,13 +99,13 @@ BAD_KEYS = [
         SETTINGS,
         "  law: archard\n",
         "  law: archard\n  law: archard\n",
-        "config/default.yaml, line 23: wear.law stands here and in line 22, allowed is each key once.",
+        "config/default.yaml, line 24: wear.law stands here and in line 23, allowed is each key once.",
     ),
     (
         SETTINGS,
         "  law: archard\n",
         "  law: archard\n  1: 2\n",
-        "config/default.yaml, line 23: found the key '1', allowed are words as keys.",
+        "config/default.yaml, line 24: found the key '1', allowed are words as keys.",
     ),
     (
         MATERIALS,
@@ -128,7 +128,7 @@ BAD_VALUES = [
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: true",
-        "config/default.yaml, line 24: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 25: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         STUDY,
@@ -203,49 +203,49 @@ BAD_VALUES = [
         SETTINGS,
         "cycles: 4",
         "cycles: 4.0",
-        "config/default.yaml, line 20: sliding.cycles is 4.0, allowed is a whole number from 1 to 10000 or adaptive.",
+        "config/default.yaml, line 21: sliding.cycles is 4.0, allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         SETTINGS,
         "cycles: 4",
         "cycles: 0",
-        "config/default.yaml, line 20: sliding.cycles is 0, allowed is a whole number from 1 to 10000 or adaptive.",
+        "config/default.yaml, line 21: sliding.cycles is 0, allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         SETTINGS,
         "travel_mm: 1000",
         "travel_mm: 0",
-        "config/default.yaml, line 20: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
+        "config/default.yaml, line 21: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
     ),
     (
         SETTINGS,
         "deform: true",
         "deform: yes",
-        "config/default.yaml, line 25: wear.deform is 'yes', allowed is true or false.",
+        "config/default.yaml, line 26: wear.deform is 'yes', allowed is true or false.",
     ),
     (
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: 0",
-        "config/default.yaml, line 24: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 25: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         SETTINGS,
         "rolling_friction: cdt",
         "rolling_friction: epsd",
-        "config/default.yaml, line 34: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
+        "config/default.yaml, line 35: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
     ),
     (
         SETTINGS,
         "ledger: solver",
         "ledger: dump",
-        "config/default.yaml, line 38: ledger is 'dump', allowed is one of solver, dumps.",
+        "config/default.yaml, line 39: ledger is 'dump', allowed is one of solver, dumps.",
     ),
     (
         SETTINGS,
         "law: archard",
         "law: oka",
-        "config/default.yaml, line 22: wear.law is 'oka', allowed is one of archard, finnie.",
+        "config/default.yaml, line 23: wear.law is 'oka', allowed is one of archard, finnie.",
     ),
     (
         SETTINGS,
@@ -393,6 +393,11 @@ BAD_COMBINATIONS = [
         "command line: bed.behind_mm is 5 for row R9, allowed is at least 6.86921 mm, the width of the sample's skirt.",
     ),
     (
+        {"bed": {"ends": "periodic", "ahead_mm": 10, "behind_mm": 20}},
+        "command line: bed.ahead_mm is 10 for row R9, allowed is at least 56.5732 mm with bed.ends: periodic, so that"
+        " the friction of the floor exceeds that of the sample and its skirt.",
+    ),
+    (
         {"sample": {"element_size_mm": 2.5}},
         "command line: sample.element_size_mm is 2.5 for row R9, allowed is at most 2 mm,"
         " the smaller radius of a bump.",
@@ -499,7 +504,7 @@ def test_a_table_from_a_spreadsheet_is_read(config):
 def test_broken_yaml_is_refused_with_its_line(config):
     """What is no YAML is refused with file and line."""
     config.edit(SETTINGS, "  seed: 20220317\n", "  seed: 20220317\n\tx: 1\n")
-    assert message_of(config).startswith("config/default.yaml, line 20: found character '\\t'")
+    assert message_of(config).startswith("config/default.yaml, line 21: found character '\\t'")
 
 
 def test_a_file_that_is_no_mapping_is_refused(config):
