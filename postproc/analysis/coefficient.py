@@ -1,0 +1,77 @@
+"""Wear coefficient from a laboratory volume: directly, and so that few simulated revolutions stand for many."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+
+def laboratory_coefficient(volume: float, volume_error: float, load: float, distance: float) -> tuple[float, float]:
+    """Wear coefficient V / (F L) (1/Pa) and its error, all of which comes from the volume.
+
+    volume, volume_error : m3; load : N; distance : m, both taken as exact: no errors of theirs are published.
+    Source: J. F. Archard, J. Appl. Phys. 24 (1953) 981; Yan 2022, Eq 5.1.
+    """
+    return volume / (load * distance), volume_error / (load * distance)
+
+
+def scaling_factor(test_revolutions: float, revolutions: np.ndarray) -> np.ndarray:
+    """Revolutions of the test over simulated ones, - (Yan 2022, section 5.4.3): 162.8 for 8, 108.5 for 12."""
+    return test_revolutions / np.asarray(revolutions, dtype=float)
+
+
+def coefficient_of_volume(coefficients: np.ndarray, volumes: np.ndarray, target: float) -> tuple[float, bool]:
+    """Wear coefficient (1/Pa) whose volume is `target` (m3), and whether it lies between simulated ones.
+
+    coefficients (k,) 1/Pa and volumes (k,) m3 after the same number of revolutions, k >= 1. Between two the logarithm
+    of the volume is linear in that of the coefficient; beyond the last one the volume goes on in proportion.
+    Raises ValueError for volumes that do not grow with the coefficient: then there is no one coefficient.
+    """
+    order = np.argsort(coefficients)
+    alpha, volume = np.asarray(coefficients, dtype=float)[order], np.asarray(volumes, dtype=float)[order]
+    if not ((volume > 0.0).all() and (np.diff(volume) > 0.0).all()):
+        raise ValueError(f"volumes {volume} m3 do not grow with the coefficient, allowed are increasing ones above 0")
+    if volume[0] <= target <= volume[-1]:
+        return float(np.exp(np.interp(np.log(target), np.log(volume), np.log(alpha)))), True
+    end = 0 if target < volume[0] else -1
+    return float(alpha[end] * target / volume[end]), False
+
+
+def calibration_table(
+    simulated: pd.DataFrame, volume: float, volume_error: float, test_revolutions: float
+) -> pd.DataFrame:
+    """Coefficient that makes each number of revolutions stand for the laboratory's volume, per scheme.
+
+    simulated : `scheme`, `revolution`, `wear_coefficient_per_pa`, `volume_m3`; volume and volume_error : m3.
+    Columns: scheme, revolutions, scaling_factor, wear_coefficient_per_pa, least_ and largest_ of it (volume less and
+    plus its error), interpolated (False: beyond the simulated coefficients, in proportion), simulated_coefficients.
+    """
+    rows = []
+    for (scheme, revolution), cases in simulated.groupby(["scheme", "revolution"], sort=False):
+        known = (cases["wear_coefficient_per_pa"].to_numpy(), cases["volume_m3"].to_numpy())
+        targets = (volume, volume - volume_error, volume + volume_error)
+        (best, within), (least, _), (largest, _) = (coefficient_of_volume(*known, target) for target in targets)
+        rows.append(
+            {
+                "scheme": scheme,
+                "revolutions": revolution,
+                "scaling_factor": float(scaling_factor(test_revolutions, revolution)),
+                "wear_coefficient_per_pa": best,
+                "least_wear_coefficient_per_pa": least,
+                "largest_wear_coefficient_per_pa": largest,
+                "interpolated": within,
+                "simulated_coefficients": len(cases),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def scaling_limits(run_in: pd.DataFrame, test_revolutions: float) -> pd.DataFrame:
+    """Largest scaling factor of each run, which its run-in allows: `run`, `run_in_revolution`, `largest_factor`.
+
+    run_in : as from `analysis.run_in.run_in_table`. NaN where the run-in has not ended: then the factor lies below
+    that of all revolutions of the run. For 8 revolutions Yan (2022, section 5.6) has 162.8.
+    """
+    return run_in[["run", "run_in_revolution"]].assign(
+        largest_factor=scaling_factor(test_revolutions, run_in["run_in_revolution"].to_numpy(dtype=float))
+    )

@@ -1,0 +1,157 @@
+"""Volume worn by a pin on a disc, revolution by revolution: fits, and what a volume above alpha F L is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.analysis.display import CUBIC_MILLIMETRES
+from postproc.analysis.run_in import whole_revolutions
+from postproc.mesh import SurfaceMesh, read_surface
+from postproc.wear.schemes import centroid_path_volume
+
+VOLUMES = {"removed": "removed_volume_m3", "Eq 5.9": "centroid_path_volume_m3", "alpha W": "archard_volume_m3"}
+ORDERS = {"linear": 1, "quadratic": 2}
+COEFFICIENT_TOLERANCE = 1e-6  # -, to which two wear coefficients are the same
+FIXED = ("wear_coefficient_per_pa", "load_n", "track_radius_m")  # of a run
+AVERAGED = ("mean_normal_force_N", "mean_vertical_force_N", "contacts_per_step")
+# what a published volume over alpha F L is made of, in the order in which the factors build on one another
+CANDIDATES = {
+    "force_rise": "summed normal force over load",
+    "slip": "path of the contact point over the track",
+    "displacement_rule": "displacement rule",
+    "summing_rule": "volume summed by Eq 5.9",
+}
+
+
+def centroid_path_volumes(surfaces: Iterable[SurfaceMesh]) -> np.ndarray:
+    """Volume (k,) m3 that Eq 5.8-5.10 of Yan (2022) sum over the updates up to each surface, 0 for the first.
+
+    surfaces : of one run, one after the other. NaN from the first that has other triangles: a path needs its nodes.
+    """
+    steps = [0.0]
+    for before, after in pairwise(surfaces):
+        same = np.array_equal(before.triangles, after.triangles)
+        steps.append(centroid_path_volume(before.points, after.points, before.triangles) if same else np.nan)
+    return np.cumsum(steps)
+
+
+def volumes_of_run(folder: str | Path) -> pd.DataFrame:
+    """Volumes and forces of a run after each whole revolution, from wear.csv and the surfaces of its cycles.
+
+    folder : of the run, with surface.vtu. Columns: revolution, archard_volume_m3 (alpha W), removed_volume_m3,
+    carried_volume_m3, centroid_path_volume_m3 and, averaged over all cycles so far, those of AVERAGED.
+    """
+    folder = Path(folder)
+    wear = pd.read_csv(folder / "wear.csv")
+    files = [folder / "surface.vtu", *(folder / f"cycle_{cycle:03d}" / "surface.vtu" for cycle in wear["cycle"])]
+    duration = np.diff(wear["time_s"], prepend=0.0)
+    means = {name: np.cumsum(wear[name] * duration) / np.cumsum(duration) for name in AVERAGED}
+    table = pd.DataFrame(
+        {
+            "revolution": wear["revolution"],
+            "cycle": wear["cycle"],
+            "archard_volume_m3": wear["total_archard_volume_m3"],
+            "removed_volume_m3": wear["total_applied_volume_m3"],
+            "carried_volume_m3": wear["carried_volume_m3"],
+            "centroid_path_volume_m3": centroid_path_volumes(map(read_surface, files))[1:],
+            **means,
+        }
+    )
+    return whole_revolutions(table).drop(columns="cycle").reset_index(drop=True)
+
+
+def law_volume(coefficient: float, load: float, track_radius: float, revolutions: np.ndarray) -> np.ndarray:
+    """Volume alpha F L (m3) of a load (N) that slides over whole circles; coefficient 1/Pa, track_radius m.
+
+    Source: J. F. Archard, J. Appl. Phys. 24 (1953) 981.
+    """
+    return coefficient * load * 2.0 * np.pi * track_radius * np.asarray(revolutions, dtype=float)
+
+
+def polynomial_fit(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, float]:
+    """Least-squares coefficients, constant first (order + 1,), and the share R2 (-) of the variance that they explain.
+
+    NaN where there are fewer points than coefficients. R2 is 1 for y without variance that is met.
+    """
+    if len(x) <= order:
+        return np.full(order + 1, np.nan), float("nan")
+    coefficients = np.polynomial.polynomial.polyfit(x, y, order)
+    left = y - np.polynomial.polynomial.polyval(x, coefficients)
+    variance = float(((y - y.mean()) ** 2).sum())
+    return coefficients, 1.0 - float(left @ left) / variance if variance > 0.0 else 1.0
+
+
+def volume_fits(volumes: pd.DataFrame) -> pd.DataFrame:
+    """Linear and quadratic fits of volume (mm3) against revolutions, one row per run, volume and order.
+
+    volumes : `run`, `scheme`, `wear_coefficient_per_pa` and as from `volumes_of_run`. Columns as in the published
+    table (`constant_mm3`, `linear_mm3_per_revolution`, `quadratic_mm3_per_revolution2`, `r_squared`).
+    """
+    rows = []
+    for (run, scheme, coefficient), of_run in volumes.groupby(["run", "scheme", "wear_coefficient_per_pa"], sort=False):
+        for volume, column in VOLUMES.items():
+            for name, order in ORDERS.items():
+                found, r_squared = polynomial_fit(
+                    of_run["revolution"].to_numpy(float), CUBIC_MILLIMETRES * of_run[column].to_numpy(), order
+                )
+                rows.append(
+                    {"run": run, "scheme": scheme, "wear_coefficient_per_pa": coefficient, "volume": volume}
+                    | {"fit": name, "constant_mm3": found[0], "linear_mm3_per_revolution": found[1]}
+                    | {"quadratic_mm3_per_revolution2": found[2] if order > 1 else 0.0, "r_squared": r_squared}
+                )
+    return pd.DataFrame(rows)
+
+
+def published_volume(published: pd.DataFrame, coefficient: float, revolutions: np.ndarray) -> np.ndarray:
+    """Volume (m3) by the published fit (Yan 2022, Eq 5.11-5.15) of a wear coefficient (1/Pa); NaN without one.
+
+    published : `wear_coefficient_per_pa`, `constant_mm3`, `linear_mm3_per_revolution`, `quadratic_mm3_per_revolution2`.
+    """
+    x = np.asarray(revolutions, dtype=float)
+    same = np.isclose(published["wear_coefficient_per_pa"], coefficient, rtol=COEFFICIENT_TOLERANCE, atol=0.0)
+    if not same.any():
+        return np.full_like(x, np.nan)
+    fit = published[same].iloc[0]
+    terms = (fit["constant_mm3"], fit["linear_mm3_per_revolution"], fit["quadratic_mm3_per_revolution2"])
+    return np.polynomial.polynomial.polyval(x, terms) / CUBIC_MILLIMETRES
+
+
+def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """What a volume over alpha F L is made of, per run and whole revolution, all summed since the start.
+
+    volumes : as from `volumes_of_run` with `run`, `scheme`, `wear_coefficient_per_pa`, `load_n`, `track_radius_m`.
+    The factors of CANDIDATES build on one another: their product is the volume by Eq 5.9 over alpha F L, exactly.
+    `unexplained` is the published volume over alpha F L, over that product. `contacts` stands beside: the factor that
+    would come of it if every contact were charged with the whole load.
+    """
+    parts = []
+    for _, row in volumes.groupby("run", sort=False):
+        coefficient, load, track = (row[name].iloc[0] for name in FIXED)
+        law = law_volume(coefficient, load, track, row["revolution"])
+        rise = row["mean_normal_force_N"] / load
+        table = row[["run", "scheme", "wear_coefficient_per_pa", "revolution"]].assign(
+            force_rise=rise,
+            slip=row["archard_volume_m3"] / law / rise,
+            displacement_rule=row["removed_volume_m3"] / row["archard_volume_m3"],
+            summing_rule=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
+            contacts=row["contacts_per_step"],
+            vertical_force_over_load=row["mean_vertical_force_N"].abs() / load,
+            published=published_volume(published, coefficient, row["revolution"].to_numpy()) / law,
+        )
+        product = table[list(CANDIDATES)].prod(axis=1, skipna=False)
+        parts.append(table.assign(product=product, unexplained=table["published"] / product))
+    return pd.concat(parts, ignore_index=True)
+
+
+def groove_volume(depth: float, width: float, track_radius: float) -> float:
+    """Volume (m3) of a shallow round groove along a whole track: two thirds of depth times width, times its length.
+
+    All in m. Two thirds is the segment of a circle whose radius is large against the depth. It says what a published
+    depth and width hold, whatever rule summed the published volume.
+    """
+    return 2.0 / 3.0 * depth * width * 2.0 * np.pi * track_radius

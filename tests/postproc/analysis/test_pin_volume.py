@@ -1,0 +1,153 @@
+"""Volumes of a pin on a disc: exact fits, factors that multiply to the whole, published fits as printed."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.analysis.pin_volume import (
+    CANDIDATES,
+    centroid_path_volumes,
+    excess_factors,
+    groove_volume,
+    law_volume,
+    polynomial_fit,
+    published_volume,
+    volume_fits,
+    volumes_of_run,
+)
+from postproc.mesh import SurfaceMesh, write_surface
+
+PUBLISHED = pd.read_csv(Path(__file__).resolve().parents[3] / "config" / "published" / "pin_on_disc_volume.csv")
+LOAD, TRACK = 5.0, 22e-3  # N, m
+ROUNDING = 1e-9  # -, of a least-squares fit of ten points
+
+
+def square(depth):
+    """Two triangles of a square of 1 mm, `depth` m below z = 0."""
+    points = 1e-3 * np.array([(0.0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]) - [0.0, 0.0, depth]
+    return SurfaceMesh(points, [(0, 1, 2), (0, 2, 3)])
+
+
+def test_law_volume_of_one_revolution():
+    """alpha F L at 1e-11 1/Pa: 1e-11 * 5 N * 2 pi 22 mm = 0.00691 mm3 per revolution."""
+    np.testing.assert_allclose(law_volume(1e-11, LOAD, TRACK, [1, 2]), [6.9115e-12, 13.823e-12], rtol=1e-4)
+
+
+def test_fit_of_a_parabola_is_the_parabola():
+    """A quadratic fit of exact values gives them back with R2 = 1; the linear one explains less."""
+    x = np.arange(1.0, 11.0)
+    y = 0.006 + 0.03 * x + 0.001 * x**2
+    found, r_squared = polynomial_fit(x, y, 2)
+    np.testing.assert_allclose(found, [0.006, 0.03, 0.001], rtol=ROUNDING)
+    assert r_squared == pytest.approx(1.0, abs=ROUNDING)
+    assert 0.9 < polynomial_fit(x, y, 1)[1] < 1.0 - 1e-4
+
+
+def test_r_squared_by_hand():
+    """y = 0, 1, 0, 1 over x = 0..3: slope 0.2, residual sum 0.8 of a variance of 1: R2 = 0.2."""
+    found, r_squared = polynomial_fit(np.arange(4.0), np.array([0.0, 1.0, 0.0, 1.0]), 1)
+    np.testing.assert_allclose(found, [0.2, 0.2])
+    assert r_squared == pytest.approx(0.2)
+
+
+def test_too_few_points_have_no_fit():
+    found, r_squared = polynomial_fit(np.array([1.0]), np.array([2.0]), 1)
+    assert np.isnan(found).all()
+    assert np.isnan(r_squared)
+
+
+@pytest.mark.parametrize(
+    ("coefficient", "at_first", "at_twelfth"),
+    [(1e-11, 0.0138, 0.2602), (1.7e-11, 0.037, 0.51), (5e-11, 0.189, 2.84)],
+)
+def test_published_fits_as_printed(coefficient, at_first, at_twelfth):
+    """Eq 5.11, 5.13 and 5.15 at 1 and 12 revolutions (mm3), added up by hand; no fit, no value."""
+    np.testing.assert_allclose(1e9 * published_volume(PUBLISHED, coefficient, [1, 12]), [at_first, at_twelfth])
+    assert np.isnan(published_volume(PUBLISHED, 3e-11, [1, 12])).all()
+
+
+def test_published_volumes_exceed_the_law():
+    """2.0, 3.1 and 5.5 times alpha F L in the first revolution, 3.6 times over twelve at 1.7e-11."""
+    for coefficient, revolutions, factor in ((1e-11, 1, 2.0), (1.7e-11, 1, 3.1), (5e-11, 1, 5.5), (1.7e-11, 12, 3.6)):
+        ratio = published_volume(PUBLISHED, coefficient, revolutions) / law_volume(
+            coefficient, LOAD, TRACK, revolutions
+        )
+        assert ratio == pytest.approx(factor, abs=0.05)
+
+
+def test_centroid_paths_add_up():
+    """A square that sinks twice by 2 um: area times path each time; other triangles end it."""
+    surfaces = [square(0.0), square(2e-6), square(4e-6)]
+    np.testing.assert_allclose(centroid_path_volumes(surfaces), [0.0, 2e-12, 4e-12])
+    other = SurfaceMesh(surfaces[0].points, surfaces[0].triangles[:1])
+    np.testing.assert_array_equal(np.isnan(centroid_path_volumes([*surfaces, other])), [False, False, False, True])
+
+
+def run_folder(folder):
+    """A run of four half revolutions: the square sinks by 1 um each, its force rises by 1 N each."""
+    write_surface(folder / "surface.vtu", square(0.0))
+    for cycle in range(1, 5):
+        (folder / f"cycle_{cycle:03d}").mkdir()
+        write_surface(folder / f"cycle_{cycle:03d}" / "surface.vtu", square(1e-6 * cycle))
+    cycle = np.arange(1, 5)
+    pd.DataFrame(
+        {
+            "cycle": cycle,
+            "time_s": 1.0 * cycle,
+            "revolution": 0.5 * cycle,
+            "total_archard_volume_m3": 0.5e-12 * cycle,
+            "total_applied_volume_m3": 0.9e-12 * cycle,
+            "carried_volume_m3": 0.0,
+            "mean_normal_force_N": LOAD + cycle,
+            "mean_vertical_force_N": -LOAD,
+            "contacts_per_step": 2.0,
+        }
+    ).to_csv(folder / "wear.csv", index=False)
+
+
+def test_volumes_after_whole_revolutions(tmp_path):
+    """Totals of the second and fourth cycle, centroid paths of the surfaces, forces averaged since the start."""
+    run_folder(tmp_path)
+    table = volumes_of_run(tmp_path)
+    assert table["revolution"].tolist() == [1, 2]
+    np.testing.assert_allclose(table["centroid_path_volume_m3"], [2e-12, 4e-12])
+    np.testing.assert_allclose(table["removed_volume_m3"], [1.8e-12, 3.6e-12])
+    np.testing.assert_allclose(table["mean_normal_force_N"], [6.5, 7.5])
+
+
+def two_revolutions(tmp_path):
+    """Volumes of the run above with what a design says of it."""
+    run_folder(tmp_path)
+    return volumes_of_run(tmp_path).assign(
+        run="a", scheme="per_triangle", wear_coefficient_per_pa=1e-11, load_n=LOAD, track_radius_m=TRACK
+    )
+
+
+def test_factors_multiply_to_the_whole(tmp_path):
+    """Rise, slip, displacement rule and summing rule multiply to the volume by Eq 5.9 over alpha F L, exactly;
+    the published volume over that product is left."""
+    volumes = two_revolutions(tmp_path)
+    factors = excess_factors(volumes, PUBLISHED)
+    law = law_volume(1e-11, LOAD, TRACK, [1, 2])
+    np.testing.assert_allclose(factors["product"], volumes["centroid_path_volume_m3"] / law, rtol=1e-12)
+    np.testing.assert_allclose(factors[list(CANDIDATES)].prod(axis=1), factors["product"], rtol=1e-12)
+    np.testing.assert_allclose(factors["force_rise"], [1.3, 1.5])
+    np.testing.assert_allclose(factors["displacement_rule"], 1.8)
+    np.testing.assert_allclose(factors["vertical_force_over_load"], 1.0)
+    np.testing.assert_allclose(factors["published"], [0.0138e-9, 0.0282e-9] / law, rtol=1e-9)
+    np.testing.assert_allclose(factors["unexplained"] * factors["product"], factors["published"], rtol=1e-12)
+
+
+def test_fits_of_every_volume(tmp_path):
+    """One row per volume and order; three points are too few for nothing, two for a parabola."""
+    fits = volume_fits(two_revolutions(tmp_path)).set_index(["volume", "fit"])
+    assert len(fits) == 3 * 2
+    assert fits.loc[("removed", "linear"), "linear_mm3_per_revolution"] == pytest.approx(1.8e-3)
+    assert np.isnan(fits.loc[("removed", "quadratic"), "r_squared"])
+
+
+def test_volume_of_a_published_groove():
+    """The published 19 um and 1.07 mm hold 1.87 mm3, 3.5 times the published 0.532 mm3."""
+    assert groove_volume(19e-6, 1.07e-3, TRACK) == pytest.approx(1.873e-9, rel=1e-3)
