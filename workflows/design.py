@@ -19,9 +19,11 @@ from workflows.config_files import ConfigError, Layer, command_line_layer, merge
 from workflows.derived import ADAPTIVE, derived_parameters, rolling_coefficient_for_solver
 from workflows.run_checks import Case, check_run
 from workflows.validation import (
+    TRAVELS,
     check_layer,
     check_material_names,
     check_materials,
+    check_travel,
     coerce_numbers,
     load_schema,
     read_design,
@@ -39,6 +41,7 @@ __all__ = [
     "rolling_coefficient_for_solver",
 ]
 
+SECONDS_PER_HOUR = 3600.0
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
 RULE_NAMES = frozenset(
     found[1]
@@ -184,6 +187,12 @@ class _Sources:
     def block(self, fidelity: str) -> Layer:
         return self.study.inner(("fidelities", fidelity), f"fidelity {fidelity}")
 
+    @property
+    def partial_layers(self) -> list[Layer]:
+        """All layers that override some keys: the study's, those of its fidelities and the command line."""
+        blocks = [self.block(fidelity) for fidelity in self.study.values.get("fidelities", {})]
+        return [self.study_settings, *blocks, self.command]
+
     def stack(self, fidelity: str) -> tuple[Layer, ...]:
         """Return the layers from the weakest to the strongest."""
         return self.default, self.study_settings, self.block(fidelity), self.command
@@ -199,6 +208,7 @@ def _read_sources(name: str, root: Path, overrides: dict[str, Any] | None) -> _S
     study_schema, complete = load_schema("study"), load_schema("settings")
     partial = without_required(complete)
     check_layer(sources.default, complete)
+    check_travel(sources.default, required=True)
     in_study = {**study_schema, "properties": study_schema["properties"] | partial["properties"]}
     check_layer(sources.study, in_study)
     within_block = {
@@ -208,6 +218,8 @@ def _read_sources(name: str, root: Path, overrides: dict[str, Any] | None) -> _S
     for fidelity in sources.study.values.get("fidelities", {}):
         check_layer(sources.block(fidelity), within_block)
     check_layer(sources.command, partial)
+    for layer in sources.partial_layers:
+        check_travel(layer, required=False)
     return sources
 
 
@@ -237,6 +249,9 @@ def _fidelity(sources: _Sources) -> str:
 def _merged(layers: tuple[Layer, ...]) -> dict[str, Any]:
     settings: dict[str, Any] = {}
     for layer in layers:
+        if any(layer.holds(path) for path in TRAVELS):  # the travel and a test duration replace one another
+            for section, key in TRAVELS:
+                settings.get(section, {}).pop(key, None)
         settings = merge(settings, layer.values)
     return coerce_numbers(settings, load_schema("settings"))
 
@@ -286,7 +301,7 @@ def run_parameters(
         "sample": si["sample"],
         "pattern": _pattern(si["pattern"], factors) if surface == "convex" else None,
         "bed": {**si["bed"], "thickness_m": factors["bed_thickness_m"]},
-        "sliding": {**_sliding(si["sliding"]), "velocity_m_per_s": factors["velocity_m_per_s"]},
+        "sliding": _sliding(si["sliding"], factors["velocity_m_per_s"], si["wear"]["acceleration"]),
         "wear": _wear(si["wear"], materials["particles"][settings["bed"]["material"]]),
         "remeshing": si["remeshing"],
         "solver": {k: v for k, v in si["solver"].items() if si["ledger"] == "dumps" or k != "sampling_interval_steps"},
@@ -304,9 +319,16 @@ def row_particle_scale(settings: dict[str, Any], materials: dict[str, Any], thic
     return min(scale, max(thickness / (layers * diameter), 1.0)) if layers else scale
 
 
-def _sliding(sliding: dict[str, Any]) -> dict[str, Any]:
-    """Return the section without the length of the first cycle where all are equal: it then changes nothing."""
-    return {k: v for k, v in sliding.items() if sliding["cycles"] == ADAPTIVE or k != "first_cycle_m"}
+def _sliding(sliding: dict[str, Any], velocity: float, acceleration: float) -> dict[str, Any]:
+    """Return the section with velocity (m/s) and travel, which a test duration makes with the acceleration (-).
+
+    Without the length of the first cycle where all are equal: it then changes nothing.
+    """
+    kept = {k: v for k, v in sliding.items() if sliding["cycles"] == ADAPTIVE or k != "first_cycle_m"}
+    hours = kept.pop("test_duration_h", None)
+    if hours is not None:
+        kept["travel_m"] = velocity * hours * SECONDS_PER_HOUR / acceleration
+    return {**kept, "velocity_m_per_s": velocity}
 
 
 def _wear(wear: dict[str, Any], particle: dict[str, Any]) -> dict[str, Any]:

@@ -8,6 +8,8 @@ from typing import Any
 
 import pandas as pd
 
+from workflows.derived import PERIODIC
+
 NO_UNIT = "-"
 # suffix of a key -> unit; the longest that fits counts, so they stand in that order
 UNITS = (
@@ -23,6 +25,7 @@ UNITS = (
     ("_us", "µs"),
     ("_pa", "Pa"),
     ("_s", "s"),
+    ("_h", "h"),
 )
 LAW_WORDS = {
     "archard": "volume = coefficient times normal force times sliding path, coefficient {} 1/Pa, the same for all "
@@ -86,8 +89,9 @@ def simplifications(study: Mapping[str, Any], summary: pd.DataFrame) -> list[tup
         ),
         (
             "One packing",
-            f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel. Runs of "
-            "equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
+            f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel"
+            f"{' and along it, so that it passes the sample again and again' * (settings['bed']['ends'] == PERIODIC)}. "
+            "Runs of equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
         ),
         *_comparison(settings["wear"]["law"]),
     ]

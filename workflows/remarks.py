@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from workflows.derived import PERIODIC
 from workflows.design import Study
 
@@ -10,7 +13,6 @@ REDUCED = (
     ("bed", "width_mm", "bed width"),
     ("bed", "ahead_mm", "bed ahead of the sample"),
     ("sliding", "run_in_mm", "run-in"),
-    ("sliding", "travel_mm", "travel"),
 )  # settings whose reduction every figure tells
 
 
@@ -29,6 +31,9 @@ def figure_remarks(study: Study) -> list[str]:
     for section, key, words in REDUCED:
         if now[section][key] != full[section][key]:
             remarks.append(f"{words} {now[section][key]:g} mm of {full[section][key]:g} mm")
+    (kind, length), (full_kind, full_length) = (travel_words(settings["sliding"]) for settings in (now, full))
+    if (kind, length) != (full_kind, full_length):
+        remarks.append(f"{kind} {length} {'of' if kind == full_kind else f'instead of a {full_kind} of'} {full_length}")
     if now["bed"]["ends"] == PERIODIC:
         length = study.runs[0].parameters["derived"]["bed_length_m"]
         remarks.append(f"bed in a channel of {1000.0 * length:g} mm that closes on itself")
@@ -46,3 +51,10 @@ def figure_remarks(study: Study) -> list[str]:
     if now["wear"]["acceleration"] != 1.0:
         remarks.append(f"wear accelerated {now['wear']['acceleration']:g} times")
     return remarks
+
+
+def travel_words(sliding: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what says how long a study's runs are, and how long: travel in mm, or the duration of the real test."""
+    if "test_duration_h" in sliding:
+        return "test duration", f"{sliding['test_duration_h']:g} h"
+    return "travel", f"{sliding['travel_mm']:g} mm"

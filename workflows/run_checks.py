@@ -20,6 +20,7 @@ from workflows.validation import locate, show
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
 TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
+LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
 
@@ -175,11 +176,22 @@ def cycle_long_enough(case: Case) -> Fault | None:
         )
     most = int(_raw_steps(case, whole_travel=True) / LEAST_CYCLE_STEPS)
     if most < 1:
-        return (
-            "sliding.travel_mm",
-            f"at least {_millimetres(_least_travel(case))}, {LEAST_CYCLE_STEPS} time steps",
-        )
+        return _travel_fault(case, "least", _least_travel(case), f"{LEAST_CYCLE_STEPS} time steps")
     return "sliding.cycles", f"at most {most}, so that a cycle has {LEAST_CYCLE_STEPS} time steps"
+
+
+def travel_within_reason(case: Case) -> Fault | None:
+    """The travel that a test duration makes is at most 100 m."""
+    travel = case.parameters["sliding"]["travel_m"]
+    return _travel_fault(case, "most", LARGEST_TRAVEL, "100 m of travel") if travel > LARGEST_TRAVEL else None
+
+
+def _travel_fault(case: Case, bound: str, travel: float, reason: str) -> Fault:
+    """Return the fault of a travel (m), in terms of the key that the study gives it by."""
+    if "test_duration_h" not in case.settings["sliding"]:
+        return "sliding.travel_mm", f"at {bound} {_millimetres(travel)}, {reason}"
+    hours = case.settings["sliding"]["test_duration_h"] * travel / case.parameters["sliding"]["travel_m"]
+    return "sliding.test_duration_h", f"at {bound} {hours:.6g} h at this acceleration and velocity, {reason}"
 
 
 def sampled_in_cycle(case: Case) -> Fault | None:
@@ -236,6 +248,7 @@ RUN_CHECKS: tuple[Callable[[Case], Fault | None], ...] = (
     floor_drives_bed,
     element_resolves_sample,
     element_resolves_bump,
+    travel_within_reason,
     cycle_long_enough,
     sampled_in_cycle,
     physical_modulus_known,

@@ -38,6 +38,7 @@ UNIT_OF_SUFFIX = {
     "kg_per_m3": "kg/m3",
     "m_per_s": "m/s",
     "steps": "steps",
+    "h": "h",
 }
 # Suffixes that people write instead; recognised only to explain the mistake.
 FOREIGN_SUFFIXES = (
@@ -45,13 +46,14 @@ FOREIGN_SUFFIXES = (
     *("rad", "degrees", "radians", "percent"),
     *("kpa", "mpa", "gpa", "per_kpa", "per_mpa", "per_gpa"),
     *("mm_per_s", "cm_per_s", "km_per_h", "g_per_cm3", "t_per_m3"),
-    *("s", "ms", "min", "h", "kg", "g"),
+    *("s", "ms", "min", "kg", "g"),
 )
 ALL_SUFFIXES = sorted([*UNIT_OF_SUFFIX, *FOREIGN_SUFFIXES], key=len, reverse=True)
 VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z")
 MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 
+TRAVELS = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))  # two ways to say how long a run is
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
 LONGEST_VALUE = 60  # characters of a value that a message shows
 
@@ -90,6 +92,17 @@ def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
     if faults:
         path, text, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
         raise ConfigError(f"{layer.where(path)}: {text}.")
+
+
+def check_travel(layer: Layer, required: bool) -> None:
+    """Raise ConfigError for a layer with both of `TRAVELS`, or with neither where one is `required`."""
+    given = [path for path in TRAVELS if layer.holds(path)]
+    both, neither = len(given) == len(TRAVELS), required and not given
+    if both or neither:
+        names = " and ".join(map(dotted, TRAVELS))
+        found = "are both given" if both else "are both missing"
+        where = layer.where(given[-1] if given else TRAVELS[0])
+        raise ConfigError(f"{where}: {names} {found}, allowed is one of them.")
 
 
 def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:

@@ -331,6 +331,26 @@ def test_the_bed_holds_the_mass_of_its_volume(config):
     assert abs(p["derived"]["bed_particles"] - sum(counts)) <= 0.5
 
 
+def test_a_test_duration_becomes_a_travel(config):
+    """2 h of test at 1 and 2 m/s, accelerated 3.6e4 times, are 0.2 s of simulation: 0.2 and 0.4 m of travel."""
+    changes = {"wear": {"acceleration": 3.6e4}, "sliding": {"test_duration_h": 2.0}}
+    study = load_study("small", config.root, changes)
+    assert "travel_mm" not in study.settings["sliding"]
+    assert [run.parameters["sliding"]["travel_m"] for run in study.runs[::2]] == pytest.approx([0.2, 0.4])
+    travel = load_study("small", config.root, {"wear": {"acceleration": 3.6e4}, "sliding": {"travel_mm": 200}})
+    assert travel.run("R9_convex").parameters == study.run("R9_convex").parameters
+    assert "test duration 2 h instead of a travel of 1000 mm" in figure_remarks(study)
+
+
+def test_the_nearest_of_travel_and_test_duration_counts(config):
+    """A fidelity's travel replaces the test duration of the study, and the command line's duration replaces both."""
+    config.edit("studies/small.yaml", "fidelities:", "sliding: {test_duration_h: 1}\nfidelities:")
+    config.edit("studies/small.yaml", "      width_mm: 120\n", "      width_mm: 120\n    sliding: {travel_mm: 400}\n")
+    assert "test_duration_h" not in load_study("small", config.root).settings["sliding"]
+    hours = {"sliding": {"test_duration_h": 0.5}, "wear": {"acceleration": 1e4}}
+    assert load_study("small", config.root, hours).settings["sliding"].get("travel_mm") is None
+
+
 def test_acceleration_multiplies_the_wear_coefficient(config):
     """alpha_s of 6.3e-13 1/Pa, 1e4 times faster, is 6.3e-9 1/Pa; the measured value stays beside it."""
     wear = parameters_of(config, overrides={"wear": {"acceleration": 1e4}})["wear"]

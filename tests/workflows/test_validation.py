@@ -379,6 +379,16 @@ BAD_COMBINATIONS = [
         " (particle_scale 6), or bed.allow_thin_bed: true.",
     ),
     (
+        {"sliding": {"test_duration_h": 100}},
+        "command line: sliding.test_duration_h is 100 for row R9, allowed is at most 0.0277778 h at this acceleration"
+        " and velocity, 100 m of travel.",
+    ),
+    (
+        {"sliding": {"test_duration_h": 1e-9}},
+        "command line: sliding.test_duration_h is 1e-09 for row R9, allowed is at least 2.39529e-07 h at this"
+        " acceleration and velocity, 100 time steps.",
+    ),
+    (
         {"sample": {"width_mm": 110}},
         "command line: sample.width_mm is 110 for row R9, allowed is at most 106.262 mm,"
         " bed.width_mm less a skirt of 6.86921 mm on each side.",
@@ -499,6 +509,33 @@ def test_a_table_from_a_spreadsheet_is_read(config):
     spread = "\ufeff" + text.replace("\n", "\r\n\r\n").replace(",", " , ")
     config.path(TABLE).write_bytes(spread.encode())
     assert load_study("small", config.root) == plain
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            [(STUDY, "fidelities:", "sliding: {travel_mm: 500, test_duration_h: 2}\nfidelities:")],
+            "config/studies/small.yaml, line 6: sliding.travel_mm and sliding.test_duration_h are both given, allowed"
+            " is one of them.",
+        ),
+        (
+            [("default.yaml", " travel_mm: 1000,", "")],
+            "config/default.yaml, line 21: sliding.travel_mm and sliding.test_duration_h are both missing, allowed is"
+            " one of them.",
+        ),
+        (
+            [("default.yaml", "travel_mm: 1000", "test_duration_min: 2")],
+            "config/default.yaml, line 21: unit min is not allowed for sliding.test_duration, write"
+            " sliding.test_duration_h (found test_duration_min: 2).",
+        ),
+    ],
+)
+def test_either_a_travel_or_a_test_duration_is_given(config, changes, message):
+    """Both in one place or none at all is a fault; hours are the unit."""
+    for change in changes:
+        config.edit(*change)
+    assert message_of(config) == message
 
 
 def test_broken_yaml_is_refused_with_its_line(config):
