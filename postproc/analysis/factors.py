@@ -1,0 +1,75 @@
+"""Factors of a design: between real and coded units, where -1, 0 and 1 are the low, middle and high level."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+MIDDLE = 1e-6  # -, how near, relative to the range, a middle level must be to the mean of the ends
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A factor with its range.
+
+    low, high: levels -1 and 1 in real units
+    spacing: "linear", the middle level is the arithmetic mean; "log", it is the geometric mean (levels that double)
+
+    Raises ValueError when high is not above low, and for a log spacing from a level that is not positive.
+    """
+
+    name: str
+    low: float
+    high: float
+    spacing: Literal["linear", "log"] = "linear"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+            raise ValueError(f"factor {self.name}: found {self.low:g} to {self.high:g}, allowed is a low below a high")
+        if self.spacing == "log" and not self.low > 0.0:
+            raise ValueError(f"factor {self.name}: found the low {self.low:g}, allowed with log is above 0")
+
+    def real(self, coded: np.ndarray | float) -> np.ndarray:
+        """Return values in real units; coded ones beyond -1 and 1 extrapolate."""
+        share = 0.5 * (1.0 + np.asarray(coded, dtype=float))
+        if self.spacing == "log":
+            return self.low * (self.high / self.low) ** share
+        return self.low + (self.high - self.low) * share
+
+    def coded(self, real: np.ndarray | float) -> np.ndarray:
+        """Return values in coded units (-); NaN where a log spacing has no logarithm."""
+        values = np.asarray(real, dtype=float)
+        if self.spacing == "log":
+            positive = np.where(values > 0.0, values, np.nan)
+            return 2.0 * np.log(positive / self.low) / math.log(self.high / self.low) - 1.0
+        return 2.0 * (values - self.low) / (self.high - self.low) - 1.0
+
+
+def factor_of(name: str, values: np.ndarray) -> Factor:
+    """Return the factor that a column of a design spans.
+
+    The spacing is log where the middle one of three levels is the geometric mean of the ends, else linear.
+    Raises ValueError for a column with fewer than two levels.
+    """
+    levels = np.unique(np.asarray(values, dtype=float))
+    if len(levels) < 2:
+        raise ValueError(f"factor {name}: found {len(levels)} level(s), allowed are two or more")
+    low, high = float(levels[0]), float(levels[-1])
+    middle = math.sqrt(low * high) if low > 0.0 else math.nan
+    doubled = len(levels) == 3 and abs(levels[1] - middle) <= MIDDLE * (high - low)
+    return Factor(name, low, high, "log" if doubled else "linear")
+
+
+def factors_of(design: pd.DataFrame, columns: Sequence[str]) -> list[Factor]:
+    """Return the factors that columns of a design table span. Raises ValueError as `factor_of`."""
+    return [factor_of(column, design[column].to_numpy()) for column in columns]
+
+
+def coded_table(design: pd.DataFrame, factors: Sequence[Factor]) -> np.ndarray:
+    """Return a design table in coded units, (runs, factors)."""
+    return np.column_stack([factor.coded(design[factor.name].to_numpy()) for factor in factors])
