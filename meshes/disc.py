@@ -29,6 +29,8 @@ def track_disc(
     The triangles are unstructured: no edge is placed on the track. Equal arguments give equal bits.
     Raises ValueError unless 0 < inner_radius < track_radius < disc_radius and the sizes are > 0.
     """
+    sizes = map(float, (track_radius, inner_radius, disc_radius, element_size, band_half_width))
+    track_radius, inner_radius, disc_radius, element_size, band_half_width = sizes  # as gmsh's expressions need them
     _check(track_radius, inner_radius, disc_radius, element_size, band_half_width)
     largest = max(element_size, min(track_radius - inner_radius, disc_radius - track_radius) / RIM_EDGES)
     with gmsh_model() as gmsh:

@@ -285,6 +285,7 @@ def _materials(
     keys = ("particle", sample_key, "floor_material")
     contacts = [section["contact"] for section in (particle, sample, floor)]
     return {
+        "type_names": ["particle", "sample", "floor and end walls"],
         "youngs_modulus_pa": [moduli[key] for key in keys],
         "poissons_ratio": [section["poissons_ratio"] for section in (particle, sample, floor)],
         "restitution": _pairs(contact["restitution"] for contact in contacts),

@@ -91,7 +91,7 @@ def test_a_tenth_of_a_millimetre_is_affordable(meshes):
 
 def test_equal_arguments_give_equal_bits(meshes):
     """Two meshes of one call differ in nothing."""
-    again = track_disc(TRACK, INNER, OUTER, 2.5e-4, BAND)
+    again = track_disc(*np.array([TRACK, INNER, OUTER, 2.5e-4, BAND]))
     assert again.points.tobytes() == meshes[2.5e-4].points.tobytes()
     assert again.triangles.tobytes() == meshes[2.5e-4].triangles.tobytes()
 
