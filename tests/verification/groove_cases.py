@@ -61,13 +61,13 @@ def wear_coefficients(passes: int = PASSES, depth: float = DEPTH) -> np.ndarray:
     return np.diff(area) / LOAD
 
 
-def touching_height(mesh: SurfaceMesh, x: float, y: float) -> float:
-    """Height (m) of the pin's centre over (x, y) where it just touches nodes, centroids or middles of edges."""
+def touching_height(mesh: SurfaceMesh, x: float, y: float, radius: float = RADIUS) -> float:
+    """Height (m) of a pin's centre over (x, y) where it just touches nodes, centroids or middles of edges."""
     corners = mesh.points[mesh.triangles]
     felt = np.concatenate([mesh.points, corners.mean(axis=1), 0.5 * (corners + np.roll(corners, 1, axis=1))[:, 0]])
     square = (felt[:, 0] - x) ** 2 + (felt[:, 1] - y) ** 2
-    near = square < (FELT_REACH * RADIUS) ** 2
-    return float((felt[near, 2] + np.sqrt(RADIUS**2 - square[near])).max())
+    near = square < (FELT_REACH * radius) ** 2
+    return float((felt[near, 2] + np.sqrt(radius**2 - square[near])).max())
 
 
 def stroke_ledger(mesh: SurfaceMesh, forward: bool, time_step: float = TIME_STEP, **variables) -> LoadLedger:

@@ -111,9 +111,9 @@ def environment() -> dict[str, str]:
     return {**os.environ, **allowed, "OMP_NUM_THREADS": "1"}
 
 
-def run(folder: Path, ranks: int = 1, **variables) -> str:
+def run(folder: Path, ranks: int = 1, solver: Path | str = SOLVER, **variables) -> str:
     """Run the deck in a folder and return what it said; a failed run raises with the end of that."""
-    words = command(ranks, **variables)
+    words = command(ranks, solver, **variables)
     done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True)
     said = (done.stdout + done.stderr).decode("utf-8", "replace")  # the solver's messages can hold stray bytes
     if done.returncode:

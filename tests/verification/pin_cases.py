@@ -1,0 +1,182 @@
+"""What the tests of the pin-on-disc decks share: their parameters, a pin set down, and arcs of its track."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from meshes.disc import track_disc, track_stretch
+from postproc.mesh import SurfaceMesh, write_stl
+from postproc.readers.load_ledger import LoadLedger, read_load_ledger
+from postproc.readers.solver_log import thermo_table
+from tests.verification.groove_cases import touching_height
+from tests.verification.ledger_cases import DENSITY, LOAD, RADIUS, run
+from workflows import deck
+from workflows.derived import rayleigh_time, youngs_modulus
+
+TRACK_RADIUS = 0.022  # m; this and what follows: Yan 2022, Table 5.2 and section 5.4.1
+DISC_RADIUS, INNER_RADIUS = 0.024, 0.020  # m; nothing inside the inner one is touched
+ANGULAR_VELOCITY = math.radians(180.0)  # rad/s
+TIME_STEP = 1.4e-5  # s
+PIN, DISC = {"shear_modulus": 0.1e9, "poissons_ratio": 0.24}, {"shear_modulus": 78e9, "poissons_ratio": 0.3}  # Pa, -
+RAYLEIGH_FRACTION = 0.2  # -, of the time steps where the source gives none
+FRICTION, RESTITUTION = 1.0, 0.5  # -; the table names a restitution without its value: an assumption
+RAYLEIGH_TIME = rayleigh_time(RADIUS, DENSITY, **PIN)  # s
+BAND = 0.5e-3  # m, half the width of the fine band
+SETTLING_TIME = 0.014  # s; the pin's oscillation of 0.34 ms has lost all but 1e-20 of itself
+
+COLUMNS = range(1, 19)  # of the dump of contacts
+LEDGERS = {
+    "solver": {"ledger_kernels": ""},
+    "dumps": {
+        "sampling_interval_steps": 1,
+        "contact_columns": " ".join(f"c_wall_contact[{k}]" for k in COLUMNS),
+        "contact_format": " ".join("%.12g" for _ in COLUMNS),
+    },
+}
+
+
+@dataclass(frozen=True)
+class PinCase:
+    """A pin and how it is taken round, SI; the defaults are those of Yan 2022, chapter 5."""
+
+    track_radius: float = TRACK_RADIUS
+    pin_radius: float = RADIUS
+    density: float = DENSITY
+    load: float = LOAD
+    angular_velocity: float = ANGULAR_VELOCITY
+    time_step: float = TIME_STEP
+    restitution: float = RESTITUTION
+    friction: float = FRICTION
+    rest_steps: int = 200
+
+    @property
+    def steps_per_turn(self) -> int:
+        """Whole steps of a revolution, at least; `exact` makes the time step fit them (1e-9 forgives rounding)."""
+        return math.ceil(2.0 * math.pi / (self.angular_velocity * self.time_step) - 1e-9)
+
+    def exact(self) -> PinCase:
+        """The same with the largest time step, not above the present one, of which a turn has a whole number."""
+        return replace(self, time_step=2.0 * math.pi / (self.angular_velocity * self.steps_per_turn))
+
+    def load_times_distance(self, steps: int) -> float:
+        """Work (J) of the load over the arc of that many steps."""
+        return self.load * self.track_radius * self.angular_velocity * self.time_step * steps
+
+
+def disc(element_size: float) -> SurfaceMesh:
+    """The unworn disc of chapter 5 with that element size (m) round the track."""
+    return track_disc(TRACK_RADIUS, INNER_RADIUS, DISC_RADIUS, element_size, BAND)
+
+
+def common(case: PinCase, cycle: int, report_steps: int) -> dict:
+    """Parameters of both decks."""
+    pair = lambda value: [[value, value], [value, value]]  # noqa: E731
+    fraction = case.time_step / rayleigh_time(case.pin_radius, case.density, **PIN)
+    return {
+        "time_step_s": case.time_step,
+        "rayleigh_fraction": round(fraction, 3),
+        "largest_time_fraction": 1.25 * fraction,
+        "skin_m": 0.2 * case.pin_radius,
+        "load_n": case.load,
+        "track_radius_m": case.track_radius,
+        "type_names": ["pin", "disc"],
+        "youngs_modulus_pa": [youngs_modulus(*part.values()) for part in (PIN, DISC)],
+        "poissons_ratio": [part["poissons_ratio"] for part in (PIN, DISC)],
+        "restitution": pair(case.restitution),
+        "sliding_friction": pair(case.friction),
+        "rolling_friction_coefficient": pair(0.0),
+        "rolling_friction_model": "cdt",
+        "rolling_radius": "full",
+        "finnie_coefficient_per_pa": pair(1e-11),
+        "cycle": cycle,
+        "report_steps": report_steps,
+    }
+
+
+def write_set_down(folder: Path, case: PinCase, mesh: SurfaceMesh) -> None:
+    """Write the deck that sets the pin down at angle 0, from where it just touches, and the surface that it reads."""
+    outside = case.track_radius + 4.0 * case.pin_radius
+    text = deck.render(
+        "pin_set_down",
+        common(case, 0, 100)
+        | {
+            "domain_half_width_m": outside,
+            "domain_bottom_m": -case.pin_radius,
+            "domain_top_m": 4.0 * case.pin_radius,
+            "pin_radius_m": case.pin_radius,
+            "density_kg_per_m3": case.density,
+            "pin_height_m": touching_height(mesh, case.track_radius, 0.0, case.pin_radius),
+            "settling_steps": math.ceil(SETTLING_TIME / case.time_step),
+        },
+    )
+    _write(folder, text, case, mesh, 0.0, 0.0)
+
+
+def write_arc(
+    folder: Path,
+    case: PinCase,
+    mesh: SurfaceMesh,
+    cycle: int,
+    first_step: int,
+    steps: int,
+    report_steps: int = 400,
+    ledger: str = "solver",
+) -> np.ndarray:
+    """Write the deck of a wear cycle and the stretch of the surface that it reads; return the stretch's triangles.
+
+    first_step: steps of all cycles before, since the pin stood at angle 0
+    """
+    per_step = case.angular_velocity * case.time_step
+    text = deck.render(
+        "pin_on_disc",
+        common(case, cycle, report_steps)
+        | {
+            "run_restart": f"../cycle_{cycle - 1}/run.restart",
+            "start_angle_rad": per_step * first_step,
+            "angular_velocity_rad_per_s": case.angular_velocity,
+            "cycle_steps": steps,
+            "rest_steps": case.rest_steps,
+            "force_interval_steps": report_steps,
+            "ledger": ledger,
+            **LEDGERS[ledger],
+        },
+    )
+    return _write(folder, text, case, mesh, per_step * first_step, per_step * (first_step + steps))
+
+
+def _write(folder: Path, text: str, case: PinCase, mesh: SurfaceMesh, start: float, end: float) -> np.ndarray:
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "deck.in").write_text(text)
+    chosen = track_stretch(mesh, case.track_radius, start, end, case.pin_radius)
+    write_stl(folder / "surface.stl", mesh.points, mesh.triangles[chosen])
+    return chosen
+
+
+def set_down(folder: Path, case: PinCase, mesh: SurfaceMesh) -> None:
+    """Set the pin down on a surface, in `cycle_0` of a folder."""
+    write_set_down(folder / "cycle_0", case, mesh)
+    run(folder / "cycle_0")
+
+
+def arc(
+    folder: Path, case: PinCase, mesh: SurfaceMesh, cycle: int, first_step: int, steps: int, report_steps: int = 400
+) -> tuple[LoadLedger, dict[str, np.ndarray]]:
+    """Take the pin on over an arc; return the ledger, by the triangles of the whole mesh, and the table of forces."""
+    place = folder / f"cycle_{cycle}"
+    chosen = write_arc(place, case, mesh, cycle, first_step, steps, report_steps)
+    run(place)
+    ledger = read_load_ledger(place / "load_ledger.bin", f"sample_{cycle}", len(chosen), steps=steps)
+    return on_whole(ledger, chosen, len(mesh.triangles)), thermo_table(place / "log.liggghts")
+
+
+def on_whole(ledger: LoadLedger, chosen: np.ndarray, count: int) -> LoadLedger:
+    """A stretch's ledger with a row for each of the `count` triangles of the whole mesh, 0 where it has none."""
+    columns = {}
+    for name, values in ledger.columns.items():
+        columns[name] = np.zeros(count)
+        columns[name][chosen] = values
+    return replace(ledger, columns=columns)
