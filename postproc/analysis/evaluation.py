@@ -1,0 +1,84 @@
+"""What the screening study measures on a run: wear gradients, relative wear, wear rate and the flow regime."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+RIDES_ALONG = 0.85  # -, relative velocity: half-way from the continuous runs' 70 % to 100 % (Yan 2022, section 3.5.1)
+HEAPED = 1.0  # -, surcharge above which particles have accumulated over the sample
+CONTINUOUS, DISCONTINUOUS, UNDECIDED = "continuous", "discontinuous", "undecided"
+
+
+def wear_gradient(travel: np.ndarray, volume: np.ndarray) -> np.ndarray:
+    """Return the wear gradient (k - 1,), volume over travel, between places of the travel (Yan 2022, Eq 3.9).
+
+    travel: (k,) increasing; volume: (k,) worn since the start. Raises ValueError when the travel does not increase.
+    """
+    increments = np.diff(np.asarray(travel, dtype=float))
+    if not (increments > 0.0).all():
+        raise ValueError("the travel does not increase, allowed are increasing values")
+    return np.diff(np.asarray(volume, dtype=float)) / increments
+
+
+def gradient_history(history: pd.DataFrame) -> pd.DataFrame:
+    """Return run, row, surface, travel_mm (middle), gradient_mm3_per_mm and relative_gradient of every run.
+
+    history: as from `history.wear_history`; each cycle is an increment. The relative gradient is the gradient over the
+    largest one of all runs (Yan 2022, Eq 3.8, 3.9); NaN where nothing was worn at all.
+    """
+    tables = []
+    for (run, row, surface), one in history.groupby(["run", "row", "surface"], sort=False):
+        travel, volume = one["travel_mm"].to_numpy(), one["archard_volume_mm3"].to_numpy()
+        middle = 0.5 * (travel[1:] + travel[:-1])
+        gradient = wear_gradient(travel, volume)
+        names = {"run": run, "row": row, "surface": surface}
+        tables.append(pd.DataFrame({**names, "travel_mm": middle, "gradient_mm3_per_mm": gradient}))
+    table = pd.concat(tables, ignore_index=True)
+    largest = table["gradient_mm3_per_mm"].max()
+    return table.assign(relative_gradient=table["gradient_mm3_per_mm"] / (largest if largest > 0.0 else np.nan))
+
+
+def relative_to_largest(volume: pd.Series, group: pd.Series) -> pd.Series:
+    """Return the relative wear (-) of each run: its volume over the largest of its group (Yan 2022, Eq 3.10).
+
+    group: what each run is compared with, such as its flow regime; convex and plain runs together. Unlike wear over the
+    plain twin's (`summary.relative_wear`), it compares runs of different conditions.
+    """
+    return volume / volume.groupby(group).transform("max")
+
+
+def wear_rate(volume, velocity, thickness, width, bulk_density):
+    """Return the wear per mass flow, m3/(kg/s), Yan 2022, Eq 3.11; the arguments are numbers or arrays.
+
+    volume: m3; velocity: m/s; thickness, width: m, of the bed; bulk_density: kg/m3
+    """
+    return volume / (velocity * thickness * width * bulk_density)
+
+
+def flow_regime(relative_velocity: float, surcharge: float) -> str:
+    """Return the regime of the bed's flow over a sample, by its steady relative velocity and surcharge (-).
+
+    continuous: particles pass, relative velocity below RIDES_ALONG
+    discontinuous: particles ride along and have accumulated, surcharge above HEAPED
+    undecided: they ride along without having accumulated, or a value is missing
+    """
+    if relative_velocity < RIDES_ALONG:
+        return CONTINUOUS
+    return DISCONTINUOUS if relative_velocity >= RIDES_ALONG and surcharge > HEAPED else UNDECIDED
+
+
+def regime_table(relative_velocity: Mapping[str, float], surcharge: Mapping[str, float]) -> pd.DataFrame:
+    """Return run, relative_velocity, surcharge and regime; values by run, NaN where there is none."""
+    rows = [
+        {
+            "run": run,
+            "relative_velocity": velocity,
+            "surcharge": surcharge.get(run, np.nan),
+            "regime": flow_regime(velocity, surcharge.get(run, np.nan)),
+        }
+        for run, velocity in relative_velocity.items()
+    ]
+    return pd.DataFrame(rows, columns=["run", "relative_velocity", "surcharge", "regime"])

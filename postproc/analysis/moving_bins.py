@@ -1,0 +1,205 @@
+"""Bins that travel with the sample: mean motion of the particles over it, beside it, ahead and behind, by layers.
+
+The sample rests in the deck's axes and the bed passes in +y, so bins that travel with the sample stand still. Central
+and side bins are those of Yan 2022, Fig 3.9; ahead is where the sample is going, against the bed's motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.readers.dump_text import BLOCK_BYTES, FrameBatch, read_frames
+
+ZONES = ("central", "side", "ahead", "behind")
+QUANTITIES = ("velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s", "angular_speed_rad_per_s")
+NEEDED = ("x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz")
+BETWEEN = 1e-9  # -, of an interval: a frame so near to its start belongs to it
+
+
+@dataclass(frozen=True)
+class MovingBins:
+    """Where the bins are (m). The sample's middle is x = y = 0; layers count from 1 at `floor` upwards.
+
+    width, length: of the sample, across and along the travel; side_width: of the side bins on either side of it
+    layer_height, layers: of the layers; what is above the last one or below the floor is in no bin
+    """
+
+    width: float
+    length: float
+    side_width: float
+    layer_height: float
+    layers: int
+    floor: float = 0.0
+
+    def zone(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return the position in ZONES of each place (k,), -1 outside. Ahead and behind are as long as the sample."""
+        across, along = np.abs(x) / (0.5 * self.width), y / (0.5 * self.length)
+        beside = (np.abs(x) < 0.5 * self.width + self.side_width) & (np.abs(along) < 1.0)
+        zones = np.where(beside, ZONES.index("side"), -1)
+        over = across < 1.0
+        zones[over & (np.abs(along) < 1.0)] = ZONES.index("central")
+        zones[over & (along <= -1.0) & (along > -3.0)] = ZONES.index("ahead")
+        zones[over & (along >= 1.0) & (along < 3.0)] = ZONES.index("behind")
+        return zones
+
+    def bin(self, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return the bin of each place (k,), zone by zone and layer by layer from 0, -1 outside."""
+        zone, layer = self.zone(x, y), np.floor((z - self.floor) / self.layer_height).astype(int)
+        return np.where((zone >= 0) & (layer >= 0) & (layer < self.layers), zone * self.layers + layer, -1)
+
+    @property
+    def count(self) -> int:
+        """Return the number of bins."""
+        return len(ZONES) * self.layers
+
+
+def bin_history(
+    dumps: Iterable[tuple[str | Path, float]],
+    bins: MovingBins,
+    travel_per_step: float,
+    interval: float,
+    block_bytes: int = BLOCK_BYTES,
+) -> pd.DataFrame:
+    """Return the motion in every bin, averaged over intervals of travel, from particle dumps.
+
+    dumps: files of `dump custom` with one frame or more, each with the travel (m) at its step 0
+    travel_per_step: m, velocity times time step; interval: m, length of travel that is averaged
+    block_bytes: bytes of a dump read at a time. Memory: a few times that or the largest frame, whatever the number of
+        frames, and the sums of bins times intervals.
+
+    Columns travel_start_m and travel_end_m of the interval, zone, layer, height_m (its middle above the floor), frames,
+    particles (mean number in a frame) and means over all particles of all frames: velocity_x_m_per_s (in side bins
+    outwards, away from the sample), velocity_y_m_per_s and velocity_z_m_per_s in the deck's axes, and
+    angular_speed_rad_per_s (magnitude). NaN in a bin that stayed empty. Intervals without a frame are left out.
+
+    Raises ContactDumpError for a damaged dump, ValueError for one without the columns that are needed.
+    """
+    sums: dict[int, np.ndarray] = {}
+    frames: dict[int, int] = {}
+    for path, offset in dumps:
+        for batch in read_frames(path, "ATOMS", ("id",), block_bytes):
+            _check_columns(path, batch)
+            which = np.floor((offset + batch.steps * travel_per_step) / interval + BETWEEN).astype(int)
+            _add(batch, which, bins, sums)
+            for number in which:
+                frames[number] = frames.get(number, 0) + 1
+    tables = [_interval_table(number, sums[number], frames[number], bins, interval) for number in sorted(frames)]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+
+
+def _check_columns(path: str | Path, batch: FrameBatch) -> None:
+    missing = [name for name in NEEDED if name not in batch.columns]
+    if missing:
+        raise ValueError(f"{path}, line 9: column {missing[0]} is missing, allowed is a dump with {' '.join(NEEDED)}.")
+
+
+def _add(batch: FrameBatch, which: np.ndarray, bins: MovingBins, sums: dict[int, np.ndarray]) -> None:
+    """Add a batch of frames to the sums (quantities + 1, bins) of their intervals, the number of particles last."""
+    column = {name: batch.table[:, batch.columns.index(name)] for name in NEEDED}
+    place = bins.bin(column["x"], column["y"], column["z"])
+    inside = place >= 0
+    numbers, position = np.unique(which, return_inverse=True)
+    slot = np.repeat(position, np.diff(batch.starts))[inside] * bins.count + place[inside]
+    side = place // bins.layers == ZONES.index("side")
+    outwards = np.where(side, np.sign(column["x"]), 1.0) * column["vx"]
+    spin = np.sqrt(column["omegax"] ** 2 + column["omegay"] ** 2 + column["omegaz"] ** 2)
+    values = (outwards, column["vy"], column["vz"], spin, np.ones(len(place)))
+    size = len(numbers) * bins.count
+    added = np.stack([np.bincount(slot, value[inside], size) for value in values])
+    added = added.reshape(len(values), len(numbers), bins.count)
+    for k, number in enumerate(numbers):
+        sums[number] = sums.get(number, 0.0) + added[:, k]
+
+
+def _interval_table(number: int, sums: np.ndarray, frames: int, bins: MovingBins, interval: float) -> pd.DataFrame:
+    layer = np.tile(np.arange(bins.layers), len(ZONES))
+    with np.errstate(invalid="ignore"):
+        means = sums[:-1] / np.where(sums[-1] > 0.0, sums[-1], np.nan)
+    return pd.DataFrame(
+        {
+            "travel_start_m": number * interval,
+            "travel_end_m": (number + 1) * interval,
+            "zone": np.repeat(ZONES, bins.layers),
+            "layer": layer + 1,
+            "height_m": (layer + 0.5) * bins.layer_height,
+            "frames": frames,
+            "particles": sums[-1] / frames,
+            **dict(zip(QUANTITIES, means, strict=True)),
+        }
+    )
+
+
+def merged_bins(history: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Return bins put together: for each group of `by` the particles of a frame and the means over all particles.
+
+    history: as from `bin_history`. Particles of layers and zones add up, those of intervals are averaged over frames.
+    """
+    weight = history["particles"] * history["frames"]
+    weighted = history[list(QUANTITIES)].mul(weight, axis=0).fillna(0.0)
+    sums = pd.concat([history[by], weighted.assign(weight=weight)], axis=1).groupby(by, sort=False).sum()
+    frames = history[list(dict.fromkeys([*by, "travel_start_m", "frames"]))].drop_duplicates()
+    number = frames.groupby(by, sort=False)["frames"].sum()
+    means = sums[list(QUANTITIES)].div(sums["weight"].where(sums["weight"] > 0.0), axis=0)
+    return means.assign(particles=sums["weight"] / number).reset_index()
+
+
+def relative_velocity_history(history: pd.DataFrame, bed_velocity: float, bed_thickness: float) -> pd.DataFrame:
+    """Return travel_m (middle of the interval) and relative_velocity (-) of the particles over the sample.
+
+    Relative velocity: mean velocity with the sample, seen from the bed at rest, over the sample's (Yan 2022, Eq 3.7):
+    0 for a bed that lets the sample pass, 1 for particles that ride along. Central bins inside the original bed.
+
+    bed_velocity: m/s, of the bed past the sample; bed_thickness: m. Layers count whose middle is inside the bed.
+    """
+    central = history[(history["zone"] == "central") & (history["height_m"] < bed_thickness)]
+    means = merged_bins(central, ["travel_start_m", "travel_end_m"])
+    return pd.DataFrame(
+        {
+            "travel_m": 0.5 * (means["travel_start_m"] + means["travel_end_m"]),
+            "relative_velocity": relative_velocity(means["velocity_y_m_per_s"].to_numpy(), bed_velocity),
+        }
+    )
+
+
+def relative_velocity(velocity: np.ndarray, bed_velocity: float) -> np.ndarray:
+    """Return the relative velocity (-, Yan 2022, Eq 3.7) of velocities (m/s) along the travel in the sample's frame."""
+    return 1.0 - np.asarray(velocity, dtype=float) / bed_velocity
+
+
+def surcharge_history(history: pd.DataFrame, undisturbed: float, zone: str = "central") -> pd.DataFrame:
+    """Return travel_m and surcharge (-): particles over a zone, all layers, over those of the undisturbed bed there.
+
+    undisturbed: particles of the bed on an area as large as the zone, before the sample comes
+    """
+    counts = merged_bins(history[history["zone"] == zone], ["travel_start_m", "travel_end_m"])
+    middle = 0.5 * (counts["travel_start_m"] + counts["travel_end_m"])
+    return pd.DataFrame({"travel_m": middle, "surcharge": counts["particles"] / undisturbed})
+
+
+def velocity_profile(history: pd.DataFrame, bed_velocity: float, start: float, end: float) -> pd.DataFrame:
+    """Return the profile of the motion by layer over a window of travel (m), seen from the bed at rest.
+
+    Columns zone, layer, height_m, particles, velocity_m_per_s (v_y of Yan 2022: with the sample), sideways_ratio
+    (v_x / v_y, outwards in side bins), upward_ratio (v_z / v_y) and angular_speed_rad_per_s (Yan 2022, Fig 3.19 to
+    3.22). Intervals count that lie inside the window; raises ValueError when there is none.
+    """
+    slack = BETWEEN * max(abs(end), 1.0)
+    inside = history[(history["travel_start_m"] >= start - slack) & (history["travel_end_m"] <= end + slack)]
+    if inside.empty:
+        raise ValueError(f"no interval between {start:g} and {end:g} m of travel, allowed is a window that holds one")
+    table = merged_bins(inside, ["zone", "layer", "height_m"])
+    with_sample = bed_velocity - table["velocity_y_m_per_s"]
+    return pd.DataFrame(
+        {
+            **{name: table[name] for name in ("zone", "layer", "height_m", "particles")},
+            "velocity_m_per_s": with_sample,
+            "sideways_ratio": table["velocity_x_m_per_s"] / with_sample,
+            "upward_ratio": table["velocity_z_m_per_s"] / with_sample,
+            "angular_speed_rad_per_s": table["angular_speed_rad_per_s"],
+        }
+    )
