@@ -5,6 +5,7 @@ The response is the logarithm of the normalised wear, the factors are in coded u
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -197,3 +198,40 @@ def spread_of_replicates(settings: np.ndarray, values: np.ndarray, level: float 
     table = groups.agg(runs="count", mean="mean", deviation="std").reset_index()
     reach = stats.t.ppf(0.5 + level / 2.0, np.maximum(table["runs"] - 1, 1)) / np.sqrt(table["runs"])
     return table.assign(half_width=reach * table["deviation"])
+
+
+def pairs_to_show(study: Screening, most: int = 4) -> list[tuple[int, int]]:
+    """Return up to `most` pairs of factors, by position, whose contours tell most about the best model.
+
+    Interactions come first, then pairs of the factors with main effects or squares, the largest coefficients first.
+    A model of fewer than two factors gives one pair, with a factor that has no effect in it.
+    """
+    size = dict(zip(study.model.terms, np.abs(study.model.coefficients[1:]), strict=True))
+    pairs = sorted((term for term in size if len(set(term)) == 2), key=lambda term: -size[term])
+    strength: dict[int, float] = {}
+    for term, value in size.items():
+        if len(set(term)) == 1:
+            strength[term[0]] = max(strength.get(term[0], 0.0), value)
+    ranked = sorted(strength, key=lambda k: -strength[k])
+    if not pairs and len(ranked) < 2:
+        ranked = list(dict.fromkeys([*ranked, *range(len(study.factors))]))[:2]
+    others = [tuple(sorted(pair)) for pair in itertools.combinations(ranked, 2)]
+    return list(dict.fromkeys([*pairs, *others]))[:most]
+
+
+def response_surface(study: Screening, pairs: Sequence[tuple[int, int]], points: int = 41) -> pd.DataFrame:
+    """Return the normalised wear (-) that the model predicts over grids of pairs of factors, others at their middle.
+
+    Columns x_factor, y_factor (short names), x, y (real units), normalised_wear; points x points lines per pair.
+    """
+    levels = np.linspace(-1.0, 1.0, points)
+    along, up = (grid.ravel() for grid in np.meshgrid(levels, levels))
+    tables = []
+    for first, second in pairs:
+        places = np.zeros((len(along), len(study.factors)))
+        places[:, first], places[:, second] = along, up
+        one, other = study.factors[first], study.factors[second]
+        columns = {"x": one.real(along), "y": other.real(up)}
+        columns["normalised_wear"] = np.exp(predict(study.model, places)["predicted"].to_numpy())
+        tables.append(pd.DataFrame({"x_factor": one.name, "y_factor": other.name, **columns}))
+    return pd.concat(tables, ignore_index=True)
