@@ -1,0 +1,104 @@
+"""Figures of the flow draw their tables, with units and remarks."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.plots import flow
+from postproc.plots.style import colour, remarks_of
+
+ROOT = Path(__file__).resolve().parents[3]
+REMARKS = ["particles at scale 2", "travel 160 mm of 1000 mm"]
+
+
+@pytest.fixture
+def velocities():
+    """Two runs and a plain one along 100 mm, in two regimes."""
+    travel = np.array([10.0, 50.0, 100.0])
+    runs = [
+        ("R5_convex", "R5", "convex", "continuous", 30.0),
+        ("R9_convex", "R9", "convex", "continuous", 30.1),
+        ("R5_plain", "R5", "plain", "continuous", 5.0),
+        ("R2_convex", "R2", "convex", "discontinuous", 98.0),
+    ]
+    names = ["run", "row", "surface", "regime"]
+    tables = [pd.DataFrame({**dict(zip(names, run, strict=False)), "travel_mm": travel, "eta": run[4]}) for run in runs]
+    return pd.concat(tables, ignore_index=True)
+
+
+@pytest.fixture
+def profile():
+    """Profiles of a row over and beside a convex and a plain sample."""
+    parts = [
+        pd.DataFrame(
+            {
+                "surface": surface,
+                "zone": zone,
+                "height_mm": [5.0, 15.0],
+                "velocity_m_per_s": [1.0, 0.5],
+                "sideways_ratio": [0.1, 0.2],
+                "upward_ratio": [0.0, 0.3],
+                "angular_speed_deg_per_s": [300.0, 100.0],
+            }
+        )
+        for surface in ("convex", "plain")
+        for zone in ("central", "side", "ahead")
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def test_regimes_have_panels(velocities):
+    """A panel per regime with its runs as tabled; rows are named at the ends, apart from each other."""
+    figure = flow.along_travel(velocities, "eta", "Relative velocity (%)", (60.0, 1700.0), REMARKS)
+    left, right = figure.axes
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["continuous", "discontinuous"]
+    curves = {line.get_label(): line.get_ydata() for line in left.lines}
+    assert set(curves) == {"R5_convex", "R9_convex", "R5_plain"}
+    np.testing.assert_array_equal(curves["R9_convex"], [30.1] * 3)
+    places = {text.get_text().strip(): text.get_position()[1] for text in left.texts}
+    assert set(places) == {"R5", "R9"}
+    assert places["R9"] - places["R5"] >= flow.LEAST_STEP * 90.0
+    assert left.get_ylabel() == "Relative velocity (%)"
+    assert left.get_xlabel() == "Travel (mm)"
+    assert len(right.patches) == 1
+    assert remarks_of(figure) == "; ".join(REMARKS)
+
+
+def test_a_window_beyond_the_travel_is_left_out(velocities):
+    """A steady window that the travel does not reach is not drawn."""
+    figure = flow.along_travel(velocities, "eta", "Relative velocity (%)", (1000.0, 1700.0), REMARKS)
+    assert all(len(axes.patches) == 0 for axes in figure.axes)
+
+
+def test_profiles_over_and_beside(profile):
+    """Four panels with units; convex and plain, over and beside, as tabled; other zones are not drawn."""
+    figure = flow.profiles(profile, pd.DataFrame(columns=["zone", "quantity", "relation"]), REMARKS)
+    assert len(figure.axes) == 4
+    first = figure.axes[0]
+    lines = [line for line in first.lines if len(line.get_xdata()) == 2 and line.get_label()[0] != "_"]
+    assert {line.get_label() for line in lines} == {"convex central", "convex side", "plain central", "plain side"}
+    np.testing.assert_array_equal(lines[0].get_xydata(), [[1.0, 5.0], [0.5, 15.0]])
+    assert [axes.get_xlabel()[-5:] for axes in figure.axes] == ["(m/s)", "e (-)", "e (-)", "(°/s)"]
+    assert remarks_of(figure) == "; ".join(REMARKS)
+
+
+def test_published_profiles_are_overlaid(profile):
+    """Every published number of R5 is drawn once, at the height of its layer, in the colour of its surface."""
+    published = pd.read_csv(ROOT / "config/published/screening_profiles.csv")
+    published = published[published["row"] == "R5"]
+    figure = flow.profiles(profile, published, REMARKS)
+    drawn = {
+        (float(line.get_xdata()[0]), float(line.get_ydata()[0]), line.get_color())
+        for axes in figure.axes
+        for line in axes.lines
+        if len(line.get_xdata()) == 1
+    }
+    expected = {
+        (value, 5.0 * layer - 2.5, colour(surface))
+        for value, layer, surface in published[["value", "layer", "surface"]].itertuples(index=False)
+    }
+    assert drawn == expected
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"Yan 2022", "Yan 2022 (at most)", "Yan 2022 (at least)", "grey: Yan 2022, beside it"} <= set(labels)
