@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from postproc.analysis.bump import bump_volume
 from postproc.analysis.comparison import PLAIN, rows_to_show, runs_of_rows
 from postproc.analysis.display import in_display_units
 from postproc.mesh import SurfaceMesh, read_surface
@@ -59,10 +60,15 @@ def without_skirt(mesh: SurfaceMesh) -> SurfaceMesh:
 
 
 def frame_table(frames: pd.DataFrame, surfaces: list[SurfaceMesh]) -> pd.DataFrame:
-    """Return the frames in display units with what is seen on them: largest removed thickness and highest point."""
+    """Return the frames in display units with what is seen on them: largest removed thickness, highest point, and how
+    much of the bumps is left (percent of their volume; NaN without bumps).
+    """
     deepest = [mesh.point_data[REMOVED_THICKNESS].max() for mesh in surfaces]
     highest = [mesh.points[:, 2].max() for mesh in surfaces]
-    return in_display_units(frames.assign(largest_depth_m=deepest, highest_point_m=highest))
+    bumps = np.array([bump_volume(mesh) for mesh in surfaces])
+    left = np.divide(100.0 * bumps, bumps[0], out=np.full(len(bumps), np.nan), where=bumps[0] > 0.0)
+    shown = frames.assign(largest_depth_m=deepest, highest_point_m=highest, bumps_left_percent=left)
+    return in_display_units(shown)
 
 
 def section_place(pristine: SurfaceMesh, last: SurfaceMesh) -> float:

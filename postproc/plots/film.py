@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -34,6 +35,7 @@ PALETTE_SHADES = np.linspace(0.4, 1.0, 120)  # -, brightness of the map's colour
 WHOLE_SECONDS, LONGEST_FRAME, SHORTEST_FRAME, LAST_FRAME = 6.0, 0.8, 0.1, 2.0  # s
 SECTION_ROOM = 0.15  # -, of the section's height, above and below
 TITLE_FONT = 10.0  # pt
+SMALL_PERCENT = 9.95  # below it a percentage has a decimal
 LEAST_STRIP, LARGEST_STRIP = 0.15, 0.33  # -, of the frame's height for the section
 
 
@@ -65,7 +67,7 @@ def film_pictures(
     for lines, pixels, frame in zip(sections, views, frames.itertuples(), strict=True):
         view.images[0].set_data(pixels)
         line.set_segments(lines)
-        title.set_text(frame_title(run, frame.cycle, frame.travel_mm, frame.applied_volume_mm3))
+        title.set_text(frame_title(run, frame))
         canvas.draw()
         figure.set_layout_engine("none")  # the first frame's layout is that of all
         drawn.append(np.asarray(canvas.buffer_rgba())[..., :3].copy())
@@ -85,10 +87,15 @@ def section_height(sections: Sequence[np.ndarray]) -> float:
     return float(np.clip(height / length * WIDTH / LARGEST_HEIGHT, LEAST_STRIP, LARGEST_STRIP))
 
 
-def frame_title(run: str, cycle: int, travel_mm: float, applied_volume_mm3: float) -> str:
-    """Return what stands above a frame."""
-    name = run.replace("_", " ")
-    return f"{name}: cycle {cycle}, {travel_mm:.4g} mm of travel, {applied_volume_mm3:.3g} mm³ worn off"
+def frame_title(run: str, frame: Any) -> str:
+    """Return what stands above a frame, a row of `analysis.film.frame_table`."""
+    left = frame.bumps_left_percent
+    bumps = "" if np.isnan(left) else f", {left:.{0 if left > SMALL_PERCENT else 1}f} % of the bumps left"
+    name, travel = (
+        run.replace("_", " "),
+        f"{frame.travel_mm:.0f}" if frame.travel_mm >= 10.0 else f"{frame.travel_mm:.3g}",
+    )
+    return f"{name}: cycle {frame.cycle}, {travel} mm of travel, {frame.applied_volume_mm3:.3g} mm³ worn off{bumps}"
 
 
 def _section_axes(axes: Axes, sections: Sequence[np.ndarray], x: float) -> LineCollection:

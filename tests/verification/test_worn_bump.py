@@ -5,6 +5,7 @@ import pytest
 
 from meshes.pattern import ConvexPattern
 from meshes.sample import sample_top
+from postproc.analysis.bump import bump_volume
 from postproc.mesh import areas, centroids, unit_normals, volume_above_plane
 from postproc.wear.caps import step_limit
 from postproc.wear.mesh_faults import intersecting_faces, mesh_faults, with_target_edges
@@ -57,13 +58,6 @@ def hollow_angle(mesh):
     rise = ((points[faces[pairs[:, 1], opposite[:, 1]]] - ends[0]) * normals[:, 0]).sum(axis=1)
     angle = np.degrees(np.arccos(np.clip((normals[:, 0] * normals[:, 1]).sum(axis=1), -1.0, 1.0)))
     return np.average(np.where(rise > 0.0, angle, 0.0), weights=np.linalg.norm(ends[1] - ends[0], axis=1))
-
-
-def bump_volume(mesh):
-    """Volume (m3) of the bump above the mean height of its foot."""
-    bump = mesh.cell_data["part"] > 0
-    foot = np.intersect1d(mesh.triangles[bump], mesh.triangles[~bump])
-    return volume_above_plane(mesh.points, mesh.triangles[bump], mesh.points[foot, 2].mean())
 
 
 def wear(pristine, speed, updates, stop, rate=over_all):

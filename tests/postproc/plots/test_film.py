@@ -62,9 +62,19 @@ def test_the_scale_is_that_of_the_last_frame(surfaces):
     assert film.film_limits(surfaces[0])[1] > 0.0
 
 
-def test_a_frame_says_where_it_stands():
-    """Run, cycle, travel with unit and volume with unit stand above the frame."""
-    assert film.frame_title("R9_convex", 3, 120.0, 0.5416) == "R9 convex: cycle 3, 120 mm of travel, 0.542 mm³ worn off"
+@pytest.mark.parametrize(
+    ("travel", "left", "words"),
+    [
+        (120.0, np.nan, "120 mm of travel, 0.542 mm³ worn off"),
+        (12345.6, 43.2, "12346 mm of travel, 0.542 mm³ worn off, 43 % of the bumps left"),
+        (1.234, 4.36, "1.23 mm of travel, 0.542 mm³ worn off, 4.4 % of the bumps left"),
+    ],
+)
+def test_a_frame_says_where_it_stands(travel, left, words):
+    """Run, cycle, travel and volume with units, and what is left of the bumps where there are any."""
+    names = ["cycle", "travel_mm", "applied_volume_mm3", "bumps_left_percent"]
+    frame = next(pd.DataFrame([[3, travel, 0.5416, left]], columns=names).itertuples())
+    assert film.frame_title("R9_convex", frame) == f"R9 convex: cycle 3, {words}"
 
 
 def test_a_film_has_all_frames_in_order(pictures, tmp_path):
