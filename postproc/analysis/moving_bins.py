@@ -139,13 +139,33 @@ def merged_bins(history: pd.DataFrame, by: list[str]) -> pd.DataFrame:
 
     history: as from `bin_history`. Particles of layers and zones add up, those of intervals are averaged over frames.
     """
-    weight = history["particles"] * history["frames"]
-    weighted = history[list(QUANTITIES)].mul(weight, axis=0).fillna(0.0)
-    sums = pd.concat([history[by], weighted.assign(weight=weight)], axis=1).groupby(by, sort=False).sum()
+    sums = _sums(history, by)
     frames = history[list(dict.fromkeys([*by, "travel_start_m", "frames"]))].drop_duplicates()
-    number = frames.groupby(by, sort=False)["frames"].sum()
-    means = sums[list(QUANTITIES)].div(sums["weight"].where(sums["weight"] > 0.0), axis=0)
-    return means.assign(particles=sums["weight"] / number).reset_index()
+    return _means(sums, frames.groupby(by, sort=False)["frames"].sum()).reset_index()
+
+
+def joined(histories: Iterable[pd.DataFrame]) -> pd.DataFrame:
+    """Return bin histories of consecutive wear cycles as one; an interval that two of them share is averaged."""
+    table = pd.concat(list(histories), ignore_index=True)
+    place = ["travel_start_m", "travel_end_m", "zone", "layer", "height_m"]
+    frames = table.groupby(place, sort=False)["frames"].sum()
+    means = _means(_sums(table, place), frames)
+    means.insert(0, "frames", frames)
+    return means.reset_index()
+
+
+def _sums(history: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Return the sums of all quantities over the particles of all frames, and their number, per group."""
+    number = history["particles"] * history["frames"]
+    sums = history[list(QUANTITIES)].mul(number, axis=0).fillna(0.0)
+    return pd.concat([history[by], sums.assign(number=number)], axis=1).groupby(by, sort=False).sum()
+
+
+def _means(sums: pd.DataFrame, frames: pd.Series) -> pd.DataFrame:
+    """Return the particles of a frame and the means over all particles, NaN where there are none."""
+    means = sums[list(QUANTITIES)].div(sums["number"].where(sums["number"] > 0.0), axis=0)
+    means.insert(0, "particles", sums["number"] / frames)
+    return means
 
 
 def relative_velocity_history(history: pd.DataFrame, bed_velocity: float, bed_thickness: float) -> pd.DataFrame:

@@ -9,6 +9,7 @@ import pytest
 from postproc.analysis.moving_bins import (
     MovingBins,
     bin_history,
+    joined,
     merged_bins,
     relative_velocity_history,
     surcharge_history,
@@ -191,3 +192,12 @@ def test_faults_are_named(tmp_path):
     with pytest.raises(ValueError, match=r"no interval between 1 and 1\.7 m of travel"):
         velocity_profile(bin_history(dump, BINS, STEP, 0.01), BED, 1.0, 1.7)
     assert bin_history([], BINS, STEP, 0.01).empty
+
+
+def test_cycles_are_joined(tmp_path):
+    """Histories of two cycles that meet inside an interval are that of all their frames."""
+    dumps = [(write(tmp_path / f"bed_{k}.dump", shear)[0][0], k * 50 * STEP) for k in range(5)]
+    dumps[1] = (write(tmp_path / "bed_1.dump", rotation)[0][0], dumps[1][1])
+    once = bin_history(dumps, BINS, STEP, 0.01)
+    parts = [bin_history(dumps[:1], BINS, STEP, 0.01), bin_history(dumps[1:], BINS, STEP, 0.01)]
+    pd.testing.assert_frame_equal(joined(parts), once, rtol=1e-12)
