@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from postproc.mesh import SurfaceMesh, read_surface, write_surface
 from workflows import state
-from workflows.chain import RESTART, Chain, run_in_steps, write_cycle, write_end_wall
+from workflows.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
 from workflows.cycles import fill_bed, inputs_digest, run_cycle
 from workflows.design import load_study
 from workflows.geometry import sample_surface
@@ -28,7 +28,9 @@ def prepared_chain(folder: Path, particle_scale: float) -> Chain:
     if not surface.exists():
         surface.parent.mkdir(parents=True, exist_ok=True)
         write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
-    chain = Chain(RUN, surface.parent, parameters, study.beds[bed_name], surface, bed_folder / "bed.restart")
+    chain = Chain(
+        RUN, surface.parent, study.case, parameters, surface, study.beds[bed_name], bed_folder / "bed.restart"
+    )
     if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
         run_cycle(chain, None, inputs_digest(chain), Progress(RUN, run_in_steps(chain)))
     return chain
@@ -38,6 +40,6 @@ def cycle_deck(chain: Chain, name: str) -> tuple[Path, SurfaceMesh, str]:
     """Return a new folder beside the run's cycles with what its first wear cycle reads, its surface, and the deck."""
     folder, surface = chain.folder / name, read_surface(chain.surface)
     folder.mkdir(exist_ok=True)
-    write_end_wall(chain)
+    write_shared_files(chain)
     write_cycle(chain, first_span(chain.parameters), folder, surface)
     return folder, surface, (folder / "deck.in").read_text()

@@ -20,12 +20,16 @@ rule summary:
     input:
         design="results/{study}/design.csv",
         wear=of_every_run("results/{study}/{run}/wear.csv"),
+        pristine=of_every_run("results/{study}/{run}/surface.vtu"),
+        worn=of_every_run("results/{study}/{run}/worn_surface.vtu"),
     output:
         "results/{study}/summary.csv",
     log:
         "results/{study}/logs/summary.log",
     benchmark:
         "results/{study}/logs/summary.benchmark.tsv"
+    params:
+        case=case_of,
     message:
         "Summary of {wildcards.study}"
     script:

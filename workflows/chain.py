@@ -8,28 +8,30 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from postproc.mesh import SurfaceMesh, read_surface, write_stl
 from workflows import deck, state
-from workflows.derived import WALLS
-from workflows.schedule import Span, first_span, known_spans, next_span
+from workflows.cases import CASES
+from workflows.schedule import Span, cycle_title, first_span, known_spans, next_span
 from workflows.solver import DECK
 
-SURFACE, SURFACE_STL, END_WALL, RESTART = "surface.vtu", "surface.stl", "end_wall.stl", "run.restart"
+SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
 
 
 @dataclass(frozen=True)
 class Chain:
-    """A run as the driver sees it. `parameters` and `bed` as in design.py (SI); paths, and the MPI
-    ranks that the solver gets, which change nothing but the time it takes."""
+    """A run as the driver sees it.
+
+    `case`: name in `CASES`; `parameters` and `bed` as the case makes them (SI), no bed where the case has none; paths,
+    and the MPI ranks that the solver gets, which change nothing but the time it takes.
+    """
 
     name: str
     folder: Path
+    case: str
     parameters: Mapping[str, Any]
-    bed: Mapping[str, Any]
     surface: Path
-    bed_restart: Path
+    bed: Mapping[str, Any] | None = None
+    bed_restart: Path | None = None
     ranks: int = 1
 
 
@@ -48,8 +50,7 @@ def span_of(chain: Chain, cycle: int) -> Span | None:
 
 def run_in_steps(chain: Chain) -> int:
     """Return the time steps of cycle 0."""
-    lowering = deck.lowered_bed(chain.parameters, chain.bed, "")["lowering_steps"]
-    return lowering + chain.parameters["derived"]["run_in_steps"]
+    return CASES[chain.case].run_in_steps(chain.parameters, chain.bed)
 
 
 def steps_before(chain: Chain, span: Span | None) -> int:
@@ -64,27 +65,39 @@ def total_steps(chain: Chain) -> int:
 
 def deck_text(chain: Chain, span: Span | None) -> str:
     """Return the deck of a wear cycle, or of cycle 0 (None); paths in it are relative to the cycle's folder."""
+    restart = ""
     if span:
         restart = f"../{state.cycle_folder(chain.folder, span.cycle - 1).name}/{RESTART}"
-        return deck.render("sliding_sample", deck.sliding_sample(chain.parameters, chain.bed, span, restart))
-    restart = os.path.relpath(chain.bed_restart, state.cycle_folder(chain.folder, 0))
-    return deck.render("lowered_bed", deck.lowered_bed(chain.parameters, chain.bed, restart))
+    elif chain.bed_restart:
+        restart = os.path.relpath(chain.bed_restart, state.cycle_folder(chain.folder, 0))
+    return CASES[chain.case].deck(chain.parameters, chain.bed, span, restart)
 
 
-def write_cycle(chain: Chain, span: Span | None, folder: Path, surface: SurfaceMesh) -> None:
-    """Write the deck and the surface of a wear cycle, or of cycle 0 (None), into its folder, where they run by hand."""
+def decks_without_paths(chain: Chain) -> list[str]:
+    """Return the decks of cycle 0 and of the first wear cycle as they are wherever the run's folder is."""
+    spans = (None, first_span(chain.parameters))
+    return [CASES[chain.case].deck(chain.parameters, chain.bed, span, restart="") for span in spans]
+
+
+def write_shared_files(chain: Chain) -> None:
+    """Write what the decks of all cycles read besides surface and restart file."""
+    CASES[chain.case].write_shared_files(chain.bed, chain.folder)
+
+
+def write_cycle(chain: Chain, span: Span | None, folder: Path, surface: SurfaceMesh) -> int:
+    """Write the deck and the surface of a wear cycle, or of cycle 0 (None), into its folder, where they run by hand.
+
+    Returns the number of triangles that the solver gets.
+    """
     (folder / DECK).write_text(deck_text(chain, span))
-    write_stl(folder / SURFACE_STL, surface.points, surface.triangles)
+    mesh = CASES[chain.case].piece(chain.parameters, span, surface).mesh
+    write_stl(folder / SURFACE_STL, mesh.points, mesh.triangles)
+    return len(mesh.triangles)
 
 
-def write_end_wall(chain: Chain) -> None:
-    """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0, where it has ends."""
-    if chain.bed["ends"] != WALLS:
-        return
-    half_width, bottom, top = deck.end_wall_corners(chain.bed)
-    corners = [(-half_width, bottom), (half_width, bottom), (half_width, top), (-half_width, top)]
-    points = np.array([(x, 0.0, z) for x, z in corners])
-    write_stl(chain.folder / END_WALL, points, np.array([[0, 1, 2], [0, 2, 3]]))
+def title(chain: Chain, cycle: int) -> str:
+    """Return what people call a cycle."""
+    return cycle_title(chain.parameters, cycle) if cycle else CASES[chain.case].first_title
 
 
 # ---------------------------------------------------------------- decks by hand
@@ -103,7 +116,7 @@ def write_decks(chain: Chain) -> None:
     """
     surface = read_surface(chain.surface)
     chain.folder.mkdir(parents=True, exist_ok=True)
-    write_end_wall(chain)
+    write_shared_files(chain)
     for span in (None, *known_spans(chain.parameters)):
         folder = state.cycle_folder(chain.folder, span.cycle if span else 0)
         folder.mkdir(parents=True, exist_ok=True)

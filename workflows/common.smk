@@ -6,6 +6,7 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
+from workflows.cases import CASES
 from workflows.deck import template_sources
 from workflows.design import ConfigError, list_studies, load_study
 from workflows.job import let_jobs_import
@@ -19,7 +20,7 @@ let_jobs_import(ROOT)
 
 wildcard_constraints:
     study=r"[a-z][a-z0-9_]*",
-    run=r"[A-Za-z0-9-]+_(convex|plain)",
+    run=r"[A-Za-z0-9][A-Za-z0-9_-]*",
     bed=r"bed_\d+",
 
 
@@ -63,16 +64,36 @@ def run_parameters(wildcards):
     return run_of(wildcards).parameters
 
 
+def case_of(wildcards):
+    return study_of(wildcards).case
+
+
+def run_geometry(wildcards):
+    """The sections of a run's parameters that its surface depends on."""
+    return {name: run_parameters(wildcards)[name] for name in CASES[case_of(wildcards)].geometry}
+
+
 def bed_parameters(wildcards):
     return study_of(wildcards).beds[wildcards.bed]
 
 
 def bed_parameters_of_run(wildcards):
-    return study_of(wildcards).beds[study_of(wildcards).bed_of(wildcards.run)]
+    return study_of(wildcards).beds.get(study_of(wildcards).bed_of(wildcards.run))
 
 
-def bed_folder_of_run(wildcards):
-    return f"results/{wildcards.study}/beds/{study_of(wildcards).bed_of(wildcards.run)}"
+def bed_restart_of_run(folder):
+    """An input function: the restart file below results/<study>/<folder> that a run starts from, or nothing."""
+
+    def paths(wildcards):
+        bed = study_of(wildcards).bed_of(wildcards.run)
+        return [f"results/{wildcards.study}/{folder}/{bed}/bed.restart"] if bed else []
+
+    return paths
+
+
+def run_templates(wildcards):
+    """The sources of the templates of a run's decks: a run is done again when one changes."""
+    return [template_sources(name) for name in CASES[case_of(wildcards)].run_templates]
 
 
 def of_every_run(pattern):

@@ -9,20 +9,22 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from workflows.cases import CASES
 from workflows.config_files import dotted
 from workflows.design import REPOSITORY
-from workflows.run_checks import RUN_CHECKS
-from workflows.validation import allowed_text, leaves, load_schema
+from workflows.validation import SCHEMA_FOLDER, allowed_text, leaves, load_schema
 
 INTRODUCTION = """\
 # Configuration
 
 Generated from `workflows/schemas` by `python -m workflows.config_readme`; edit the schemas, not this page.
 
-* `default.yaml`: settings of every study.
-* `studies/<name>.yaml`: one study; it overrides settings, and its `fidelities` blocks override them again.
+* `default.yaml`: settings that all cases share.
+* `cases/<case>.yaml`: settings of one case, which stand above those.
+* `studies/<name>.yaml`: one study of a case; it overrides settings, and its `fidelities` blocks override them again.
 * The command line overrides all of them.
-* `designs/*.csv`: design tables; one row and one surface make one run, `R9_convex`.
+* `designs/*.csv`: design tables; each row makes a run, or one with each surface (`R9_convex`). Columns are those of the
+  case; where they name a setting, the row overrides it.
 * `materials.yaml`: particles, walls and their contacts.
 
 Every key with a dimension ends in its unit; another unit is refused, and so is an unknown key. Numbers are
@@ -30,17 +32,21 @@ written as in YAML 1.2: `6.3e-13`, `1e-9` and `.5` are numbers, `'80'` and `80 m
 """
 
 CHECKS = """\
-## Checks that compare values
+### Checks that compare values
 
-Done before any solver starts, in `workflows/run_checks.py`:
+Done before any solver starts:
 
 """
 
 TABLES = (
-    ("Settings", "settings", "of `default.yaml`, studies, their fidelities and the command line"),
+    ("Settings", "settings", "of `default.yaml`, cases, studies, their fidelities and the command line"),
     ("Study", "study", "of `studies/<name>.yaml` besides settings"),
-    ("Design table", "design", "are the columns of `designs/*.csv`"),
     ("Materials", "materials", "of `materials.yaml`"),
+)
+TABLES_OF_CASE = (
+    ("Settings", "settings", "of `cases/{case}.yaml`, studies, their fidelities and the command line"),
+    ("Study", "study", "of `studies/<name>.yaml` besides those of every study"),
+    ("Design table", "design", "are the columns of `designs/*.csv`"),
 )
 
 
@@ -49,7 +55,8 @@ def _rows(schema: dict[str, Any]) -> Iterator[str]:
         unit, meaning = inner.get("x-unit", "-"), inner.get("description")
         if meaning is not None:
             allowed = allowed_text(inner).removesuffix(f" {unit}")
-            yield f"| `{dotted(path)}` | {unit} | {allowed} | {meaning} |"
+            overriding = f"; overrides `{inner['x-setting']}`" if "x-setting" in inner else ""
+            yield f"| `{dotted(path)}` | {unit} | {allowed} | {meaning}{overriding} |"
 
 
 def table(name: str) -> str:
@@ -57,11 +64,21 @@ def table(name: str) -> str:
     return "\n".join(["| key | unit | allowed | meaning |", "|---|---|---|---|", *_rows(load_schema(name))])
 
 
+def sections_of_case(name: str) -> Iterator[str]:
+    """Yield the sections about one case."""
+    yield f"## Case `{name}`\n\n{(CASES[name].__doc__ or '').splitlines()[0]}\n"
+    for title, kind, where in TABLES_OF_CASE:
+        schema = f"cases/{name}/{kind}"
+        if (SCHEMA_FOLDER / f"{schema}.schema.yaml").is_file():
+            yield f"### {title}\n\nKeys {where.format(case=name)}.\n\n{table(schema)}\n"
+    yield CHECKS + "\n".join(f"* {(check.__doc__ or '').splitlines()[0]}" for check in CASES[name].checks) + "\n"
+
+
 def readme() -> str:
     """Return the whole page."""
     sections = [f"## {title}\n\nKeys {where}.\n\n{table(name)}\n" for title, name, where in TABLES]
-    checks = "\n".join(f"* {(check.__doc__ or '').splitlines()[0]}" for check in RUN_CHECKS)
-    return "\n".join([INTRODUCTION, *sections, CHECKS + checks]) + "\n"
+    cases = [section for name in CASES for section in sections_of_case(name)]
+    return "\n".join([INTRODUCTION, *sections, *cases])
 
 
 def main(root: Path = REPOSITORY) -> None:

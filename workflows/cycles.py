@@ -17,22 +17,25 @@ from postproc.readers.load_ledger import announcement
 from postproc.readers.solver_log import solver_version, thermo_table, warnings
 from workflows import deck, state
 from workflows.accounting import LEDGER, account_and_wear
+from workflows.cases import CASES
 from workflows.chain import (
     RESTART,
     SURFACE,
     Chain,
+    decks_without_paths,
     run_in_steps,
     span_of,
     steps_before,
     surface_before,
+    title,
     total_steps,
     write_bed,
     write_cycle,
-    write_end_wall,
+    write_shared_files,
 )
 from workflows.ledgers import producer
 from workflows.progress import Progress
-from workflows.schedule import Span, first_span, title
+from workflows.schedule import Span, first_span
 from workflows.solver import CYCLE_EXECUTABLES, EXECUTABLE, LOG, SCREEN, SolverError, missing_program, run_deck
 from workflows.tables import write_table
 from workflows.wear_step import worn_surface
@@ -57,7 +60,7 @@ def run_chain(chain: Chain) -> None:
             raise SolverError(missing)  # before the run-in, which needs the plain solver only
         progress = Progress(chain.name, total_steps(chain), steps_before(chain, span))
         if finished and unfinished:
-            announce(f"resumes after {title(chain.parameters, finished - 1)}")
+            announce(f"resumes after {title(chain, finished - 1)}")
         if not finished:
             run_cycle(chain, None, inputs, progress)
             finished, span = 1, span_of(chain, 1)
@@ -69,44 +72,34 @@ def run_chain(chain: Chain) -> None:
 
 def inputs_digest(chain: Chain) -> str:
     """Return the hash of all that a run's results depend on: parameters, decks, surface and bed."""
-    parameters, bed = chain.parameters, chain.bed
-    solver = {key: value for key, value in parameters["solver"].items() if key != "ranks"}
+    solver = {key: value for key, value in chain.parameters["solver"].items() if key != "ranks"}
+    files = [path for path in (chain.surface, chain.bed_restart) if path]
     return state.digest(
-        {**parameters, "solver": solver},
-        deck.render("lowered_bed", deck.lowered_bed(parameters, bed, bed_restart="")),
-        deck.render("sliding_sample", deck.sliding_sample(parameters, bed, first_span(parameters), run_restart="")),
-        state.file_digest(chain.surface),
-        state.file_digest(chain.bed_restart),
+        {**chain.parameters, "solver": solver}, *decks_without_paths(chain), *map(state.file_digest, files)
     )
 
 
 def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:
-    """Simulate, account, wear and displace one cycle; cycle 0 (None) lowers the bed on to the sample and runs it in."""
+    """Simulate, account, wear and displace one cycle; cycle 0 (None) brings the run to its start, without wear."""
     started, cycle = time.monotonic(), span.cycle if span else 0
     with state.working_folder(chain.folder, cycle) as folder:
         surface = read_surface(surface_before(chain, cycle))
-        write_end_wall(chain)
-        write_cycle(chain, span, folder, surface)
-        solver_seconds = simulate(chain, span, folder, len(surface.triangles), progress)
+        write_shared_files(chain)
+        triangles = write_cycle(chain, span, folder, surface)
+        solver_seconds = simulate(chain, span, folder, triangles, progress)
         record = account_and_wear(chain, span, folder, surface) if span else {"cost": {}}
         record["cost"] = (
-            cost(chain, span, folder, len(surface.triangles), solver_seconds, time.monotonic() - started)
-            | record["cost"]
+            cost(chain, span, folder, triangles, solver_seconds, time.monotonic() - started) | record["cost"]
         )
         record |= {
             "span": asdict(span) if span else None,
-            "bed_travelled_m": deck.travelled(
-                chain.parameters, chain.parameters["derived"]["run_in_steps"] + (span.end if span else 0)
-            ),
-            "seed": chain.bed["seed"],
+            **CASES[chain.case].record(chain.parameters, chain.bed, span),
             "solver": solver_version(folder / SCREEN),
             "solver_ledger": announcement(folder / SCREEN),
             "solver_warnings": warnings(folder / SCREEN),
         }
         if inputs_digest(chain) != inputs:
-            raise state.StateError(
-                f"{chain.name}: its inputs changed while {title(chain.parameters, cycle)} ran; start again."
-            )
+            raise state.StateError(f"{chain.name}: its inputs changed while {title(chain, cycle)} ran; start again.")
         files = (RESTART,) if span is None else (RESTART, SURFACE, LEDGER, *producer(chain.parameters).kept)
         state.write_state(folder, inputs, files, record)
 
@@ -117,7 +110,7 @@ def simulate(chain: Chain, span: Span | None, folder: Path, triangles: int, prog
     return run_deck(
         folder,
         chain.ranks,
-        lambda step: progress.update(before + step, title(chain.parameters, cycle)),
+        lambda step: progress.update(before + step, title(chain, cycle)),
         triangles={f"sample_{cycle}": triangles},
         executable=cycle_executable(chain, span),
     )

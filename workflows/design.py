@@ -1,7 +1,7 @@
 """Turn a study's configuration into runs: merge, check, convert to SI, derive.
 
-    default.yaml <- study <- fidelity block <- command line   settings, in the units that their keys spell
-    settings x design row x surface -> Run.parameters         SI, JSON-able
+    default.yaml <- case <- study <- fidelity block <- command line   settings, in the units that their keys spell
+    settings x design row x surface -> Run.parameters                 SI, JSON-able
 
 This is the only module that converts units. Configuration faults raise ConfigError, one sentence each.
 """
@@ -15,33 +15,28 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from workflows.cases import CASES, DEFAULT_CASE
 from workflows.config_files import ConfigError, Layer, command_line_layer, merge, read_yaml
-from workflows.derived import ADAPTIVE, derived_parameters, rolling_coefficient_for_solver
-from workflows.run_checks import Case, check_run
+from workflows.run_checks import CheckedRun, check_run
 from workflows.validation import (
-    TRAVELS,
+    case_schema,
+    check_alternatives,
     check_layer,
     check_material_names,
     check_materials,
-    check_travel,
     coerce_numbers,
+    joined,
+    leaves,
     load_schema,
     read_design,
     unknown_name,
     without_required,
 )
 
-__all__ = [
-    "ConfigError",
-    "Run",
-    "Study",
-    "bed_parameters",
-    "list_studies",
-    "load_study",
-    "rolling_coefficient_for_solver",
-]
+__all__ = ["ConfigError", "Run", "Study", "list_studies", "load_study", "to_si"]
 
 SECONDS_PER_HOUR = 3600.0
+DESIGN = "design"  # key of a study, and of its fidelity blocks
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
 RULE_NAMES = frozenset(
     found[1]
@@ -53,10 +48,9 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 
 @dataclass(frozen=True)
 class Run:
-    """One simulation: a row of the design with one surface.
+    """One simulation: a row of the design with one surface, "" where the case knows no surfaces.
 
-    `parameters` holds ledger (solver or dumps) and the sections sample, pattern (None for a plain plate), bed,
-    sliding, wear, solver, particle, sample_material, floor_material and derived; SI, the unit is the suffix of the key.
+    `parameters` holds the sections of the case (see its `run_parameters`); SI, the unit is the suffix of the key.
     """
 
     name: str
@@ -70,6 +64,7 @@ class Study:
     """A checked study. `settings` are merged, in the units that their keys spell; so are `design_rows`."""
 
     name: str
+    case: str
     title: str
     question: str
     fidelity: str
@@ -86,46 +81,31 @@ class Study:
         return found
 
     def design_table(self) -> list[dict[str, Any]]:
-        """Return one row per run: run, row, surface, the factors with their units, and what follows from them.
-
-        The equivalent size ratio is the particle's over the bump's, alpha_ER of Yan 2022, Eq 4.18.
+        """Return one row per run: run, row, surface where there are any, the factors with their units, and what follows
+        from them in this case.
         """
         factors = {str(row["row"]): {k: v for k, v in row.items() if k != "row"} for row in self.design_rows}
+        columns = dict.fromkeys(name for row in factors.values() for name in row)
         return [
-            {
-                "run": run.name,
-                "row": run.row,
-                "surface": run.surface,
-                **factors[run.row],
-                "particle_scale": run.parameters["particle"]["scale"],
-                "layers": run.parameters["derived"]["layers"],
-                "equivalent_size_ratio": run.parameters["derived"]["equivalent_size_ratio"],
-            }
+            {"run": run.name, "row": run.row}
+            | ({"surface": run.surface} if run.surface else {})
+            | {name: factors[run.row].get(name, "") for name in columns}
+            | CASES[self.case].table_columns(run.parameters)
             for run in self.runs
         ]
 
     @cached_property
     def _beds(self) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
-        beds: dict[str, dict[str, Any]] = {}
-        bed_of = {}
-        clearance = max(run.parameters["derived"]["highest_point_m"] for run in self.runs)
-        for run in self.runs:
-            wanted = {**bed_parameters(run), "temporary_floor_m": clearance}
-            name = next((name for name, bed in beds.items() if bed == wanted), f"bed_{len(beds) + 1}")
-            beds[name], bed_of[run.name] = wanted, name
-        return beds, bed_of
+        return CASES[self.case].beds(self.runs)
 
     @property
     def beds(self) -> dict[str, dict[str, Any]]:
-        """Return {bed id: parameters}; runs with equal parameters share a bed.
-
-        Beds settle on a temporary floor (`temporary_floor_m`) above the highest bump of the whole study.
-        """
+        """Return {bed id: parameters}; runs with equal parameters share a bed, and some cases have none."""
         return self._beds[0]
 
-    def bed_of(self, run_name: str) -> str:
-        """Return the id of the bed that a run starts from. Raises ConfigError for an unknown run."""
-        return self._beds[1][self.run(run_name).name]
+    def bed_of(self, run_name: str) -> str | None:
+        """Return the id of the bed that a run starts from, None without. Raises ConfigError for an unknown run."""
+        return self._beds[1].get(self.run(run_name).name)
 
 
 def list_studies(root: Path = REPOSITORY) -> list[str]:
@@ -150,25 +130,26 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     sources = _read_sources(name, root, overrides)
     fidelity = _fidelity(sources)
     layers = sources.stack(fidelity)
-    settings = _merged(layers)
+    settings = sources.merged(layers)
     materials = check_materials(read_yaml(root / "config" / "materials.yaml", root))
-    check_material_names(layers, settings, materials)
+    check_material_names(layers, settings, materials, CASES[sources.case].material_keys)
     head = sources.study.values
-    rows = _design_rows(sources.study, root)
+    rows = _design_rows(sources, fidelity, root)
     runs = tuple(
-        _checked_run(layers, settings, materials, row_layer, surface)
+        _checked_run(sources, layers, settings, materials, row_layer, surface)
         for row_layer in rows
-        for surface in head["surfaces"]
+        for surface in CASES[sources.case].surfaces(head)
     )
     return Study(
         name=name,
+        case=sources.case,
         title=head["title"],
         question=head["question"],
         fidelity=fidelity,
         settings=settings,
         runs=runs,
         design_rows=tuple(row_layer.values for row_layer in rows),
-        paper_settings=_merged(sources.stack("paper")[:-1]),
+        paper_settings=sources.merged(sources.stack("paper")[:-1]),
     )
 
 
@@ -176,13 +157,15 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
 class _Sources:
     """Where settings come from; `study` also holds the keys that are the study's own."""
 
+    case: str
     default: Layer
+    of_case: Layer
     study: Layer
     command: Layer
 
     @property
     def study_settings(self) -> Layer:
-        return self.study.part(set(self.study.values) - set(load_schema("study")["properties"]))
+        return self.study.part(set(self.study.values) - set(case_schema(self.case, "study")["properties"]))
 
     def block(self, fidelity: str) -> Layer:
         return self.study.inner(("fidelities", fidelity), f"fidelity {fidelity}")
@@ -195,41 +178,62 @@ class _Sources:
 
     def stack(self, fidelity: str) -> tuple[Layer, ...]:
         """Return the layers from the weakest to the strongest."""
-        return self.default, self.study_settings, self.block(fidelity), self.command
+        block = self.block(fidelity)
+        return (
+            *(self.default, self.of_case, self.study_settings),
+            *(block.part(set(block.values) - {DESIGN}), self.command),
+        )
+
+    def merged(self, layers: tuple[Layer, ...]) -> dict[str, Any]:
+        """Return the settings of the layers, the last one strongest."""
+        settings: dict[str, Any] = {}
+        alternatives = CASES[self.case].alternatives
+        for layer in layers:
+            if any(layer.holds(path) for path in alternatives):
+                for section, key in alternatives:
+                    settings.get(section, {}).pop(key, None)
+            settings = merge(settings, layer.values)
+        return coerce_numbers(settings, case_schema(self.case, "settings"))
 
 
 def _read_sources(name: str, root: Path, overrides: dict[str, Any] | None) -> _Sources:
     """Return the sources of a study, each checked by itself so that a fault is reported where it stands."""
+    study = read_yaml(root / "config" / "studies" / f"{name}.yaml", root)
+    named = study.part({"case"})
+    check_layer(named, without_required(load_schema("study")))
+    case = named.values.get("case", DEFAULT_CASE)
     sources = _Sources(
+        case=case,
         default=read_yaml(root / "config" / "default.yaml", root),
-        study=read_yaml(root / "config" / "studies" / f"{name}.yaml", root),
+        of_case=read_yaml(root / "config" / "cases" / f"{case}.yaml", root),
+        study=study,
         command=command_line_layer(overrides),
     )
-    study_schema, complete = load_schema("study"), load_schema("settings")
-    partial = without_required(complete)
-    check_layer(sources.default, complete)
-    check_travel(sources.default, required=True)
-    in_study = {**study_schema, "properties": study_schema["properties"] | partial["properties"]}
-    check_layer(sources.study, in_study)
-    within_block = {
-        **partial,
-        "properties": {k: v for k, v in partial["properties"].items() if k != "fidelity"},
-    }
+    shared, own, of_study = load_schema("settings"), load_schema(f"cases/{case}/settings"), case_schema(case, "study")
+    partial = without_required(joined(shared, own))
+    check_layer(sources.default, shared)
+    check_layer(sources.of_case, joined(without_required(shared), own))
+    check_layer(sources.study, {**of_study, "properties": of_study["properties"] | partial["properties"]})
+    offered = {k: v for k, v in partial["properties"].items() if k != "fidelity"}
+    within_block = {**partial, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
     for fidelity in sources.study.values.get("fidelities", {}):
         check_layer(sources.block(fidelity), within_block)
     check_layer(sources.command, partial)
+    check_alternatives(sources.of_case, CASES[case].alternatives, required=True)
     for layer in sources.partial_layers:
-        check_travel(layer, required=False)
+        check_alternatives(layer, CASES[case].alternatives, required=False)
     return sources
 
 
-def _design_rows(study: Layer, root: Path) -> list[Layer]:
-    """Return the checked rows of the study's design table. Raises ConfigError."""
-    folder, name = root / "config" / "designs", study.values["design"]
+def _design_rows(sources: _Sources, fidelity: str, root: Path) -> list[Layer]:
+    """Return the checked rows of the study's design table, or of the fidelity's own. Raises ConfigError."""
+    block = sources.block(fidelity)
+    source = block if DESIGN in block.values else sources.study
+    folder, name = root / "config" / "designs", source.values[DESIGN]
     there = sorted(path.name for path in folder.glob("*.csv"))
     if name not in there:
-        raise ConfigError(unknown_name(study.where(("design",)), "design", name, there))
-    return read_design(folder / name, root)
+        raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
+    return read_design(folder / name, root, load_schema(f"cases/{sources.case}/design"))
 
 
 def _fidelity(sources: _Sources) -> str:
@@ -246,24 +250,38 @@ def _fidelity(sources: _Sources) -> str:
     return fidelity
 
 
-def _merged(layers: tuple[Layer, ...]) -> dict[str, Any]:
-    settings: dict[str, Any] = {}
-    for layer in layers:
-        if any(layer.holds(path) for path in TRAVELS):  # the travel and a test duration replace one another
-            for section, key in TRAVELS:
-                settings.get(section, {}).pop(key, None)
-        settings = merge(settings, layer.values)
-    return coerce_numbers(settings, load_schema("settings"))
-
-
 def _checked_run(
-    layers: tuple[Layer, ...], settings: dict[str, Any], materials: dict[str, Any], row: Layer, surface: str
+    sources: _Sources,
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    materials: dict[str, Any],
+    row: Layer,
+    surface: str,
 ) -> Run:
     """Return one run after all checks that need no solver. Raises ConfigError."""
-    parameters = run_parameters(settings, materials, row.values, surface)
-    check_run(Case(layers=layers, settings=settings, row=row, parameters=parameters))
+    case = CASES[sources.case]
+    columns = row_overrides(row, load_schema(f"cases/{sources.case}/design"))
+    of_row = with_row(settings, row, columns)
+    parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
+    check_run(CheckedRun(layers, of_row, row, parameters, columns), case.checks)
     name = row.values["row"]
-    return Run(name=f"{name}_{surface}", row=name, surface=surface, parameters=parameters)
+    return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)
+
+
+def row_overrides(row: Layer, schema: dict[str, Any]) -> dict[str, str]:
+    """Return {setting: column} of the settings that a design row overrides: the schema of such a column names one."""
+    named = {inner["x-setting"]: column for (column,), inner in leaves(schema) if "x-setting" in inner}
+    return {setting: column for setting, column in named.items() if column in row.values}
+
+
+def with_row(settings: dict[str, Any], row: Layer, columns: dict[str, str]) -> dict[str, Any]:
+    """Return the settings of one design row."""
+    for setting, column in columns.items():
+        value = row.values[column]
+        for key in reversed(setting.split(".")):
+            value = {key: value}
+        settings = merge(settings, value)
+    return settings
 
 
 # ---------------------------------------------------------------- units
@@ -272,7 +290,7 @@ def _checked_run(
 def to_si(values: Any) -> Any:
     """Return values in SI, with keys that say so: width_mm -> width_m, skirt_slope_deg -> skirt_slope_rad.
 
-    Every other unit of the schemas (Pa, 1/Pa, kg/m3, m/s, steps) is SI already.
+    Every other unit of the schemas (N, Pa, 1/Pa, kg/m3, m/s, steps) is SI already.
     """
     if not isinstance(values, dict):
         return values
@@ -282,115 +300,10 @@ def to_si(values: Any) -> Any:
             converted[f"{key.removesuffix('_mm')}_m"] = value / 1000.0
         elif key.endswith("_deg"):
             converted[f"{key.removesuffix('_deg')}_rad"] = math.radians(value)
+        elif key.endswith("_h"):
+            converted[f"{key.removesuffix('_h')}_s"] = value * SECONDS_PER_HOUR
+        elif key.endswith("_deg_per_s"):
+            converted[f"{key.removesuffix('_deg_per_s')}_rad_per_s"] = math.radians(value)
         else:
             converted[key] = to_si(value)
     return converted
-
-
-# ---------------------------------------------------------------- one run
-
-
-def run_parameters(
-    settings: dict[str, Any], materials: dict[str, Any], row: dict[str, Any], surface: str
-) -> dict[str, Any]:
-    """Return the parameters of a run in SI (see Run), derived ones included."""
-    si, factors = to_si(settings), to_si(row)
-    scale = row_particle_scale(settings, materials, factors["bed_thickness_m"])
-    parameters = {
-        "ledger": si["ledger"],
-        "sample": si["sample"],
-        "pattern": _pattern(si["pattern"], factors) if surface == "convex" else None,
-        "bed": {**si["bed"], "thickness_m": factors["bed_thickness_m"]},
-        "sliding": _sliding(si["sliding"], factors["velocity_m_per_s"], si["wear"]["acceleration"]),
-        "wear": _wear(si["wear"], materials["particles"][settings["bed"]["material"]]),
-        "remeshing": si["remeshing"],
-        "solver": {k: v for k, v in si["solver"].items() if si["ledger"] == "dumps" or k != "sampling_interval_steps"},
-        "particle": _particle(settings["bed"]["material"], materials, scale),
-        "sample_material": _wall(settings["sample"]["material"], materials),
-        "floor_material": _wall(settings["bed"]["floor_material"], materials),
-    }
-    return {**parameters, "derived": derived_parameters(parameters)}
-
-
-def row_particle_scale(settings: dict[str, Any], materials: dict[str, Any], thickness: float) -> float:
-    """Return the particle scale (-) of a bed of that thickness (m): the study's, lowered to keep bed.least_layers."""
-    scale, layers = settings["particle_scale"], settings["bed"]["least_layers"]
-    diameter = to_si(materials["particles"][settings["bed"]["material"]])["median_diameter_m"]
-    return min(scale, max(thickness / (layers * diameter), 1.0)) if layers else scale
-
-
-def _sliding(sliding: dict[str, Any], velocity: float, acceleration: float) -> dict[str, Any]:
-    """Return the section with velocity (m/s) and travel, which a test duration makes with the acceleration (-).
-
-    Without the length of the first cycle where all are equal: it then changes nothing.
-    """
-    kept = {k: v for k, v in sliding.items() if sliding["cycles"] == ADAPTIVE or k != "first_cycle_m"}
-    hours = kept.pop("test_duration_h", None)
-    if hours is not None:
-        kept["travel_m"] = velocity * hours * SECONDS_PER_HOUR / acceleration
-    return {**kept, "velocity_m_per_s": velocity}
-
-
-def _wear(wear: dict[str, Any], particle: dict[str, Any]) -> dict[str, Any]:
-    """Return the section with the accelerated coefficient, and of the patch only what its choice needs."""
-    kept = {k: v for k, v in wear.items() if k != "patch_radius_m" or wear["patch"] == "radius"}
-    if wear["patch"] == "physical":
-        kept["physical_shear_modulus_pa"] = particle.get("physical_shear_modulus_pa")
-    return {**kept, "accelerated_wear_coefficient_per_pa": wear["wear_coefficient_per_pa"] * wear["acceleration"]}
-
-
-def _pattern(pattern: dict[str, Any], factors: dict[str, Any]) -> dict[str, Any]:
-    names = ("major_radius_m", "minor_radius_m", "height_m", "column_spacing_m")
-    return {**pattern, **{name: factors[name] for name in names}}
-
-
-def _particle(name: str, materials: dict[str, Any], scale: float) -> dict[str, Any]:
-    """Return the particle's material; its lengths are coarse-grained, `scale` times the real ones."""
-    particle = to_si(materials["particles"][name])
-    particle.pop("physical_shear_modulus_pa", None)  # concerns wear alone, and no bed is filled again for it
-    distribution = particle.pop("size_distribution")
-    median_diameter = scale * particle.pop("median_diameter_m")
-    return {
-        "name": name,
-        **particle,
-        "scale": scale,
-        "median_diameter_m": median_diameter,
-        "diameters_m": [median_diameter * relative for relative in distribution["relative_diameter"]],
-        "mass_fractions": list(distribution["mass_fraction"]),
-    }
-
-
-def _wall(name: str, materials: dict[str, Any]) -> dict[str, Any]:
-    return {"name": name, **to_si(materials["walls"][name])}
-
-
-# ---------------------------------------------------------------- beds
-
-
-def bed_parameters(run: Run) -> dict[str, Any]:
-    """Return exactly what determines the settled bed of a run (SI); runs with equal ones share a bed.
-
-    `start_m` is the y of the upstream end before the travel: the sample is at y = 0, the bed moves in +y over
-    `travel_m`, or goes round (`ends` periodic, travel_m 0). It settles with the largest time step, which does not
-    depend on the run's velocity.
-    """
-    parameters, derived = run.parameters, run.parameters["derived"]
-    return {
-        "particle": parameters["particle"],
-        "floor_material": parameters["floor_material"],
-        "width_m": parameters["bed"]["width_m"],
-        "length_m": derived["bed_length_m"],
-        "start_m": derived["bed_start_m"],
-        "travel_m": derived["bed_travel_m"],
-        "ends": parameters["bed"]["ends"],
-        "thickness_m": parameters["bed"]["thickness_m"],
-        "seed": parameters["bed"]["seed"],
-        "rolling_friction": parameters["solver"]["rolling_friction"],
-        "rolling_radius": parameters["solver"]["rolling_radius"],
-        "rayleigh_fraction": parameters["solver"]["rayleigh_fraction"],
-        "rolling_friction_for_solver": {
-            name: derived["rolling_friction_for_solver"][name] for name in ("particle", "floor_material")
-        },
-        "youngs_modulus_pa": {name: derived["youngs_modulus_pa"][name] for name in ("particle", "floor_material")},
-        "time_step_s": derived["largest_time_step_s"],
-    }

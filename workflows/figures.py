@@ -5,14 +5,18 @@ here."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from workflows.design import Study
+from workflows.pages import PAGES
 from workflows.remarks import figure_remarks
 
+REPORT_FOLDER = Path(__file__).resolve().parent / "report"
+TEMPLATE = "study.html.j2"
 INTERACTIVE = ("worn_surface_3d",)  # pages, not pictures; their table is that of the picture
 FILMS = ("worn_film",)  # animated pictures
-ALWAYS = (
+OF_SAMPLES = (  # of every study of sliding samples
     "worn_surface",
     "worn_surface_3d",
     "wear_against_travel",
@@ -24,13 +28,19 @@ ALWAYS = (
 )
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
 COMPARING_ROWS = ("relative_wear",)  # of studies with more than one design row and a plain twin
-ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
 
 
 def figures_of(study: Study) -> list[str]:
     """Return the names of a study's figures in the order of its page."""
+    return FIGURES[study.case](study)
+
+
+def _figures_of_samples(study: Study) -> list[str]:
     several = len(study.design_rows) > 1 and any(run.surface == "plain" for run in study.runs)
-    return [*(COMPARING_ROWS if several else ()), *ALWAYS, *(OF_WEAR_UPDATES if is_deformed(study) else ())]
+    return [*(COMPARING_ROWS if several else ()), *OF_SAMPLES, *(OF_WEAR_UPDATES if is_deformed(study) else ())]
+
+
+FIGURES = {"sliding_sample": _figures_of_samples}  # case -> names of a study's figures
 
 
 def figure_file(name: str) -> str:
@@ -41,6 +51,11 @@ def figure_file(name: str) -> str:
 def figure_files(study: Study) -> list[str]:
     """Return the paths of all figures of a study."""
     return [f"results/{study.name}/figures/{figure_file(name)}" for name in figures_of(study)]
+
+
+def page_templates(study: Study) -> list[str]:
+    """Return the paths of the templates of a study's page."""
+    return [str(REPORT_FOLDER / name) for name in (TEMPLATE, PAGES[study.case].KEY_NUMBERS)]
 
 
 def is_deformed(study: Study) -> bool:
@@ -63,6 +78,7 @@ def page_parameters(study: Study) -> dict[str, Any]:
     """Return everything that a study's page says about its configuration, JSON-able."""
     return {
         "name": study.name,
+        "case": study.case,
         "title": study.title,
         "question": study.question,
         "fidelity": study.fidelity,

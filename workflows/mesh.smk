@@ -9,8 +9,8 @@ rule surface_mesh:
     benchmark:
         "results/{study}/logs/surface_mesh_{run}.benchmark.tsv"
     params:
-        sample=lambda wildcards: run_parameters(wildcards)["sample"],
-        pattern=lambda wildcards: run_parameters(wildcards)["pattern"],
+        case=case_of,
+        geometry=run_geometry,
     message:
         "Surface mesh of {wildcards.run}"
     script:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-
-from workflows.derived import PERIODIC
+if TYPE_CHECKING:
+    import pandas as pd
 
 NO_UNIT = "-"
+UNDEFINED = "\u2013"  # shown for numbers that are not there
 # suffix of a key -> unit; the longest that fits counts, so they stand in that order
 UNITS = (
     ("_per_pa", "1/Pa"),
@@ -45,6 +46,19 @@ EXTRA_UNITS = {
 }
 
 
+def number(value: Any, digits: int = 4) -> str:
+    """Return a number as people read it: few digits, no exponent between 0.001 and 1e6; words stay words."""
+    if isinstance(value, str):
+        return value.replace("_", " ")
+    if value is None or value != value:
+        return UNDEFINED
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if value == int(value) and (isinstance(value, int) or abs(value) < 1e7):
+        return f"{int(value):,}".replace(",", "\u202f")
+    return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e6 else f"{value:.{digits - 1}e}"
+
+
 def name_and_unit(key: str) -> tuple[str, str]:
     """Return what a setting is called and its unit, from the suffix of its key."""
     for suffix, unit in UNITS:
@@ -71,28 +85,16 @@ def setting_rows(settings: Mapping[str, Any], paper: Mapping[str, Any]) -> dict[
     return sections
 
 
-def simplifications(study: Mapping[str, Any], summary: pd.DataFrame) -> list[tuple[str, str]]:
+def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: ModuleType) -> list[tuple[str, str]]:
     """Return (what, how) of everything that is simpler here than on a machine, with the numbers of this
-    study.
+    study. page: the words of its case.
     """
     settings = study["settings"]
     reduced = "; ".join(study["remarks"]) or "nothing: all sizes and the travel are those of the paper fidelity"
     return [
         ("Reduced scale", f"{reduced}."),
-        *_wear_simplifications(settings, summary),
-        ("Particles", _particles(study)),
-        *_sampling(study),
-        (
-            "Skirt not counted",
-            f"A ramp of {settings['sample']['skirt_slope_deg']:g}° leads from the floor on to the sample. It is not "
-            "worn and its wear is not counted, but it carries part of the bed: forces include it, wear does not.",
-        ),
-        (
-            "One packing",
-            f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel"
-            f"{' and along it, so that it passes the sample again and again' * (settings['bed']['ends'] == PERIODIC)}. "
-            "Runs of equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
-        ),
+        *_wear_simplifications(settings, summary, page.cap_words(settings)),
+        *page.simplifications(study),
         *_comparison(settings["wear"]["law"]),
     ]
 
@@ -108,7 +110,7 @@ def _comparison(law: str) -> list[tuple[str, str]]:
     return [("LIGGGHTS' Finnie differs", how)]
 
 
-def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame) -> list[tuple[str, str]]:
+def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame, cap_words: str) -> list[tuple[str, str]]:
     """Return what concerns wear: law, acceleration, rigid sample or caps and what they hold back."""
     wear = settings["wear"]
     law = (
@@ -127,67 +129,27 @@ def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame) ->
     carried = 100.0 * (summary["carried_volume_m3"] / summary["archard_volume_m3"]).max()
     caps = (
         "Capped steps",
-        f"In one of {settings['sliding']['cycles']} cycles a node moves at most {wear['largest_step_edge_fraction']:g} "
-        "of its shortest edge, and at most as far as particles fall in "
-        f"{wear['gap_closing_fraction']:g} of the cycle's duration. The rest is carried into later cycles: at the end "
+        f"{cap_words} The rest is carried into later cycles: at the end "
         f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
     )
     return [law, acceleration, caps]
 
 
-def _sampling(study: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Return what sampled contacts leave out; nothing where the solver sums every step."""
-    settings = study["settings"]
-    if settings["ledger"] == "solver":
-        return []
-    how = (
-        f"Loads are summed from contacts sampled every {settings['solver']['sampling_interval_steps']} steps "
-        f"({_sampled_travel(study)} mm of travel), not from every step."
-    )
-    return [("Sampled contacts", how)]
-
-
-def _particles(study: Mapping[str, Any]) -> str:
-    """Return what the particles are made simpler in; ranges where the runs differ."""
-    particles = [run["particle"] for run in study["parameters"].values()]
-    diameters = [1e3 * diameter for particle in particles for diameter in particle["diameters_m"]]
-    scale = _range([particle["scale"] for particle in particles])
-    moduli = _range([particle["shear_modulus_pa"] for particle in particles])
-    return (
-        f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real ones, in "
-        f"{len(particles[0]['diameters_m'])} sizes. Shape that is not round is represented by rolling friction "
-        f"({study['settings']['solver']['rolling_friction']}) alone. Contacts are softened: shear modulus {moduli} Pa."
-    )
-
-
-def _range(values: list[float]) -> str:
+def range_text(values: list[float]) -> str:
     """Return a number, or the lowest and highest where they differ."""
     low, high = f"{min(values):.2g}", f"{max(values):.2g}"
     return low if low == high else f"{low} to {high}"
 
 
-def _sampled_travel(study: Mapping[str, Any]) -> str:
-    """Return the travel (mm) between two samples of the contacts; a range where velocities differ."""
-    travels = [
-        1e3
-        * run["solver"]["sampling_interval_steps"]
-        * run["derived"]["time_step_s"]
-        * run["sliding"]["velocity_m_per_s"]
-        for run in study["parameters"].values()
-    ]
-    return _range(travels)
+def decks_of(study: Mapping[str, Any], folder: Path, places: Iterable[tuple[str, str]]) -> list[dict[str, str]]:
+    """Return the decks of the first run as the solver read them.
 
-
-def decks_of(study: Mapping[str, Any], folder: Path) -> list[dict[str, str]]:
-    """Return the decks of the first run as the solver read them: bed, lowering and run-in, first wear cycle."""
+    places: title and path below `folder` of each, in which {run} and {bed} stand for that run and its bed
+    """
     run = next(iter(study["runs"]))
-    places = (
-        ("Filling and settling the bed", Path("beds") / study["bed_of"][run] / "deck.in"),
-        ("Lowering and run-in", Path(run) / "cycle_000" / "deck.in"),
-        ("First wear cycle", Path(run) / "cycle_001" / "deck.in"),
-    )
+    paths = [(title, place.format(run=run, bed=study["bed_of"][run])) for title, place in places]
     return [
-        {"title": title, "path": place.as_posix(), "text": (folder / place).read_text(encoding="utf-8")}
-        for title, place in places
-        if (folder / place).is_file()
+        {"title": title, "path": path, "text": (folder / path).read_text(encoding="utf-8")}
+        for title, path in paths
+        if (folder / path).is_file()
     ]

@@ -1,7 +1,7 @@
 """Figures of a study, and its page."""
 
 from workflows.remarks import figure_remarks
-from workflows.figures import equivalent_size_ratios, figure_files, is_deformed, page_parameters
+from workflows.figures import equivalent_size_ratios, figure_files, is_deformed, page_parameters, page_templates
 
 WORN_SURFACES = of_every_run("results/{study}/{run}/worn_surface.vtu")
 WEAR_TABLES = of_every_run("results/{study}/{run}/wear.csv")
@@ -281,10 +281,8 @@ rule report:
         lambda wildcards: figure_files(study_of(wildcards)),
         summary="results/{study}/summary.csv",
         design="results/{study}/design.csv",
-        depths="results/{study}/figures/worn_surface.csv",
-        history="results/{study}/figures/wear_against_travel.csv",
         costs=of_every_run("results/{study}/{run}/cost.csv"),
-        template=str(ROOT / "workflows" / "report" / "study.html.j2"),
+        templates=lambda wildcards: page_templates(study_of(wildcards)),
     output:
         "results/{study}/report.html",
     log:

@@ -1,13 +1,14 @@
 """Checks of one run that compare several settings, before any solver starts.
 
-Each check returns None, or (key at fault, what is allowed). To add one: a function, listed in RUN_CHECKS.
+Each check returns None, or (key at fault, what is allowed). To add one: a function, listed in the checks of its case;
+those of a sliding sample are here.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from meshes.pattern import pattern_faults
@@ -25,49 +26,56 @@ SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give n
 
 
 @dataclass(frozen=True)
-class Case:
-    """A run to be checked: settings with the layers they come from, design row, parameters in SI."""
+class CheckedRun:
+    """A run to be checked: settings with the layers they come from, design row, parameters in SI.
+
+    columns: {setting: column} of the settings that the row overrides
+    """
 
     layers: tuple[Layer, ...]
     settings: dict[str, Any]
     row: Layer
     parameters: dict[str, Any]
+    columns: Mapping[str, str] = field(default_factory=dict)
 
 
-def check_run(case: Case) -> None:
+Check = Callable[[CheckedRun], Fault | None]
+
+
+def check_run(run: CheckedRun, checks: tuple[Check, ...]) -> None:
     """Raise ConfigError for the first fault of a run: file, line, key, value, row, allowed."""
-    for check in RUN_CHECKS:
-        fault = check(case)
+    for check in checks:
+        fault = check(run)
         if fault is not None:
-            key, allowed = fault
+            key, allowed = run.columns.get(fault[0], fault[0]), fault[1]
             if not key:
-                raise ConfigError(f"{case.row.where()}: {allowed}.")
-            found = f"{show(_value(case, key))}{_for_row(case, key)}"
-            raise ConfigError(f"{_where(case, key)} is {found}, allowed is {allowed}.")
+                raise ConfigError(f"{run.row.where()}: {allowed}.")
+            found = f"{show(_value(run, key))}{_for_row(run, key)}"
+            raise ConfigError(f"{_where(run, key)} is {found}, allowed is {allowed}.")
 
 
-def _where(case: Case, key: str) -> str:
-    source = case.row.where() if "." not in key else locate(case.layers, tuple(key.split(".")))
+def _where(run: CheckedRun, key: str) -> str:
+    source = run.row.where() if "." not in key else locate(run.layers, tuple(key.split(".")))
     return f"{source}: {key}"
 
 
-def _value(case: Case, key: str) -> Any:
+def _value(run: CheckedRun, key: str) -> Any:
     section, _, name = key.rpartition(".")
-    return case.settings[section][name] if section else case.row.values[name]
+    return run.settings[section][name] if section else run.row.values[name]
 
 
-def _for_row(case: Case, key: str) -> str:
-    return f" for row {case.row.values['row']}" if "." in key else ""
+def _for_row(run: CheckedRun, key: str) -> str:
+    return f" for row {run.row.values['row']}" if "." in key else ""
 
 
 def _millimetres(metres: float) -> str:
     return f"{metres * 1000.0:.6g} mm"
 
 
-def sample_in_bed(case: Case) -> Fault | None:
+def sample_in_bed(run: CheckedRun) -> Fault | None:
     """The sample and its skirt on both sides lie within the bed's width."""
-    sample, skirt = case.parameters["sample"], case.parameters["derived"]["skirt_width_m"]
-    room = case.parameters["bed"]["width_m"] - 2.0 * skirt
+    sample, skirt = run.parameters["sample"], run.parameters["derived"]["skirt_width_m"]
+    room = run.parameters["bed"]["width_m"] - 2.0 * skirt
     if sample["width_m"] <= room:
         return None
     return (
@@ -76,27 +84,25 @@ def sample_in_bed(case: Case) -> Fault | None:
     )
 
 
-def skirt_in_bed(case: Case) -> Fault | None:
+def skirt_in_bed(run: CheckedRun) -> Fault | None:
     """The bed is longer than the sample's skirt, ahead of the sample and behind it."""
-    skirt = case.parameters["derived"]["skirt_width_m"]
+    skirt = run.parameters["derived"]["skirt_width_m"]
     for key in ("ahead", "behind"):
-        if case.parameters["bed"][f"{key}_m"] < skirt:
+        if run.parameters["bed"][f"{key}_m"] < skirt:
             return f"bed.{key}_mm", f"at least {_millimetres(skirt)}, the width of the sample's skirt"
     return None
 
 
-def floor_drives_bed(case: Case) -> Fault | None:
+def floor_drives_bed(run: CheckedRun) -> Fault | None:
     """In a periodic bed the friction of the moving floor exceeds that of the sample and its skirt, which stand still.
 
     Each carries the weight of the bed above it: mu_floor (L W - A) >= mu_sample A, A the area of sample and skirt.
     """
-    bed, sample, skirt = (case.parameters[name] for name in ("bed", "sample", "derived"))
+    bed, sample, skirt = (run.parameters[name] for name in ("bed", "sample", "derived"))
     if bed["ends"] == WALLS:
         return None
     covered = math.prod(sample[side] + 2.0 * skirt["skirt_width_m"] for side in ("width_m", "length_m"))
-    floor, own = (
-        case.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "sample_material")
-    )
+    floor, own = (run.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "sample_material"))
     if floor * (bed["width_m"] * skirt["bed_length_m"] - covered) >= own * covered:
         return None
     missing = covered * (floor + own) / max(floor, TINY_FRICTION) / bed["width_m"] - skirt["bed_length_m"]
@@ -107,11 +113,11 @@ def floor_drives_bed(case: Case) -> Fault | None:
     )
 
 
-def enough_layers(case: Case) -> Fault | None:
+def enough_layers(run: CheckedRun) -> Fault | None:
     """A bed has three layers of particles, unless thin beds are allowed."""
-    if case.settings["bed"]["allow_thin_bed"] or not case.parameters["derived"]["thin_bed"]:
+    if run.settings["bed"]["allow_thin_bed"] or not run.parameters["derived"]["thin_bed"]:
         return None
-    particle = case.parameters["particle"]
+    particle = run.parameters["particle"]
     diameter, scale = particle["median_diameter_m"], particle["scale"]
     return "bed_thickness_mm", (
         f"at least {_millimetres(THIN_BED_LAYERS * diameter)}, three layers of particles of {_millimetres(diameter)}"
@@ -119,10 +125,10 @@ def enough_layers(case: Case) -> Fault | None:
     )
 
 
-def no_particle_between(case: Case) -> Fault | None:
+def no_particle_between(run: CheckedRun) -> Fault | None:
     """The sample's top is less than a particle's radius above the floor."""
-    radius = min(case.parameters["particle"]["diameters_m"]) / 2.0
-    if case.parameters["sample"]["height_above_floor_m"] < radius:
+    radius = min(run.parameters["particle"]["diameters_m"]) / 2.0
+    if run.parameters["sample"]["height_above_floor_m"] < radius:
         return None
     return (
         "sample.height_above_floor_mm",
@@ -130,23 +136,23 @@ def no_particle_between(case: Case) -> Fault | None:
     )
 
 
-def element_resolves_bump(case: Case) -> Fault | None:
+def element_resolves_bump(run: CheckedRun) -> Fault | None:
     """A bump's footprint is at least two elements across its narrow side.
 
     The height sets no limit: a low bump is a gentle slope, which large elements follow.
     """
-    pattern = case.parameters["pattern"]
+    pattern = run.parameters["pattern"]
     if pattern is None:
         return None
     radius = min(pattern["major_radius_m"], pattern["minor_radius_m"])
-    if case.parameters["sample"]["element_size_m"] <= radius:
+    if run.parameters["sample"]["element_size_m"] <= radius:
         return None
     return "sample.element_size_mm", f"at most {_millimetres(radius)}, the smaller radius of a bump"
 
 
-def element_resolves_sample(case: Case) -> Fault | None:
+def element_resolves_sample(run: CheckedRun) -> Fault | None:
     """A sample's shorter side is several elements long."""
-    sample = case.parameters["sample"]
+    sample = run.parameters["sample"]
     largest = min(sample["width_m"], sample["length_m"]) / SAMPLE_ELEMENTS
     if sample["element_size_m"] <= largest:
         return None
@@ -156,55 +162,55 @@ def element_resolves_sample(case: Case) -> Fault | None:
     )
 
 
-def bump_in_bed(case: Case) -> Fault | None:
+def bump_in_bed(run: CheckedRun) -> Fault | None:
     """A bump is lower than the bed is thick."""
-    pattern, thickness = case.parameters["pattern"], case.parameters["bed"]["thickness_m"]
+    pattern, thickness = run.parameters["pattern"], run.parameters["bed"]["thickness_m"]
     if pattern is None or pattern["height_m"] < thickness:
         return None
     return "height_mm", f"below {_millimetres(thickness)}, bed_thickness_mm"
 
 
-def cycle_long_enough(case: Case) -> Fault | None:
+def cycle_long_enough(run: CheckedRun) -> Fault | None:
     """A wear cycle has at least a hundred time steps."""
-    steps = _raw_steps(case)
+    steps = _raw_steps(run)
     if steps >= LEAST_CYCLE_STEPS:
         return None
-    if case.settings["sliding"]["cycles"] == ADAPTIVE and steps < _raw_steps(case, whole_travel=True):
+    if run.settings["sliding"]["cycles"] == ADAPTIVE and steps < _raw_steps(run, whole_travel=True):
         return (
             "sliding.first_cycle_mm",
-            f"at least {_millimetres(_least_travel(case))}, {LEAST_CYCLE_STEPS} time steps",
+            f"at least {_millimetres(_least_travel(run))}, {LEAST_CYCLE_STEPS} time steps",
         )
-    most = int(_raw_steps(case, whole_travel=True) / LEAST_CYCLE_STEPS)
+    most = int(_raw_steps(run, whole_travel=True) / LEAST_CYCLE_STEPS)
     if most < 1:
-        return _travel_fault(case, "least", _least_travel(case), f"{LEAST_CYCLE_STEPS} time steps")
+        return _travel_fault(run, "least", _least_travel(run), f"{LEAST_CYCLE_STEPS} time steps")
     return "sliding.cycles", f"at most {most}, so that a cycle has {LEAST_CYCLE_STEPS} time steps"
 
 
-def travel_within_reason(case: Case) -> Fault | None:
+def travel_within_reason(run: CheckedRun) -> Fault | None:
     """The travel that a test duration makes is at most 100 m."""
-    travel = case.parameters["sliding"]["travel_m"]
-    return _travel_fault(case, "most", LARGEST_TRAVEL, "100 m of travel") if travel > LARGEST_TRAVEL else None
+    travel = run.parameters["sliding"]["travel_m"]
+    return _travel_fault(run, "most", LARGEST_TRAVEL, "100 m of travel") if travel > LARGEST_TRAVEL else None
 
 
-def _travel_fault(case: Case, bound: str, travel: float, reason: str) -> Fault:
+def _travel_fault(run: CheckedRun, bound: str, travel: float, reason: str) -> Fault:
     """Return the fault of a travel (m), in terms of the key that the study gives it by."""
-    if "test_duration_h" not in case.settings["sliding"]:
+    if "test_duration_h" not in run.settings["sliding"]:
         return "sliding.travel_mm", f"at {bound} {_millimetres(travel)}, {reason}"
-    hours = case.settings["sliding"]["test_duration_h"] * travel / case.parameters["sliding"]["travel_m"]
+    hours = run.settings["sliding"]["test_duration_h"] * travel / run.parameters["sliding"]["travel_m"]
     return "sliding.test_duration_h", f"at {bound} {hours:.6g} h at this acceleration and velocity, {reason}"
 
 
-def sampled_in_cycle(case: Case) -> Fault | None:
+def sampled_in_cycle(run: CheckedRun) -> Fault | None:
     """Contacts are sampled more than once in a cycle, where they are sampled (`ledger: dumps`)."""
-    steps = _raw_steps(case)
-    if case.settings["ledger"] != "dumps" or case.settings["solver"]["sampling_interval_steps"] < steps:
+    steps = _raw_steps(run)
+    if run.settings["ledger"] != "dumps" or run.settings["solver"]["sampling_interval_steps"] < steps:
         return None
     return "solver.sampling_interval_steps", f"below {int(steps)}, the time steps of a cycle"
 
 
-def _raw_steps(case: Case, whole_travel: bool = False) -> float:
+def _raw_steps(run: CheckedRun, whole_travel: bool = False) -> float:
     """Time steps of the first wear cycle, or of the whole travel, before rounding to whole ones."""
-    derived, sliding = case.parameters["derived"], case.parameters["sliding"]
+    derived, sliding = run.parameters["derived"], run.parameters["sliding"]
     travel = sliding["travel_m"]
     if not whole_travel:
         adaptive = sliding["cycles"] == ADAPTIVE
@@ -212,25 +218,25 @@ def _raw_steps(case: Case, whole_travel: bool = False) -> float:
     return travel / sliding["velocity_m_per_s"] / derived["largest_time_step_s"]
 
 
-def _least_travel(case: Case) -> float:
-    step = case.parameters["derived"]["largest_time_step_s"]
-    return LEAST_CYCLE_STEPS * step * case.parameters["sliding"]["velocity_m_per_s"]
+def _least_travel(run: CheckedRun) -> float:
+    step = run.parameters["derived"]["largest_time_step_s"]
+    return LEAST_CYCLE_STEPS * step * run.parameters["sliding"]["velocity_m_per_s"]
 
 
-def physical_modulus_known(case: Case) -> Fault | None:
+def physical_modulus_known(run: CheckedRun) -> Fault | None:
     """A patch of the true contact needs the particle's true modulus."""
-    wear = case.parameters["wear"]
+    wear = run.parameters["wear"]
     if wear["patch"] != "physical" or wear["physical_shear_modulus_pa"] is not None:
         return None
     return (
         "wear.patch",
-        f"none, simulated or radius, because {case.settings['bed']['material']} has no physical_shear_modulus_pa",
+        f"none, simulated or radius, because {run.settings['bed']['material']} has no physical_shear_modulus_pa",
     )
 
 
-def pattern_fits(case: Case) -> Fault | None:
+def pattern_fits(run: CheckedRun) -> Fault | None:
     """Bumps neither overlap nor leave the sample (meshes.pattern decides)."""
-    section, sample = case.parameters["pattern"], case.parameters["sample"]
+    section, sample = run.parameters["pattern"], run.parameters["sample"]
     if section is None:
         return None
     pattern = convex_pattern(section)
@@ -238,7 +244,7 @@ def pattern_fits(case: Case) -> Fault | None:
     return None if fault is None else ("", fault)
 
 
-RUN_CHECKS: tuple[Callable[[Case], Fault | None], ...] = (
+SLIDING_CHECKS: tuple[Check, ...] = (
     enough_layers,
     bump_in_bed,
     pattern_fits,

@@ -62,9 +62,7 @@ def known_spans(parameters: Mapping[str, Any]) -> list[Span]:
     return spans
 
 
-def title(parameters: Mapping[str, Any], cycle: int) -> str:
-    """Return what people call a cycle."""
-    if cycle == 0:
-        return "lowering and run-in"
+def cycle_title(parameters: Mapping[str, Any], cycle: int) -> str:
+    """Return what people call a wear cycle."""
     cycles = parameters["sliding"]["cycles"]
     return f"cycle {cycle}" if cycles == ADAPTIVE else f"cycle {cycle} of {cycles}"

@@ -22,7 +22,7 @@ rule settled_bed:
 rule worn_run:
     input:
         surface="results/{study}/{run}/surface.vtu",
-        bed=lambda wildcards: f"{bed_folder_of_run(wildcards)}/bed.restart",
+        bed=bed_restart_of_run("beds"),
     output:
         wear="results/{study}/{run}/wear.csv",
         cost="results/{study}/{run}/cost.csv",
@@ -33,9 +33,10 @@ rule worn_run:
         "results/{study}/logs/worn_run_{run}.benchmark.tsv"
     threads: lambda wildcards: study_of(wildcards).settings["solver"]["ranks"]
     params:
+        case=case_of,
         run=run_parameters,
         bed=bed_parameters_of_run,
-        templates=[template_sources("lowered_bed"), template_sources("sliding_sample")],
+        templates=run_templates,
     message:
         "Wear cycles of {wildcards.run}"
     script:
@@ -64,10 +65,11 @@ rule run_decks:
     log:
         "results/{study}/logs/run_decks_{run}.log",
     params:
+        case=case_of,
         run=run_parameters,
         bed=bed_parameters_of_run,
-        templates=[template_sources("lowered_bed"), template_sources("sliding_sample")],
-        bed_restart=lambda wildcards: f"results/{wildcards.study}/decks/beds/{study_of(wildcards).bed_of(wildcards.run)}/bed.restart",
+        templates=run_templates,
+        bed_restart=lambda wildcards: next(iter(bed_restart_of_run("decks/beds")(wildcards)), None),
     message:
         "Decks of {wildcards.run}"
     script:

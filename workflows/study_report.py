@@ -20,22 +20,18 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from postproc.analysis.comparison import cycle_ratios, read_history, read_summary, rows_to_show
+from postproc.analysis.comparison import read_summary
 from postproc.analysis.cost import BENCHMARK_SUFFIX, benchmark_seconds, job_costs, outside_solver_share
-from postproc.analysis.depth import depth_summary
-from postproc.analysis.display import in_display_units
 from postproc.readers.solver_log import solver_version
-from workflows.figures import INTERACTIVE, ROWS_IN_DETAIL, figure_file
-from workflows.page_text import decks_of, name_and_unit, setting_rows, simplifications
+from workflows.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
+from workflows.page_text import decks_of, name_and_unit, number, setting_rows, simplifications
+from workflows.pages import PAGES, sliding_numbers
 
-REPORT_FOLDER = Path(__file__).resolve().parent / "report"
 REPOSITORY = Path(__file__).resolve().parents[1]
-TEMPLATE = "study.html.j2"
 TABLE_OF = {"worn_surface_3d": "worn_surface"}  # figures that share another's table
 DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
-ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
-UNDEFINED = "\u2013"  # shown for numbers that are not there
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
+KEY_NUMBERS = {"sliding_sample": sliding_numbers.key_numbers}  # case -> (study, folder, summary) -> what is shown
 PACKAGES = (
     "numpy",
     "scipy",
@@ -73,45 +69,28 @@ def environment() -> jinja2.Environment:
     return found
 
 
-def number(value: Any, digits: int = 4) -> str:
-    """Return a number as people read it: few digits, no exponent between 0.001 and 1e6; words stay words."""
-    if isinstance(value, str):
-        return value.replace("_", " ")
-    if value is None or value != value:
-        return UNDEFINED
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if value == int(value) and (isinstance(value, int) or abs(value) < 1e7):
-        return f"{int(value):,}".replace(",", "\u202f")
-    return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e6 else f"{value:.{digits - 1}e}"
-
-
 def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return everything that the template shows."""
-    summary = read_summary(folder / "summary.csv")
-    history = read_history(folder / "figures" / "wear_against_travel.csv")
-    depths = depth_summary(
-        pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=["run", "depth_um", "area_mm2"])
-    )
-    results = result_table(summary, depths, history, study["settings"]["wear"]["acceleration"])
-    jobs = jobs_of(study, folder)
+    summary, page = read_summary(folder / "summary.csv"), PAGES[study["case"]]
+    jobs, key_numbers = jobs_of(study, folder), KEY_NUMBERS[study["case"]](study, folder, summary)
+    results = key_numbers["results"]
     return {
+        **key_numbers,
+        "key_numbers": page.KEY_NUMBERS,
         "study": study,
         "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "results": results.to_dict("records"),
-        "accelerated": study["settings"]["wear"]["acceleration"] != 1.0,
-        "cards": cards(results, study["settings"]["wear"]["acceleration"]),
         "run_columns": run_columns(study),
         "detailed": DETAILED,
         "results_csv": data_uri(results.to_csv(index=False).encode(), "text/csv"),
-        "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
+        "runs_note": page.RUNS_NOTE,
         "settings": setting_rows(study["settings"], study["paper_settings"]),
         "runs": run_rows(study),
         "figures": [figure(name, index, folder) for index, name in enumerate(study["figures"], start=1)],
-        "simplified": simplifications(study, summary),
+        "simplified": simplifications(study, summary, page),
         "versions": versions(study, folder),
         "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
-        "decks": decks_of(study, folder),
+        "decks": decks_of(study, folder, page.DECKS),
         "warnings": solver_warnings(study, folder),
         "jobs": solver_jobs(jobs),
         "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
@@ -121,48 +100,6 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 # ---------------------------------------------------------------- results
-
-
-def result_table(
-    summary: pd.DataFrame, depths: pd.DataFrame, history: pd.DataFrame, acceleration: float
-) -> pd.DataFrame:
-    """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated
-    test, over plain with its range over the cycles, share of the bumps, carried share, forces and depths.
-    """
-    volume = summary["archard_volume_m3"]
-    table = summary[["run", "row", "surface", "travel_m", "archard_volume_m3"]].assign(
-        archard_volume_per_metre_m3_per_m=volume / summary["travel_m"],
-        real_volume_per_metre_m3_per_m=volume / summary["travel_m"] / acceleration,
-        wear_over_plain=summary["wear_over_plain"],
-        bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
-        carried_share_percent=(100.0 * summary["carried_volume_m3"] / volume).round(ROUNDING_DIGITS).abs(),
-        mean_normal_force_N=summary["mean_normal_force_N"],
-    )
-    ranges = cycle_ratios(history)
-    return in_display_units(table).merge(ranges, on=["row", "surface"], how="left").merge(depths, on="run", how="left")
-
-
-def cards(results: pd.DataFrame, acceleration: float) -> list[dict[str, str]]:
-    """Return the few numbers that answer the question, lowest relative wear first; none without a plain twin."""
-    convex = results[(results["surface"] != "plain") & results["wear_over_plain"].notna()]
-    if convex.empty:
-        return []
-    best = convex.sort_values("wear_over_plain", kind="stable").iloc[0]
-    plain = results[(results["row"] == best["row"]) & (results["surface"] == "plain")].iloc[0]
-    rate, unit = "archard_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
-    several = len(convex) > 1
-    which = f"{best['row']}, the lowest of {len(convex)} rows" if several else best["row"]
-    found = [
-        (f"{best['wear_over_plain']:.3f}", f"{best['surface']} over plain wear, {which}"),
-        (number(best[rate], 3), f"{unit}, {best['run'].replace('_', ' ')}"),
-        (number(plain[rate], 3), f"{unit}, {plain['run'].replace('_', ' ')}"),
-    ]
-    if several:
-        less = int((convex["wear_over_plain"] < 1.0).sum())
-        found.append((f"{less} of {len(convex)}", "patterns wear less than their plain twin"))
-    else:
-        found.append((f"{best['bump_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
-    return [{"value": value, "label": label} for value, label in found]
 
 
 def figure(name: str, index: int, folder: Path) -> dict[str, Any]:
@@ -207,25 +144,16 @@ def data_uri(content: bytes, kind: str) -> str:
 
 
 def run_rows(study: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return one row per run: design factors, layers, alpha_ER, particles, time step and steps per cycle."""
+    """Return one row per run: design factors, its bed where it has one, and what the case tells of its parameters."""
     factors = {row["row"]: {k: v for k, v in row.items() if k != "row"} for row in study["design_rows"]}
-    rows = []
-    for run, names in study["runs"].items():
-        derived = study["parameters"][run]["derived"]
-        rows.append(
-            {
-                "run": run,
-                **(factors[names["row"]]),
-                "bed": study["bed_of"][run],
-                "particle_scale": study["parameters"][run]["particle"]["scale"],
-                "layers": derived["layers"],
-                "equivalent_size_ratio": derived["equivalent_size_ratio"],
-                "particles_about": derived["bed_particles"],
-                "time_step_us": derived["time_step_s"] * 1e6,
-                "steps_of_first_cycle": derived["first_cycle_steps"],
-            }
-        )
-    return rows
+    columns = dict.fromkeys(name for row in factors.values() for name in row)
+    return [
+        {"run": run}
+        | {name: factors[names["row"]].get(name) for name in columns}
+        | ({"bed": study["bed_of"][run]} if study["beds"] else {})
+        | PAGES[study["case"]].run_columns(study["parameters"][run])
+        for run, names in study["runs"].items()
+    ]
 
 
 def run_columns(study: Mapping[str, Any]) -> list[dict[str, str]]:

@@ -33,6 +33,8 @@ SCHEMA_FOLDER = Path(__file__).parent / "schemas"
 UNIT_OF_SUFFIX = {
     "mm": "mm",
     "deg": "deg",
+    "deg_per_s": "deg/s",
+    "n": "N",
     "pa": "Pa",
     "per_pa": "1/Pa",
     "kg_per_m3": "kg/m3",
@@ -42,7 +44,7 @@ UNIT_OF_SUFFIX = {
 }
 # Suffixes that people write instead; recognised only to explain the mistake.
 FOREIGN_SUFFIXES = (
-    *("nm", "um", "cm", "dm", "m", "km", "in", "inch", "ft"),
+    *("nm", "um", "cm", "dm", "m", "km", "in", "inch", "ft", "kn", "rad_per_s", "rpm"),
     *("rad", "degrees", "radians", "percent"),
     *("kpa", "mpa", "gpa", "per_kpa", "per_mpa", "per_gpa"),
     *("mm_per_s", "cm_per_s", "km_per_h", "g_per_cm3", "t_per_m3"),
@@ -53,7 +55,6 @@ VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)
 MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 
-TRAVELS = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))  # two ways to say how long a run is
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
 LONGEST_VALUE = 60  # characters of a value that a message shows
 
@@ -78,6 +79,22 @@ def load_schema(name: str) -> dict[str, Any]:
     return schema
 
 
+def joined(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of blocks with the keys of both; a block that both have is joined in turn."""
+    properties = dict(first.get("properties", {}))
+    for key, inner in second["properties"].items():
+        properties[key] = joined(properties[key], inner) if key in properties else inner
+    required = list(dict.fromkeys([*first.get("required", []), *second.get("required", [])]))
+    return {**second, **first, "properties": properties, "required": required}
+
+
+@cache
+def case_schema(case: str, kind: str) -> dict[str, Any]:
+    """Return the schema of a case's settings or studies: what all cases share, and its own."""
+    own = SCHEMA_FOLDER / "cases" / case / f"{kind}.schema.yaml"
+    return joined(load_schema(kind), load_schema(f"cases/{case}/{kind}")) if own.is_file() else load_schema(kind)
+
+
 def without_required(schema: Any) -> Any:
     """Return the schema with nothing required: for a layer that overrides some keys."""
     if isinstance(schema, dict):
@@ -94,14 +111,14 @@ def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
         raise ConfigError(f"{layer.where(path)}: {text}.")
 
 
-def check_travel(layer: Layer, required: bool) -> None:
-    """Raise ConfigError for a layer with both of `TRAVELS`, or with neither where one is `required`."""
-    given = [path for path in TRAVELS if layer.holds(path)]
-    both, neither = len(given) == len(TRAVELS), required and not given
+def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required: bool) -> None:
+    """Raise ConfigError for a layer with both of two alternatives, or with neither where one is `required`."""
+    given = [path for path in alternatives if layer.holds(path)]
+    both, neither = len(given) > 1, required and alternatives and not given
     if both or neither:
-        names = " and ".join(map(dotted, TRAVELS))
+        names = " and ".join(map(dotted, alternatives))
         found = "are both given" if both else "are both missing"
-        where = layer.where(given[-1] if given else TRAVELS[0])
+        where = layer.where(given[-1] if given else alternatives[0])
         raise ConfigError(f"{where}: {names} {found}, allowed is one of them.")
 
 
@@ -261,12 +278,13 @@ def coerce_numbers(values: Any, schema: dict[str, Any] | None) -> Any:
     return float(values) if schema.get("type") == "number" else values
 
 
-def read_design(path: Path, root: Path) -> list[Layer]:
+def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
     """Return the rows of a design table as layers that know their lines, after all checks of single values.
 
-    Raises ConfigError naming file, line, row and column.
+    An empty cell of a column that the schema does not require gives no value. Raises ConfigError naming file, line, row
+    and column.
     """
-    schema, source = load_schema("design"), display_name(path, root)
+    source = display_name(path, root)
     header, rows = read_csv_rows(path, root)
     _check_columns(header, schema, source)
     lines: dict[str, int] = {}
@@ -279,11 +297,18 @@ def read_design(path: Path, root: Path) -> list[Layer]:
                 " allowed is each name once."
             )
         lines[name] = line
-        values = {c: float(v) if c != "row" and NUMBER.match(v) else v for c, v in cells.items()}
+        values = {c: _cell(v, schema["properties"][c]) for c, v in cells.items() if v or c in schema["required"]}
         layer = Layer(source, values, {(): line}, f"row {name}" if name else "")
         check_layer(layer, schema)
         checked.append(layer)
     return checked
+
+
+def _cell(text: str, schema: dict[str, Any]) -> Any:
+    """Return the value of a cell: a number or a boolean where it spells one and the column is no text."""
+    if schema.get("type") == "boolean":
+        return {"true": True, "false": False}.get(text, text)
+    return float(text) if schema.get("type") in NUMBERS and NUMBER.match(text) else text
 
 
 def _check_columns(header: list[str], schema: dict[str, Any], source: str) -> None:
@@ -323,17 +348,21 @@ def unknown_name(source: str, noun: str, name: str, known: list[str]) -> str:
     return f"{source}: {noun} is {show(name)}, allowed is one of {', '.join(known) or 'none'}{hint}."
 
 
-def check_material_names(layers: tuple[Layer, ...], settings: dict[str, Any], materials: dict[str, Any]) -> None:
-    """Raise ConfigError if a setting names a material that config/materials.yaml does not have."""
-    for section, key, kind in (
-        ("sample", "material", "walls"),
-        ("bed", "material", "particles"),
-        ("bed", "floor_material", "walls"),
-    ):
-        value = settings[section][key]
-        if value not in materials[kind]:
+def check_material_names(
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    materials: dict[str, Any],
+    keys: tuple[tuple[str, str, str], ...],
+) -> None:
+    """Raise ConfigError if a setting names a material that config/materials.yaml does not have.
+
+    keys: section, key, and kind of material of the settings that name one
+    """
+    for section, key, kind in keys:
+        value, known = settings[section][key], materials.get(kind, {})
+        if value not in known:
             where = locate(layers, (section, key))
-            raise ConfigError(unknown_name(where, f"{section}.{key}", value, sorted(materials[kind])))
+            raise ConfigError(unknown_name(where, f"{section}.{key}", value, sorted(known)))
 
 
 def locate(layers: tuple[Layer, ...], path: KeyPath) -> str:

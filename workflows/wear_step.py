@@ -12,18 +12,21 @@ import numpy as np
 import pandas as pd
 
 from postproc.mesh import SurfaceMesh, areas, node_area_vectors, read_surface, smallest_angles, write_surface
-from postproc.wear.caps import edge_limit, next_cycle_factor, step_limit, wanted_step
+from postproc.wear.caps import next_cycle_factor, wanted_step
 from postproc.wear.laws import worn_volume
 from postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
 from postproc.wear.patch import ContactPatch, chosen_radius
 from postproc.wear.remesh import RemeshError, remesh
-from postproc.wear.update import CARRIED_VOLUME, lost_volume, recession_fault, volume_balance, wear_update, worn_faces
+from postproc.wear.update import CARRIED_VOLUME, lost_volume, volume_balance, wear_update, worn_faces
 from workflows import state
+from workflows.cases import CASES
+from workflows.cases.base import Case
 from workflows.chain import SURFACE, Chain
 from workflows.schedule import Span
 
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J")
 SUMS = (*SUMMED, "finnie_volume_m3", "worn_volume_m3")  # cell data of the surface, over all cycles so far
+MEANS = ("contact_position", "contact_radius")  # columns of a ledger that are no sums: nothing where nothing touched
 LEAST_SOLVER_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 TOTALS = {  # columns of wear.csv that are sums over all cycles -> what each cycle adds
     "total_archard_volume_m3": "worn_volume_m3",
@@ -44,18 +47,19 @@ def wear(
     The balance closes on the geometry: pristine minus present volume, plus carried, is the law's volume of all cycles,
     plus what a scheme that does not conserve has removed beyond it. Raises WearError, BalanceError.
     """
-    parameters = chain.parameters
+    parameters, case = chain.parameters, CASES[chain.case]
     pristine = read_surface(chain.surface)
+    ledger = on_whole_surface(ledger, len(surface.triangles))
     if TARGET_EDGE not in surface.point_data:  # the first cycle: the elements as built are what remeshing aims at
         surface = with_target_edges(surface)
     volume = law_volume(parameters, ledger)
-    limit = node_limits(parameters, surface, span)
+    limit = node_limits(case, parameters, surface, span)
     worn, update = wear_update(
         surface, pristine, volume, limit, patch=contact_patch(parameters, ledger), scheme=parameters["wear"]["scheme"]
     )
-    asked = {"step_limit_m": float(limit.max()), **planned(parameters, span, surface, worn)}
+    asked = {"step_limit_m": float(limit.max()), **planned(case, parameters, span, surface, worn)}
     worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume))
-    if fault := recession_fault(worn):
+    if fault := case.worn_through(worn):
         raise WearError(
             f"{chain.name}, cycle {span.cycle}: {fault}; wear is accelerated too much, or the travel too long."
         )
@@ -109,18 +113,21 @@ def contact_patch(parameters: Mapping[str, Any], ledger: pd.DataFrame) -> Contac
     return ContactPatch(position, chosen_radius(choice, simulated, factor))
 
 
-def node_limits(parameters: Mapping[str, Any], surface: SurfaceMesh, span: Span) -> np.ndarray:
-    """Return how far (m) each node may move in a cycle; nowhere when the study keeps the sample rigid."""
-    wear_parameters = parameters["wear"]
-    if not wear_parameters["deform"]:
+def on_whole_surface(ledger: pd.DataFrame, triangles: int) -> pd.DataFrame:
+    """Return a ledger with a row per triangle of the surface, where the solver got a piece of it only."""
+    if len(ledger) == triangles:
+        return ledger
+    whole = ledger.set_index("triangle").reindex(range(triangles))
+    sums = [name for name in whole if not name.startswith(MEANS)]
+    return whole.fillna(dict.fromkeys(sums, 0.0)).reset_index()
+
+
+def node_limits(case: Case, parameters: Mapping[str, Any], surface: SurfaceMesh, span: Span) -> np.ndarray:
+    """Return how far (m) each node may move in a cycle; nowhere when the study keeps the surface rigid."""
+    if not parameters["wear"]["deform"]:
         return np.zeros(len(surface.points))
-    return step_limit(
-        surface.points,
-        surface.triangles,
-        wear_parameters["largest_step_edge_fraction"],
-        wear_parameters["gap_closing_fraction"],
-        span.steps * parameters["derived"]["time_step_s"],
-    )
+    gap = case.closing_gap(parameters, span.steps * parameters["derived"]["time_step_s"])
+    return np.fmin(case.lasting_limit(parameters, surface), gap)
 
 
 def with_sums(worn: SurfaceMesh, before: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray) -> SurfaceMesh:
@@ -171,7 +178,9 @@ def as_sums(mesh: SurfaceMesh, before: SurfaceMesh) -> SurfaceMesh:
     return replace(mesh, cell_data={**mesh.cell_data, **sums})
 
 
-def planned(parameters: Mapping[str, Any], span: Span, before: SurfaceMesh, worn: SurfaceMesh) -> dict[str, float]:
+def planned(
+    case: Case, parameters: Mapping[str, Any], span: Span, before: SurfaceMesh, worn: SurfaceMesh
+) -> dict[str, float]:
     """Return the largest step that the cycle asked for over the cap from the mesh (-), and what that plans."""
     if not parameters["wear"]["deform"]:
         return {"step_demand": 0.0, "next_cycle_factor": 1.0}
@@ -179,11 +188,11 @@ def planned(parameters: Mapping[str, Any], span: Span, before: SurfaceMesh, worn
     area = np.linalg.norm(node_area_vectors(before.points, before.triangles[worn_faces(before)]), axis=1)
     carried = before.point_data.get(CARRIED_VOLUME, np.zeros(len(step)))
     wanted = wanted_step(step, carried, worn.point_data[CARRIED_VOLUME], area)
-    limit = edge_limit(before.points, before.triangles, parameters["wear"]["largest_step_edge_fraction"])
-    duration = span.steps * parameters["derived"]["time_step_s"]
+    limit = case.lasting_limit(parameters, before)
+    gap = case.closing_gap(parameters, span.steps * parameters["derived"]["time_step_s"])
     return {
         "step_demand": float((wanted / limit).max()),
-        "next_cycle_factor": next_cycle_factor(wanted, limit, duration, parameters["wear"]["gap_closing_fraction"]),
+        "next_cycle_factor": next_cycle_factor(wanted, limit, gap),
     }
 
 

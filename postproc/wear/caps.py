@@ -87,27 +87,25 @@ def wanted_step(
     return np.where(area > 0.0, np.maximum(step + held_back, 0.0), 0.0)
 
 
-def next_cycle_factor(
-    wanted: np.ndarray, limit: np.ndarray, cycle_duration_s: float, gap_closing_time_fraction: float
-) -> float:
+def next_cycle_factor(wanted: np.ndarray, limit: np.ndarray, gap: float = np.inf) -> float:
     """Length of the next cycle over that of the last one, -, for wear that goes on as fast.
 
     Parameters
     ----------
     wanted : (n,) m, as from `wanted_step`
-    limit : (n,) m, cap from the edges alone (`edge_limit`)
-    cycle_duration_s : of the last cycle, s; gap_closing_time_fraction : -, see `step_limit`
+    limit : (n,) m, cap that holds for a cycle of any length, as from `edge_limit`
+    gap : m, cap of the last cycle from the closing gap, see `gap_closing_step`
 
-    The step grows with the length T, the cap from the edges stays, the cap from the closing gap grows with T^2. So a
-    cycle is as long as the edges allow. Where the gap would still hold that back, no length applies all the wear, and
-    the one at which both caps meet applies most. `AIMED_DEMAND` leaves room for change; changes are bounded.
+    The step grows with the length T, the lasting cap stays, the cap from the closing gap grows with T^2. So
+    a cycle is as long as the lasting cap allows. Where the gap would still hold that back, no length applies all the
+    wear, and the one at which both caps meet applies most. `AIMED_DEMAND` leaves room for change; changes are bounded.
     """
     demand = np.divide(wanted, limit, out=np.zeros_like(wanted), where=limit > 0.0)
     most = int(np.argmax(demand)) if demand.size else 0
     if not demand.size or not demand[most] > 0.0:
         return LARGEST_CYCLE_FACTOR
     factor = AIMED_DEMAND / demand[most]
-    aimed, gap = factor * wanted[most], gap_closing_step(gap_closing_time_fraction, cycle_duration_s, GRAVITY)
+    aimed = factor * wanted[most]
     if aimed > gap * factor**2:
         factor = np.sqrt(aimed / gap)
     return float(np.clip(factor, LEAST_CYCLE_FACTOR, LARGEST_CYCLE_FACTOR))

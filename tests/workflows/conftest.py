@@ -49,6 +49,25 @@ R5,4,8,60,6.0,2.0,30
 DEFAULT = """\
 fidelity: quick
 particle_scale: 1.0
+wear:
+  law: archard
+  wear_coefficient_per_pa: 6.3e-13
+  acceleration: 1.0
+  deform: true
+  largest_step_edge_fraction: 0.1
+  scheme: conserving
+  patch: simulated
+  patch_radius_mm: 1.0
+solver:
+  ranks: 1
+  rayleigh_fraction: 0.2
+  rolling_friction: cdt
+  rolling_radius: full
+  sampling_interval_steps: 20
+ledger: solver
+remeshing: {smallest_angle_deg: 15, largest_aspect: 10, smallest_edge: 0.3, largest_edge: 2.5}
+"""
+SLIDING_SAMPLE = """\
 sample:
   width_mm: 200
   length_mm: 200
@@ -68,25 +87,8 @@ bed:
   allow_thin_bed: false
   seed: 20220317
 sliding: {run_in_mm: 300, travel_mm: 1000, cycles: 4, first_cycle_mm: 10}
-wear:
-  law: archard
-  wear_coefficient_per_pa: 6.3e-13
-  acceleration: 1.0
-  deform: true
-  largest_step_edge_fraction: 0.1
-  gap_closing_fraction: 0.01
-  scheme: conserving
-  patch: simulated
-  patch_radius_mm: 1.0
-solver:
-  ranks: 1
-  rayleigh_fraction: 0.2
-  rolling_friction: cdt
-  rolling_radius: full
-  sampling_interval_steps: 20
-  picture_interval_mm: 20
-ledger: solver
-remeshing: {smallest_angle_deg: 15, largest_aspect: 10, smallest_edge: 0.3, largest_edge: 2.5}
+wear: {gap_closing_fraction: 0.01}
+solver: {picture_interval_mm: 20}
 """
 MATERIALS = """\
 particles:
@@ -118,10 +120,11 @@ walls:
 def config(tmp_path: Path) -> ConfigCopy:
     """A complete small configuration of its own, so that tests do not follow the shipped settings."""
     copy = ConfigCopy(tmp_path)
-    for folder in ("studies", "designs"):
+    for folder in ("cases", "studies", "designs"):
         copy.path(folder).mkdir(parents=True)
     for name, text in (
         ("default.yaml", DEFAULT),
+        ("cases/sliding_sample.yaml", SLIDING_SAMPLE),
         ("materials.yaml", MATERIALS),
         ("studies/small.yaml", STUDY),
         ("designs/small.csv", DESIGN),

@@ -21,7 +21,7 @@ from postproc.mesh import areas, read_stl, read_surface
 from postproc.wear.update import BALANCE_TOLERANCE
 from workflows import cycles, state, wear_step
 from workflows.accounting import account
-from workflows.chain import write_cycle, write_end_wall
+from workflows.chain import write_cycle, write_shared_files
 from workflows.ledgers import PRODUCERS
 from workflows.progress import Progress
 from workflows.schedule import first_span
@@ -166,7 +166,7 @@ def first_ledger(chain, finished) -> pd.DataFrame:
     folder = state.cycle_folder(chain.folder, 1)
     folder.mkdir()
     surface = read_surface(chain.surface)
-    write_end_wall(chain)
+    write_shared_files(chain)
     span = first_span(chain.parameters)
     write_cycle(chain, span, folder, surface)
     cycles.simulate(chain, span, folder, len(surface.triangles), Progress(chain.name, 1))
@@ -380,7 +380,7 @@ def test_missing_triangles_stop_the_run(finished, tmp_path):
     folder = chain.folder / "cycle_001.part"
     folder.mkdir()
     surface = read_surface(chain.surface)
-    write_end_wall(chain)
+    write_shared_files(chain)
     span = first_span(chain.parameters)
     write_cycle(chain, span, folder, surface)
     count = len(surface.triangles)

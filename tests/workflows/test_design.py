@@ -8,6 +8,7 @@ import math
 
 import pytest
 
+from workflows.cases.sliding_sample import bed_parameters
 from workflows.config_files import ConfigError
 from workflows.derived import (
     equivalent_size_ratio,
@@ -17,7 +18,7 @@ from workflows.derived import (
     whole_steps,
     youngs_modulus,
 )
-from workflows.design import bed_parameters, list_studies, load_study, to_si
+from workflows.design import list_studies, load_study, to_si
 from workflows.remarks import figure_remarks
 
 ROUNDING = 1e-12  # relative; a few floating-point operations

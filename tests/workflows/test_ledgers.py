@@ -29,7 +29,9 @@ def chain_of(folder, ledger, **changes):
     """A chain of one producer, of which only the accounting is asked for."""
     study = tiny_study(ledger=ledger, **changes)
     run = study.run("R9_plain")
-    return Chain(run.name, folder, run.parameters, study.beds[study.bed_of(run.name)], folder / "x", folder / "y")
+    return Chain(
+        run.name, folder, study.case, run.parameters, folder / "x", study.beds[study.bed_of(run.name)], folder / "y"
+    )
 
 
 def time_of(chain):

@@ -5,7 +5,7 @@ import itertools
 import pytest
 from tiny import tiny_study
 
-from workflows.schedule import LEAST_CYCLE_STEPS, Span, first_span, known_spans, next_span, title
+from workflows.schedule import LEAST_CYCLE_STEPS, Span, cycle_title, first_span, known_spans, next_span
 
 RUN = "R9_convex"
 
@@ -68,5 +68,5 @@ def test_an_adaptive_cycle_resolves_contacts():
 def test_only_the_first_adaptive_cycle_is_known():
     """Decks written without running the solver stop where the next length depends on what happens."""
     assert known_spans(adaptive()) == [first_span(adaptive())]
-    assert title(adaptive(), 3) == "cycle 3"
-    assert title(parameters_of(), 2) == "cycle 2 of 2"
+    assert cycle_title(adaptive(), 3) == "cycle 3"
+    assert cycle_title(parameters_of(), 2) == "cycle 2 of 2"

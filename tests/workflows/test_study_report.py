@@ -13,8 +13,8 @@ from postproc.analysis.history import wear_history
 from postproc.analysis.summary import summary_table
 from workflows.design import load_study
 from workflows.figures import figure_file, figures_of, page_parameters
-from workflows.page_text import name_and_unit, setting_rows
-from workflows.study_report import TABLE_OF, UNDEFINED, caption, commit, number, write_page
+from workflows.page_text import UNDEFINED, name_and_unit, number, setting_rows
+from workflows.study_report import TABLE_OF, caption, commit, write_page
 
 CYCLES = 2
 RUN_WALL, RUN_SOLVER, BED_WALL, BED_SOLVER, OTHER_WALL = 100.0, 90.0, 50.0, 48.0, 2.0  # s, of each job

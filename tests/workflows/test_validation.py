@@ -14,12 +14,17 @@ from workflows.design import load_study
 from workflows.ledgers import PRODUCERS
 from workflows.page_text import LAW_WORDS
 from workflows.solver import CYCLE_EXECUTABLES
-from workflows.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer, leaves, load_schema
+from workflows.validation import ALL_SUFFIXES, SCHEMA_FOLDER, UNIT_OF_SUFFIX, check_layer, leaves, load_schema
 
 SETTINGS = "default.yaml"
+OWN_SETTINGS = "cases/sliding_sample.yaml"
 STUDY = "studies/small.yaml"
 TABLE = "designs/small.csv"
 MATERIALS = "materials.yaml"
+SUFFIX = ".schema.yaml"
+SCHEMAS = sorted(
+    path.relative_to(SCHEMA_FOLDER).as_posix().removesuffix(SUFFIX) for path in SCHEMA_FOLDER.rglob("*.yaml")
+)
 QUICK = "config/studies/small.yaml, line 9, fidelity quick"
 WIDTH_RANGE = "a number from 5 to 2000 mm"
 
@@ -74,38 +79,39 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, ledger, sample, pattern, bed, sliding, wear, remeshing, solver.",
+        " allowed are particle_scale, ledger, wear, remeshing, solver, sample, pattern, bed, sliding, design.",
     ),
     (
-        SETTINGS,
+        OWN_SETTINGS,
         "skirt_slope_deg: 3.0",
         "skirt_slope_rad: 0.05",
-        "config/default.yaml, line 8: unit rad is not allowed for sample.skirt_slope,"
+        "config/cases/sliding_sample.yaml, line 6: unit rad is not allowed for sample.skirt_slope,"
         " write sample.skirt_slope_deg (found skirt_slope_rad: 0.05).",
     ),
     (
         SETTINGS,
         "wear:\n",
         "waer:\n",
-        "config/default.yaml, line 22: waer (a block of keys) is no known key, the nearest is wear.",
+        "config/default.yaml, line 3: waer (a block of keys) is no known key, the nearest is wear.",
     ),
     (
-        SETTINGS,
+        OWN_SETTINGS,
         "  skirt_slope_deg: 3.0\n",
         "",
-        "config/default.yaml, line 3: sample.skirt_slope_deg is missing, allowed is a number from 0.5 to 45 deg.",
+        "config/cases/sliding_sample.yaml, line 1: sample.skirt_slope_deg is missing,"
+        " allowed is a number from 0.5 to 45 deg.",
     ),
     (
         SETTINGS,
         "  law: archard\n",
         "  law: archard\n  law: archard\n",
-        "config/default.yaml, line 24: wear.law stands here and in line 23, allowed is each key once.",
+        "config/default.yaml, line 5: wear.law stands here and in line 4, allowed is each key once.",
     ),
     (
         SETTINGS,
         "  law: archard\n",
         "  law: archard\n  1: 2\n",
-        "config/default.yaml, line 24: found the key '1', allowed are words as keys.",
+        "config/default.yaml, line 5: found the key '1', allowed are words as keys.",
     ),
     (
         MATERIALS,
@@ -128,7 +134,7 @@ BAD_VALUES = [
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: true",
-        "config/default.yaml, line 25: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 6: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         STUDY,
@@ -200,52 +206,54 @@ BAD_VALUES = [
         " allowed is the name of a .csv file in config/designs.",
     ),
     (
-        SETTINGS,
+        OWN_SETTINGS,
         "cycles: 4",
         "cycles: 4.0",
-        "config/default.yaml, line 21: sliding.cycles is 4.0, allowed is a whole number from 1 to 10000 or adaptive.",
+        "config/cases/sliding_sample.yaml, line 19: sliding.cycles is 4.0,"
+        " allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
-        SETTINGS,
+        OWN_SETTINGS,
         "cycles: 4",
         "cycles: 0",
-        "config/default.yaml, line 21: sliding.cycles is 0, allowed is a whole number from 1 to 10000 or adaptive.",
+        "config/cases/sliding_sample.yaml, line 19: sliding.cycles is 0,"
+        " allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
-        SETTINGS,
+        OWN_SETTINGS,
         "travel_mm: 1000",
         "travel_mm: 0",
-        "config/default.yaml, line 21: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
+        "config/cases/sliding_sample.yaml, line 19: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
     ),
     (
         SETTINGS,
         "deform: true",
         "deform: yes",
-        "config/default.yaml, line 26: wear.deform is 'yes', allowed is true or false.",
+        "config/default.yaml, line 7: wear.deform is 'yes', allowed is true or false.",
     ),
     (
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: 0",
-        "config/default.yaml, line 25: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 6: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
     ),
     (
         SETTINGS,
         "rolling_friction: cdt",
         "rolling_friction: epsd",
-        "config/default.yaml, line 35: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
+        "config/default.yaml, line 15: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
     ),
     (
         SETTINGS,
         "ledger: solver",
         "ledger: dump",
-        "config/default.yaml, line 39: ledger is 'dump', allowed is one of solver, dumps.",
+        "config/default.yaml, line 18: ledger is 'dump', allowed is one of solver, dumps.",
     ),
     (
         SETTINGS,
         "law: archard",
         "law: oka",
-        "config/default.yaml, line 23: wear.law is 'oka', allowed is one of archard, finnie.",
+        "config/default.yaml, line 4: wear.law is 'oka', allowed is one of archard, finnie.",
     ),
     (
         SETTINGS,
@@ -255,10 +263,10 @@ BAD_VALUES = [
         " the fidelities of config/studies/small.yaml.",
     ),
     (
-        SETTINGS,
+        OWN_SETTINGS,
         "floor_material: perspex",
         "floor_material: perspx",
-        "config/default.yaml, line 13: bed.floor_material is 'perspx',"
+        "config/cases/sliding_sample.yaml, line 11: bed.floor_material is 'perspx',"
         " allowed is one of perspex, steel (the nearest is perspex).",
     ),
     (
@@ -379,16 +387,6 @@ BAD_COMBINATIONS = [
         " (particle_scale 6), or bed.allow_thin_bed: true.",
     ),
     (
-        {"sliding": {"test_duration_h": 100}},
-        "command line: sliding.test_duration_h is 100 for row R9, allowed is at most 0.0277778 h at this acceleration"
-        " and velocity, 100 m of travel.",
-    ),
-    (
-        {"sliding": {"test_duration_h": 1e-9}},
-        "command line: sliding.test_duration_h is 1e-09 for row R9, allowed is at least 2.39529e-07 h at this"
-        " acceleration and velocity, 100 time steps.",
-    ),
-    (
         {"sample": {"width_mm": 110}},
         "command line: sample.width_mm is 110 for row R9, allowed is at most 106.262 mm,"
         " bed.width_mm less a skirt of 6.86921 mm on each side.",
@@ -401,6 +399,16 @@ BAD_COMBINATIONS = [
     (
         {"bed": {"behind_mm": 5}},
         "command line: bed.behind_mm is 5 for row R9, allowed is at least 6.86921 mm, the width of the sample's skirt.",
+    ),
+    (
+        {"sliding": {"test_duration_h": 100}},
+        "command line: sliding.test_duration_h is 100 for row R9, allowed is at most 0.0277778 h at this acceleration"
+        " and velocity, 100 m of travel.",
+    ),
+    (
+        {"sliding": {"test_duration_h": 1e-9}},
+        "command line: sliding.test_duration_h is 1e-09 for row R9, allowed is at least 2.39529e-07 h at this"
+        " acceleration and velocity, 100 time steps.",
     ),
     (
         {"bed": {"ends": "periodic", "ahead_mm": 10, "behind_mm": 20}},
@@ -451,8 +459,8 @@ BAD_COMBINATIONS = [
     ),
     (
         {"title": "x"},
-        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, ledger, sample,"
-        " pattern, bed, sliding, wear, remeshing, solver.",
+        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, ledger, wear,"
+        " remeshing, solver, sample, pattern, bed, sliding.",
     ),
 ]
 
@@ -520,13 +528,13 @@ def test_a_table_from_a_spreadsheet_is_read(config):
             " is one of them.",
         ),
         (
-            [("default.yaml", " travel_mm: 1000,", "")],
-            "config/default.yaml, line 21: sliding.travel_mm and sliding.test_duration_h are both missing, allowed is"
-            " one of them.",
+            [(OWN_SETTINGS, " travel_mm: 1000,", "")],
+            "config/cases/sliding_sample.yaml, line 19: sliding.travel_mm and sliding.test_duration_h are both missing,"
+            " allowed is one of them.",
         ),
         (
-            [("default.yaml", "travel_mm: 1000", "test_duration_min: 2")],
-            "config/default.yaml, line 21: unit min is not allowed for sliding.test_duration, write"
+            [(OWN_SETTINGS, "travel_mm: 1000", "test_duration_min: 2")],
+            "config/cases/sliding_sample.yaml, line 19: unit min is not allowed for sliding.test_duration, write"
             " sliding.test_duration_h (found test_duration_min: 2).",
         ),
     ],
@@ -540,8 +548,8 @@ def test_either_a_travel_or_a_test_duration_is_given(config, changes, message):
 
 def test_broken_yaml_is_refused_with_its_line(config):
     """What is no YAML is refused with file and line."""
-    config.edit(SETTINGS, "  seed: 20220317\n", "  seed: 20220317\n\tx: 1\n")
-    assert message_of(config).startswith("config/default.yaml, line 21: found character '\\t'")
+    config.edit(OWN_SETTINGS, "  seed: 20220317\n", "  seed: 20220317\n\tx: 1\n")
+    assert message_of(config).startswith("config/cases/sliding_sample.yaml, line 19: found character '\\t'")
 
 
 def test_a_file_that_is_no_mapping_is_refused(config):
@@ -586,7 +594,7 @@ def test_merge_is_deep_and_changes_nothing():
     assert (lower, upper) == ({"a": {"b": 1, "c": 2}, "d": {"g": 3}}, {"a": {"c": 4}, "e": {"f": 5}})
 
 
-@pytest.mark.parametrize("name", ["settings", "study", "design", "materials"])
+@pytest.mark.parametrize("name", SCHEMAS)
 def test_units_of_the_schemas_agree_with_the_keys(name):
     """The unit that a schema states is the one that the key's suffix spells, for every number."""
     for path, schema in leaves(load_schema(name)):
@@ -595,7 +603,7 @@ def test_units_of_the_schemas_agree_with_the_keys(name):
             assert UNIT_OF_SUFFIX.get(suffix, "-") == schema["x-unit"], dotted(path)
 
 
-@pytest.mark.parametrize("name", ["settings", "study", "design", "materials"])
+@pytest.mark.parametrize("name", SCHEMAS)
 def test_every_number_has_a_range_a_unit_and_a_meaning(name):
     """No number without lower and upper bound, unit and description."""
     numbers = [(p, s) for p, s in leaves(load_schema(name)) if s.get("type") in ("number", "integer")]
@@ -640,11 +648,11 @@ def test_a_travel_too_short_for_one_cycle_is_named(config):
 
 def test_the_first_fault_of_a_file_is_reported(config):
     """Of two faults in a file the upper one is named; a missing key, which has no line, comes last."""
-    config.edit(SETTINGS, "length_mm: 200", "length_mm: 0")
-    config.edit(SETTINGS, "  width_mm: 200\n", "")
-    config.edit(SETTINGS, "ranks: 1", "ranks: 0")
-    with pytest.raises(ConfigError, match=r"line 4: sample.length_mm is 0"):
-        check_layer(read_yaml(config.path(SETTINGS), config.root), load_schema("settings"))
+    config.edit(OWN_SETTINGS, "length_mm: 200", "length_mm: 0")
+    config.edit(OWN_SETTINGS, "  width_mm: 200\n", "")
+    config.edit(OWN_SETTINGS, "seed: 20220317", "seed: 0")
+    with pytest.raises(ConfigError, match=r"line 2: sample.length_mm is 0"):
+        check_layer(read_yaml(config.path(OWN_SETTINGS), config.root), load_schema("cases/sliding_sample/settings"))
 
 
 def test_the_page_of_keys_is_up_to_date(repository):

@@ -26,7 +26,9 @@ def chain(tmp_path):
     surface = tmp_path / "surface.vtu"
     write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
     (tmp_path / FOLDER).mkdir()
-    return Chain(RUN, tmp_path, parameters, study.beds[study.bed_of(RUN)], surface, tmp_path / "bed.restart")
+    return Chain(
+        RUN, tmp_path, study.case, parameters, surface, study.beds[study.bed_of(RUN)], tmp_path / "bed.restart"
+    )
 
 
 def ledger_of(mesh, work_per_area: float) -> pd.DataFrame:

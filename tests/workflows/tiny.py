@@ -35,4 +35,12 @@ def tiny_chain(study: Study, folder: Path, run: str = "R9_convex") -> Chain:
     if not surface.exists():
         run_folder.mkdir(parents=True, exist_ok=True)
         write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
-    return Chain(run, run_folder, parameters, study.beds[bed_name], surface, bed_folder / "bed.restart")
+    return Chain(
+        name=run,
+        folder=run_folder,
+        case=study.case,
+        parameters=parameters,
+        surface=surface,
+        bed=study.beds[bed_name],
+        bed_restart=bed_folder / "bed.restart",
+    )

@@ -7,8 +7,8 @@ from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_row
 from postproc.analysis.depth import read_worn_surfaces
 from postproc.plots.pictures import bed, bed_table
 from postproc.plots.style import save
-from workflows.figures import ROWS_IN_DETAIL
 from workflows.job import job_log
+from workflows.pages.sliding_sample import ROWS_IN_DETAIL
 
 with job_log(snakemake.log[0]):
     summary = read_summary(snakemake.input.summary)

@@ -10,9 +10,10 @@ with job_log(snakemake.log[0]):
         Chain(
             name=snakemake.wildcards.run,
             folder=Path(snakemake.output[0]).parents[1],
+            case=snakemake.params.case,
             parameters=snakemake.params.run,
-            bed=snakemake.params.bed,
             surface=Path(snakemake.input[0]),
-            bed_restart=Path(snakemake.params.bed_restart),
+            bed=snakemake.params.bed,
+            bed_restart=snakemake.params.bed_restart and Path(snakemake.params.bed_restart),
         )
     )

@@ -1,7 +1,9 @@
 """Write the summary of a study: one row per run."""
 
-from postproc.analysis.summary import summary_table
+from workflows.cases import CASES
 from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
-    summary_table(snakemake.input.design, snakemake.input.wear).to_csv(snakemake.output[0], index=False)
+    files = snakemake.input
+    table = CASES[snakemake.params.case].summary(files.design, files.wear, files.pristine, files.worn)
+    table.to_csv(snakemake.output[0], index=False)

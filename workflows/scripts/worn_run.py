@@ -11,10 +11,11 @@ with job_log(snakemake.log[0]):
         Chain(
             name=snakemake.wildcards.run,
             folder=Path(snakemake.output.wear).parent,
+            case=snakemake.params.case,
             parameters=snakemake.params.run,
-            bed=snakemake.params.bed,
             surface=Path(snakemake.input.surface),
-            bed_restart=Path(snakemake.input.bed),
+            bed=snakemake.params.bed,
+            bed_restart=next(map(Path, snakemake.input.bed), None),
             ranks=snakemake.threads,
         )
     )

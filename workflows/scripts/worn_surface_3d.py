@@ -4,8 +4,8 @@ from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_row
 from postproc.analysis.depth import carried_remark, depth_quantity, depth_table, read_worn_surfaces
 from postproc.plots.page import surfaces_page
 from postproc.plots.pictures import colour_limits
-from workflows.figures import ROWS_IN_DETAIL
 from workflows.job import job_log
+from workflows.pages.sliding_sample import ROWS_IN_DETAIL
 
 with job_log(snakemake.log[0]):
     summary, deformed = read_summary(snakemake.input.summary), snakemake.params.deformed

@@ -78,14 +78,13 @@ def test_wanted_step_is_what_was_taken_and_newly_held_back():
 
 @pytest.mark.parametrize(("wanted", "factor"), [(4e-5, 2.0), (8e-5, 1.0), (1.6e-4, 0.5), (1e-2, 0.2), (0.0, 2.0)])
 def test_next_cycle_aims_below_the_cap_from_the_edges(wanted, factor):
-    """Where gaps close in no time the step is scaled to 0.8 of the cap, within a fifth and twice the length."""
-    assert next_cycle_factor(np.array([0.0, wanted]), np.full(2, 1e-4), 1.0, 0.5) == pytest.approx(factor)
+    """Where no gap has to close the step is scaled to 0.8 of the cap, within a fifth and twice the length."""
+    assert next_cycle_factor(np.array([0.0, wanted]), np.full(2, 1e-4)) == pytest.approx(factor)
 
 
 def test_next_cycle_is_not_shortened_where_the_gap_is_what_holds_back():
     """A shorter cycle gives gaps less time: where both caps bind, the length at which they meet is the best one."""
-    duration, fraction, limit = 0.01, 0.01, 1e-7
-    gap = gap_closing_step(fraction, duration, 9.81)
-    factor = next_cycle_factor(np.array([1e-6]), np.array([limit]), duration, fraction)
+    limit, gap = 1e-7, gap_closing_step(0.01, 0.01, 9.81)
+    factor = next_cycle_factor(np.array([1e-6]), np.array([limit]), gap)
     assert factor == pytest.approx(min(np.sqrt(AIMED_DEMAND * limit / gap), LARGEST_CYCLE_FACTOR))
     assert factor > 1.0

@@ -1,0 +1,151 @@
+"""What a case tells the rest of the workflow: a class with one method for everything that differs between cases.
+
+A case turns settings and design rows into runs, makes the decks of a run's cycles and reads what they leave; the loop
+over cycles, wear, state and tables know no case. What most cases have in common is the default here. Modules that are
+slow to import and needed in jobs only are imported where they are used: every job of Snakemake reads the studies first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from postproc.mesh import SurfaceMesh
+from postproc.wear.caps import edge_limit
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from workflows.design import Run
+    from workflows.run_checks import Check
+    from workflows.schedule import Span
+
+SETUP_LOADS = "loads_0.vtk"  # of a cycle's first instant: the last one of the cycle before
+
+Parameters = Mapping[str, Any]  # of a run or of a bed, SI
+
+
+class CycleError(RuntimeError):
+    """A cycle went wrong in a way that the solver did not notice; the message names run, cycle and what to do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """The part of a surface that the solver gets in a cycle. triangles: (k,) their numbers on the whole surface."""
+
+    mesh: SurfaceMesh
+    triangles: np.ndarray
+
+
+class Case:
+    """A case; subclasses override what they need and stand in `workflows.cases.CASES`.
+
+    material_keys: (section, key, kind in materials.yaml) of the settings that name a material
+    checks: of a run, see run_checks.py
+    run_templates, bed_templates: names of the templates of a run's and of a bed's decks
+    alternatives: two settings of which exactly one is given; the stronger layer's replaces the other
+    geometry: sections of a run's parameters that its pristine surface depends on
+    first_title: what people call cycle 0
+    leftovers: files that a wear cycle's solver leaves and nobody needs once the cycle is accounted
+    """
+
+    material_keys: tuple[tuple[str, str, str], ...] = ()
+    checks: tuple[Check, ...] = ()
+    run_templates: tuple[str, ...] = ()
+    bed_templates: tuple[str, ...] = ()
+    alternatives: tuple[tuple[str, str], ...] = ()
+    geometry: tuple[str, ...] = ()
+    first_title = ""
+    leftovers: tuple[str, ...] = (SETUP_LOADS,)
+
+    # ---------------------------------------------------------------- from settings to runs
+
+    def surfaces(self, head: Mapping[str, Any]) -> Sequence[str]:
+        """Return the surfaces of which each design row makes a run; `head` holds the keys that are the study's own."""
+        return ("",)
+
+    def run_parameters(
+        self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
+    ) -> dict[str, Any]:
+        """Return the parameters of a run, JSON-able; everything in SI, given and returned."""
+        raise NotImplementedError
+
+    def beds(self, runs: Sequence[Run]) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
+        """Return {bed id: parameters} and {run: bed id}; nothing where runs start from no bed."""
+        return {}, {}
+
+    def table_columns(self, parameters: Parameters) -> dict[str, Any]:
+        """Return the columns of design.csv that follow from a run's parameters."""
+        return {}
+
+    def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
+        """Return the pristine surface of a run from the sections of its parameters that `geometry` names."""
+        raise NotImplementedError
+
+    # ---------------------------------------------------------------- decks of a run
+
+    def run_in_steps(self, parameters: Parameters, bed: Parameters | None) -> int:
+        """Return the time steps of cycle 0."""
+        raise NotImplementedError
+
+    def deck(self, parameters: Parameters, bed: Parameters | None, span: Span | None, restart: str) -> str:
+        """Return the deck of a wear cycle, or of cycle 0 (None).
+
+        restart: path of the restart file it begins with, from its folder; "" where cycle 0 begins with none
+        """
+        raise NotImplementedError
+
+    def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
+        """Write what the decks of all cycles of a run read besides surface and restart file into the run's folder."""
+
+    def piece(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> Piece:
+        """Return what the solver gets of the surface in a cycle; here all of it."""
+        return Piece(surface, np.arange(len(surface.triangles)))
+
+    # ---------------------------------------------------------------- what a cycle leaves
+
+    def record(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> dict[str, Any]:
+        """Return what the state of a cycle tells besides that of all cases."""
+        return {}
+
+    def forces(self, parameters: Parameters, span: Span, folder: Path) -> pd.DataFrame:
+        """Return the rows of forces.csv of a cycle from what the solver left in its folder."""
+        raise NotImplementedError
+
+    def own_columns(self, parameters: Parameters, span: Span, folder: Path) -> dict[str, float]:
+        """Return the case's own columns of a cycle's row of wear.csv."""
+        return {}
+
+    def cycle_fault(self, parameters: Parameters, own: Mapping[str, float]) -> str | None:
+        """Return a phrase if a cycle went wrong unnoticed by the solver, from its own columns; else None."""
+        return None
+
+    def files_to_drop(self, parameters: Parameters, span: Span | None) -> tuple[str, ...]:
+        """Return the files of a cycle that go when its successor is finished; here all are kept."""
+        return ()
+
+    # ---------------------------------------------------------------- bounds of a wear update
+
+    def lasting_limit(self, parameters: Parameters, surface: SurfaceMesh) -> np.ndarray:
+        """Return how far (n,) m each node may move in one update, however long the cycle."""
+        return edge_limit(surface.points, surface.triangles, parameters["wear"]["largest_step_edge_fraction"])
+
+    def closing_gap(self, parameters: Parameters, duration: float) -> float:
+        """Return how far (m) any node may move in an update after a cycle of that duration (s)."""
+        return np.inf
+
+    def worn_through(self, worn: SurfaceMesh) -> str | None:
+        """Return a phrase if the surface is worn further than the case allows, else None."""
+        return None
+
+    # ---------------------------------------------------------------- summary
+
+    def summary(
+        self, design: Path, wear: Sequence[Path], pristine: Sequence[Path], worn: Sequence[Path]
+    ) -> pd.DataFrame:
+        """Return the table of summary.csv, one row per run; all files in the order of the design's rows."""
+        raise NotImplementedError

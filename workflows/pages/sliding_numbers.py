@@ -1,0 +1,75 @@
+"""Key numbers of a study of sliding samples, from its tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from postproc.analysis.comparison import cycle_ratios, read_history, rows_to_show
+from postproc.analysis.depth import depth_summary
+from postproc.analysis.display import in_display_units
+from workflows.page_text import number
+from workflows.pages.sliding_sample import ROWS_IN_DETAIL
+
+ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
+
+
+def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -> dict[str, Any]:
+    """Return what the template KEY_NUMBERS shows, `results` (a table for download), and the rows shown in detail."""
+    history = read_history(folder / "figures" / "wear_against_travel.csv")
+    depths = depth_summary(
+        pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=["run", "depth_um", "area_mm2"])
+    )
+    acceleration = study["settings"]["wear"]["acceleration"]
+    results = result_table(summary, depths, history, acceleration)
+    return {
+        "results": results,
+        "accelerated": acceleration != 1.0,
+        "cards": cards(results, acceleration),
+        "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
+    }
+
+
+def result_table(
+    summary: pd.DataFrame, depths: pd.DataFrame, history: pd.DataFrame, acceleration: float
+) -> pd.DataFrame:
+    """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated
+    test, over plain with its range over the cycles, share of the bumps, carried share, forces and depths.
+    """
+    volume = summary["archard_volume_m3"]
+    table = summary[["run", "row", "surface", "travel_m", "archard_volume_m3"]].assign(
+        archard_volume_per_metre_m3_per_m=volume / summary["travel_m"],
+        real_volume_per_metre_m3_per_m=volume / summary["travel_m"] / acceleration,
+        wear_over_plain=summary["wear_over_plain"],
+        bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
+        carried_share_percent=(100.0 * summary["carried_volume_m3"] / volume).round(ROUNDING_DIGITS).abs(),
+        mean_normal_force_N=summary["mean_normal_force_N"],
+    )
+    ranges = cycle_ratios(history)
+    return in_display_units(table).merge(ranges, on=["row", "surface"], how="left").merge(depths, on="run", how="left")
+
+
+def cards(results: pd.DataFrame, acceleration: float) -> list[dict[str, str]]:
+    """Return the few numbers that answer the question, lowest relative wear first; none without a plain twin."""
+    convex = results[(results["surface"] != "plain") & results["wear_over_plain"].notna()]
+    if convex.empty:
+        return []
+    best = convex.sort_values("wear_over_plain", kind="stable").iloc[0]
+    plain = results[(results["row"] == best["row"]) & (results["surface"] == "plain")].iloc[0]
+    rate, unit = "archard_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
+    several = len(convex) > 1
+    which = f"{best['row']}, the lowest of {len(convex)} rows" if several else best["row"]
+    found = [
+        (f"{best['wear_over_plain']:.3f}", f"{best['surface']} over plain wear, {which}"),
+        (number(best[rate], 3), f"{unit}, {best['run'].replace('_', ' ')}"),
+        (number(plain[rate], 3), f"{unit}, {plain['run'].replace('_', ' ')}"),
+    ]
+    if several:
+        less = int((convex["wear_over_plain"] < 1.0).sum())
+        found.append((f"{less} of {len(convex)}", "patterns wear less than their plain twin"))
+    else:
+        found.append((f"{best['bump_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
+    return [{"value": value, "label": label} for value, label in found]

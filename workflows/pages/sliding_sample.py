@@ -1,0 +1,143 @@
+"""The page of a study of sliding samples: table of runs, remarks, what is simplified."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from workflows.derived import PERIODIC
+from workflows.page_text import range_text
+
+if TYPE_CHECKING:
+    from workflows.design import Study
+
+KEY_NUMBERS = "key_numbers_sliding_sample.html.j2"
+RUNS_NOTE = (
+    "Layers: thickness of the bed over the median diameter of the (scaled) particles. Equivalent size ratio: particle "
+    "over bump (Yan 2022, Eq 4.18). Particles: estimate from mass; the solver's number is under Cost."
+)
+DECKS = (  # {bed} and {run} are those of the first run
+    ("Filling and settling the bed", "beds/{bed}/deck.in"),
+    ("Lowering and run-in", "{run}/cycle_000/deck.in"),
+    ("First wear cycle", "{run}/cycle_001/deck.in"),
+)
+ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
+TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
+REDUCED = (
+    ("bed", "width_mm", "bed width"),
+    ("bed", "ahead_mm", "bed ahead of the sample"),
+    ("sliding", "run_in_mm", "run-in"),
+)  # settings whose reduction every figure tells
+
+
+def remarks(study: Study) -> list[str]:
+    """Return what figures must say about sample, bed and travel."""
+    now, full = study.settings, study.paper_settings
+    said = []
+    sizes, whole = (f"{s['sample']['width_mm']:g} x {s['sample']['length_mm']:g} mm" for s in (now, full))
+    if sizes != whole:
+        said.append(f"sample {sizes} of {whole}")
+    for section, key, words in REDUCED:
+        if now[section][key] != full[section][key]:
+            said.append(f"{words} {now[section][key]:g} mm of {full[section][key]:g} mm")
+    (kind, length), (full_kind, full_length) = (travel_words(settings["sliding"]) for settings in (now, full))
+    if (kind, length) != (full_kind, full_length):
+        said.append(f"{kind} {length} {'of' if kind == full_kind else f'instead of a {full_kind} of'} {full_length}")
+    if now["bed"]["ends"] == PERIODIC:
+        length = study.runs[0].parameters["derived"]["bed_length_m"]
+        said.append(f"bed in a channel of {1000.0 * length:g} mm that closes on itself")
+    thin = {run.row: run.parameters["derived"]["layers"] for run in study.runs if run.parameters["derived"]["thin_bed"]}
+    if thin:
+        rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
+        said.append(f"fewer than three layers of particles in the bed: {rows}")
+    hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
+    if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
+        said.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")
+    return said
+
+
+def travel_words(sliding: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what says how long a study's runs are, and how long: travel in mm, or the duration of the real test."""
+    if "test_duration_h" in sliding:
+        return "test duration", f"{sliding['test_duration_h']:g} h"
+    return "travel", f"{sliding['travel_mm']:g} mm"
+
+
+def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the table of runs tells of a run's parameters."""
+    derived = run["derived"]
+    return {
+        "particle_scale": run["particle"]["scale"],
+        "layers": derived["layers"],
+        "equivalent_size_ratio": derived["equivalent_size_ratio"],
+        "particles_about": derived["bed_particles"],
+        "time_step_us": derived["time_step_s"] * 1e6,
+        "steps_of_first_cycle": derived["first_cycle_steps"],
+    }
+
+
+def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return (what, how) of what is simpler here than on a machine, besides scale, wear and comparison."""
+    settings = study["settings"]
+    return [
+        ("Particles", _particles(study)),
+        *_sampling(study),
+        (
+            "Skirt not counted",
+            f"A ramp of {settings['sample']['skirt_slope_deg']:g}° leads from the floor on to the sample. It is not "
+            "worn and its wear is not counted, but it carries part of the bed: forces include it, wear does not.",
+        ),
+        (
+            "One packing",
+            f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel"
+            f"{' and along it, so that it passes the sample again and again' * (settings['bed']['ends'] == PERIODIC)}. "
+            "Runs of equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
+        ),
+    ]
+
+
+def cap_words(settings: Mapping[str, Any]) -> str:
+    """Return how far a node may move in one update."""
+    wear = settings["wear"]
+    return (
+        f"In one of {settings['sliding']['cycles']} cycles a node moves at most {wear['largest_step_edge_fraction']:g} "
+        "of its shortest edge, and at most as far as particles fall in "
+        f"{wear['gap_closing_fraction']:g} of the cycle's duration."
+    )
+
+
+def _sampling(study: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what sampled contacts leave out; nothing where the solver sums every step."""
+    settings = study["settings"]
+    if settings["ledger"] == "solver":
+        return []
+    how = (
+        f"Loads are summed from contacts sampled every {settings['solver']['sampling_interval_steps']} steps "
+        f"({_sampled_travel(study)} mm of travel), not from every step."
+    )
+    return [("Sampled contacts", how)]
+
+
+def _particles(study: Mapping[str, Any]) -> str:
+    """Return what the particles are made simpler in; ranges where the runs differ."""
+    particles = [run["particle"] for run in study["parameters"].values()]
+    diameters = [1e3 * diameter for particle in particles for diameter in particle["diameters_m"]]
+    scale = range_text([particle["scale"] for particle in particles])
+    moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
+    return (
+        f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real ones, in "
+        f"{len(particles[0]['diameters_m'])} sizes. Shape that is not round is represented by rolling friction "
+        f"({study['settings']['solver']['rolling_friction']}) alone. Contacts are softened: shear modulus {moduli} Pa."
+    )
+
+
+def _sampled_travel(study: Mapping[str, Any]) -> str:
+    """Return the travel (mm) between two samples of the contacts; a range where velocities differ."""
+    travels = [
+        1e3
+        * run["solver"]["sampling_interval_steps"]
+        * run["derived"]["time_step_s"]
+        * run["sliding"]["velocity_m_per_s"]
+        for run in study["parameters"].values()
+    ]
+    return range_text(travels)

@@ -1,0 +1,44 @@
+"""Sections of a run's parameters that cases share; everything in SI, given and returned."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def wear_section(wear: Mapping[str, Any], particle: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the section with the accelerated coefficient, and of the patch only what its choice needs.
+
+    particle: the material that wears, which may know its true modulus (physical_shear_modulus_pa)
+    """
+    kept = {k: v for k, v in wear.items() if k != "patch_radius_m" or wear["patch"] == "radius"}
+    if wear["patch"] == "physical":
+        kept["physical_shear_modulus_pa"] = particle.get("physical_shear_modulus_pa")
+    return {**kept, "accelerated_wear_coefficient_per_pa": wear["wear_coefficient_per_pa"] * wear["acceleration"]}
+
+
+def solver_section(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the section, with the stride of sampled contacts only where contacts are sampled."""
+    sampled = settings["ledger"] == "dumps"
+    return {k: v for k, v in settings["solver"].items() if sampled or k != "sampling_interval_steps"}
+
+
+def particle_section(name: str, materials: Mapping[str, Any], scale: float) -> dict[str, Any]:
+    """Return a bulk material; its lengths are coarse-grained, `scale` times the real ones."""
+    particle = dict(materials["particles"][name])
+    particle.pop("physical_shear_modulus_pa", None)  # concerns wear alone, and no bed is filled again for it
+    distribution = particle.pop("size_distribution")
+    median_diameter = scale * particle.pop("median_diameter_m")
+    return {
+        "name": name,
+        **particle,
+        "scale": scale,
+        "median_diameter_m": median_diameter,
+        "diameters_m": [median_diameter * relative for relative in distribution["relative_diameter"]],
+        "mass_fractions": list(distribution["mass_fraction"]),
+    }
+
+
+def wall_section(name: str, materials: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a wall's material and its contact."""
+    return {"name": name, **materials["walls"][name]}
