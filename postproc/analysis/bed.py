@@ -12,7 +12,7 @@ from postproc.mesh import SurfaceMesh
 SHOWN_LENGTHS = 1.0  # piece of bed shown to either side of the middle of the sample, in lengths of the sample
 MOST_PARTICLES = 8_000  # drawn per picture: thicker beds become a slab behind the cut
 HEADER_LINES = 9  # of a dump custom with one frame
-NEEDED = ("id", "x", "y", "z", "vx", "vy", "vz", "radius")
+NEEDED = ("id", "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "radius")
 
 
 def last_snapshot(run_folder: str | Path) -> Path:
@@ -29,7 +29,7 @@ def last_snapshot(run_folder: str | Path) -> Path:
 
 def read_snapshot(path: str | Path) -> pd.DataFrame:
     """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s (relative to the
-    sample).
+    sample), angular_speed_rad_per_s.
 
     Raises ValueError when the file is no dump of one frame or is cut short.
     """
@@ -44,13 +44,13 @@ def read_snapshot(path: str | Path) -> pd.DataFrame:
     expected = int(header[3])
     if len(table) != expected or table.isna().to_numpy().any():
         raise ValueError(f"{path}: {expected} particles announced, found {len(table)} whole or broken rows")
-    speed = np.sqrt((table[["vx", "vy", "vz"]].to_numpy() ** 2).sum(axis=1))
     return pd.DataFrame(
         {
             "id": table["id"],
             **{f"{axis}_m": table[axis] for axis in "xyz"},
             "radius_m": table["radius"],
-            "speed_m_per_s": speed,
+            "speed_m_per_s": np.linalg.norm(table[["vx", "vy", "vz"]], axis=1),
+            "angular_speed_rad_per_s": np.linalg.norm(table[["omegax", "omegay", "omegaz"]], axis=1),
         }
     )
 

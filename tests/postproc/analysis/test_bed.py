@@ -16,7 +16,7 @@ ITEM: BOX BOUNDS pp ff ff
 -1 1
 ITEM: ATOMS id x y z vx vy vz omegax omegay omegaz radius{space}
 """
-ROWS = "2 0.1 0.2 0.3 3.0 0.0 4.0 1 2 3 0.001 \n1 -0.1 0.2 0.3 0.0 2.0 0.0 1 2 3 0.002 \n"
+ROWS = "2 0.1 0.2 0.3 3.0 0.0 4.0 1 2 2 0.001 \n1 -0.1 0.2 0.3 0.0 2.0 0.0 1 2 3 0.002 \n"
 
 
 def write_dump(path, count=2, rows=ROWS):
@@ -27,10 +27,11 @@ def write_dump(path, count=2, rows=ROWS):
 
 
 def test_snapshot_is_read_in_si(tmp_path):
-    """Places and radii pass unchanged; the speed is the length of the velocity."""
+    """Places and radii pass unchanged; speeds are the lengths of velocity and angular velocity."""
     table = read_snapshot(write_dump(tmp_path / "bed_0.dump"))
     assert table["id"].tolist() == [2, 1]
     assert table["speed_m_per_s"].tolist() == [5.0, 2.0]
+    assert table["angular_speed_rad_per_s"][0] == 3.0
     assert table["radius_m"].tolist() == [0.001, 0.002]
     assert table["x_m"].tolist() == [0.1, -0.1]
 

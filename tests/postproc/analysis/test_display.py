@@ -16,6 +16,7 @@ RELATIVE = 1e-12  # rounding of one product
         ("area_m2", "area_mm2", 1e6),
         ("largest_depth_m", "largest_depth_um", 1e6),
         ("archard_volume_per_metre_m3_per_m", "archard_volume_per_metre_mm3_per_m", 1e9),
+        ("angular_speed_rad_per_s", "angular_speed_deg_per_s", 57.29577951308232),
         ("drag_per_m", "drag_per_m", 1.0),
         ("normal_force_N", "normal_force_N", 1.0),
         ("speed_m_per_s", "speed_m_per_s", 1.0),
@@ -23,7 +24,7 @@ RELATIVE = 1e-12  # rounding of one product
     ],
 )
 def test_unit_follows_the_suffix(column, shown, factor):
-    """A column's name tells its unit; only lengths, depths, areas and volumes are scaled."""
+    """A column's name tells its unit; only lengths, depths, areas, volumes and angles are scaled."""
     assert display_unit(column) == (shown, factor)
 
 
