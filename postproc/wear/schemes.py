@@ -90,14 +90,21 @@ def scheme_of(name: str) -> Scheme:
     return SCHEMES[name]
 
 
-def centroid_path_volume(points: np.ndarray, moved: np.ndarray, triangles: np.ndarray) -> float:
+def centroid_path_volume(
+    points: np.ndarray, moved: np.ndarray, triangles: np.ndarray, counted: np.ndarray | None = None
+) -> float:
     """Volume (m3) as Yan 2022 (Eq 5.8-5.10) counts it: area times path of the centroid, summed over triangles.
 
-    Parameters: points (n, 3) m before and moved (n, 3) m after, triangles (m, 3). It is the volume removed only
-    where every centroid moves along its normal.
+    Parameters: points (n, 3) m before and moved (n, 3) m after one update, triangles (m, 3); counted (m,) bool: the
+    triangles to sum over, all by default. Sum it over the updates.
+
+    Over all triangles it is the volume removed, where every centroid moves along its normal: Eq 5.10 taken at its word.
+    Over those alone that were in contact during the update, which is as far as "the ith element" of Eq 5.3 goes, it
+    leaves out what their neighbours lost when nodes in common were moved.
     """
-    path = np.linalg.norm((moved - points)[triangles].mean(axis=1), axis=1)
-    return float(path @ np.linalg.norm(area_vectors(points, triangles), axis=1))
+    chosen = triangles if counted is None else triangles[counted]
+    path = np.linalg.norm((moved - points)[chosen].mean(axis=1), axis=1)
+    return float(path @ np.linalg.norm(area_vectors(points, chosen), axis=1))
 
 
 def _carried_motion(faces, size, unit, carried_volume) -> np.ndarray:

@@ -125,3 +125,23 @@ def test_volume_by_centroid_paths():
     down, aside = (mesh.points + shift for shift in ((0.0, 0.0, -1e-5), (1e-5, 0.0, 0.0)))
     for moved in (down, aside):
         assert centroid_path_volume(mesh.points, moved, mesh.triangles) == pytest.approx(2e-4 * 1e-5, rel=GEOMETRY)
+
+
+def test_centroid_paths_of_the_triangles_in_contact():
+    """One triangle worn: six times Archard's volume over all that move, once over the one in contact.
+
+    A row of squares worn alike: an inner triangle of the row is moved by its own depth and by those of its neighbours
+    there, 2/3 by each of two across an edge and 1/3 by each of two at a corner: three times Archard's volume.
+    """
+    points, triangles = regular_plate()
+    volume = np.zeros(len(triangles))
+    volume[210] = 1e-13
+    moved = per_triangle(points, triangles, volume).points
+    assert centroid_path_volume(points, moved, triangles) == pytest.approx(SIX * 1e-13, rel=GEOMETRY)
+    assert centroid_path_volume(points, moved, triangles, volume > 0.0) == pytest.approx(1e-13, rel=GEOMETRY)
+    middle = points[triangles].mean(axis=1)
+    row = (middle[:, 1] > 10e-3) & (middle[:, 1] < 11e-3)
+    moved = per_triangle(points, triangles, 1e-13 * row).points
+    inner = row & (middle[:, 0] > 2e-3) & (middle[:, 0] < 18e-3)
+    expected = 3.0 * 1e-13 * np.count_nonzero(inner)
+    assert centroid_path_volume(points, moved, triangles, inner) == pytest.approx(expected, rel=GEOMETRY)
