@@ -7,9 +7,12 @@ opening, as Y. Yan (TU Delft 2022, section 5.4.2) has it, and the width that hol
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
+from postproc.analysis.display import MICROMETRES, MILLIMETRES
 from postproc.analysis.groove import AREA_SHARE
 from postproc.mesh import SurfaceMesh, boundary_edges, directed_edges
 
@@ -17,6 +20,7 @@ CONTOURS = 360  # 1 degree apart (Yan 2022, section 5.4.2; the 0.5 degrees of th
 OPENING_LEVEL = 0.1  # -, of a contour's depth: right at the rim the groove fades out over one edge of the mesh
 RADIAL_SPACING = 5e-6  # m, of the places along a contour; a fiftieth of a 0.25 mm contact
 WIDEST_SIDE = 3.0e-3  # m, of the window either side of the track
+SECTION_SPACING = 10e-6  # m, of the places of a section that is drawn
 RIM_SHARE = 0.98  # -, of the way to the edge of the disc that the window may reach: the edge is a polygon
 
 
@@ -143,5 +147,21 @@ def contour_table(mesh: SurfaceMesh, track_radius: float, count: int = CONTOURS)
             "opening_width_m": opening_width(depth, radii),
             "area_width_m": width_of_area(depth, radii),
             "area_m2": np.trapezoid(depth, radii, axis=1),
+        }
+    )
+
+
+def section_table(mesh: SurfaceMesh, track_radius: float, angles: Sequence[int]) -> pd.DataFrame:
+    """Sections of a worn disc at whole degrees: `angle_deg`, `across_mm` (from the track, outwards), `depth_um`.
+
+    Raises ValueError as `contour_table`.
+    """
+    radii = track_radii(mesh, track_radius, SECTION_SPACING)
+    depth = depth_map(mesh, radii)[np.asarray(angles) % CONTOURS]
+    return pd.DataFrame(
+        {
+            "angle_deg": np.repeat(angles, len(radii)),
+            "across_mm": np.tile(MILLIMETRES * (radii - track_radius), len(angles)),
+            "depth_um": MICROMETRES * depth.ravel(),
         }
     )

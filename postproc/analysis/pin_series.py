@@ -101,15 +101,15 @@ def circular_segment(area: float, radius: float) -> tuple[float, float]:
 def comparison(published: pd.DataFrame, ours: pd.DataFrame) -> pd.DataFrame:
     """Depth, width (mm) and volume (mm3) of laboratory, thesis and our runs, with differences in percent.
 
-    published : quantity, of, value; ours : `case` and `depth_mm`, `width_mm`, `volume_mm3`, one row per case.
-    Columns: case, <quantity>, <quantity>_to_laboratory_percent, <quantity>_to_thesis_percent.
+    published : quantity, of, value; ours : `case`, `run` and `depth_mm`, `width_mm`, `volume_mm3`, one row per case.
+    Columns: case, run, <quantity>, <quantity>_to_laboratory_percent, <quantity>_to_thesis_percent.
     """
     units = {"depth": "depth_mm", "width": "width_mm", "volume": "volume_mm3"}
     first = [
-        {"case": case} | {units[name]: published_value(published, name, of) for name in COMPARED}
+        {"case": case, "run": ""} | {units[name]: published_value(published, name, of) for name in COMPARED}
         for case, of in (("laboratory", "laboratory"), ("Yan 2022", "simulation"))
     ]
-    table = pd.concat([pd.DataFrame(first), ours[["case", *units.values()]]], ignore_index=True)
+    table = pd.concat([pd.DataFrame(first), ours[["case", "run", *units.values()]]], ignore_index=True)
     for row, name in enumerate(("laboratory", "thesis")):
         for quantity, column in units.items():
             table[f"{quantity}_to_{name}_percent"] = PERCENT * (table[column] / table.loc[row, column] - 1.0)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +9,14 @@ import pandas as pd
 
 from postproc.analysis.display import CUBIC_MILLIMETRES
 from postproc.analysis.run_in import whole_revolutions
-from postproc.mesh import SurfaceMesh, read_surface
-from postproc.wear.schemes import centroid_path_volume
 
-VOLUMES = {"removed": "removed_volume_m3", "Eq 5.9": "centroid_path_volume_m3", "alpha W": "archard_volume_m3"}
+VOLUMES = {
+    "removed": "removed_volume_m3",
+    "Eq 5.9": "centroid_path_volume_m3",
+    "Eq 5.9, touched": "touched_centroid_path_volume_m3",
+    "alpha W": "archard_volume_m3",
+}
+SUMMED = ("centroid_path_volume_m3", "touched_centroid_path_volume_m3")  # per cycle in wear.csv
 ORDERS = {"linear": 1, "quadratic": 2}
 COEFFICIENT_TOLERANCE = 1e-6  # -, to which two wear coefficients are the same
 FIXED = ("wear_coefficient_per_pa", "load_n", "track_radius_m")  # of a run
@@ -24,45 +26,31 @@ CANDIDATES = {
     "force_rise": "summed normal force over load",
     "slip": "path of the contact point over the track",
     "displacement_rule": "displacement rule",
-    "summing_rule": "volume summed by Eq 5.9",
+    "summing_rule": "Eq 5.9 over touched triangles",
 }
 
 
-def centroid_path_volumes(surfaces: Iterable[SurfaceMesh]) -> np.ndarray:
-    """Volume (k,) m3 that Eq 5.8-5.10 of Yan (2022) sum over the updates up to each surface, 0 for the first.
-
-    surfaces : of one run, one after the other. NaN from the first that has other triangles: a path needs its nodes.
-    """
-    steps = [0.0]
-    for before, after in pairwise(surfaces):
-        same = np.array_equal(before.triangles, after.triangles)
-        steps.append(centroid_path_volume(before.points, after.points, before.triangles) if same else np.nan)
-    return np.cumsum(steps)
-
-
 def volumes_of_run(folder: str | Path) -> pd.DataFrame:
-    """Volumes and forces of a run after each whole revolution, from wear.csv and the surfaces of its cycles.
+    """Volumes and forces of a run after each whole revolution, from its wear.csv.
 
-    folder : of the run, with surface.vtu. Columns: revolution, archard_volume_m3 (alpha W), removed_volume_m3,
-    carried_volume_m3, centroid_path_volume_m3 and, averaged over all cycles so far, those of AVERAGED.
+    folder : of the run. Columns: revolution, archard_volume_m3 (alpha W), removed_volume_m3, carried_volume_m3,
+    centroid_path_volume_m3 (Eq 5.9 over all triangles), touched_centroid_path_volume_m3 (over those in contact during
+    the update) and, averaged over all cycles so far, those of AVERAGED.
     """
-    folder = Path(folder)
-    wear = pd.read_csv(folder / "wear.csv")
-    files = [folder / "surface.vtu", *(folder / f"cycle_{cycle:03d}" / "surface.vtu" for cycle in wear["cycle"])]
+    wear = pd.read_csv(Path(folder) / "wear.csv")
     duration = np.diff(wear["time_s"], prepend=0.0)
     means = {name: np.cumsum(wear[name] * duration) / np.cumsum(duration) for name in AVERAGED}
     table = pd.DataFrame(
         {
             "revolution": wear["revolution"],
-            "cycle": wear["cycle"],
             "archard_volume_m3": wear["total_archard_volume_m3"],
             "removed_volume_m3": wear["total_applied_volume_m3"],
             "carried_volume_m3": wear["carried_volume_m3"],
-            "centroid_path_volume_m3": centroid_path_volumes(map(read_surface, files))[1:],
+            **{name: wear[name].cumsum() for name in SUMMED},
             **means,
         }
     )
-    return whole_revolutions(table).drop(columns="cycle").reset_index(drop=True)
+    return whole_revolutions(table).reset_index(drop=True)
 
 
 def law_volume(coefficient: float, load: float, track_radius: float, revolutions: np.ndarray) -> np.ndarray:
@@ -125,8 +113,9 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
     """What a volume over alpha F L is made of, per run and whole revolution, all summed since the start.
 
     volumes : as from `volumes_of_run` with `run`, `scheme`, `wear_coefficient_per_pa`, `load_n`, `track_radius_m`.
-    The factors of CANDIDATES build on one another: their product is the volume by Eq 5.9 over alpha F L, exactly.
-    `unexplained` is the published volume over alpha F L, over that product. `contacts` stands beside: the factor that
+    The factors of CANDIDATES build on one another: their product is the volume by Eq 5.9, summed over the triangles in
+    contact, over alpha F L, exactly. `unexplained` is the published volume over alpha F L, over that product. Beside
+    stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and `contacts`, the factor that
     would come of it if every contact were charged with the whole load.
     """
     parts = []
@@ -138,7 +127,8 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
             force_rise=rise,
             slip=row["archard_volume_m3"] / law / rise,
             displacement_rule=row["removed_volume_m3"] / row["archard_volume_m3"],
-            summing_rule=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
+            summing_rule=row["touched_centroid_path_volume_m3"] / row["removed_volume_m3"],
+            summing_over_all=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
             contacts=row["contacts_per_step"],
             vertical_force_over_load=row["mean_vertical_force_N"].abs() / load,
             published=published_volume(published, coefficient, row["revolution"].to_numpy()) / law,

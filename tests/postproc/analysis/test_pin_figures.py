@@ -1,0 +1,183 @@
+"""Tables behind the figures of the pin-on-disc study, from files of a small study with closed forms."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.analysis import pin_figures
+from postproc.analysis.pin_runs import (
+    force_boxes,
+    pin_runs,
+    reference_runs,
+    same_coefficient,
+    size_histogram,
+    window_forces,
+)
+from postproc.analysis.pin_series import comparison, mesh_series, size_invariance
+from postproc.analysis.pin_volume import CANDIDATES, excess_factors
+from tests.postproc import pin_study
+
+PUBLISHED = Path(__file__).resolve().parents[3] / "config" / "published"
+VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
+FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
+NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
+ROUNDING = 1e-9  # -, of sums over a few cycles
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """Folder, runs, contours and volumes of the small study."""
+    folder = pin_study.write_study(tmp_path_factory.mktemp("pins"))
+    return folder, *pin_study.tables(folder)
+
+
+def test_design_without_its_columns_is_refused(tmp_path):
+    pd.DataFrame({"run": ["a"], "scheme": ["conserving"]}).to_csv(tmp_path / "design.csv", index=False)
+    with pytest.raises(ValueError, match="column series, wear_coefficient_per_pa"):
+        pin_runs(tmp_path / "design.csv")
+
+
+def test_reference_runs_have_the_thesis_coefficient(study):
+    """1.7e-11 of the series of coefficients, one run per scheme; without it the nearest one."""
+    _, runs, *_ = study
+    assert reference_runs(runs, VALUES) == {"conserving": "a", "per_triangle": "b"}
+    others = runs[runs["wear_coefficient_per_pa"] != 1.7e-11]
+    assert reference_runs(others, VALUES) == {"conserving": "c", "per_triangle": "d"}
+    assert same_coefficient(runs, 1.7e-11)["run"].tolist() == ["a", "b"]
+
+
+def test_forces_fall_into_their_revolution(study):
+    """360 windows per revolution, the one that ends at 360 degrees in the first; the mean is the load."""
+    folder, *_ = study
+    forces = window_forces(folder / "a")
+    assert forces["revolution"].value_counts().to_dict() == {1: 360, 2: 360, 3: 360}
+    boxes = force_boxes(forces.assign(run="a"))
+    vertical, normal = (boxes[boxes["force"] == name] for name in ("vertical_force", "normal_force"))
+    np.testing.assert_allclose(vertical["mean_N"], pin_study.LOAD)
+    np.testing.assert_allclose(normal["mean_N"], pin_study.RISE * pin_study.LOAD)
+    np.testing.assert_allclose(vertical[["least_N", "largest_N"]], [[4.5, 5.5]] * 3)
+    with pytest.raises(FileNotFoundError, match=r"no cycle_\*/forces.csv"):
+        window_forces(folder / "none")
+
+
+def test_histogram_counts_every_contour():
+    """Counts add up to the sample, and so does the normal curve but for its tails."""
+    values = np.random.default_rng(3).normal(1.0, 0.1, 360)
+    bars = size_histogram(values, 20)
+    assert bars["count"].sum() == 360
+    assert 350 < bars["normal_count"].sum() < 360
+
+
+def test_sections_of_the_last_revolutions(study):
+    """Eight angles, three revolutions, nowhere less deep than the one before, and deeper on the whole."""
+    folder, runs, contours, _ = study
+    chosen = runs[runs["run"].isin(["a", "b"])]
+    sections = pin_figures.example_sections(folder, chosen, contours)
+    assert set(sections["revolution"]) == {1, 2, 3}
+    deepest = sections.groupby(["scheme", "angle_deg", "revolution"])["depth_um"].max().unstack()
+    assert len(deepest) == 2 * len(pin_figures.EXAMPLE_ANGLES)
+    assert (np.diff(deepest, axis=1) >= 0.0).all()
+    assert (np.diff(deepest.mean()) > 0.0).all()
+
+
+def test_sections_of_the_meshes(study):
+    """One section per mesh and scheme after one revolution, the conserving scheme first."""
+    folder, runs, contours, _ = study
+    series = mesh_series(runs, pin_figures.statistics_of(runs, contours).drop(columns="scheme"))
+    sections = pin_figures.mesh_sections(folder, runs, series)
+    assert list(dict.fromkeys(sections["run"])) == ["c", "e", "d", "f"]
+    assert set(sections["revolution"]) == {1}
+
+
+def test_words_of_the_run_in(study):
+    """A smooth wave round the disc is not normal: never for ours, 8 for the published depth."""
+    _, runs, contours, _ = study
+    statistics = pin_figures.only_reference(pin_figures.statistics_of(runs, contours), runs, VALUES)
+    words = pin_figures.run_in_words(statistics, NORMALITY)
+    assert words["depth"] == "normal from: conserving never, per triangle never, Yan 8"
+
+
+def test_excess_is_the_displacement_rule(study):
+    """Of six times the law's volume six are the displacement rule's, 1.02 the rise; conserving runs have 1."""
+    *_, volumes = study
+    factors = excess_factors(volumes[volumes["series"] == "coefficient"], FITS)
+    shown = pin_figures.shown_factors(factors, VALUES)
+    assert list(zip(shown["run"], shown["revolution"], strict=True)) == [
+        ("c", 3),
+        ("b", 1),
+        ("b", 3),
+        ("d", 1),
+        ("d", 3),
+    ]
+    np.testing.assert_allclose(shown["displacement_rule"], [1, 6, 6, 6, 6], rtol=ROUNDING)
+    np.testing.assert_allclose(shown["force_rise"], pin_study.RISE, rtol=ROUNDING)
+    np.testing.assert_allclose(shown["slip"], 1.0, rtol=ROUNDING)
+    assert set(CANDIDATES) < set(shown)
+
+
+def test_scales_have_the_law_beside_them(study):
+    """The series of scales: alpha W over alpha F L is the rise of the force."""
+    *_, volumes = study
+    table = size_invariance(pin_figures.size_cases(volumes))
+    assert table["particle_scale"].tolist() == [8.0]
+    np.testing.assert_allclose(table["difference_percent"], 2.0, rtol=1e-6)
+
+
+def test_compared_cases(study):
+    """Reference runs, the run whose law has the laboratory's volume, then the pin's shape, at the last revolution.
+
+    The means are those of the contours; the pin's shape has the laboratory's volume.
+    """
+    _, runs, contours, volumes = study
+    compared = pin_figures.compared_runs(runs, VALUES)
+    cases = pin_figures.compared_cases(compared, contours, volumes, VALUES)
+    assert cases["run"].tolist() == ["a", "b", "h", ""]
+    last = contours[(contours["run"] == "b") & (contours["revolution"] == 3)]
+    assert cases.loc[1, "depth_mm"] == pytest.approx(1e3 * last["depth_m"].mean())
+    assert cases.loc[1, "case"] == "per triangle, 1.7e-11/Pa, 3 rev."
+    table = comparison(VALUES, cases)
+    assert table["case"].tolist()[:2] == ["laboratory", "Yan 2022"]
+    assert table.iloc[-1]["volume_to_laboratory_percent"] == pytest.approx(0.0)
+
+
+def test_sections_beside_the_laboratory(study):
+    """Three angles of every compared run under the name of its case."""
+    folder, runs, contours, volumes = study
+    compared = pin_figures.compared_runs(runs, VALUES)
+    cases = pin_figures.compared_cases(compared, contours, volumes, VALUES)
+    sections = pin_figures.laboratory_sections(folder, compared, cases)
+    assert list(dict.fromkeys(sections["case"])) == cases["case"].tolist()[:3]
+    assert set(sections["angle_deg"]) == set(pin_figures.LABORATORY_ANGLES)
+    boxes = pin_figures.laboratory_boxes(VALUES)
+    np.testing.assert_allclose(boxes[["depth_mm", "width_mm"]], [[0.010, 0.65], [0.014, 0.8]])
+
+
+def test_calibration_of_all_schemes(study):
+    """Volumes in proportion to the coefficient need the laboratory's coefficient times the scaling over the excess."""
+    *_, volumes = study
+    table = pin_figures.calibrated(volumes, FITS, VALUES)
+    ours = table[table["scheme"] == "per_triangle"].iloc[-1]
+    circle = 2.0 * np.pi * pin_study.TRACK
+    expected = 0.565e-9 / (pin_study.LOAD * circle * 3 * pin_study.RISE * 6.0)
+    assert ours["wear_coefficient_per_pa"] == pytest.approx(expected, rel=1e-6)
+    assert set(table["scheme"]) == {"conserving", "per_triangle", pin_figures.PUBLISHED_FITS}
+
+
+def test_map_of_the_track(study):
+    """Depth over radius and angle: deepest in the middle of the track, a tenth deeper at 0 than at 180 degrees."""
+    folder, runs, *_ = study
+    meshes, track = pin_figures.reference_discs(folder, runs, VALUES)
+    shown = pin_figures.track_map(meshes["per_triangle"], track)
+    assert shown.shape[1] == 360
+    assert shown.index[0] == pytest.approx(20.8)
+    assert abs(float(shown.mean(axis=1).idxmax()) - 22.0) < 0.25  # mm, half an element
+
+
+def test_published_groove_holds_more_than_the_published_volume():
+    """19 um and 1.07 mm hold 1.87 mm3: 3.5 times the published volume, 13 times alpha F L."""
+    groove = pin_figures.published_groove(VALUES)
+    assert groove["groove_over_published"] == pytest.approx(3.52, abs=0.01)
+    assert groove["groove_over_alpha_F_L"] == pytest.approx(13.3, abs=0.1)
+    assert "1.87 mm³, 3.5 times" in pin_figures.groove_remark(VALUES)

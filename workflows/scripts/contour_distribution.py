@@ -1,0 +1,19 @@
+"""Draw how depth and opening are distributed round the disc."""
+
+import pandas as pd
+
+from postproc.analysis.pin_figures import common_revolution, histograms, only_reference
+from postproc.analysis.pin_runs import of_runs, pin_runs
+from postproc.plots.contours import contour_distribution
+from postproc.plots.style import save
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
+    contours = only_reference(of_runs(runs, snakemake.input.contours), runs, published)
+    last = common_revolution(contours, snakemake.params.revolution)
+    shown = contours[contours["revolution"] == last]
+    bars = histograms(shown)
+    remarks = [f"after revolution {last}", *snakemake.params.remarks]
+    save(contour_distribution(shown, dict(list(bars.groupby(["scheme", "size"]))), remarks), snakemake.output.figure)
+    bars.to_csv(snakemake.output.table, index=False)

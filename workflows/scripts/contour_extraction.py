@@ -1,0 +1,20 @@
+"""Draw how contours are taken from a worn disc."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from postproc.analysis.contours import section_table
+from postproc.analysis.pin_figures import MESH_ANGLE
+from postproc.analysis.pin_runs import pin_runs, reference_runs
+from postproc.mesh import read_surface
+from postproc.plots.disc import contour_extraction
+from postproc.plots.style import save
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
+    run = runs.set_index("run").loc[next(iter(reference_runs(runs, published).values()))]
+    mesh = read_surface(Path(snakemake.input.design).parent / run.name / "worn_surface.vtu")
+    save(contour_extraction(mesh, run["track_radius_m"], MESH_ANGLE, snakemake.params.remarks), snakemake.output.figure)
+    section_table(mesh, run["track_radius_m"], [MESH_ANGLE]).to_csv(snakemake.output.table, index=False)

@@ -1,0 +1,24 @@
+"""Draw sections of worn discs beside the laboratory's contours."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from postproc.analysis.pin_figures import (
+    compared_runs,
+    laboratory_boxes,
+    laboratory_sections,
+    laboratory_segment,
+)
+from postproc.analysis.pin_runs import pin_runs
+from postproc.plots.contours import laboratory_contour
+from postproc.plots.style import save
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
+    cases = pd.read_csv(snakemake.input.cases)
+    sections = laboratory_sections(Path(snakemake.input.design).parent, compared_runs(runs, published), cases)
+    boxes, segment = laboratory_boxes(published), laboratory_segment(published)
+    save(laboratory_contour(sections, boxes, segment, snakemake.params.remarks), snakemake.output.figure)
+    sections.to_csv(snakemake.output.table, index=False, float_format="%.6g")

@@ -1,0 +1,17 @@
+"""Draw one section of every mesh after one revolution."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from postproc.analysis.pin_figures import mesh_sections
+from postproc.analysis.pin_runs import pin_runs
+from postproc.plots.contours import mesh_contours
+from postproc.plots.style import save
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    runs, series = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.series)
+    sections = mesh_sections(Path(snakemake.input.design).parent, runs, series)
+    save(mesh_contours(sections, snakemake.params.remarks), snakemake.output.figure)
+    sections.to_csv(snakemake.output.table, index=False, float_format="%.6g")

@@ -1,0 +1,17 @@
+"""Draw simulated over theoretical volume against the scale of the pin."""
+
+import pandas as pd
+
+from postproc.analysis.pin_figures import size_cases
+from postproc.analysis.pin_runs import of_runs, pin_runs
+from postproc.analysis.pin_series import published_value, size_invariance
+from postproc.plots import pin_volume
+from postproc.plots.style import save
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
+    table = size_invariance(size_cases(of_runs(runs, snakemake.input.volumes)))
+    bound = published_value(published, "size_invariance_difference", "simulation")
+    save(pin_volume.size_invariance(table, bound, snakemake.params.remarks), snakemake.output.figure)
+    table.to_csv(snakemake.output.table, index=False)
