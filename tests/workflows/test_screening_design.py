@@ -13,7 +13,7 @@ import pytest
 
 from postproc.analysis.factors import Factor, coded_table, factors_of
 from workflows.screening_design import coded_design, design_rows, design_text, main, parse_factor
-from workflows.validation import read_design
+from workflows.validation import load_schema, read_design
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 COUNTS = range(4, 13)
@@ -155,7 +155,7 @@ def test_table_passes_the_checks_of_a_study(tmp_path):
     path = tmp_path / "mine.csv"
     words = [word for text in SIX[:5] for word in ("--factor", text)]
     assert main([*words, "--constant", "bed_thickness_mm=40", "--output", str(path)]) == 0
-    rows = read_design(path, tmp_path)
+    rows = read_design(path, tmp_path, load_schema("cases/sliding_sample/design"))
     assert len(rows) == 13
     assert {row.values["bed_thickness_mm"] for row in rows} == {40.0}
     assert rows[-1].values == {
