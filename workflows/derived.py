@@ -88,7 +88,7 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
         "layers": layers,
         "thin_bed": layers < THIN_BED_LAYERS * (1.0 - ROUNDING),
         "equivalent_size_ratio": _size_ratio(parameters),
-        "physical_patch_factor": _physical_patch_factor(parameters),
+        "physical_patch_factor": physical_patch_factor(parameters),
         **_derived_materials(parameters),
         **_derived_geometry(parameters),
         **_derived_times(parameters),
@@ -103,7 +103,7 @@ def _size_ratio(parameters: dict[str, Any]) -> float | None:
     return equivalent_size_ratio(parameters["particle"]["median_diameter_m"], *lengths)
 
 
-def _physical_patch_factor(parameters: dict[str, Any]) -> float:
+def physical_patch_factor(parameters: dict[str, Any]) -> float:
     """Return the true contact's Hertz radius over the simulated one (-); 1 where the study does not ask for it."""
     modulus = parameters["wear"].get("physical_shear_modulus_pa")
     if modulus is None:
