@@ -53,7 +53,7 @@ def run_chain(chain: Chain) -> None:
         inputs = inputs_digest(chain)
         if moved := state.set_aside_others(chain.folder, inputs):
             announce(moved)
-        finished = state.finished_cycles(chain.folder, inputs)
+        finished = state.finished_cycles(chain.folder, inputs, needed=(RESTART, SURFACE))
         span = span_of(chain, finished) if finished else None
         unfinished = finished == 0 or span is not None
         if unfinished and (missing := missing_program(cycle_executable(chain, first_span(chain.parameters)))):
@@ -64,8 +64,11 @@ def run_chain(chain: Chain) -> None:
         if not finished:
             run_cycle(chain, None, inputs, progress)
             finished, span = 1, span_of(chain, 1)
+        for cycle in range(1, finished - 1):
+            drop_files(chain, cycle)
         while span:
             run_cycle(chain, span, inputs, progress)
+            drop_files(chain, span.cycle - 1)
             finished, span = finished + 1, span_of(chain, span.cycle + 1)
         write_products(chain, finished)
 
@@ -102,6 +105,13 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
             raise state.StateError(f"{chain.name}: its inputs changed while {title(chain, cycle)} ran; start again.")
         files = (RESTART,) if span is None else (RESTART, SURFACE, LEDGER, *producer(chain.parameters).kept)
         state.write_state(folder, inputs, files, record)
+
+
+def drop_files(chain: Chain, cycle: int) -> None:
+    """Remove what the case does not keep of a cycle that has a successor."""
+    folder = state.cycle_folder(chain.folder, cycle)
+    span = state.read_state(chain.folder, cycle)["span"]
+    state.drop_files(folder, CASES[chain.case].files_to_drop(chain.parameters, Span(**span) if span else None))
 
 
 def simulate(chain: Chain, span: Span | None, folder: Path, triangles: int, progress: Progress) -> float:

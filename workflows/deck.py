@@ -192,7 +192,7 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
     }
 
 
-def _exact_ledger(run: Mapping[str, Any]) -> dict[str, Any]:
+def exact_ledger(run: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a deck needs to sum every contact in the solver."""
     kernels = law_kernels(run["wear"]["law"])
     return {"ledger_kernels": " ".join(["", "kernels", *kernels]) if kernels else ""}
@@ -209,7 +209,7 @@ def _sampled_contacts(run: Mapping[str, Any]) -> dict[str, Any]:
 
 
 # Producers of the load ledger -> what their part of the deck is filled with.
-LEDGERS = {"solver": _exact_ledger, "dumps": _sampled_contacts}
+LEDGERS = {"solver": exact_ledger, "dumps": _sampled_contacts}
 
 
 def travelled(run: Mapping[str, Any], steps: int) -> float:

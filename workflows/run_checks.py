@@ -68,7 +68,7 @@ def _for_row(run: CheckedRun, key: str) -> str:
     return f" for row {run.row.values['row']}" if "." in key else ""
 
 
-def _millimetres(metres: float) -> str:
+def millimetres(metres: float) -> str:
     return f"{metres * 1000.0:.6g} mm"
 
 
@@ -80,7 +80,7 @@ def sample_in_bed(run: CheckedRun) -> Fault | None:
         return None
     return (
         "sample.width_mm",
-        f"at most {_millimetres(room)}, bed.width_mm less a skirt of {_millimetres(skirt)} on each side",
+        f"at most {millimetres(room)}, bed.width_mm less a skirt of {millimetres(skirt)} on each side",
     )
 
 
@@ -89,7 +89,7 @@ def skirt_in_bed(run: CheckedRun) -> Fault | None:
     skirt = run.parameters["derived"]["skirt_width_m"]
     for key in ("ahead", "behind"):
         if run.parameters["bed"][f"{key}_m"] < skirt:
-            return f"bed.{key}_mm", f"at least {_millimetres(skirt)}, the width of the sample's skirt"
+            return f"bed.{key}_mm", f"at least {millimetres(skirt)}, the width of the sample's skirt"
     return None
 
 
@@ -108,7 +108,7 @@ def floor_drives_bed(run: CheckedRun) -> Fault | None:
     missing = covered * (floor + own) / max(floor, TINY_FRICTION) / bed["width_m"] - skirt["bed_length_m"]
     return (
         "bed.ahead_mm",
-        f"at least {_millimetres(bed['ahead_m'] + missing)} with bed.ends: periodic, so that the friction of the floor"
+        f"at least {millimetres(bed['ahead_m'] + missing)} with bed.ends: periodic, so that the friction of the floor"
         " exceeds that of the sample and its skirt",
     )
 
@@ -120,7 +120,7 @@ def enough_layers(run: CheckedRun) -> Fault | None:
     particle = run.parameters["particle"]
     diameter, scale = particle["median_diameter_m"], particle["scale"]
     return "bed_thickness_mm", (
-        f"at least {_millimetres(THIN_BED_LAYERS * diameter)}, three layers of particles of {_millimetres(diameter)}"
+        f"at least {millimetres(THIN_BED_LAYERS * diameter)}, three layers of particles of {millimetres(diameter)}"
         f" (particle_scale {scale:g}), or bed.allow_thin_bed: true"
     )
 
@@ -132,7 +132,7 @@ def no_particle_between(run: CheckedRun) -> Fault | None:
         return None
     return (
         "sample.height_above_floor_mm",
-        f"below {_millimetres(radius)}, the radius of the smallest particle",
+        f"below {millimetres(radius)}, the radius of the smallest particle",
     )
 
 
@@ -147,7 +147,7 @@ def element_resolves_bump(run: CheckedRun) -> Fault | None:
     radius = min(pattern["major_radius_m"], pattern["minor_radius_m"])
     if run.parameters["sample"]["element_size_m"] <= radius:
         return None
-    return "sample.element_size_mm", f"at most {_millimetres(radius)}, the smaller radius of a bump"
+    return "sample.element_size_mm", f"at most {millimetres(radius)}, the smaller radius of a bump"
 
 
 def element_resolves_sample(run: CheckedRun) -> Fault | None:
@@ -158,7 +158,7 @@ def element_resolves_sample(run: CheckedRun) -> Fault | None:
         return None
     return (
         "sample.element_size_mm",
-        f"at most {_millimetres(largest)}, a quarter of the sample's shorter side",
+        f"at most {millimetres(largest)}, a quarter of the sample's shorter side",
     )
 
 
@@ -167,7 +167,7 @@ def bump_in_bed(run: CheckedRun) -> Fault | None:
     pattern, thickness = run.parameters["pattern"], run.parameters["bed"]["thickness_m"]
     if pattern is None or pattern["height_m"] < thickness:
         return None
-    return "height_mm", f"below {_millimetres(thickness)}, bed_thickness_mm"
+    return "height_mm", f"below {millimetres(thickness)}, bed_thickness_mm"
 
 
 def cycle_long_enough(run: CheckedRun) -> Fault | None:
@@ -178,7 +178,7 @@ def cycle_long_enough(run: CheckedRun) -> Fault | None:
     if run.settings["sliding"]["cycles"] == ADAPTIVE and steps < _raw_steps(run, whole_travel=True):
         return (
             "sliding.first_cycle_mm",
-            f"at least {_millimetres(_least_travel(run))}, {LEAST_CYCLE_STEPS} time steps",
+            f"at least {millimetres(_least_travel(run))}, {LEAST_CYCLE_STEPS} time steps",
         )
     most = int(_raw_steps(run, whole_travel=True) / LEAST_CYCLE_STEPS)
     if most < 1:
@@ -195,7 +195,7 @@ def travel_within_reason(run: CheckedRun) -> Fault | None:
 def _travel_fault(run: CheckedRun, bound: str, travel: float, reason: str) -> Fault:
     """Return the fault of a travel (m), in terms of the key that the study gives it by."""
     if "test_duration_h" not in run.settings["sliding"]:
-        return "sliding.travel_mm", f"at {bound} {_millimetres(travel)}, {reason}"
+        return "sliding.travel_mm", f"at {bound} {millimetres(travel)}, {reason}"
     hours = run.settings["sliding"]["test_duration_h"] * travel / run.parameters["sliding"]["travel_m"]
     return "sliding.test_duration_h", f"at {bound} {hours:.6g} h at this acceleration and velocity, {reason}"
 
@@ -230,7 +230,7 @@ def physical_modulus_known(run: CheckedRun) -> Fault | None:
         return None
     return (
         "wear.patch",
-        f"none, simulated or radius, because {run.settings['bed']['material']} has no physical_shear_modulus_pa",
+        f"none, simulated or radius, because {run.parameters['particle']['name']} has no physical_shear_modulus_pa",
     )
 
 

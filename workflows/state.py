@@ -13,7 +13,7 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -73,16 +73,36 @@ def write_state(folder: Path, inputs: str, files: tuple[str, ...], record: Mappi
     (folder / STATE).write_text(json.dumps(state, indent=1, sort_keys=False) + "\n")
 
 
+def drop_files(folder: Path, names: Iterable[str]) -> None:
+    """Remove files of a finished cycle that nothing needs any more; its state then does without them."""
+    there = [name for name in names if (folder / name).exists()]
+    if not there:
+        return
+    state = json.loads((folder / STATE).read_text())
+    state["files"] = {name: digest for name, digest in state["files"].items() if name not in there}
+    part = folder / f"{STATE}.part"
+    part.write_text(json.dumps(state, indent=1, sort_keys=False) + "\n")
+    os.replace(part, folder / STATE)
+    for name in there:
+        (folder / name).unlink()
+
+
 def read_state(run_folder: Path, cycle: int) -> dict[str, Any]:
     """Return the state of a finished cycle."""
     return json.loads((cycle_folder(run_folder, cycle) / STATE).read_text())
 
 
-def finished_cycles(run_folder: Path, inputs: str) -> int:
-    """Return how many cycles, counted from 0 without a gap, were made from these inputs and are undamaged."""
+def finished_cycles(run_folder: Path, inputs: str, needed: tuple[str, ...] = ()) -> int:
+    """Return how many cycles, counted from 0 without a gap, were made from these inputs and are undamaged.
+
+    needed: files of the last wear cycle from which the next one goes on; where they were dropped, as from all but the
+    newest cycle, an earlier one that still has them is the last.
+    """
     count = 0
     while _holds(cycle_folder(run_folder, count), inputs):
         count += 1
+    while count > 1 and not all((cycle_folder(run_folder, count - 1) / name).exists() for name in needed):
+        count -= 1
     return count
 
 

@@ -8,6 +8,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import read_surface
+from postproc.wear.update import lost_volume
+
 SUMMED = (
     "archard_volume_m3",
     "base_archard_volume_m3",
@@ -43,9 +46,42 @@ def relative_wear(table: pd.DataFrame) -> pd.Series:
     return table["archard_volume_m3"] / table["row"].map(plain)
 
 
-def summary_table(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
+def totals_of_runs(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
     """Return the design table with the totals of every run; files in the order of the design's rows."""
     runs = pd.read_csv(design, keep_default_na=False, na_values=[""], dtype={"run": str, "row": str})
     totals = pd.DataFrame([run_summary(pd.read_csv(path)) for path in wear_files])
-    table = pd.concat([runs, totals], axis=1)
+    return pd.concat([runs, totals], axis=1)
+
+
+def summary_table(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
+    """Return the totals of every run, and its wear over that of the plain run of its row."""
+    table = totals_of_runs(design, wear_files)
     return table.assign(wear_over_plain=relative_wear(table))
+
+
+def pin_summary_table(
+    design: str | Path,
+    wear_files: Sequence[str | Path],
+    pristine: Sequence[str | Path],
+    worn: Sequence[str | Path],
+) -> pd.DataFrame:
+    """Return the totals of every run of a pin on a disc beside what should come out.
+
+    design: has columns wear_coefficient_per_pa, load_n and sliding_distance_m; pristine, worn: surfaces of the runs
+
+    Columns more: `alpha_F_L_volume_m3`, coefficient times load times distance (Archard 1953); `excess_volume_m3`, taken
+    off beyond what the law asks; `removed_volume_m3`, pristine less worn volume; `mean_vertical_force_N`, contacts.
+    """
+    table = totals_of_runs(design, wear_files)
+    wear = [pd.read_csv(path) for path in wear_files]
+    lost = [
+        lost_volume(read_surface(before), read_surface(after))[0] for before, after in zip(pristine, worn, strict=True)
+    ]
+    return table.assign(
+        alpha_F_L_volume_m3=table["wear_coefficient_per_pa"] * table["load_n"] * table["sliding_distance_m"],
+        excess_volume_m3=[rows["excess_volume_m3"].sum() for rows in wear],
+        centroid_path_volume_m3=[rows["centroid_path_volume_m3"].sum() for rows in wear],
+        removed_volume_m3=lost,
+        mean_vertical_force_N=[rows["mean_vertical_force_N"].mean() for rows in wear],
+        most_contacts_per_step=[rows["contacts_per_step"].max() for rows in wear],
+    )

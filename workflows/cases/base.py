@@ -124,6 +124,10 @@ class Case:
         """Return a phrase if a cycle went wrong unnoticed by the solver, from its own columns; else None."""
         return None
 
+    def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh) -> dict[str, float]:
+        """Return columns of a cycle's row of wear.csv from the surfaces before and right after its update."""
+        return {}
+
     def files_to_drop(self, parameters: Parameters, span: Span | None) -> tuple[str, ...]:
         """Return the files of a cycle that go when its successor is finished; here all are kept."""
         return ()
