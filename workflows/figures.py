@@ -26,6 +26,7 @@ OF_SAMPLES = (  # of every study of sliding samples
     "forces",
     "wear_law_comparison",
 )
+OF_PINS: tuple[str, ...] = ()  # of every study of a pin on a disc
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
 COMPARING_ROWS = ("relative_wear",)  # of studies with more than one design row and a plain twin
 
@@ -40,7 +41,11 @@ def _figures_of_samples(study: Study) -> list[str]:
     return [*(COMPARING_ROWS if several else ()), *OF_SAMPLES, *(OF_WEAR_UPDATES if is_deformed(study) else ())]
 
 
-FIGURES = {"sliding_sample": _figures_of_samples}  # case -> names of a study's figures
+def _figures_of_pins(study: Study) -> list[str]:
+    return list(OF_PINS)
+
+
+FIGURES = {"sliding_sample": _figures_of_samples, "pin_on_disc": _figures_of_pins}  # case -> names of a study's figures
 
 
 def figure_file(name: str) -> str:

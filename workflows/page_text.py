@@ -23,6 +23,8 @@ UNITS = (
     ("_deg", "°"),
     ("_mm", "mm"),
     ("_um", "µm"),
+    ("_deg_per_s", "°/s"),
+    ("_n", "N"),
     ("_us", "µs"),
     ("_pa", "Pa"),
     ("_s", "s"),
@@ -41,6 +43,9 @@ EXTRA_UNITS = {
     "acceleration": NO_UNIT,
     "cycles": NO_UNIT,
     "ranks": NO_UNIT,
+    "revolutions": NO_UNIT,
+    "cycles_per_revolution": NO_UNIT,
+    "wear_cycles": NO_UNIT,
     "layers": NO_UNIT,
     "equivalent_size_ratio": NO_UNIT,
 }
@@ -124,7 +129,7 @@ def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame, ca
     )
     acceleration = ("Wear acceleration", "None." if factor == 1.0 else accelerated)
     if not wear["deform"]:
-        rigid = ("Rigid sample", "The sample keeps its shape: depths are worn volume over area, not applied.")
+        rigid = ("Rigid sample", "The surface keeps its shape: depths are worn volume over area, not applied.")
         return [law, acceleration, rigid]
     carried = 100.0 * (summary["carried_volume_m3"] / summary["archard_volume_m3"]).max()
     caps = (

@@ -55,17 +55,23 @@ def check_run(run: CheckedRun, checks: tuple[Check, ...]) -> None:
 
 
 def _where(run: CheckedRun, key: str) -> str:
-    source = run.row.where() if "." not in key else locate(run.layers, tuple(key.split(".")))
+    source = locate(run.layers, tuple(key.split("."))) if _is_setting(run, key) else run.row.where()
     return f"{source}: {key}"
 
 
 def _value(run: CheckedRun, key: str) -> Any:
     section, _, name = key.rpartition(".")
-    return run.settings[section][name] if section else run.row.values[name]
+    values = run.settings if _is_setting(run, key) else run.row.values
+    return values[section][name] if section else values[name]
 
 
 def _for_row(run: CheckedRun, key: str) -> str:
-    return f" for row {run.row.values['row']}" if "." in key else ""
+    return f" for row {run.row.values['row']}" if _is_setting(run, key) else ""
+
+
+def _is_setting(run: CheckedRun, key: str) -> bool:
+    """Return whether a key is one of the settings; else it is a column of the row."""
+    return "." in key or key not in run.row.values
 
 
 def millimetres(metres: float) -> str:

@@ -25,13 +25,16 @@ from postproc.analysis.cost import BENCHMARK_SUFFIX, benchmark_seconds, job_cost
 from postproc.readers.solver_log import solver_version
 from workflows.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
 from workflows.page_text import decks_of, name_and_unit, number, setting_rows, simplifications
-from workflows.pages import PAGES, sliding_numbers
+from workflows.pages import PAGES, pin_numbers, sliding_numbers
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 TABLE_OF = {"worn_surface_3d": "worn_surface"}  # figures that share another's table
 DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
-KEY_NUMBERS = {"sliding_sample": sliding_numbers.key_numbers}  # case -> (study, folder, summary) -> what is shown
+KEY_NUMBERS = {  # case -> (study, folder, summary) -> what is shown
+    "sliding_sample": sliding_numbers.key_numbers,
+    "pin_on_disc": pin_numbers.key_numbers,
+}
 PACKAGES = (
     "numpy",
     "scipy",

@@ -58,7 +58,7 @@ def wear(
         surface, pristine, volume, limit, patch=contact_patch(parameters, ledger), scheme=parameters["wear"]["scheme"]
     )
     asked = {"step_limit_m": float(limit.max()), **planned(case, parameters, span, surface, worn)}
-    asked |= case.geometry_columns(surface, worn)
+    asked |= case.geometry_columns(surface, worn, volume > 0.0)
     worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume))
     if fault := case.worn_through(worn):
         raise WearError(

@@ -81,6 +81,7 @@ def pin_summary_table(
         alpha_F_L_volume_m3=table["wear_coefficient_per_pa"] * table["load_n"] * table["sliding_distance_m"],
         excess_volume_m3=[rows["excess_volume_m3"].sum() for rows in wear],
         centroid_path_volume_m3=[rows["centroid_path_volume_m3"].sum() for rows in wear],
+        touched_centroid_path_volume_m3=[rows["touched_centroid_path_volume_m3"].sum() for rows in wear],
         removed_volume_m3=lost,
         mean_vertical_force_N=[rows["mean_vertical_force_N"].mean() for rows in wear],
         most_contacts_per_step=[rows["contacts_per_step"].max() for rows in wear],

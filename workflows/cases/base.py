@@ -124,8 +124,11 @@ class Case:
         """Return a phrase if a cycle went wrong unnoticed by the solver, from its own columns; else None."""
         return None
 
-    def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh) -> dict[str, float]:
-        """Return columns of a cycle's row of wear.csv from the surfaces before and right after its update."""
+    def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
+        """Return columns of a cycle's row of wear.csv from the surfaces before and right after its update.
+
+        touched: (m,) bool, triangles that wear by the law
+        """
         return {}
 
     def files_to_drop(self, parameters: Parameters, span: Span | None) -> tuple[str, ...]:

@@ -139,11 +139,18 @@ class PinOnDisc(Case):
             f"itself, allowed is {safe:.3g} s: take a solver.rayleigh_fraction of at most {fraction * safe / step:.2g}"
         )
 
-    def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh) -> dict[str, float]:
-        """Return the volume of the update as the source counts it, areas times paths of centroids (Eq 5.9)."""
+    def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
+        """Return the volume of the update as the source may count it: areas times paths of centroids (Eq 5.9).
+
+        Over all triangles, and over those in contact.
+        """
         from postproc.wear.schemes import centroid_path_volume
 
-        return {"centroid_path_volume_m3": centroid_path_volume(before.points, worn.points, before.triangles)}
+        paths = before.points, worn.points, before.triangles
+        return {
+            "centroid_path_volume_m3": centroid_path_volume(*paths),
+            "touched_centroid_path_volume_m3": centroid_path_volume(*paths, counted=touched),
+        }
 
     def files_to_drop(self, parameters: Parameters, span: Span | None) -> tuple[str, ...]:
         """Return the solver's files of a cycle, and what a resume needs except at the end of a revolution."""
