@@ -109,6 +109,17 @@ def test_the_fidelity_comes_from_the_strongest_layer(config):
     assert (quick.fidelity, quick.settings["particle_scale"]) == ("quick", 2.0)
 
 
+def test_a_fidelity_may_have_a_design_of_its_own(config):
+    """The block's table replaces the study's at that fidelity, and only there; a missing one is named with its line."""
+    config.edit("studies/small.yaml", "    particle_scale: 2.0", "    design: few.csv\n    particle_scale: 2.0")
+    with pytest.raises(ConfigError, match=r"line 8, fidelity quick: design is 'few.csv', allowed is one of small.csv"):
+        load_study("small", config.root)
+    table = config.path("designs/small.csv").read_text(encoding="utf-8")
+    config.write("designs/few.csv", "\n".join(table.splitlines()[:2]))
+    assert [run.row for run in load_study("small", config.root).runs] == ["R9", "R9"]
+    assert len(load_study("small", config.root, {"fidelity": "standard"}).design_rows) == 2
+
+
 def test_whole_and_decimal_numbers_give_the_same_parameters(config):
     """2 and 2.0 are the same setting, and the same JSON (states are compared by its hash)."""
     written = [json.dumps(parameters_of(config, overrides={"particle_scale": s})) for s in (2, 2.0, "2")]

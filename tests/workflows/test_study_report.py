@@ -289,3 +289,37 @@ def test_settings_tell_what_differs_from_paper():
 def test_commit_is_not_needed(tmp_path):
     """Outside a repository the page says that the commit is not known."""
     assert commit(tmp_path) == "commit not known"
+
+
+def test_the_page_of_a_pin_needs_no_bed_and_no_sample(tmp_path):
+    """Key numbers of a pin on a disc are those of its summary; no run has a bed, and each tells its revolutions."""
+    study = load_study("pin_on_disc")
+    folder = tmp_path / "results" / study.name
+    for name in ("figures", "logs"):
+        (folder / name).mkdir(parents=True)
+    design = pd.DataFrame(study.design_table())
+    due = design["wear_coefficient_per_pa"] * design["load_n"] * design["sliding_distance_m"]
+    summary = design.assign(
+        **dict.fromkeys(("archard_volume_m3", "removed_volume_m3", "alpha_F_L_volume_m3"), due),
+        **dict.fromkeys(("mean_normal_force_N", "mean_vertical_force_N"), 5.0),
+        **dict.fromkeys(("carried_volume_m3", "balance_error", "largest_balance_error"), 0.0),
+        centroid_path_volume_m3=2.0 * due,
+        largest_depth_m=1e-6,
+        most_contacts_per_step=3.0,
+    )
+    summary.to_csv(folder / "summary.csv", index=False)
+    for name in figures_of(study):
+        path = folder / "figures" / figure_file(name)
+        path.write_bytes(PICTURE)
+        (folder / "figures" / f"{TABLE_OF.get(name, name)}.csv").write_text("name\n1\n")
+    for run in study.runs:
+        (folder / run.name).mkdir()
+        (folder / run.name / "cost.csv").write_text(f"solver_s,other_s,steps,particles\n{RUN_SOLVER},1,1000,1\n")
+    write_costs(folder, study)
+    write_page(folder / "report.html", page_parameters(study))
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    table = embedded(page, f"{study.name}_key_numbers.csv").set_index("run")
+    np.testing.assert_allclose(table["removed_over_alpha_F_L"], 1.0, rtol=RELATIVE)
+    np.testing.assert_allclose(table["centroid_path_over_alpha_F_L"], 2.0, rtol=RELATIVE)
+    assert table.loc["s4", "particle_scale"] == 4.0
+    assert "Damping assumed" in page and "Skirt not counted" not in page and "Layers:" not in page

@@ -7,13 +7,17 @@ import re
 import pytest
 
 from postproc.wear.laws import LAWS
+from workflows.cases import CASES
 from workflows.config_files import ConfigError, command_line_layer, dotted, merge, read_yaml
 from workflows.config_readme import readme
 from workflows.deck import LEDGERS
 from workflows.design import load_study
+from workflows.figures import FIGURES
 from workflows.ledgers import PRODUCERS
 from workflows.page_text import LAW_WORDS
+from workflows.pages import PAGES
 from workflows.solver import CYCLE_EXECUTABLES
+from workflows.study_report import KEY_NUMBERS
 from workflows.validation import ALL_SUFFIXES, SCHEMA_FOLDER, UNIT_OF_SUFFIX, check_layer, leaves, load_schema
 
 SETTINGS = "default.yaml"
@@ -60,6 +64,12 @@ BAD_KEYS = [
         "bed: {ahead_mm: 150}",
         "width_mm: 80",
         "config/studies/small.yaml, line 5: width_mm (80) is no known key, the nearest is sample.width_mm.",
+    ),
+    (
+        STUDY,
+        "design: small.csv",
+        "case: drum\ndesign: small.csv",
+        "config/studies/small.yaml, line 3: case is 'drum', allowed is one of sliding_sample, pin_on_disc.",
     ),
     (
         STUDY,
@@ -619,6 +629,12 @@ def test_the_sampling_interval_matters_to_sampled_contacts_only(config):
     assert all("sampling_interval_steps" not in run.parameters["solver"] for run in study.runs)
     other = load_study("small", config.root, {"solver": {"sampling_interval_steps": 7}})
     assert [run.parameters for run in other.runs] == [run.parameters for run in study.runs]
+
+
+def test_every_case_can_be_chosen_and_has_its_words():
+    """The study's schema offers the cases that there are; each has figures, a page and key numbers."""
+    offered = load_schema("study")["properties"]["case"]["enum"]
+    assert set(offered) == set(CASES) == set(FIGURES) == set(PAGES) == set(KEY_NUMBERS)
 
 
 def test_every_law_and_every_producer_can_be_chosen():
