@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,8 +13,9 @@ from meshes.disc import track_disc, track_stretch
 from postproc.mesh import SurfaceMesh, write_stl
 from postproc.readers.load_ledger import LoadLedger, read_load_ledger
 from postproc.readers.solver_log import thermo_table
+from postproc.reference.sphere_contact import stable_time_step, touching_reach
 from tests.verification.groove_cases import touching_height
-from tests.verification.ledger_cases import DENSITY, LOAD, RADIUS, run
+from tests.verification.ledger_cases import DENSITY, LOAD, MASS, RADIUS, effective_modulus, hertz_overlap, run
 from workflows import deck
 from workflows.derived import rayleigh_time, youngs_modulus
 
@@ -67,9 +69,25 @@ class PinCase:
         return self.load * self.track_radius * self.angular_velocity * self.time_step * steps
 
 
-def disc(element_size: float) -> SurfaceMesh:
-    """The unworn disc of chapter 5 with that element size (m) round the track."""
-    return track_disc(TRACK_RADIUS, INNER_RADIUS, DISC_RADIUS, element_size, BAND)
+def disc(element_size: float, band: float = BAND) -> SurfaceMesh:
+    """The unworn disc of chapter 5 with that element size (m) to `band` (m) on either side of the track."""
+    return track_disc(TRACK_RADIUS, INNER_RADIUS, DISC_RADIUS, element_size, band)
+
+
+def groove(mesh: SurfaceMesh, profile: Callable[[np.ndarray], np.ndarray]) -> SurfaceMesh:
+    """The disc with a groove: profile takes distances (m) from the track and returns depths (m), above 0 in it."""
+    across = np.hypot(mesh.points[:, 0], mesh.points[:, 1]) - TRACK_RADIUS
+    return SurfaceMesh(np.column_stack([mesh.points[:, :2], -np.maximum(profile(across), 0.0)]), mesh.triangles)
+
+
+def round_groove(mesh: SurfaceMesh, depth: float) -> SurfaceMesh:
+    """The disc with a groove of the pin's own radius, `depth` (m) deep."""
+    return groove(mesh, lambda across: np.sqrt(RADIUS**2 - across**2) - (RADIUS - depth))
+
+
+def worn_groove(mesh: SurfaceMesh) -> SurfaceMesh:
+    """The disc with a shallow groove as after twelve revolutions at 1.7e-11 1/Pa: 2.2 um deep, 0.7 mm wide."""
+    return groove(mesh, lambda across: 2.2e-6 * (1.0 - (across / 0.35e-3) ** 2))
 
 
 def common(case: PinCase, cycle: int, report_steps: int) -> dict:
@@ -151,7 +169,9 @@ def write_arc(
 def _write(folder: Path, text: str, case: PinCase, mesh: SurfaceMesh, start: float, end: float) -> np.ndarray:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "deck.in").write_text(text)
-    chosen = track_stretch(mesh, case.track_radius, start, end, case.pin_radius)
+    sunk = 2.0 * hertz_overlap(case.load, case.pin_radius)  # in the deepest place, with room
+    reach = touching_reach(case.pin_radius, sunk - mesh.points[:, 2].min())
+    chosen = track_stretch(mesh, case.track_radius, start, end, reach)
     write_stl(folder / "surface.stl", mesh.points, mesh.triangles[chosen])
     return chosen
 
@@ -171,6 +191,38 @@ def arc(
     run(place)
     ledger = read_load_ledger(place / "load_ledger.bin", f"sample_{cycle}", len(chosen), steps=steps)
     return on_whole(ledger, chosen, len(mesh.triangles)), thermo_table(place / "log.liggghts")
+
+
+@dataclass(frozen=True)
+class Ride:
+    """What a pin did over a degree of track, -: contacts at once; mean and standard deviation of the vertical force
+    over the load; work over F L.
+    """
+
+    contacts: float
+    mean: float
+    deviation: float
+    work: float
+
+
+def ride(folder: Path, mesh: SurfaceMesh, time_step: float, restitution: float) -> Ride:
+    """Take the pin over a degree of a surface with that time step (s); the forces of the first fifth do not count.
+
+    Raises RuntimeError where the solver loses the pin.
+    """
+    case = PinCase(time_step=time_step, restitution=restitution)
+    set_down(folder, case, mesh)
+    steps = round(math.radians(1.0) / (case.angular_velocity * time_step))
+    ledger, forces = arc(folder, case, mesh, 1, 0, steps, report_steps=1)
+    vertical = -forces["force_z"][forces["run"] == 1][1 + steps // 5 :] / case.load
+    work = ledger.columns["sliding_work_J"].sum() / case.load_times_distance(steps)
+    contacts = ledger.columns["contact_time_s"].sum() / ledger.time_s
+    return Ride(contacts, vertical.mean(), vertical.std(), work)
+
+
+def stable_step(contacts: float, restitution: float) -> float:
+    """Largest stable time step (s) of the pin on that many contacts, by the closed form."""
+    return stable_time_step(LOAD, RADIUS, effective_modulus(), MASS, restitution, contacts)
 
 
 def on_whole(ledger: LoadLedger, chosen: np.ndarray, count: int) -> LoadLedger:

@@ -25,7 +25,9 @@ pytestmark = pytest.mark.solver
 
 # Archard knows no speed: twenty times that of the study, in a twentieth of the steps.
 FAST = replace(PinCase(), angular_velocity=20.0 * ANGULAR_VELOCITY).exact()
-WORK = 1e-6  # -, of F L: the momentum that the pin has left where a cycle ends. Measured: 1e-7, mostly 1e-15
+WORK = 1e-6  # -, of F L. Measured: 1e-15; the load stays at its equilibrium
+# A second contact at an edge lifts the pin by up to 15 um; in a cycle that ends meanwhile m 0.3 m/s is left of F T.
+FINE_WORK = 2e-5  # -, of F L, of a turn of 2 s. Measured: 4e-6 at 0.1 mm, 1e-15 at 0.25 mm
 ROUNDING = 1e-12  # -, relative
 SAME_MAP = 1e-6  # -, of the whole work, L1 of two maps: a step within rounding of an edge. Measured: 1e-13
 CENTRE = 1e-15  # m, rounding of the place on a track of 22 mm
@@ -56,14 +58,14 @@ def difference(one, other):
     return np.abs(one - other).sum() / other.sum()
 
 
-def a_turn(folder, case, element_size, count):
+def a_turn(folder, case, element_size, count, tolerance):
     """One revolution in `count` cycles on the flat disc: alpha F L, whatever the mesh; no rolling, no impact."""
     mesh, steps = disc(element_size), case.steps_per_turn
     sums = cycles(folder, case, mesh, np.linspace(0, steps, count + 1).astype(int).tolist())
     expected = case.load_times_distance(steps)
     assert expected == pytest.approx(LOAD * 2.0 * math.pi * TRACK_RADIUS, rel=ROUNDING)
-    assert sums["sliding_work_J"].sum() == pytest.approx(expected, rel=WORK)
-    assert sums["normal_impulse_N_s"].sum() == pytest.approx(LOAD * steps * case.time_step, rel=WORK)
+    assert sums["sliding_work_J"].sum() == pytest.approx(expected, rel=tolerance)
+    assert sums["normal_impulse_N_s"].sum() == pytest.approx(LOAD * steps * case.time_step, rel=tolerance)
     assert sums["rolling_work_J"].sum() == sums["impact_energy_J"].sum() == 0.0
     assert np.count_nonzero(sums["contact_time_s"]) > 2.0 * math.pi * TRACK_RADIUS / element_size
 
@@ -71,14 +73,14 @@ def a_turn(folder, case, element_size, count):
 @pytest.mark.parametrize("element_size", [1e-3, 5e-4])
 def test_a_turn_is_load_times_distance(tmp_path, element_size):
     """One revolution in three cycles over three stretches: alpha F L."""
-    a_turn(tmp_path, FAST, element_size, 3)
+    a_turn(tmp_path, FAST, element_size, 3, WORK)
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("element_size", [2.5e-4, 1e-4])
 def test_a_turn_of_the_study_is_load_times_distance(tmp_path, element_size):
     """The same at 180 degrees per second and in twelve cycles, on the fine meshes."""
-    a_turn(tmp_path, PinCase().exact(), element_size, 12)
+    a_turn(tmp_path, PinCase().exact(), element_size, 12, FINE_WORK)
 
 
 def test_a_disc_that_turns_and_a_pin_that_goes_round_are_the_same(tmp_path, coarse):
@@ -99,7 +101,7 @@ def test_the_stretch_is_as_good_as_the_whole_disc(tmp_path, coarse):
     set_down(tmp_path, FAST, coarse)
     ledger, _ = arc(tmp_path, FAST, coarse, 1, 0, ARC_STEPS)
     folder = tmp_path / "cycle_1"
-    assert 0.2 < read_load_ledger(folder / "load_ledger.bin").triangles / len(coarse.triangles) < 0.4
+    assert 0.1 < read_load_ledger(folder / "load_ledger.bin").triangles / len(coarse.triangles) < 0.3
     write_stl(folder / "surface.stl", coarse.points, coarse.triangles)
     run(folder)
     whole = read_load_ledger(folder / "load_ledger.bin", "sample_1", len(coarse.triangles), ARC_STEPS)
