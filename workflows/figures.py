@@ -26,7 +26,26 @@ OF_SAMPLES = (  # of every study of sliding samples
     "forces",
     "wear_law_comparison",
 )
-OF_PINS: tuple[str, ...] = ()  # of every study of a pin on a disc
+OF_PINS = (  # of every study of pins on discs: what answers its question first, then the source's figures
+    "pin_comparison",
+    "excess_volume",
+    "wear_volume",
+    "force_rise",
+    "calibration",
+    "disc_setup",
+    "contour_extraction",
+    "mesh_series",
+    "mesh_contours",
+    "normal_force",
+    "contour_distribution",
+    "run_in",
+    "contour_examples",
+    "worn_disc",
+    "unrolled_track",
+    "laboratory_contour",
+    "size_invariance",
+)
+OF_SERIES = {"mesh": ("mesh_series", "mesh_contours"), "size": ("size_invariance",)}  # of them, where the design has it
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
 COMPARING_ROWS = ("relative_wear",)  # of studies with more than one design row and a plain twin
 
@@ -42,9 +61,15 @@ def _figures_of_samples(study: Study) -> list[str]:
 
 
 def _figures_of_pins(study: Study) -> list[str]:
-    return list(OF_PINS)
+    series = {row["series"] for row in study.design_rows}
+    left_out = [name for wanted, names in OF_SERIES.items() if wanted not in series for name in names]
+    return [name for name in OF_PINS if name not in left_out]
 
 
+RUN_RULES = {  # case -> rules that make a job of every run
+    "sliding_sample": ("surface_mesh", "worn_run"),
+    "pin_on_disc": ("surface_mesh", "worn_run", "track_tables"),
+}
 FIGURES = {"sliding_sample": _figures_of_samples, "pin_on_disc": _figures_of_pins}  # case -> names of a study's figures
 
 
@@ -74,7 +99,7 @@ def job_names(study: Study) -> list[str]:
         "design_table",
         "summary",
         *(f"settled_bed_{bed}" for bed in study.beds),
-        *(f"{rule}_{run.name}" for run in study.runs for rule in ("surface_mesh", "worn_run")),
+        *(f"{rule}_{run.name}" for run in study.runs for rule in RUN_RULES[study.case]),
         *figures_of(study),
     ]
 

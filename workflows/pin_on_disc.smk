@@ -2,7 +2,9 @@
 
 from workflows.remarks import figure_remarks
 
-PUBLISHED = str(ROOT / "config" / "published" / "pin_on_disc")
+PUBLISHED = str(ROOT / "config" / "published" / "pin_on_disc.csv")
+PUBLISHED_FITS = str(ROOT / "config" / "published" / "pin_on_disc_volume.csv")
+PUBLISHED_NORMALITY = str(ROOT / "config" / "published" / "pin_on_disc_normality.csv")
 CONTOURS = of_every_run("results/{study}/{run}/contours.csv")
 VOLUMES = of_every_run("results/{study}/{run}/volumes.csv")
 WORN_DISCS = of_every_run("results/{study}/{run}/worn_surface.vtu")
@@ -29,7 +31,7 @@ rule track_tables:
 rule disc_setup:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         surfaces=of_every_run("results/{study}/{run}/surface.vtu"),
     output:
         figure=report(
@@ -54,7 +56,7 @@ rule disc_setup:
 rule contour_extraction:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         worn=WORN_DISCS,
     output:
         figure=report(
@@ -129,7 +131,7 @@ rule mesh_contours:
 rule normal_force:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         wear=WEAR_TABLES,
     output:
         figure=report(
@@ -154,7 +156,7 @@ rule normal_force:
 rule contour_distribution:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         contours=CONTOURS,
     output:
         figure=report(
@@ -180,8 +182,8 @@ rule contour_distribution:
 rule run_in:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
-        normality=PUBLISHED + "_normality.csv",
+        published=PUBLISHED,
+        normality=PUBLISHED_NORMALITY,
         contours=CONTOURS,
     output:
         figure=report(
@@ -206,7 +208,7 @@ rule run_in:
 rule contour_examples:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         contours=CONTOURS,
     output:
         figure=report(
@@ -231,7 +233,7 @@ rule contour_examples:
 rule wear_volume:
     input:
         design="results/{study}/design.csv",
-        fits=PUBLISHED + "_volume.csv",
+        fits=PUBLISHED_FITS,
         volumes=VOLUMES,
     output:
         figure=report(
@@ -256,7 +258,7 @@ rule wear_volume:
 
 rule force_rise:
     input:
-        fits=PUBLISHED + "_volume.csv",
+        fits=PUBLISHED_FITS,
         volumes="results/{study}/figures/wear_volume.csv",
     output:
         figure=report(
@@ -280,7 +282,7 @@ rule force_rise:
 
 rule excess_volume:
     input:
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         factors="results/{study}/figures/force_rise.csv",
     output:
         figure=report(
@@ -305,9 +307,9 @@ rule excess_volume:
 rule calibration:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
-        fits=PUBLISHED + "_volume.csv",
-        normality=PUBLISHED + "_normality.csv",
+        published=PUBLISHED,
+        fits=PUBLISHED_FITS,
+        normality=PUBLISHED_NORMALITY,
         statistics="results/{study}/figures/run_in.csv",
         volumes=VOLUMES,
     output:
@@ -334,7 +336,7 @@ rule calibration:
 rule size_invariance:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         volumes=VOLUMES,
     output:
         figure=report(
@@ -359,7 +361,7 @@ rule size_invariance:
 rule pin_comparison:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         contours=CONTOURS,
         volumes=VOLUMES,
     output:
@@ -385,7 +387,7 @@ rule pin_comparison:
 rule laboratory_contour:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         cases="results/{study}/figures/pin_comparison.csv",
         worn=WORN_DISCS,
     output:
@@ -411,7 +413,7 @@ rule laboratory_contour:
 rule unrolled_track:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         worn=WORN_DISCS,
     output:
         figure=report(
@@ -436,7 +438,7 @@ rule unrolled_track:
 rule worn_disc:
     input:
         design="results/{study}/design.csv",
-        published=PUBLISHED + ".csv",
+        published=PUBLISHED,
         worn=WORN_DISCS,
     output:
         figure=report(

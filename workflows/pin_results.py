@@ -101,8 +101,18 @@ def excess_text(study: Path, factors: pd.DataFrame, published: pd.DataFrame) -> 
     """Return the factors of the volume, one candidate at a time."""
     columns = ["scheme", "wear_coefficient_per_pa", "revolution", *CANDIDATES, "product", "published", "unexplained"]
     note = groove_remark(published).replace(r"$\alpha F L$", "alpha F L")
-    told = textwrap.fill(f"{note[0].upper()}{note[1:]}.", LINE)
+    told = textwrap.fill(f"{note[0].upper()}{note[1:]}. {first_revolution(factors)}", LINE)
     return markdown(shown_factors(factors, published)[[*columns, "summing_over_all", "contacts"]]) + f"\n{told}\n"
+
+
+def first_revolution(factors: pd.DataFrame) -> str:
+    """Return how far the law's volume of the first revolution is from alpha F L, over all conserving runs."""
+    first = factors[(factors["scheme"] == "conserving") & (factors["revolution"] == 1)]
+    excess = 100.0 * (first["force_rise"] * first["slip"] - 1.0)
+    return (
+        f"In the first revolution of conserving runs alpha times the sliding work differs from alpha F L by "
+        f"{excess.min():.2g} to {excess.max():.2g} %."
+    )
 
 
 def fits_text(study: Path, fits: pd.DataFrame, published: pd.DataFrame) -> str:
@@ -143,8 +153,24 @@ def mesh_text(study: Path, stability: pd.DataFrame, published: pd.DataFrame) -> 
         else:
             verdict = "within" if rows["stable"].all() else "not within"
             said.append(f"{name}: up to {largest:.2g} % among {meshes} meshes, {verdict} {STABLE_PERCENT:g} %")
-    told = f"Meshes with elements up to 1/{EDGES_PER_WIDTH:g} of the groove's width differ by: {'; '.join(said)}."
+    told = (
+        f"{trend(pd.read_csv(study / 'figures' / 'mesh_series.csv'))} Meshes with elements up to 1/{EDGES_PER_WIDTH:g} "
+        f"of the groove's width differ by: {'; '.join(said)}."
+    )
     return textwrap.fill(told, LINE) + f"\n\n{markdown(stability)}"
+
+
+def trend(series: pd.DataFrame) -> str:
+    """Return how depth and opening change from the finest to the coarsest mesh, by scheme."""
+    said = []
+    for scheme, rows in series.groupby("scheme", sort=False):
+        sizes = rows.pivot(index="element_size_mm", columns="size", values="mean_mm")
+        (fine, coarse), depth, opening = sizes.index[[0, -1]], 1e3 * sizes["depth"], sizes["opening width"]
+        said.append(
+            f"{scheme.replace('_', ' ')}, elements of {fine:g} to {coarse:g} mm: depth {depth.iloc[0]:.3g} to "
+            f"{depth.iloc[-1]:.3g} µm, opening {opening.iloc[0]:.3g} to {opening.iloc[-1]:.3g} mm"
+        )
+    return f"After revolution {series['revolution'].iloc[0]}: {'; '.join(said)}."
 
 
 def calibration_text(study: Path, table: pd.DataFrame, published: pd.DataFrame) -> str:

@@ -27,11 +27,29 @@ def test_table_in_markdown():
     ]
 
 
+def write_series(folder):
+    """A series of two meshes of each scheme as the figure leaves it."""
+    rows = [
+        (scheme, element, size, mean)
+        for scheme, factor in (("conserving", 1.0), ("per_triangle", 3.0))
+        for element, depth, width in ((0.1, 0.003, 0.9), (1.0, 0.001, 1.4))
+        for size, mean in (("depth", factor * depth), ("opening width", width))
+    ]
+    (folder / "figures").mkdir()
+    table = pd.DataFrame(rows, columns=["scheme", "element_size_mm", "size", "mean_mm"])
+    table.assign(revolution=12).to_csv(folder / "figures" / "mesh_series.csv", index=False)
+
+
 def test_sentence_of_the_meshes(tmp_path):
-    """The largest difference is named, and whether it is within 5 %; one mesh alone is no comparison."""
+    """Both ends of the series are named, the largest difference, and whether it is within 5 %; one mesh alone is no
+    comparison.
+    """
+    write_series(tmp_path)
     text = " ".join(pin_results.mesh_text(tmp_path, STABILITY, PUBLISHED_VALUES).split("\n\n")[0].split())
     assert text == (
-        "Meshes with elements up to 1/5 of the groove's width differ by: conserving: up to 3.2 % among 2 meshes, "
+        "After revolution 12: conserving, elements of 0.1 to 1 mm: depth 3 to 1 µm, opening 0.9 to 1.4 mm; per "
+        "triangle, elements of 0.1 to 1 mm: depth 9 to 3 µm, opening 0.9 to 1.4 mm. Meshes "
+        "with elements up to 1/5 of the groove's width differ by: conserving: up to 3.2 % among 2 meshes, "
         "within 5 %; per triangle: fewer than two meshes are that fine, nothing is compared."
     )
 
@@ -45,10 +63,24 @@ def test_coefficient_of_the_laboratory_is_stated(tmp_path):
     assert "162.8" in text
 
 
+def test_first_revolution_of_conserving_runs():
+    """The product of rise and slip less 1, in per cent, least to largest; other runs and revolutions do not count."""
+    factors = pd.DataFrame(
+        [
+            ("conserving", 1, 1.001, 1.0),
+            ("conserving", 1, 1.002, 1.001),
+            ("conserving", 2, 1.5, 1.0),
+            ("per_triangle", 1, 2.0, 1.0),
+        ],
+        columns=["scheme", "revolution", "force_rise", "slip"],
+    )
+    assert "by 0.1 to 0.3 %." in pin_results.first_revolution(factors)
+
+
 def test_only_sections_with_a_table_are_written(tmp_path):
     """A study without a series of meshes has no section on it."""
-    (tmp_path / "figures").mkdir()
     assert pin_results.sections(tmp_path) == []
+    write_series(tmp_path)
     STABILITY.to_csv(tmp_path / "figures" / "mesh_stability.csv", index=False)
     (section,) = pin_results.sections(tmp_path)
     assert section.startswith("## Dependence on the mesh\n")
