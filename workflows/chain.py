@@ -14,6 +14,7 @@ from workflows.cases import CASES
 from workflows.schedule import Span, cycle_title, first_span, known_spans, next_span
 from workflows.solver import DECK
 
+MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
 SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
 
 
@@ -112,12 +113,13 @@ def write_bed(bed: Mapping[str, Any], folder: Path) -> None:
 def write_decks(chain: Chain) -> None:
     """Write the decks of a run with what they read, without running the solver; they run by hand in their order.
 
-    Of adaptive cycles only the first is known beforehand.
+    Of adaptive cycles only the first is known beforehand, of many the first `MOST_DECKS` are written: all have
+    the pristine surface here, so later ones show nothing new.
     """
     surface = read_surface(chain.surface)
     chain.folder.mkdir(parents=True, exist_ok=True)
     write_shared_files(chain)
-    for span in (None, *known_spans(chain.parameters)):
+    for span in (None, *known_spans(chain.parameters)[:MOST_DECKS]):
         folder = state.cycle_folder(chain.folder, span.cycle if span else 0)
         folder.mkdir(parents=True, exist_ok=True)
         write_cycle(chain, span, folder, surface)

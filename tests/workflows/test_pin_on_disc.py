@@ -10,11 +10,11 @@ import pandas as pd
 import pytest
 from test_cycles import kill_when, start_driver, wait_until_no_solver
 
-from postproc.mesh import read_surface, write_surface
+from postproc.mesh import read_stl, read_surface, write_surface
 from workflows import cycles, state
 from workflows.cases import CASES
 from workflows.cases.pin_on_disc import LOAD_TOLERANCE
-from workflows.chain import Chain, deck_text
+from workflows.chain import MOST_DECKS, Chain, deck_text, write_decks
 from workflows.config_files import ConfigError
 from workflows.design import load_study
 from workflows.schedule import known_spans
@@ -159,6 +159,17 @@ def test_golden_deck(tmp_path):
     parameters = study.run(ROW).parameters
     chain = Chain(ROW, tmp_path, study.case, parameters, tmp_path / "surface.vtu")
     assert deck_text(chain, known_spans(parameters)[1]) == GOLDEN.read_text()
+
+
+def test_decks_by_hand_are_those_of_the_first_cycles(tmp_path):
+    """Of 48 cycles the decks of setting down and of the first twelve are written, each with its stretch of the disc."""
+    chain = pin_chain(tiny_pin(sliding={"cycles_per_revolution": 24, "revolutions": 2}), tmp_path / ROW)
+    write_decks(chain)
+    folders = sorted(chain.folder.glob("cycle_*"))
+    assert [folder.name for folder in folders] == [f"cycle_{number:03d}" for number in range(MOST_DECKS + 1)]
+    first, last = (read_stl(folder / "surface.stl")[:, :, :2].mean(axis=(0, 1)) for folder in (folders[1], folders[12]))
+    assert np.arctan2(*first[::-1]) == pytest.approx(np.radians(7.5), abs=0.1)
+    assert np.arctan2(*last[::-1]) == pytest.approx(np.radians(172.5), abs=0.1)
 
 
 # ---------------------------------------------------------------- what a cycle may not do
