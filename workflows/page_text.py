@@ -98,7 +98,7 @@ def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: Modul
     reduced = "; ".join(study["remarks"]) or "nothing: all sizes and the travel are those of the paper fidelity"
     return [
         ("Reduced scale", f"{reduced}."),
-        *_wear_simplifications(settings, summary, page.cap_words(settings)),
+        *_wear_simplifications(study, summary, page.cap_words(settings)),
         *page.simplifications(study),
         *_comparison(settings["wear"]["law"]),
     ]
@@ -115,13 +115,11 @@ def _comparison(law: str) -> list[tuple[str, str]]:
     return [("LIGGGHTS' Finnie differs", how)]
 
 
-def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame, cap_words: str) -> list[tuple[str, str]]:
+def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, cap_words: str) -> list[tuple[str, str]]:
     """Return what concerns wear: law, acceleration, rigid sample or caps and what they hold back."""
-    wear = settings["wear"]
-    law = (
-        "Wear law",
-        f"{wear['law'].capitalize()}: " + LAW_WORDS[wear["law"]].format(f"{wear['wear_coefficient_per_pa']:.3g}"),
-    )
+    wear = study["settings"]["wear"]
+    coefficients = [run["wear"]["wear_coefficient_per_pa"] for run in study["parameters"].values()]
+    law = ("Wear law", f"{wear['law'].capitalize()}: " + LAW_WORDS[wear["law"]].format(range_text(coefficients, 3)))
     factor = wear["acceleration"]
     accelerated = (
         f"The coefficient is multiplied by {factor:g}: one second of simulation stands for {factor:g} s of test. "
@@ -140,9 +138,9 @@ def _wear_simplifications(settings: Mapping[str, Any], summary: pd.DataFrame, ca
     return [law, acceleration, caps]
 
 
-def range_text(values: list[float]) -> str:
+def range_text(values: list[float], digits: int = 2) -> str:
     """Return a number, or the lowest and highest where they differ."""
-    low, high = f"{min(values):.2g}", f"{max(values):.2g}"
+    low, high = (f"{value:.{digits}g}" for value in (min(values), max(values)))
     return low if low == high else f"{low} to {high}"
 
 

@@ -9,13 +9,7 @@ from workflows.pages import PAGES
 def figure_remarks(study: Study) -> list[str]:
     """Return what every figure must say: what is smaller than at paper fidelity or else simpler, law, acceleration."""
     now = study.settings
-    remarks = []
-    scales = sorted({round(run.parameters["particle"]["scale"], 3) for run in study.runs})
-    if scales[0] != scales[-1]:
-        remarks.append(f"particles at scale {scales[0]:g} to {scales[-1]:g}, different from row to row")
-    elif scales != [1.0]:
-        remarks.append(f"particles at scale {scales[0]:g}")
-    remarks += PAGES[study.case].remarks(study)
+    remarks = PAGES[study.case].remarks(study)
     if now["wear"]["law"] != "archard":
         remarks.append(f"worn by the law {now['wear']['law']}, whose volume stands where Archard's is named")
     if now["wear"]["scheme"] != "conserving":

@@ -31,9 +31,14 @@ REDUCED = (
 
 
 def remarks(study: Study) -> list[str]:
-    """Return what figures must say about sample, bed and travel."""
+    """Return what figures must say about particles, sample, bed and travel."""
     now, full = study.settings, study.paper_settings
     said = []
+    scales = sorted({round(run.parameters["particle"]["scale"], 3) for run in study.runs})
+    if scales[0] != scales[-1]:
+        said.append(f"particles at scale {scales[0]:g} to {scales[-1]:g}, different from row to row")
+    elif scales != [1.0]:
+        said.append(f"particles at scale {scales[0]:g}")
     sizes, whole = (f"{s['sample']['width_mm']:g} x {s['sample']['length_mm']:g} mm" for s in (now, full))
     if sizes != whole:
         said.append(f"sample {sizes} of {whole}")
