@@ -36,6 +36,8 @@ from workflows.validation import (
 __all__ = ["ConfigError", "Run", "Study", "list_studies", "load_study", "to_si"]
 
 SECONDS_PER_HOUR = 3600.0
+FACTORS = "factors"  # key of a study
+FEWEST_RUNS = 4  # of a regression, see postproc/analysis/screening.py, which is slow to import
 DESIGN = "design"  # key of a study, and of its fidelity blocks
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
 RULE_NAMES = frozenset(
@@ -61,7 +63,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Study:
-    """A checked study. `settings` are merged, in the units that their keys spell; so are `design_rows`."""
+    """A checked study. `settings` are merged, in the units that their keys spell; so are `design_rows`.
+
+    factors: {short name: column of the design} of the regression of its results; empty without one
+    """
 
     name: str
     case: str
@@ -71,6 +76,7 @@ class Study:
     settings: dict[str, Any]
     runs: tuple[Run, ...]
     design_rows: tuple[dict[str, Any], ...]
+    factors: dict[str, str]
     paper_settings: dict[str, Any]
 
     def run(self, name: str) -> Run:
@@ -149,6 +155,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         settings=settings,
         runs=runs,
         design_rows=tuple(row_layer.values for row_layer in rows),
+        factors=_factors(sources, rows),
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
     )
 
@@ -234,6 +241,24 @@ def _design_rows(sources: _Sources, fidelity: str, root: Path) -> list[Layer]:
     if name not in there:
         raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
     return read_design(folder / name, root, load_schema(f"cases/{sources.case}/design"))
+
+
+def _factors(sources: _Sources, rows: list[Layer]) -> dict[str, str]:
+    """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError."""
+    factors = sources.study.values.get(FACTORS, {})
+    for name, column in factors.items():
+        levels = {row.values[column] for row in rows}
+        if len(levels) < 2:
+            raise ConfigError(
+                f"{sources.study.where((FACTORS, name))}: {FACTORS}.{name} is {column}, which is"
+                f" {levels.pop():g} in every row of the design, allowed are columns with two levels or more."
+            )
+    if factors and len(rows) < FEWEST_RUNS:
+        raise ConfigError(
+            f"{sources.study.where((FACTORS,))}: {FACTORS} ask for a regression, found a design of {len(rows)} rows,"
+            f" allowed are {FEWEST_RUNS} or more."
+        )
+    return dict(factors)
 
 
 def _fidelity(sources: _Sources) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from workflows.design import Study
+from workflows.page_text import name_and_unit
 from workflows.pages import PAGES
 from workflows.remarks import figure_remarks
 
@@ -23,6 +24,7 @@ OF_SAMPLES = (  # of every study of sliding samples
     "wear_split",
     "depth_distribution",
     "bed",
+    "flow_views",
     "forces",
     "wear_law_comparison",
 )
@@ -47,6 +49,12 @@ OF_PINS = (  # of every study of pins on discs: what answers its question first,
 )
 OF_SERIES = {"mesh": ("mesh_series", "mesh_contours"), "size": ("size_invariance",)}  # of them, where the design has it
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
+REGRESSION = (  # of studies that name factors
+    "regression_coefficients",
+    "regression_residuals",
+    "regression_half_normal",
+    "regression_contours",
+)
 COMPARING_ROWS = ("relative_wear",)  # of studies with more than one design row and a plain twin
 
 
@@ -57,7 +65,12 @@ def figures_of(study: Study) -> list[str]:
 
 def _figures_of_samples(study: Study) -> list[str]:
     several = len(study.design_rows) > 1 and any(run.surface == "plain" for run in study.runs)
-    return [*(COMPARING_ROWS if several else ()), *OF_SAMPLES, *(OF_WEAR_UPDATES if is_deformed(study) else ())]
+    return [
+        *(COMPARING_ROWS if several else ()),
+        *(REGRESSION if study.factors else ()),
+        *OF_SAMPLES,
+        *(OF_WEAR_UPDATES if is_deformed(study) else ()),
+    ]
 
 
 def _figures_of_pins(study: Study) -> list[str]:
@@ -117,12 +130,19 @@ def page_parameters(study: Study) -> dict[str, Any]:
         "design_rows": list(study.design_rows),
         "remarks": figure_remarks(study),
         "figures": figures_of(study),
+        "factors": study.factors,
         "jobs": job_names(study),
         "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},
         "parameters": {run.name: run.parameters for run in study.runs},
         "beds": list(study.beds),
         "bed_of": {run.name: study.bed_of(run.name) for run in study.runs},
     }
+
+
+def factor_labels(study: Study) -> dict[str, str]:
+    """Return {short name: name and unit for an axis} of the factors of a study's regression."""
+    named = {short: name_and_unit(column) for short, column in study.factors.items()}
+    return {short: f"{name.capitalize()} {short} ({unit})" for short, (name, unit) in named.items()}
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:

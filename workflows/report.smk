@@ -1,7 +1,14 @@
 """Figures of a study, and its page."""
 
 from workflows.remarks import figure_remarks
-from workflows.figures import equivalent_size_ratios, figure_files, is_deformed, page_parameters, page_templates
+from workflows.figures import (
+    equivalent_size_ratios,
+    factor_labels,
+    figure_files,
+    is_deformed,
+    page_parameters,
+    page_templates,
+)
 
 WORN_SURFACES = of_every_run("results/{study}/{run}/worn_surface.vtu")
 WEAR_TABLES = of_every_run("results/{study}/{run}/wear.csv")
@@ -274,6 +281,85 @@ rule relative_wear:
         "Figure of the relative wear of {wildcards.study}"
     script:
         "scripts/relative_wear.py"
+
+
+rule regression:
+    input:
+        summary="results/{study}/summary.csv",
+        published="config/published/screening_coefficients.csv",
+    output:
+        figure_coefficients=report(
+            "results/{study}/figures/regression_coefficients.png",
+            caption="report/regression_coefficients.rst",
+            category="Regression",
+            labels={"figure": "Coefficients of the regression"},
+        ),
+        table_coefficients="results/{study}/figures/regression_coefficients.csv",
+        figure_residuals=report(
+            "results/{study}/figures/regression_residuals.png",
+            caption="report/regression_residuals.rst",
+            category="Regression",
+            labels={"figure": "Residuals of the regression"},
+        ),
+        table_residuals="results/{study}/figures/regression_residuals.csv",
+        figure_half_normal=report(
+            "results/{study}/figures/regression_half_normal.png",
+            caption="report/regression_half_normal.rst",
+            category="Regression",
+            labels={"figure": "Half-normal plot of effects"},
+        ),
+        table_half_normal="results/{study}/figures/regression_half_normal.csv",
+        figure_contours=report(
+            "results/{study}/figures/regression_contours.png",
+            caption="report/regression_contours.rst",
+            category="Regression",
+            labels={"figure": "Contours of the predicted wear"},
+        ),
+        table_contours="results/{study}/figures/regression_contours.csv",
+        coefficients="results/{study}/regression/coefficients.csv",
+        models="results/{study}/regression/models.csv",
+        residuals="results/{study}/regression/residuals.csv",
+        effects="results/{study}/regression/effects.csv",
+        surface="results/{study}/regression/surface.csv",
+        aliasing="results/{study}/regression/aliasing.csv",
+        best_designs="results/{study}/regression/best_designs.csv",
+        warnings="results/{study}/regression/warnings.csv",
+    log:
+        "results/{study}/logs/regression.log",
+    benchmark:
+        "results/{study}/logs/regression.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        factors=lambda wildcards: study_of(wildcards).factors,
+        labels=lambda wildcards: factor_labels(study_of(wildcards)),
+    message:
+        "Regression of the wear of {wildcards.study}"
+    script:
+        "scripts/regression.py"
+
+
+rule flow_views:
+    input:
+        summary="results/{study}/summary.csv",
+        surfaces=WORN_SURFACES,
+    output:
+        figure=report(
+            "results/{study}/figures/flow_views.png",
+            caption="report/flow_views.rst",
+            category="Bed",
+            labels={"figure": "Views of the flow"},
+        ),
+        table="results/{study}/figures/flow_views.csv",
+    log:
+        "results/{study}/logs/flow_views.log",
+    benchmark:
+        "results/{study}/logs/flow_views.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Figure of the flow of {wildcards.study}"
+    script:
+        "scripts/flow_views.py"
 
 
 rule report:

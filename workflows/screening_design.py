@@ -24,6 +24,7 @@ from postproc.analysis.factors import Factor
 from workflows.conference_matrix import conference_matrix, next_order
 
 FEWEST_FACTORS = 3
+FIRST_SEED, SEED_STEP = 20220317, 1000  # the solver takes the first few primes above a seed
 DIGITS = 10  # significant, of a level in a table
 FACTOR = re.compile(r"(?P<name>\w+)=(?P<low>[^:]+):(?P<high>[^:]+?)(?P<log>:log)?")
 CONSTANT = re.compile(r"(?P<name>\w+)=(?P<value>[^:]+)")
@@ -57,16 +58,17 @@ def design_rows(
     centres: int = 1,
     replicates: int = 1,
     coded: bool = False,
+    seed: int = FIRST_SEED,
 ) -> list[dict[str, str]]:
     """Return the rows of a design table as text: row, one column per factor, then the constants.
 
     constants: names and values of columns that do not change
-    replicates: how often the whole design is run; from 2 on rows are called R1-1, R1-2, ... and column `replicate`
-        counts the repetitions
+    replicates: how often the whole design is run; from 2 on rows are called R1-1, R1-2, ... and have a `seed`
+    seed: of the first repetition; the others have their own, far enough to share none of the solver's
     coded: levels -1, 0, 1 instead of real ones. Raises ValueError as `coded_design`, and for a name that comes twice.
     """
     names = [factor.name for factor in factors] + [name for name, _ in constants]
-    reserved = ["row", "replicate"]
+    reserved = ["row", "seed"]
     twice = [name for index, name in enumerate(names, 2) if name in (reserved + names)[:index]]
     if twice:
         raise ValueError(f"column {twice[0]} comes twice, allowed is each column once")
@@ -80,7 +82,7 @@ def design_rows(
     if replicates == 1:
         return [{"row": f"R{run}", **row} for run, row in enumerate(rows, 1)]
     return [
-        {"row": f"R{run}-{repeat}", **row, "replicate": str(repeat)}
+        {"row": f"R{run}-{repeat}", **row, "seed": str(seed + (repeat - 1) * SEED_STEP)}
         for run, row in enumerate(rows, 1)
         for repeat in range(1, replicates + 1)
     ]
@@ -134,6 +136,7 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     add("--fake", type=int, default=0, help="fake factors: more runs, for an estimate of the error (default 0)")
     add("--centres", type=int, default=1, help="centre runs (default 1)")
     add("--replicates", type=int, default=1, help="how often the whole design is run (default 1)")
+    add("--seed", type=int, default=FIRST_SEED, help=f"seed of the first repetition (default {FIRST_SEED})")
     add("--coded", action="store_true", help="write levels -1, 0, 1 instead of real ones")
     add("--output", type=Path, help="file to write, one that does not exist yet (default: print the table)")
     return parser.parse_args(words)
@@ -145,7 +148,7 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         factors = [parse_factor(text) for text in given.factor]
         constants = [parse_constant(text) for text in given.constant]
-        rows = design_rows(factors, constants, given.fake, given.centres, given.replicates, given.coded)
+        rows = design_rows(factors, constants, given.fake, given.centres, given.replicates, given.coded, given.seed)
         if given.output is None:
             sys.stdout.write(design_text(rows))
             return 0

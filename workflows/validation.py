@@ -17,6 +17,7 @@ from typing import Any
 import jsonschema
 
 from workflows.config_files import (
+    INTEGER,
     NUMBER,
     ConfigError,
     KeyPath,
@@ -308,6 +309,8 @@ def _cell(text: str, schema: dict[str, Any]) -> Any:
     """Return the value of a cell: a number or a boolean where it spells one and the column is no text."""
     if schema.get("type") == "boolean":
         return {"true": True, "false": False}.get(text, text)
+    if schema.get("type") == "integer" and INTEGER.match(text):
+        return int(text)
     return float(text) if schema.get("type") in NUMBERS and NUMBER.match(text) else text
 
 

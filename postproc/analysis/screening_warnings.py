@@ -23,6 +23,11 @@ def screening_warnings(study: Screening) -> list[str]:
     return [sentence for part in parts for sentence in part(study)]
 
 
+def warnings_for_figures(study: Screening) -> list[str]:
+    """Return those that stand on every figure: runs that are lost, and what else differs between runs."""
+    return [*_lost_runs(study), *_nuisances(study)]
+
+
 def _listed(names) -> str:
     return ", ".join(str(name) for name in names)
 
@@ -60,7 +65,12 @@ def _lost_terms(study: Screening) -> Iterator[str]:
             yield f"{name} cannot be told from {term_name(other, study.names)} and is left out"
 
 
-def _nuisances(study: Screening) -> Iterator[str]:
+def confounded(study: Screening) -> dict[str, dict[str, float]]:
+    """Return, for every nuisance that differs between runs, {factor: correlation (-)} of those it is aliased with.
+
+    The strongest factor comes first; a nuisance that varies without being aliased has none.
+    """
+    found = {}
     for what, values in study.nuisances.items():
         if np.ptp(values) <= VARIES * np.abs(values).max():
             continue
@@ -68,9 +78,16 @@ def _nuisances(study: Screening) -> Iterator[str]:
         with np.errstate(invalid="ignore", divide="ignore"):
             correlation = np.nan_to_num(np.corrcoef(columns, rowvar=False)[-1, :-1])
         order = np.argsort(-np.abs(correlation), kind="stable")
-        aliased = [f"{study.names[k]} ({correlation[k]:+.2f})" for k in order if abs(correlation[k]) >= CONFOUNDED]
-        ends = f"the {what} is not the same in all runs ({values.min():.3g} to {values.max():.3g})"
-        yield f"{ends}: it is aliased with {_listed(aliased)}, whose effect cannot be told from it" if aliased else ends
+        found[what] = {study.names[k]: correlation[k] for k in order if abs(correlation[k]) >= CONFOUNDED}
+    return found
+
+
+def _nuisances(study: Screening) -> Iterator[str]:
+    for what, factors in confounded(study).items():
+        values = study.nuisances[what]
+        differs = f"the {what} is not the same in all runs ({values.min():.3g} to {values.max():.3g})"
+        named = _listed(f"{name} ({correlation:+.2f})" for name, correlation in factors.items())
+        yield f"{differs}: it is aliased with {named}, whose effect cannot be told from it" if factors else differs
 
 
 def _few_runs(study: Screening) -> Iterator[str]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from postproc.analysis.regression import CONSTANT
+from postproc.analysis.screening import Screening
 from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 OURS, PUBLISHED = "#0072B2", "#D55E00"
@@ -20,6 +21,12 @@ SMALLEST_PROBABILITY = 0.001  # that three digits show
 ROOM = 0.12  # -, of an axis, for names beside points
 CONTOURS = 9
 SHIFT = 0.16  # of a line of the coefficient figure, between ours and published
+DRAWN = {  # figure -> the table that it draws
+    "coefficients": "coefficients",
+    "residuals": "residuals",
+    "half_normal": "effects",
+    "contours": "surface",
+}
 
 
 def coefficients(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
@@ -163,3 +170,26 @@ def _name_points(axes: Axes, x: pd.Series, y: pd.Series, names: pd.Series) -> No
     axes.margins(ROOM)
     for place, height, name in zip(x, y, names, strict=True):
         axes.annotate(_typeset(name), (place, height), (6, -3), textcoords="offset points", fontsize=SMALLEST_FONT)
+
+
+def regression_figures(
+    study: Screening,
+    tables: Mapping[str, pd.DataFrame],
+    published: pd.DataFrame,
+    labels: Mapping[str, str],
+    remarks: Sequence[str],
+) -> dict[str, Figure]:
+    """Return the figures of a study's regression by the names of DRAWN.
+
+    tables: as from `analysis.screening_tables.regression_tables`; published: coefficients to show beside, left out
+    unless the study has all their factors; labels: {short name: name and unit for an axis}
+    """
+    factors = {name for term in published["term"] if term != CONSTANT for name in term.removesuffix("^2").split("*")}
+    beside = published if factors <= set(study.names) else published[:0]
+    doubling = [factor.name for factor in study.factors if factor.spacing == "log"]
+    return {
+        "coefficients": coefficients(tables["coefficients"], beside, remarks),
+        "residuals": residual_plots(tables["residuals"], remarks),
+        "half_normal": half_normal(tables["effects"], remarks),
+        "contours": response_contours(tables["surface"], labels, doubling, remarks),
+    }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import math
+import re
 
 import pytest
 
@@ -498,3 +499,55 @@ def test_the_hop_off_the_ramp_is_ballistic_and_told(config):
     remarks = figure_remarks(load_study("screening"))
     assert any(remark.startswith("particles hop off the ramp, up to 14 mm") for remark in remarks)
     assert not any("hop" in remark for remark in figure_remarks(load_study("demo")))
+
+
+# ---------------------------------------------------------------- regression and replicates
+
+
+def with_factors(config, factors, design="R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\n"):
+    """The small study with factors of a regression, and with more rows."""
+    config.edit("studies/small.yaml", "surfaces: [convex, plain]", f"surfaces: [convex, plain]\nfactors: {factors}")
+    path = config.path("designs/small.csv")
+    path.write_text(path.read_text() + design)
+
+
+def test_factors_of_a_regression(config):
+    """Factors come with short names of the study's own; without them there is no regression."""
+    assert load_study("small", config.root).factors == {}
+    with_factors(config, "{a: major_radius_mm, x: minor_radius_mm}")
+    assert load_study("small", config.root).factors == {"a": "major_radius_mm", "x": "minor_radius_mm"}
+
+
+@pytest.mark.parametrize(
+    ("factors", "design", "sentence"),
+    [
+        ("{a: major_radius_mm, b: radius_mm}", "", "factors.b is 'radius_mm', allowed is one of major_radius_mm,"),
+        ("{a: major_radius_mm}", "", "factors"),
+        ("{a: major_radius_mm, b: minor_radius_mm}", "", "found a design of 2 rows, allowed are 4 or more."),
+        (
+            "{a: major_radius_mm, t: height_mm}",
+            "R1,2,2,20,6.0,0.5,30\nR2,4,2,20,6.0,0.5,30\n",
+            "factors.t is height_mm, which is 6 in every row of the design, allowed are columns with two levels",
+        ),
+    ],
+)
+def test_factors_that_tell_nothing_are_refused(config, factors, design, sentence):
+    """Unknown columns, a single factor, too few rows and factors that stay the same are named, with the line."""
+    with_factors(config, factors, design)
+    with pytest.raises(ConfigError, match=re.escape(sentence)) as fault:
+        load_study("small", config.root)
+    assert "studies/small.yaml, line 5" in str(fault.value)
+
+
+def test_rows_with_seeds_are_replicates(config):
+    """Rows that differ in their seed alone have beds of their own; without the column all have the setting's."""
+    assert load_study("small", config.root).run("R9_convex").parameters["bed"]["seed"] == 20220317
+    path = config.path("designs/small.csv")
+    header, first, *_ = path.read_text().splitlines()
+    name, _, rest = first.partition(",")
+    path.write_text(f"{header},seed\n{name}-1,{rest},20220317\n{name}-2,{rest},20221317\n")
+    study = load_study("small", config.root)
+    seeds = [run.parameters["bed"]["seed"] for run in study.runs if run.surface == "convex"]
+    assert seeds == [20220317, 20221317]
+    assert all(isinstance(seed, int) for seed in seeds)
+    assert len(study.beds) == 2

@@ -1,6 +1,7 @@
 """The page of a study: complete, self-contained, its numbers those of the tables."""
 
 import base64
+import html
 import io
 import json
 import re
@@ -9,8 +10,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from postproc.analysis.comparison import read_summary
 from postproc.analysis.history import wear_history
+from postproc.analysis.screening_tables import regression_tables, screen_summary
 from postproc.analysis.summary import summary_table
+from postproc.plots.regression import DRAWN
 from workflows.design import load_study
 from workflows.figures import figure_file, figures_of, page_parameters
 from workflows.page_text import UNDEFINED, name_and_unit, number, setting_rows
@@ -323,3 +327,33 @@ def test_the_page_of_a_pin_needs_no_bed_and_no_sample(tmp_path):
     np.testing.assert_allclose(table["centroid_path_over_alpha_F_L"], 2.0, rtol=RELATIVE)
     assert table.loc["s4", "particle_scale"] == 4.0
     assert "Damping assumed" in page and "Skirt not counted" not in page and "Layers:" not in page
+
+
+def test_a_study_with_factors_has_a_regression(config, tmp_path):
+    """Its figures are drawn, and its page shows models, best designs and every warning."""
+    config.edit(
+        "studies/small.yaml",
+        "surfaces: [convex, plain]",
+        "surfaces: [convex, plain]\nfactors: {a: major_radius_mm, b: minor_radius_mm}",
+    )
+    path = config.path("designs/small.csv")
+    path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\n")
+    study = load_study("small", config.root)
+    names = [name for name in figures_of(study) if name.startswith("regression_")]
+    assert names == [f"regression_{name}" for name in DRAWN]
+    write_results(tmp_path / "small", study)
+    tables = regression_tables(screen_summary(read_summary(tmp_path / "small" / "summary.csv"), study.factors))
+    (tmp_path / "small" / "regression").mkdir()
+    for name, table in tables.items():
+        table.to_csv(tmp_path / "small" / "regression" / f"{name}.csv", index=False)
+    write_page(tmp_path / "small" / "report.html", page_parameters(study))
+    text = html.unescape((tmp_path / "small" / "report.html").read_text(encoding="utf-8"))
+    assert "Regression of the wear" in text
+    assert tables["models"]["model"][0] in text
+    for warning in tables["warnings"]["warning"]:
+        assert f"Mind: {warning}." in text
+
+
+def test_without_factors_there_is_no_regression(config):
+    """Nothing is regressed that a study does not name."""
+    assert not any(name.startswith("regression_") for name in figures_of(load_study("small", config.root)))

@@ -14,6 +14,8 @@ from postproc.analysis.display import in_display_units
 from workflows.page_text import number
 from workflows.pages.sliding_sample import ROWS_IN_DETAIL
 
+TEXTS = dict.fromkeys(("model", "given", "not_in_model", "warning"), str)  # columns that may be empty
+REGRESSION_TABLES = ("models", "best_designs", "warnings")
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 
 
@@ -30,7 +32,15 @@ def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -
         "accelerated": acceleration != 1.0,
         "cards": cards(results, acceleration),
         "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
+        "regression": regression(folder / "regression") if study["factors"] else None,
     }
+
+
+def regression(folder: Path) -> dict[str, Any]:
+    """Return the models, the best designs and the warnings of a study's regression, as lists of rows."""
+    tables = {name: pd.read_csv(folder / f"{name}.csv", converters=TEXTS) for name in REGRESSION_TABLES}
+    shown = {name: table.to_dict("records") for name, table in tables.items()}
+    return shown | {"factors": list(tables["best_designs"].columns[1:-4])}
 
 
 def result_table(

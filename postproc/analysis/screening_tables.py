@@ -1,0 +1,91 @@
+"""Every table of a screening study's regression, from the study's summary."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from postproc.analysis.comparison import PLAIN
+from postproc.analysis.factors import Factor, factor_of
+from postproc.analysis.model_terms import aliasing, candidate_terms
+from postproc.analysis.screening import (
+    Screening,
+    best_design_table,
+    chance_test,
+    chosen_coefficients,
+    effects,
+    model_table,
+    pairs_to_show,
+    residuals,
+    response_surface,
+    screen,
+)
+from postproc.analysis.screening_warnings import confounded, screening_warnings
+
+WEAR = "archard_volume_per_metre_m3_per_m"  # runs of different travel compare by it
+NUISANCES = {"particle_scale": "particle scale"}  # columns that should be the same in all runs
+
+
+def screen_summary(summary: pd.DataFrame, factors: Mapping[str, str]) -> Screening:
+    """Return the regression of the runs with a pattern; factors: {short name: column of the summary}.
+
+    Their wear is that per metre of travel. Raises ValueError as `screen`.
+    """
+    runs = summary[summary["surface"] != PLAIN]
+    coded = {}
+    for name, column in factors.items():
+        found = factor_of(name, runs[column].to_numpy())
+        coded[column] = Factor(name, found.low, found.high, found.spacing)
+    nuisances = {words: runs[column].to_numpy() for column, words in NUISANCES.items() if column in runs}
+    return screen(runs, coded, runs[WEAR].to_numpy(), nuisances)
+
+
+def strongest_factor(study: Screening) -> Factor | None:
+    """Return the factor with the largest main effect in the best model; None without a main effect."""
+    mains = {
+        term[0]: abs(value)
+        for term, value in zip(study.model.terms, study.model.coefficients[1:], strict=True)
+        if len(term) == 1
+    }
+    return study.factors[max(mains, key=mains.get)] if mains else None
+
+
+def best_designs(study: Screening) -> pd.DataFrame:
+    """Return the best design inside all ranges, and at each level of the strongest factor, which sets the regime.
+
+    As `screening.best_design_table`, with the wear over the largest of the study, and `given` first: what was held.
+    Factors that are aliased with a nuisance are held at their middle in all cases: nothing is claimed about them.
+    """
+    aliased = {name for factors in confounded(study).values() for name in factors}
+    held = {factor.name: float(factor.real(0.0)) for factor in study.factors if factor.name in aliased}
+    strongest = strongest_factor(study)
+    cases = [held]
+    if strongest is not None and strongest.name not in aliased:
+        cases += [{**held, strongest.name: float(level)} for level in strongest.real([-1.0, 0.0, 1.0])]
+    table = best_design_table(study, cases)
+    for column in ("predicted", "run_low", "run_high"):
+        table[column] = table[column] / study.largest_wear
+    words = [", ".join(f"{name} = {value:g}" for name, value in case.items()) for case in cases]
+    table.insert(0, "given", words)
+    return table.rename(columns={name: f"{name}_over_largest" for name in ("predicted", "run_low", "run_high")})
+
+
+def regression_tables(study: Screening) -> dict[str, pd.DataFrame]:
+    """Return all tables by name: coefficients, models (with the p value by permutation of the best), residuals,
+    effects, surface, aliasing, best_designs and warnings.
+    """
+    chance = chance_test(study)
+    models = model_table(study).assign(p_value_permutation=float("nan"))
+    models.loc[0, "p_value_permutation"] = chance.model_p
+    terms = candidate_terms(len(study.factors))
+    return {
+        "coefficients": chosen_coefficients(study, chance),
+        "models": models,
+        "residuals": residuals(study),
+        "effects": effects(study),
+        "surface": response_surface(study, pairs_to_show(study)),
+        "aliasing": aliasing(terms, study.coded, study.names).rename_axis("term").reset_index(),
+        "best_designs": best_designs(study),
+        "warnings": pd.DataFrame({"warning": screening_warnings(study)}, dtype=str),
+    }

@@ -1,0 +1,22 @@
+"""Draw the flow over the samples of the rows that are shown in detail."""
+
+from pathlib import Path
+
+from postproc.analysis.bed import last_snapshot, read_snapshot
+from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_rows
+from postproc.analysis.depth import read_worn_surfaces
+from postproc.analysis.flow_views import flow_views, sample_lines
+from postproc.plots import flow_views as figures
+from postproc.plots.style import save
+from workflows.job import job_log
+from workflows.pages.sliding_sample import ROWS_IN_DETAIL
+
+with job_log(snakemake.log[0]):
+    summary = read_summary(snakemake.input.summary)
+    shown = runs_of_rows(summary, rows_to_show(summary, ROWS_IN_DETAIL))
+    files = dict(zip(summary["run"], snakemake.input.surfaces, strict=True))
+    meshes = read_worn_surfaces(shown, [files[run] for run in shown])
+    views = {run: flow_views(read_snapshot(last_snapshot(Path(files[run]).parent)), meshes[run]) for run in shown}
+    lines = {run: sample_lines(mesh) for run, mesh in meshes.items()}
+    save(figures.flow_views(views, lines, snakemake.params.remarks), snakemake.output.figure)
+    figures.flow_views_table(views).to_csv(snakemake.output.table, index=False, float_format="%.6g")
