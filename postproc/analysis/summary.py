@@ -19,11 +19,13 @@ SUMMED = (
     "sliding_work_J",
     "finnie_volume_m3",
 )
+MEANS = ("mean_normal_force_N", "bed_over_floor_velocity")  # over time; the second where friction alone moves a bed
 AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
 
 
 def run_summary(wear: pd.DataFrame) -> dict[str, float]:
-    """Return a run's totals (m3, J), its state at the end, mean normal force (N) and wear per metre (m3/m).
+    """Return a run's totals (m3, J), its state at the end, mean normal force (N) and wear per metre (m3/m); where the
+    floor's friction alone moves the bed also its mean velocity over the floor's (-).
 
     wear: rows of wear.csv, cycle by cycle.
     """
@@ -35,7 +37,7 @@ def run_summary(wear: pd.DataFrame) -> dict[str, float]:
         **last,
         **totals,
         "archard_volume_per_metre_m3_per_m": totals["archard_volume_m3"] / last["travel_m"],
-        "mean_normal_force_N": float(np.average(wear["mean_normal_force_N"], weights=duration)),
+        **{name: float(np.average(wear[name], weights=duration)) for name in MEANS if name in wear},
         "largest_balance_error": float(wear["balance_error"].max()),
     }
 

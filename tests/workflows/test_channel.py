@@ -6,6 +6,7 @@ import pytest
 from tiny import tiny_chain, tiny_study
 
 from postproc.analysis.bed import last_snapshot, read_snapshot
+from postproc.analysis.summary import run_summary
 from postproc.readers.solver_log import thermo_table
 from workflows import cycles
 
@@ -44,6 +45,8 @@ def test_the_floor_takes_the_bed_along(channel):
     """The bed never overtakes its floor, follows it closely, and does not drift across the channel."""
     wear = pd.read_csv(channel.folder / "wear.csv")
     assert wear["bed_over_floor_velocity"].between(LEAST_DRIVE, 1.0).all()
+    mean = run_summary(wear)["bed_over_floor_velocity"]  # of two cycles of equal length
+    assert mean == pytest.approx(wear["bed_over_floor_velocity"].mean(), rel=1e-9)
     dump = pd.read_csv(last_snapshot(channel.folder), sep=r"\s+", skiprows=9, header=None)
     across = np.average(dump[4], weights=dump[10] ** 3)
     assert abs(across) < SIDEWAYS * channel.parameters["sliding"]["velocity_m_per_s"]
