@@ -100,6 +100,7 @@ def test_bump_is_worn_through(rate):
     pristine = bump_sample(2e-3)
     for mesh, outcome, total in wear(pristine, SPEED, MOST_UPDATES, LEFT, rate):
         assert not outcome.faults.tangled.any()
+        assert abs(outcome.volume_change_m3) < CLOSED * total
         assert balance_error(pristine, mesh, total) < BALANCE
         assert outcome.largest_outward <= OUTWARD
         assert set(np.unique(mesh.cell_data["part"])) == {0, 1}
