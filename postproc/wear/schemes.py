@@ -100,7 +100,8 @@ def centroid_path_volume(
 
     Over all triangles it is the volume removed, where every centroid moves along its normal: Eq 5.10 taken at its word.
     Over those alone that were in contact during the update, which is as far as "the ith element" of Eq 5.3 goes, it
-    leaves out what their neighbours lost when nodes in common were moved.
+    leaves out what their neighbours lost when nodes in common were moved. That sum grows with the length of an update,
+    in which more triangles are touched; the source updates in every time step.
     """
     chosen = triangles if counted is None else triangles[counted]
     path = np.linalg.norm((moved - points)[chosen].mean(axis=1), axis=1)
