@@ -26,7 +26,8 @@ from postproc.plots.style import LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, fa
 
 CANDIDATE_COLOURS = dict(zip(CANDIDATES, ("#56B4E9", "#999999", "#E69F00", "#CC79A7"), strict=True))
 UNEXPLAINED_LOOK = {"color": "white", "edgecolor": "black", "hatch": "////", "linewidth": 0.6}
-BAR = 0.6  # of the space of a run
+BAR = 0.15  # of the space of a run
+SHOWN_FORCES = (0.98, 1.05)  # -, of the load, at least
 HEADROOM = 1.3  # -, of the highest bar
 VOLUME_LOOKS = {  # volume, line and what it is called
     "removed": ("-", "removed from the surface"),
@@ -53,7 +54,7 @@ def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
     handles = {
         text: line for axes in panels.values() for line, text in zip(*axes.get_legend_handles_labels(), strict=True)
     }
-    figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=3)
+    figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=2)
     return figure
 
 
@@ -96,6 +97,8 @@ def force_rise(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         axes.set(xlabel="Revolutions", ylabel=label)
     for axes in grid[:2]:
         axes.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
+        low, high = axes.get_ylim()
+        axes.set_ylim(min(low, SHOWN_FORCES[0]), max(high, SHOWN_FORCES[1]))  # a thousandth is not to look like much
     thin, thick = coefficient_name(coefficients[0]), coefficient_name(coefficients[-1])
     grid[0].set_title(f"thin: {thin}, thick: {thick}; mean since the start", loc="left", fontsize=SMALLEST_FONT)
     figure.legend(*grid[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
@@ -103,24 +106,25 @@ def force_rise(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
 
 def excess_volume(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw what volumes over alpha F L are made of: factors stacked on a log axis, and the published one beside.
+    """Draw what volumes over alpha F L are made of: factor upon factor on a log axis, and the published one beside.
 
     factors : as from `analysis.pin_volume.excess_factors`, the rows to show, in order.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes, printed = figure.subplots(2, 1, height_ratios=(1, 1))
     places = np.arange(len(factors))
-    bottom = np.ones(len(factors))
-    for name, words in CANDIDATES.items():
-        factor = factors[name].to_numpy()
-        axes.bar(places, bottom * (factor - 1.0), BAR, bottom=bottom, color=CANDIDATE_COLOURS[name], label=words)
-        bottom = bottom * factor
-    rest = factors["unexplained"].to_numpy()
-    axes.bar(places, bottom * (rest - 1.0), 0.35 * BAR, bottom=bottom, label="left unexplained", **UNEXPLAINED_LOOK)
-    axes.plot(places, factors["published"], "D", color="black", markersize=5, label="published (Eq 5.11 to 5.15)")
+    reached = np.cumprod(factors[[*CANDIDATES, "unexplained"]].fillna(1.0).to_numpy(), axis=1)
+    steps = np.column_stack([np.ones(len(factors)), reached])
+    looks = [{"color": colour} for colour in CANDIDATE_COLOURS.values()]
+    names = [*CANDIDATES.values(), "left unexplained"]
+    for index, (look, words) in enumerate(zip([*looks, UNEXPLAINED_LOOK], names, strict=True)):
+        place = places + BAR * (index - 0.5 * (len(names) - 1))
+        axes.bar(place, steps[:, index + 1] - steps[:, index], BAR, bottom=steps[:, index], label=words, **look)
+    end = places + BAR * (0.5 * len(names) + 0.5)
+    axes.plot(end, factors["published"], "D", color="black", markersize=5, label="published (Eq 5.11 to 5.15)")
     axes.axhline(1.0, color="black", linewidth=0.8)
     axes.set_yscale("log", base=2)
-    axes.set_ylim(top=HEADROOM * np.nanmax([*bottom, *factors["published"]]))
+    axes.set_ylim(top=HEADROOM * steps.max())
     axes.yaxis.set_major_formatter("{x:g}")
     axes.set_ylabel(r"Volume over $\alpha F L$ (-)")
     axes.set_xticks(places, [str(place + 1) for place in places])
@@ -200,6 +204,7 @@ def calibration(
     axes.set(
         yscale="log", xlabel="Simulated revolutions that stand for the test", ylabel=r"Wear coefficient (Pa$^{-1}$)"
     )
+    axes.set_xticks(sorted(table["revolutions"].unique()))
     top = axes.secondary_xaxis("top", functions=(_reciprocal(test_revolutions), _reciprocal(test_revolutions)))
     top.set_xlabel("Scaling factor (-)")
     figure.legend(loc="outside upper center", ncols=2)
@@ -238,6 +243,13 @@ def size_invariance(table: pd.DataFrame, published_percent: float, remarks: Sequ
     return figure
 
 
+def _case_colour(case: str) -> str:
+    """Colour of a compared case by its name."""
+    known = {"laboratory": LABORATORY_COLOUR, "Yan 2022": "black"}
+    schemes = {scheme.replace("_", " "): colour for scheme, colour in SCHEME_COLOURS.items()}
+    return known.get(case) or schemes.get(case.partition(",")[0], OTHER_COLOUR)
+
+
 def comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw depth, width and volume of laboratory, thesis and our runs, and print them with their differences.
 
@@ -248,11 +260,7 @@ def comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     grid = figure.add_gridspec(2, 1, height_ratios=(5, 4))
     drawn = grid[0].subgridspec(1, len(units)).subplots(sharey=True)
     places = -np.arange(len(table))
-    colours = [LABORATORY_COLOUR, "black", *[SCHEME_COLOURS["conserving"]] * (len(table) - 2)]
-    colours = [
-        SCHEME_COLOURS["per_triangle"] if "per triangle" in case else colour
-        for case, colour in zip(table["case"], colours, strict=True)
-    ]
+    colours = [_case_colour(case) for case in table["case"]]
     for axes, (quantity, unit) in zip(drawn, units.items(), strict=True):
         axes.barh(places, table[f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"], 0.6, color=colours)
         axes.axvline(

@@ -121,7 +121,7 @@ def test_published_volumes_are_drawn_as_published(figures):
 
 
 def test_stacked_factors_reach_the_product(figures, study):
-    """The top of the last stacked bar is the product, that of the hatched one the published factor."""
+    """The last coloured bar ends at the product, the hatched one at the published factor."""
     *_, volumes = study
     factors = pin_figures.shown_factors(excess_factors(volumes[volumes["series"] == "coefficient"], FITS), VALUES)
     bars = {group.get_label(): group for group in figures["excess_volume"].axes[0].containers if group.get_label()}
