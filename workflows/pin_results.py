@@ -184,7 +184,8 @@ def calibration_text(study: Path, table: pd.DataFrame, published: pd.DataFrame) 
         f"published ({1e13 * published_value(published, 'wear_coefficient', 'laboratory'):.1f} ± 1)e-13.",
         LINE,
     )
-    return f"{told}\n\n{markdown(table)}\nLargest scaling factor that the run-in allows:\n\n{markdown(limits, 4)}"
+    limit = "Largest scaling factor that the run-in allows, and at which a wear update reaches its cap:"
+    return f"{told}\n\n{markdown(table)}\n{limit}\n\n{markdown(limits, 4)}"
 
 
 def size_text(study: Path, table: pd.DataFrame, published: pd.DataFrame) -> str:

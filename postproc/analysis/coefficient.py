@@ -75,3 +75,14 @@ def scaling_limits(run_in: pd.DataFrame, test_revolutions: float) -> pd.DataFram
     return run_in[["run", "run_in_revolution"]].assign(
         largest_factor=scaling_factor(test_revolutions, run_in["run_in_revolution"].to_numpy(dtype=float))
     )
+
+
+def step_cap_limits(volumes: pd.DataFrame, laboratory: float) -> pd.DataFrame:
+    """Scaling factor at which the steps of wear updates reach their cap: `run`, `largest_factor_by_step_cap`.
+
+    volumes : `run`, `wear_coefficient_per_pa`, `revolution` and `step_demand` (largest step asked for over its cap);
+    laboratory : coefficient, 1/Pa. Steps grow with the coefficient; beyond, wear is carried and lags behind.
+    """
+    last = volumes.loc[volumes.groupby("run", sort=False)["revolution"].idxmax()]
+    factor = last["wear_coefficient_per_pa"] / laboratory / last["step_demand"]
+    return pd.DataFrame({"run": last["run"], "largest_factor_by_step_cap": factor}).reset_index(drop=True)

@@ -19,6 +19,7 @@ VOLUMES = {
 SUMMED = ("centroid_path_volume_m3", "touched_centroid_path_volume_m3")  # per cycle in wear.csv
 ORDERS = {"linear": 1, "quadratic": 2}
 COEFFICIENT_TOLERANCE = 1e-6  # -, to which two wear coefficients are the same
+CONSERVING = "conserving"  # its patch moves triangles that nothing touches: Eq 5.9 can only be summed over all
 FIXED = ("wear_coefficient_per_pa", "load_n", "track_radius_m")  # of a run
 AVERAGED = ("mean_normal_force_N", "mean_vertical_force_N", "contacts_per_step")
 # what a published volume over alpha F L is made of, in the order in which the factors build on one another
@@ -35,7 +36,8 @@ def volumes_of_run(folder: str | Path) -> pd.DataFrame:
 
     folder : of the run. Columns: revolution, archard_volume_m3 (alpha W), removed_volume_m3, carried_volume_m3,
     centroid_path_volume_m3 (Eq 5.9 over all triangles), touched_centroid_path_volume_m3 (over those in contact during
-    the update) and, averaged over all cycles so far, those of AVERAGED.
+    the update), step_demand (largest so far, of a step over its cap) and, averaged over all cycles so far, those of
+    AVERAGED.
     """
     wear = pd.read_csv(Path(folder) / "wear.csv")
     duration = np.diff(wear["time_s"], prepend=0.0)
@@ -47,6 +49,7 @@ def volumes_of_run(folder: str | Path) -> pd.DataFrame:
             "removed_volume_m3": wear["total_applied_volume_m3"],
             "carried_volume_m3": wear["carried_volume_m3"],
             **{name: wear[name].cumsum() for name in SUMMED},
+            "step_demand": wear["step_demand"].cummax(),
             **means,
         }
     )
@@ -114,9 +117,9 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
 
     volumes : as from `volumes_of_run` with `run`, `scheme`, `wear_coefficient_per_pa`, `load_n`, `track_radius_m`.
     The factors of CANDIDATES build on one another: their product is the volume by Eq 5.9, summed over the triangles in
-    contact, over alpha F L, exactly. `unexplained` is the published volume over alpha F L, over that product. Beside
-    stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and `contacts`, the factor that
-    would come of it if every contact were charged with the whole load.
+    contact (of a conserving run over all), over alpha F L, exactly. `unexplained` is the published volume over alpha F L,
+    over that product. Beside stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and
+    `contacts`, the factor that would come of it if every contact were charged with the whole load.
     """
     parts = []
     for _, row in volumes.groupby("run", sort=False):
@@ -127,7 +130,7 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
             force_rise=rise,
             slip=row["archard_volume_m3"] / law / rise,
             displacement_rule=row["removed_volume_m3"] / row["archard_volume_m3"],
-            summing_rule=row["touched_centroid_path_volume_m3"] / row["removed_volume_m3"],
+            summing_rule=row[SUMMED[row["scheme"].iloc[0] != CONSERVING]] / row["removed_volume_m3"],
             summing_over_all=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
             contacts=row["contacts_per_step"],
             vertical_force_over_load=row["mean_vertical_force_N"].abs() / load,

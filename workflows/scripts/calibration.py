@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from postproc.analysis.coefficient import laboratory_coefficient, scaling_limits
+from postproc.analysis.coefficient import laboratory_coefficient, scaling_limits, step_cap_limits
 from postproc.analysis.pin_figures import calibrated, laboratory_volume, only_reference
 from postproc.analysis.pin_runs import of_runs, pin_runs
 from postproc.analysis.pin_series import published_value
@@ -13,7 +13,8 @@ from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
-    table = calibrated(of_runs(runs, snakemake.input.volumes), pd.read_csv(snakemake.input.fits), published)
+    volumes = of_runs(runs, snakemake.input.volumes)
+    table = calibrated(volumes, pd.read_csv(snakemake.input.fits), published)
     load, distance, revolutions = (
         published_value(published, name, "laboratory") for name in ("load", "sliding_distance", "revolutions")
     )
@@ -21,5 +22,6 @@ with job_log(snakemake.log[0]):
     limits = scaling_limits(run_in_table(statistics, pd.read_csv(snakemake.input.normality)), revolutions)
     laboratory = laboratory_coefficient(*laboratory_volume(published), load, distance)
     save(calibration(table, laboratory, revolutions, limits, snakemake.params.remarks), snakemake.output.figure)
+    limits = limits.merge(step_cap_limits(volumes, laboratory[0]), on="run", how="left")
     table.to_csv(snakemake.output.table, index=False)
     limits.to_csv(snakemake.output.limits, index=False)

@@ -10,6 +10,7 @@ from postproc.analysis.coefficient import (
     laboratory_coefficient,
     scaling_factor,
     scaling_limits,
+    step_cap_limits,
 )
 
 VOLUME, ERROR, LOAD, DISTANCE, REVOLUTIONS = 0.565e-9, 0.089e-9, 5.0, 180.0, 1302.5  # m3, m3, N, m, -
@@ -70,3 +71,11 @@ def test_limit_of_the_scaling_factor():
     """Eight revolutions of run-in allow 162.8; a run-in that has not ended allows no factor yet."""
     run_in = pd.DataFrame({"run": ["a", "b"], "run_in_revolution": [8.0, np.nan]})
     np.testing.assert_allclose(scaling_limits(run_in, REVOLUTIONS)["largest_factor"], [162.8125, np.nan])
+
+
+def test_limit_by_the_cap_of_steps():
+    """Steps at a hundredth of their cap in the last revolution allow a hundred times the coefficient's own factor."""
+    volumes = pd.DataFrame(
+        {"run": "a", "revolution": [1, 2], "wear_coefficient_per_pa": 6.0e-11, "step_demand": [0.005, 0.01]}
+    )
+    assert step_cap_limits(volumes, 6.0e-13)["largest_factor_by_step_cap"].tolist() == [pytest.approx(1e4)]

@@ -114,6 +114,7 @@ def test_excess_is_the_displacement_rule(study):
     np.testing.assert_allclose(shown["displacement_rule"], [1, 6, 6, 6, 6], rtol=ROUNDING)
     np.testing.assert_allclose(shown["force_rise"], pin_study.RISE, rtol=ROUNDING)
     np.testing.assert_allclose(shown["slip"], 1.0, rtol=ROUNDING)
+    np.testing.assert_allclose(shown["summing_rule"], [1, 0.5, 0.5, 0.5, 0.5], rtol=ROUNDING)  # conserving: over all
     assert set(CANDIDATES) < set(shown)
 
 

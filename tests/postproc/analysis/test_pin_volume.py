@@ -80,6 +80,7 @@ def run_folder(folder):
             "total_archard_volume_m3": 0.5e-12 * cycle,
             "total_applied_volume_m3": 0.9e-12 * cycle,
             "carried_volume_m3": 0.0,
+            "step_demand": 0.1,
             "centroid_path_volume_m3": 1e-12,
             "touched_centroid_path_volume_m3": 0.4e-12,
             "mean_normal_force_N": LOAD + cycle,
