@@ -117,8 +117,8 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
 
     volumes : as from `volumes_of_run` with `run`, `scheme`, `wear_coefficient_per_pa`, `load_n`, `track_radius_m`.
     The factors of CANDIDATES build on one another: their product is the volume by Eq 5.9, summed over the triangles in
-    contact (of a conserving run over all), over alpha F L, exactly. `unexplained` is the published volume over alpha F L,
-    over that product. Beside stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and
+    contact (of a conserving run over all), over alpha F L, exactly. `unexplained` is the published volume over alpha
+    F L, over that product. Beside stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and
     `contacts`, the factor that would come of it if every contact were charged with the whole load.
     """
     parts = []
