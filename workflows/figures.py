@@ -49,7 +49,8 @@ OF_PINS = (  # of every study of pins on discs: what answers its question first,
 )
 OF_SERIES = {"mesh": ("mesh_series", "mesh_contours"), "size": ("size_invariance",)}  # of them, where the design has it
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
-REGRESSION = (  # of studies that name factors
+FLOW = ("relative_velocity",)  # of studies that name factors, and:
+REGRESSION = (
     "regression_coefficients",
     "regression_residuals",
     "regression_half_normal",
@@ -68,6 +69,7 @@ def _figures_of_samples(study: Study) -> list[str]:
     return [
         *(COMPARING_ROWS if several else ()),
         *(REGRESSION if study.factors else ()),
+        *(FLOW if study.factors else ()),
         *OF_SAMPLES,
         *(OF_WEAR_UPDATES if is_deformed(study) else ()),
     ]
@@ -143,6 +145,24 @@ def factor_labels(study: Study) -> dict[str, str]:
     """Return {short name: name and unit for an axis} of the factors of a study's regression."""
     named = {short: name_and_unit(column) for short, column in study.factors.items()}
     return {short: f"{name.capitalize()} {short} ({unit})" for short, (name, unit) in named.items()}
+
+
+def flow_runs(study: Study) -> dict[str, dict[str, float]]:
+    """Return by run what the bins of its flow need, see `postproc.analysis.flow_history.RunFlow`."""
+    return {run.name: _flow_run(run.parameters) for run in study.runs}
+
+
+def _flow_run(parameters: dict[str, Any]) -> dict[str, float]:
+    return {
+        "width": parameters["sample"]["width_m"],
+        "length": parameters["sample"]["length_m"],
+        "bed_width": parameters["bed"]["width_m"],
+        "bed_length": parameters["derived"]["bed_length_m"],
+        "bed_thickness": parameters["bed"]["thickness_m"],
+        "velocity": parameters["sliding"]["velocity_m_per_s"],
+        "time_step": parameters["derived"]["time_step_s"],
+        "particle_scale": parameters["particle"]["scale"],
+    }
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:

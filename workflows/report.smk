@@ -5,6 +5,7 @@ from workflows.figures import (
     equivalent_size_ratios,
     factor_labels,
     figure_files,
+    flow_runs,
     is_deformed,
     page_parameters,
     page_templates,
@@ -360,6 +361,37 @@ rule flow_views:
         "Figure of the flow of {wildcards.study}"
     script:
         "scripts/flow_views.py"
+
+
+rule relative_velocity:
+    input:
+        design="results/{study}/design.csv",
+        # the snapshots of the bed lie beside these
+        wear=WEAR_TABLES,
+        costs=of_every_run("results/{study}/{run}/cost.csv"),
+        published="config/published/screening_results.csv",
+    output:
+        figure=report(
+            "results/{study}/figures/relative_velocity.png",
+            caption="report/relative_velocity.rst",
+            category="Bed",
+            labels={"figure": "Relative velocity of the particles"},
+        ),
+        table="results/{study}/figures/relative_velocity.csv",
+        bins="results/{study}/flow/moving_bins.csv",
+        regimes="results/{study}/flow/regimes.csv",
+    log:
+        "results/{study}/logs/relative_velocity.log",
+    benchmark:
+        "results/{study}/logs/relative_velocity.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        runs=lambda wildcards: flow_runs(study_of(wildcards)),
+        run_in=lambda wildcards: study_of(wildcards).settings["sliding"]["run_in_mm"],
+    message:
+        "Relative velocity of the particles of {wildcards.study}"
+    script:
+        "scripts/flow.py"
 
 
 rule report:

@@ -18,7 +18,7 @@ from postproc.readers.dump_text import BLOCK_BYTES, FrameBatch, read_frames
 ZONES = ("central", "side", "ahead", "behind")
 QUANTITIES = ("velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s", "angular_speed_rad_per_s")
 NEEDED = ("x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz")
-BETWEEN = 1e-9  # -, of an interval: a frame so near to its start belongs to it
+BETWEEN = 1e-6  # -, of an interval: a frame so near to its start belongs to the one before
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,8 @@ def bin_history(
     """Return the motion in every bin, averaged over intervals of travel, from particle dumps.
 
     dumps: files of `dump custom` with one frame or more, each with the travel (m) at its step 0
-    travel_per_step: m, velocity times time step; interval: m, length of travel that is averaged
+    travel_per_step: m, velocity times time step; interval: m, length of travel that is averaged; a frame at its end
+        belongs to it
     block_bytes: bytes of a dump read at a time. Memory: a few times that or the largest frame, whatever the number of
         frames, and the sums of bins times intervals.
 
@@ -84,7 +85,8 @@ def bin_history(
     for path, offset in dumps:
         for batch in read_frames(path, "ATOMS", ("id",), block_bytes):
             _check_columns(path, batch)
-            which = np.floor((offset + batch.steps * travel_per_step) / interval + BETWEEN).astype(int)
+            passed = np.ceil((offset + batch.steps * travel_per_step) / interval - BETWEEN)
+            which = np.maximum(passed - 1.0, 0.0).astype(int)
             _add(batch, which, bins, sums)
             for number in which:
                 frames[number] = frames.get(number, 0) + 1

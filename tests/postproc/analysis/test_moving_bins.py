@@ -113,15 +113,15 @@ def test_averages_over_travel(tmp_path):
         velocity, spin = shear(places)
         return velocity * (1.0 + step / 100.0), spin
 
-    history = bin_history(write(tmp_path / "bed.dump", speeding, (0, 50, 100, 150)), BINS, STEP, 0.01)
+    history = bin_history(write(tmp_path / "bed.dump", speeding, (50, 100, 150, 200)), BINS, STEP, 0.01)
     assert history["frames"].unique().tolist() == [2]
-    for start, factor in ((0.0, 1.25), (0.01, 2.25)):
+    for start, factor in ((0.0, 1.75), (0.01, 2.75)):
         found = history[np.isclose(history["travel_start_m"], start)]
         expected = factor * (0.4 + 80.0 * found["height_m"])
         np.testing.assert_allclose(found["velocity_y_m_per_s"], expected, rtol=SIX_DIGITS)
         assert (found.loc[found["zone"] == "central", "particles"] == 128.0).all()
     profile = velocity_profile(history, BED, 0.0, 0.02)
-    np.testing.assert_allclose(profile["velocity_m_per_s"], BED - 1.75 * (0.4 + 80.0 * profile["height_m"]), rtol=1e-4)
+    np.testing.assert_allclose(profile["velocity_m_per_s"], BED - 2.25 * (0.4 + 80.0 * profile["height_m"]), rtol=1e-4)
 
 
 def test_one_file_or_many(tmp_path):

@@ -1,0 +1,113 @@
+"""The flow over every run of a study along its travel, from the snapshots of the bed that its cycles left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.analysis.display import in_display_units
+from postproc.analysis.evaluation import regime_table
+from postproc.analysis.moving_bins import MovingBins, bin_history, relative_velocity_history, surcharge_history
+from postproc.analysis.steady import FEWEST_VALUES, steady_window
+
+INTERVAL = 0.01  # m of travel that is averaged (Yan 2022, section 3.4)
+LAYER_HEIGHT = 0.005  # m, of layers of real particles; coarse-grained ones have layers as much higher
+SIDE_SHARE = 0.25  # -, width of the side bins over the sample's: 50 mm beside 200 mm
+HIGHEST = 3.0  # -, top of the layers over the thickness of the bed; room for what piles up
+
+
+@dataclass(frozen=True)
+class RunFlow:
+    """What the bins of a run need to know of it, SI: sample, bed, motion, and the scale of its particles (-)."""
+
+    width: float
+    length: float
+    bed_width: float
+    bed_length: float
+    bed_thickness: float
+    velocity: float
+    time_step: float
+    particle_scale: float
+
+    @property
+    def bins(self) -> MovingBins:
+        """Return the bins; side bins end where the bed does."""
+        height = LAYER_HEIGHT * self.particle_scale
+        side = min(SIDE_SHARE * self.width, 0.5 * (self.bed_width - self.width))
+        return MovingBins(self.width, self.length, side, height, int(np.ceil(HIGHEST * self.bed_thickness / height)))
+
+
+def run_bins(folder: str | Path, run: RunFlow) -> pd.DataFrame:
+    """Return the bin history of a run, see `moving_bins.bin_history`; folder: with wear.csv and cycle_*/bed_*.dump.
+
+    Raises FileNotFoundError when no cycle has a snapshot.
+    """
+    folder = Path(folder)
+    ends = pd.read_csv(folder / "wear.csv").set_index("cycle")["travel_m"]
+    dumps = []
+    for cycle in ends.index:
+        files = (folder / f"cycle_{cycle:03d}").glob("bed_*.dump")
+        start = ends.get(cycle - 1, 0.0)
+        dumps += [(path, start) for path in sorted(files, key=lambda path: int(path.stem.removeprefix("bed_")))]
+    if not dumps:
+        raise FileNotFoundError(f"{folder}: no cycle_*/bed_*.dump found, at least one wear cycle must have been run.")
+    return bin_history(dumps, run.bins, run.velocity * run.time_step, INTERVAL)
+
+
+def along_travel(bins: pd.DataFrame, run: RunFlow, particles: int) -> pd.DataFrame:
+    """Return travel_m, relative_velocity and surcharge (-) of a run; particles: of the whole bed."""
+    undisturbed = particles * run.width * run.length / (run.bed_width * run.bed_length)
+    velocity = relative_velocity_history(bins, run.velocity, run.bed_thickness)
+    return velocity.merge(surcharge_history(bins, undisturbed), on="travel_m", how="left")
+
+
+def settled_value(travel: np.ndarray, measure: np.ndarray) -> tuple[float, bool]:
+    """Return the mean of the steady window and whether it is steady; of too few values their mean, not steady."""
+    if np.isfinite(measure).sum() < FEWEST_VALUES:
+        return (float(np.nanmean(measure)) if np.isfinite(measure).any() else float("nan")), False
+    window = steady_window(travel, measure)
+    return window.mean, window.steady
+
+
+def study_regimes(histories: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Return run, relative_velocity, surcharge, regime and steady of every run; histories: as from `along_travel`."""
+    found = {
+        run: [settled_value(table["travel_m"], table[name]) for name in ("relative_velocity", "surcharge")]
+        for run, table in histories.items()
+    }
+    velocity = {run: values[0][0] for run, values in found.items()}
+    surcharge = {run: values[1][0] for run, values in found.items()}
+    return regime_table(velocity, surcharge).assign(steady=[values[0][1] for values in found.values()])
+
+
+def flow_tables(
+    folders: Mapping[str, Path], runs: Mapping[str, RunFlow], names: pd.DataFrame
+) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
+    """Return the bins, the histories along the travel with their regimes, and the regimes of all runs of a study.
+
+    folders, runs: by run; names: run, row and surface of every run
+    """
+    bins = {run: run_bins(folder, runs[run]) for run, folder in folders.items()}
+    histories = {}
+    for run, folder in folders.items():
+        particles = int(pd.read_csv(folder / "cost.csv")["particles"].max())
+        histories[run] = along_travel(bins[run], runs[run], particles)
+    regimes = names.merge(study_regimes(histories), on="run")
+    along = pd.concat([table.assign(run=run) for run, table in histories.items()], ignore_index=True)
+    along = regimes[["run", "row", "surface", "regime"]].merge(along, on="run")
+    percent = 100.0 * along.pop("relative_velocity")
+    all_bins = pd.concat([table.assign(run=run) for run, table in bins.items()], ignore_index=True)
+    return all_bins, in_display_units(along.assign(relative_velocity_percent=percent)), regimes
+
+
+def published_window(published: pd.DataFrame, run_in: float) -> tuple[float, float]:
+    """Return the source's steady window in a study's travel, which counts from the end of its run-in (all in mm).
+
+    published: quantity, relation and value, as in config/published/screening_results.csv
+    """
+    value = published.set_index(["quantity", "relation"])["value"].astype(float)
+    return float(value["wear_gradient_steady", "from"]) - run_in, float(value["steady", "to"]) - run_in

@@ -1,0 +1,114 @@
+"""The flow over every run of a study, from snapshots of a flow that is known."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.analysis.flow_history import (
+    RunFlow,
+    flow_tables,
+    published_window,
+    run_bins,
+    settled_value,
+    study_regimes,
+)
+
+ROOT = Path(__file__).resolve().parents[3]
+RUN = RunFlow(
+    width=0.04,
+    length=0.04,
+    bed_width=0.08,
+    bed_length=0.16,
+    bed_thickness=0.01,
+    velocity=2.0,
+    time_step=1e-5,
+    particle_scale=1.0,
+)
+SIX_DIGITS = 2e-5  # relative: numbers in a dump have six digits
+LATTICE = np.stack(
+    np.meshgrid(np.arange(-0.0375, 0.04, 0.005), np.arange(-0.0775, 0.08, 0.005), np.arange(0.00125, 0.01, 0.0025)), -1
+).reshape(-1, 3)
+
+
+def write_snapshot(path, step, speed):
+    """A snapshot of a bed that passes with one speed."""
+    rows = [f"{k} {x:g} {y:g} {z:g} 0 {speed:g} 0 1 2 2 0.001" for k, (x, y, z) in enumerate(LATTICE, 1)]
+    heading = "ITEM: ATOMS id x y z vx vy vz omegax omegay omegaz radius"
+    head = f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(rows)}\nITEM: BOX BOUNDS pp ff fm\n0 1\n0 1\n0 1\n"
+    path.write_text("\n".join([head + heading, *rows, ""]))
+
+
+def write_run(folder, speeds):
+    """A run of cycles of 20 mm, each with a snapshot in its middle and one at its end."""
+    for cycle, speed in enumerate(speeds, 1):
+        where = folder / f"cycle_{cycle:03d}"
+        where.mkdir(parents=True)
+        for step in (600, 1000):
+            write_snapshot(where / f"bed_{step}.dump", step, speed)
+    folder.mkdir(exist_ok=True)
+    cycles = np.arange(1, len(speeds) + 1)
+    pd.DataFrame({"cycle": cycles, "travel_m": 0.02 * cycles}).to_csv(folder / "wear.csv", index=False)
+    pd.DataFrame({"particles": [len(LATTICE)]}).to_csv(folder / "cost.csv", index=False)
+    return folder
+
+
+def test_cycles_follow_each_other(tmp_path):
+    """Steps count from the start of each cycle; intervals go on over the travel, each with its own velocity."""
+    bins = run_bins(write_run(tmp_path / "run", [2.0, 1.0, 0.5]), RUN)
+    middle = bins[(bins["zone"] == "central") & (bins["layer"] == 1)]
+    np.testing.assert_allclose(middle["travel_start_m"], [0.01, 0.03, 0.05])
+    np.testing.assert_allclose(middle["velocity_y_m_per_s"], [2.0, 1.0, 0.5], rtol=SIX_DIGITS)
+    assert bins["frames"].unique().tolist() == [2]
+
+
+def test_a_run_without_snapshots_is_named(tmp_path):
+    """Without a snapshot there is no flow to tell of."""
+    folder = write_run(tmp_path / "run", [])
+    with pytest.raises(FileNotFoundError, match=r"run: no cycle_\*/bed_\*.dump found"):
+        run_bins(folder, RUN)
+
+
+def test_tables_of_a_study(tmp_path):
+    """Regimes follow from velocity and heap: a bed that passes flows, one that rides along level is undecided."""
+    speeds = {"R1_convex": [1.0] * 8, "R1_plain": [0.02] * 8}
+    folders = {run: write_run(tmp_path / run, values) for run, values in speeds.items()}
+    names = pd.DataFrame({"run": list(speeds), "row": "R1", "surface": ["convex", "plain"]})
+    bins, along, regimes = flow_tables(folders, dict.fromkeys(speeds, RUN), names)
+    assert regimes["regime"].tolist() == ["continuous", "undecided"]
+    assert regimes["steady"].tolist() == [True, True]
+    np.testing.assert_allclose(regimes["relative_velocity"], [0.5, 0.99], rtol=SIX_DIGITS)
+    np.testing.assert_allclose(regimes["surcharge"], 1.0)  # as many particles over the sample as anywhere
+    np.testing.assert_allclose(along.loc[along["run"] == "R1_convex", "relative_velocity_percent"], 50.0, rtol=1e-4)
+    assert along["travel_mm"].max() == pytest.approx(155.0)
+    assert set(bins["run"]) == set(speeds)
+
+
+def test_few_values_are_not_called_steady():
+    """Of fewer values than a steady window needs there is a mean, and no claim."""
+    assert settled_value(np.arange(3.0), np.array([1.0, 2.0, 3.0])) == (2.0, False)
+    value, steady = settled_value(np.arange(3.0), np.full(3, np.nan))
+    assert np.isnan(value)
+    assert not steady
+
+
+def test_riding_along_in_a_heap_is_discontinuous():
+    """A steady relative velocity near 1 with twice the particles over the sample."""
+    table = pd.DataFrame({"travel_m": np.arange(10) * 0.01, "relative_velocity": 0.97, "surcharge": 2.0})
+    assert study_regimes({"R2_convex": table})["regime"].tolist() == ["discontinuous"]
+
+
+def test_bins_end_where_the_bed_does():
+    """Side bins are a quarter of the sample wide where the bed has room, layers as high as the particles are large."""
+    assert RUN.bins.side_width == pytest.approx(0.01)
+    narrow = RunFlow(0.08, 0.08, 0.1, 0.2, 0.04, 1.0, 1e-5, 2.0).bins
+    assert narrow.side_width == pytest.approx(0.01)
+    assert narrow.layer_height == pytest.approx(0.01)
+    assert narrow.layers == 12
+
+
+def test_published_window_counts_from_the_run_in():
+    """The source's 1000 to 1700 mm count from the start; a study's travel starts after its run-in."""
+    published = pd.read_csv(ROOT / "config/published/screening_results.csv")
+    assert published_window(published, 300.0) == (700.0, 1400.0)
