@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +46,8 @@ def span_of(chain: Chain, cycle: int) -> Span | None:
     if cycle == 1:
         return first_span(chain.parameters)
     before = state.read_state(chain.folder, cycle - 1)
-    return next_span(chain.parameters, Span(**before["span"]), before["wear"])
+    span = next_span(chain.parameters, Span(**before["span"]), before["wear"])
+    return span and replace(span, substeps=CASES[chain.case].substeps(chain.parameters, before["wear"]))
 
 
 def run_in_steps(chain: Chain) -> int:

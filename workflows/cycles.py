@@ -117,10 +117,11 @@ def drop_files(chain: Chain, cycle: int) -> None:
 def simulate(chain: Chain, span: Span | None, folder: Path, triangles: int, progress: Progress) -> float:
     """Run the solver on a cycle's deck and return its wall time in s. Raises SolverError."""
     cycle, before = span.cycle if span else 0, steps_before(chain, span)
+    substeps = span.substeps if span else 1
     return run_deck(
         folder,
         chain.ranks,
-        lambda step: progress.update(before + step, title(chain, cycle)),
+        lambda step: progress.update(before + step // substeps, title(chain, cycle)),
         triangles={f"sample_{cycle}": triangles},
         executable=cycle_executable(chain, span),
     )
@@ -140,7 +141,7 @@ def cost(
         "cycle": span.cycle if span else 0,
         "solver_s": round(solver_seconds, 3),
         "other_s": round(all_seconds - solver_seconds, 3),
-        "steps": span.steps if span else run_in_steps(chain),
+        "steps": span.solver_steps if span else run_in_steps(chain),
         "particles": int(thermo["Atoms"][-1]),
         "triangles": triangles,
         "ranks": chain.ranks,

@@ -63,7 +63,7 @@ def summed_by_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
         folder / LOAD_LEDGER,
         mesh=f"sample_{span.cycle}",
         n_triangles=len(surface.triangles),
-        steps=span.steps,
+        steps=span.solver_steps,
     )
     corners = surface.points[surface.triangles]
     return columns_of_solver(loads.columns, corners, law_kernels(parameters["wear"]["law"]))

@@ -33,13 +33,16 @@ def pin_set_down(run: Parameters) -> dict[str, Any]:
 def pin_on_disc(run: Parameters, span: Span, restart: str) -> dict[str, Any]:
     """Return the parameters of the deck of one wear cycle. A line of progress per window of the forces."""
     derived = run["derived"]
+    window, time_step = derived["force_interval_steps"] * span.substeps, derived["time_step_s"] / span.substeps
     return {
         **_both(run, span.cycle),
-        "report_steps": derived["force_interval_steps"],
-        "force_interval_steps": derived["force_interval_steps"],
+        "time_step_s": time_step,
+        "rayleigh_fraction": run["solver"]["rayleigh_fraction"] / span.substeps,
+        "report_steps": window,
+        "force_interval_steps": window,
         "run_restart": restart,
-        "rest_steps": steps(REST_OSCILLATIONS * derived["pin_oscillation_s"], derived["time_step_s"]),
-        "cycle_steps": span.steps,
+        "rest_steps": steps(REST_OSCILLATIONS * derived["pin_oscillation_s"], time_step),
+        "cycle_steps": span.solver_steps,
         "start_angle_rad": angle(run, span.first_step),
         "angular_velocity_rad_per_s": run["sliding"]["angular_speed_rad_per_s"],
         "ledger": run["ledger"],

@@ -16,12 +16,19 @@ LEAST_CYCLE_STEPS = 100  # fewer time steps do not resolve a single contact, let
 class Span:
     """A wear cycle and where it lies in the travel over which wear is counted.
 
-    cycle: its number, from 1; first_step: time steps of that travel before it; steps: of the cycle itself
+    cycle: its number, from 1; first_step: time steps of that travel before it; steps: of the cycle itself; substeps: in
+    so many the solver takes each of its steps, where the run's time step would be too large for this cycle
     """
 
     cycle: int
     first_step: int
     steps: int
+    substeps: int = 1
+
+    @property
+    def solver_steps(self) -> int:
+        """Time steps that the solver takes in the cycle."""
+        return self.steps * self.substeps
 
     @property
     def end(self) -> int:

@@ -17,16 +17,19 @@ from workflows.cases.pin_on_disc import LOAD_TOLERANCE
 from workflows.chain import MOST_DECKS, Chain, deck_text, write_decks
 from workflows.config_files import ConfigError
 from workflows.design import load_study
+from workflows.pin_deck import pin_on_disc
+from workflows.progress import Progress
 from workflows.schedule import known_spans
 
 GOLDEN = Path(__file__).parents[1] / "data" / "golden_pin_on_disc.in"
 TINY = {  # two revolutions of a small disc in four cycles, 30 times the coefficient: a groove that is felt
     "pin": {"radius_mm": 1, "load_n": 5},
     "disc": {"radius_mm": 3, "track_radius_mm": 2.2, "element_size_mm": 0.2, "band_half_width_mm": 0.3},
-    "sliding": {"angular_speed_deg_per_s": 1800, "cycles_per_revolution": 2},
+    "sliding": {"angular_speed_deg_per_s": 1800, "revolutions": 2, "cycles_per_revolution": 2},
 }
 ROW = "c17-conserving"
 FLAT = 1e-6  # relative; a flat disc under the settled pin: work is F L
+OTHER_STEPS = 1e-5  # relative; how long two triangles are touched at once depends on the time step; seen 1.3e-6
 ARCHARD = 0.02  # relative; the rise of the summed normal forces in the groove of the tiny run
 ROUND_OFF = 1e-9  # relative; sums of some ten thousand steps
 
@@ -178,7 +181,7 @@ def test_decks_by_hand_are_those_of_the_first_cycles(tmp_path):
 def test_a_pin_that_left_the_disc_stops_the_run():
     """A mean vertical force off the load is a fault that names both and what to do."""
     case, parameters = CASES["pin_on_disc"], tiny_pin().run(ROW).parameters
-    held = {"mean_vertical_force_N": 5.0 * (1.0 + 0.9 * LOAD_TOLERANCE), "contacts_per_step": 1.0}
+    held = {"mean_vertical_force_N": 5.0 * (1.0 + 0.9 * LOAD_TOLERANCE), "contacts_per_step": 1.0, "time_step_s": 1e-6}
     assert case.cycle_fault(parameters, held) is None
     fault = case.cycle_fault(parameters, {**held, "mean_vertical_force_N": 4.9})
     assert "4.9 N, allowed is the load of 5 N" in fault and "smaller solver.rayleigh_fraction than 0.2" in fault
@@ -187,8 +190,26 @@ def test_a_pin_that_left_the_disc_stops_the_run():
 def test_too_many_contacts_for_the_time_step_stop_the_run():
     """With hundreds of contacts at once the pin swings by itself; the fault says which time step would do."""
     case, parameters = CASES["pin_on_disc"], tiny_pin().run(ROW).parameters
-    fault = case.cycle_fault(parameters, {"mean_vertical_force_N": 5.0, "contacts_per_step": 400.0})
-    assert "400 contacts at once" in fault and "take a solver.rayleigh_fraction of at most" in fault
+    step = parameters["derived"]["time_step_s"]
+    row = {"mean_vertical_force_N": 5.0, "contacts_per_step": 400.0, "time_step_s": step}
+    fault = case.cycle_fault(parameters, row)
+    assert "400 contacts at once" in fault and "or a solver.rayleigh_fraction of at most" in fault
+    assert case.cycle_fault(parameters, {**row, "time_step_s": step / case.substeps(parameters, row)}) is None
+
+
+def test_a_pin_on_many_contacts_gets_smaller_time_steps():
+    """Up to 23 contacts the source's time step is safe, then it is halved: the arc stays, steps and windows double."""
+    case, study = CASES["pin_on_disc"], load_study("pin_on_disc", overrides={"fidelity": "standard"})
+    parameters = study.run(ROW).parameters
+    assert [case.substeps(parameters, {"contacts_per_step": n}) for n in (1.0, 20.0, 30.0)] == [1, 1, 2]
+    span = known_spans(parameters)[1]
+    one, two = (pin_on_disc(parameters, replace(span, substeps=k), "") for k in (1, 2))
+    assert two["time_step_s"] * two["cycle_steps"] == pytest.approx(one["time_step_s"] * one["cycle_steps"])
+    assert two["start_angle_rad"] == one["start_angle_rad"]
+    assert (two["cycle_steps"], two["force_interval_steps"]) == (
+        2 * one["cycle_steps"],
+        2 * one["force_interval_steps"],
+    )
 
 
 # ---------------------------------------------------------------- on the solver
@@ -245,6 +266,24 @@ def test_ledgers_name_triangles_of_the_whole_disc(finished):
     middle = disc.points[disc.triangles[loaded]].mean(axis=1)
     assert (middle[:, 1] > -2e-4).all() and middle[:, 1].max() > 2e-3
     np.testing.assert_allclose(np.hypot(*middle[:, :2].T), 2.2e-3, atol=3e-4)
+
+
+@pytest.mark.solver
+def test_a_cycle_in_smaller_time_steps_is_the_same_cycle(finished, tmp_path):
+    """The first arc in half the time step: the same work, time, angle and windows, twice the solver's steps."""
+    folder = tmp_path / ROW
+    folder.mkdir()
+    shutil.copy(finished.surface, folder / "surface.vtu")
+    chain = replace(finished, folder=folder, surface=folder / "surface.vtu")
+    inputs, span = cycles.inputs_digest(chain), known_spans(chain.parameters)[0]
+    for each in (None, replace(span, substeps=2)):
+        cycles.run_cycle(chain, each, inputs, Progress(ROW, 1))
+    found, expected = (state.read_state(run.folder, 1) for run in (chain, finished))
+    for name in ("sliding_work_J", "time_s", "revolution", "mean_vertical_force_N"):
+        assert found["wear"][name] == pytest.approx(expected["wear"][name], rel=OTHER_STEPS)
+    assert found["cost"]["steps"] == 2 * expected["cost"]["steps"]
+    tables = [pd.read_csv(state.cycle_folder(run.folder, 1) / "forces.csv") for run in (chain, finished)]
+    np.testing.assert_allclose(tables[0]["angle_deg"], tables[1]["angle_deg"], rtol=ROUND_OFF)
 
 
 @pytest.mark.solver

@@ -106,6 +106,10 @@ class Case:
         """Return what the solver gets of the surface in a cycle; here all of it."""
         return Piece(surface, np.arange(len(surface.triangles)))
 
+    def substeps(self, parameters: Parameters, wear: Mapping[str, float]) -> int:
+        """Return in how many the solver takes each time step of a cycle whose predecessor left that row of wear.csv."""
+        return 1
+
     # ---------------------------------------------------------------- what a cycle leaves
 
     def record(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> dict[str, Any]:

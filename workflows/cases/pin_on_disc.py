@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from meshes.disc import track_disc, track_stretch
 from postproc.mesh import SurfaceMesh
-from postproc.reference.sphere_contact import safe_time_step, touching_reach
+from postproc.reference.sphere_contact import safe_time_step, stable_time_step, touching_reach
 from workflows import deck, pin_deck
 from workflows.cases.base import SETUP_LOADS, Case, Parameters, Piece
 from workflows.cases.pin_checks import PIN_CHECKS, ROUNDING
@@ -96,7 +97,7 @@ class PinOnDisc(Case):
         import pandas as pd
 
         windows = np.loadtxt(folder / FORCE_WINDOWS, ndmin=2)
-        sums, step = _sums(parameters, folder), windows[:, 0] + span.first_step
+        sums, step = _sums(parameters, folder), windows[:, 0] / span.substeps + span.first_step
         time_s = step * parameters["derived"]["time_step_s"]
         return pd.DataFrame(
             {
@@ -116,6 +117,7 @@ class PinOnDisc(Case):
             "revolution": round(turns) if abs(turns - round(turns)) < ROUNDING * turns else turns,
             "contacts_per_step": float(np.mean(_sums(parameters, folder)["contacts"])),
             "mean_vertical_force_N": -float(windows[:, 3].mean()),
+            "time_step_s": parameters["derived"]["time_step_s"] / span.substeps,
         }
 
     def cycle_fault(self, parameters: Parameters, own: Mapping[str, float]) -> str | None:
@@ -128,18 +130,21 @@ class PinOnDisc(Case):
                 f"within {100 * LOAD_TOLERANCE:g} %: the pin left the disc; take a smaller solver.rayleigh_fraction "
                 f"than {fraction:g}, or smaller wear cycles"
             )
-        step = derived["time_step_s"]
-        restitution = parameters["sample_material"]["contact"]["restitution"]
-        safe = safe_time_step(
-            *(step, contacts, load, parameters["pin"]["radius_m"], derived["effective_modulus_pa"]),
-            *(derived["pin_mass_kg"], restitution),
-        )
-        if step <= safe:
+        step, stable = own["time_step_s"], stable_time_step(*_contact(parameters), contacts=max(contacts, 1.0))
+        if step <= stable:
             return None
         return (
             f"the pin had {contacts:.3g} contacts at once, with which a time step of {step:.3g} s makes it swing by "
-            f"itself, allowed is {safe:.3g} s: take a solver.rayleigh_fraction of at most {fraction * safe / step:.2g}"
+            f"itself, allowed is {stable:.3g} s: take more, shorter wear cycles, or a solver.rayleigh_fraction of at "
+            f"most {fraction * stable / derived['time_step_s']:.2g}"
         )
+
+    def substeps(self, parameters: Parameters, wear: Mapping[str, float]) -> int:
+        """Return in how many the solver takes each time step after a cycle with so many contacts at once."""
+        step = parameters["derived"]["time_step_s"]
+        load, radius, modulus, mass, restitution = _contact(parameters)
+        safe = safe_time_step(step, wear["contacts_per_step"], load, radius, modulus, mass, restitution)
+        return math.ceil(step / safe)
 
     def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
         """Return the volume of the update as the source may count it: areas times paths of centroids (Eq 5.9).
@@ -158,7 +163,7 @@ class PinOnDisc(Case):
         """Return the solver's files of a cycle, and what a resume needs except at the end of a revolution."""
         if span is None:
             return ()
-        solver_files = ("surface.stl", f"loads_{span.steps}.vtk", "screen.txt")
+        solver_files = ("surface.stl", f"loads_{span.solver_steps}.vtk", "screen.txt")
         if span.cycle % parameters["sliding"]["cycles_per_revolution"] == 0:
             return solver_files
         return (*solver_files, "surface.vtu", "run.restart")
@@ -175,6 +180,15 @@ class PinOnDisc(Case):
         from postproc.analysis.summary import pin_summary_table
 
         return pin_summary_table(design, wear, pristine, worn)
+
+
+def _contact(parameters: Parameters) -> tuple[float, float, float, float, float]:
+    """Return load (N), radius (m), effective modulus (Pa), mass (kg) and restitution (-) of the pin on the disc."""
+    pin, derived, contact = parameters["pin"], parameters["derived"], parameters["sample_material"]["contact"]
+    return (
+        *(pin["load_n"], pin["radius_m"], derived["effective_modulus_pa"], derived["pin_mass_kg"]),
+        contact["restitution"],
+    )
 
 
 def _sums(parameters: Parameters, folder: Path) -> dict[str, np.ndarray]:

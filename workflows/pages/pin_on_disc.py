@@ -71,9 +71,9 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         ),
         (
             "Damping assumed",
-            f"The coefficient of restitution, {restitution}, is an assumption: the source leaves it blank. A pin that "
-            "slides slowly does not depend on it, but a pin in a groove has many contacts at once, and less damping "
-            "keeps them stable at this time step.",
+            f"The coefficient of restitution, {restitution}, is that of particle and steel (Table 3.2); the source "
+            "leaves it blank for the pin. Means do not depend on it; how far the pin swings from triangle to triangle "
+            "does. In a groove, where it has many contacts at once, the solver takes smaller time steps.",
         ),
         (
             "Wear cycle by cycle",
