@@ -115,7 +115,7 @@ def job_names(study: Study) -> list[str]:
         "summary",
         *(f"settled_bed_{bed}" for bed in study.beds),
         *(f"{rule}_{run.name}" for run in study.runs for rule in RUN_RULES[study.case]),
-        *figures_of(study),
+        *dict.fromkeys("regression" if name in REGRESSION else name for name in figures_of(study)),
     ]
 
 

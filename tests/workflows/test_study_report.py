@@ -341,6 +341,7 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
     study = load_study("small", config.root)
     names = [name for name in figures_of(study) if name.startswith("regression_")]
     assert names == [f"regression_{name}" for name in DRAWN]
+    assert [job for job in page_parameters(study)["jobs"] if "regression" in job] == ["regression"]
     write_results(tmp_path / "small", study)
     tables = regression_tables(screen_summary(read_summary(tmp_path / "small" / "summary.csv"), study.factors))
     (tmp_path / "small" / "regression").mkdir()
