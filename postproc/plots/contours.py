@@ -18,6 +18,7 @@ from postproc.plots.pin import (
     SCHEME_COLOURS,
     SCHEME_MARKERS,
     SCHEME_NAMES,
+    named_once,
 )
 from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
@@ -70,12 +71,7 @@ def run_in(
         upper.set_ylabel(label)
         upper.set_title(found[size], loc="left", fontsize=SMALLEST_FONT)
     grid[1, 0].set_ylabel("p of normality (-)")
-    handles = {
-        text: handle
-        for axes in (grid[0, 0], grid[1, 0])
-        for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
-    figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=len(handles))
+    figure.legend(*named_once(grid[:, 0]), loc="outside upper center", ncols=3)
     return figure
 
 
@@ -197,8 +193,8 @@ def _agreement(scheme: str, row: pd.Series) -> str:
     """What the meshes up to a fifth of the groove's width say of each other."""
     name = scheme.replace("_", " ")
     if row["meshes"] < 2:
-        return f"{name}: fewer than two fine meshes"
-    return f"{name}: {row['difference_percent']:.1f} % ({row['meshes']:.0f} fine meshes)"
+        return f"{name}: too coarse"
+    return f"{name}: {row['difference_percent']:.1f} % of {row['meshes']:.0f} meshes"
 
 
 def mesh_contours(sections: pd.DataFrame, remarks: Sequence[str]) -> Figure:
@@ -218,7 +214,7 @@ def mesh_contours(sections: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         axes.set_xlabel("Across the track, outwards (mm)")
     grid[0].set_ylabel("Depth (µm)")
     _crop(grid[0], sections)
-    grid[-1].legend(title="elements")
+    figure.legend(*named_once(grid), title="elements", loc="outside right center")
     return figure
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from postproc.plots.style import SMALLEST_FONT
@@ -22,6 +23,12 @@ def coefficient_name(coefficient: float) -> str:
     exponent = f"{coefficient:.1e}".partition("e")[2]
     digits = coefficient / 10.0 ** int(exponent)
     return rf"$\alpha$ = {digits:.3g}·10$^{{{int(exponent)}}}$ Pa$^{{-1}}$"
+
+
+def named_once(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
+    """Handles and labels for one legend of several panels: each label once."""
+    named = {text: handle for axes in panels for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)}
+    return list(named.values()), list(named)
 
 
 def printed_table(axes: Axes, head: Sequence[str], cells: Sequence[Sequence[str]]) -> None:

@@ -20,6 +20,7 @@ from postproc.plots.pin import (
     SCHEME_MARKERS,
     SCHEME_NAMES,
     coefficient_name,
+    named_once,
     printed_table,
 )
 from postproc.plots.style import LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, facets, label_all, new_figure
@@ -51,10 +52,7 @@ def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
         axes.set_xlim(0.0, volumes["revolution"].max() + 0.5)
         axes.set_ylim(bottom=0.0)
     label_all(figure, len(coefficients) > 1, "Revolutions", "Volume (mm³)")
-    handles = {
-        text: line for axes in panels.values() for line, text in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
-    figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=2)
+    figure.legend(*named_once(panels.values()), loc="outside upper center", ncols=2)
     return figure
 
 
@@ -92,8 +90,7 @@ def force_rise(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         for (_, scheme, coefficient), run in factors.groupby(["run", "scheme", "wear_coefficient_per_pa"], sort=False):
             weight = 0.6 + 1.8 * coefficients.index(coefficient) / max(len(coefficients) - 1, 1)
             look = {"color": SCHEME_COLOURS[scheme], "linewidth": weight, "markersize": 3.0}
-            name = SCHEME_NAMES[scheme] if coefficient == coefficients[0] else None
-            axes.plot(run["revolution"], run[column], f"{SCHEME_MARKERS[scheme]}-", label=name, **look)
+            axes.plot(run["revolution"], run[column], f"{SCHEME_MARKERS[scheme]}-", label=SCHEME_NAMES[scheme], **look)
         axes.set(xlabel="Revolutions", ylabel=label)
     for axes in grid[:2]:
         axes.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
@@ -101,7 +98,7 @@ def force_rise(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         axes.set_ylim(min(low, SHOWN_FORCES[0]), max(high, SHOWN_FORCES[1]))  # a thousandth is not to look like much
     thin, thick = coefficient_name(coefficients[0]), coefficient_name(coefficients[-1])
     grid[0].set_title(f"thin: {thin}, thick: {thick}; mean since the start", loc="left", fontsize=SMALLEST_FONT)
-    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    figure.legend(*named_once(grid), loc="outside upper center", ncols=2)
     return figure
 
 
