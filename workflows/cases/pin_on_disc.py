@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FORCE_WINDOWS = "forces.txt"  # of the solver: means over windows of equal length
-# Relative, of the mean vertical force of a cycle: what a pin lacks that is off the disc for that share of the cycle. One
-# that swings when a cycle ends lacks its momentum: seen 0.2 %, at 3 m/s, where it meets its own groove for the first time
-# and touches nine triangles at once after one.
+# Relative, of the mean vertical force of a cycle: what a pin lacks that is off the disc for that share of the cycle.
+# One that swings when a cycle ends lacks its momentum: seen 0.2 %, at 3 m/s, where it meets its own groove for the
+# first time and touches nine triangles at once after one.
 LOAD_TOLERANCE = 1e-2
 HEADROOM_OVERLAPS = 2.0  # -, of the pin over the deepest point, for what it can touch: it sinks in by one
 SET_DOWN_ARC = 1e-3  # rad, on either side of the place where the pin is set down
