@@ -50,11 +50,11 @@ def provenance(study: Path) -> str:
     runs = pin_runs(study / "design.csv")
     state = sorted((study / runs["run"].iloc[0]).glob("cycle_[0-9]*/state.json"))[-1]
     made = datetime.fromtimestamp(state.stat().st_mtime, UTC)
-    solver = solver_version(state.parent / "log.liggghts")
+    solver = (solver_version(state.parent / "log.liggghts") or "not reported").removeprefix("Version ")
     finest, longest = runs["element_size_mm"].min(), runs["revolutions"].max()
     said = (
-        f"Made {made:%Y-%m-%d}, {commit()}, LIGGGHTS {solver.removeprefix('Version ') if solver else 'not reported'}: "
-        f"{len(runs)} runs of up to {longest:g} revolutions, elements from {finest:g} mm on the track."
+        f"Simulated {made:%Y-%m-%d} with LIGGGHTS {solver}, page written by {commit()}: {len(runs)} runs of up to "
+        f"{longest:g} revolutions, elements from {finest:g} mm on the track."
     )
     return textwrap.fill(said, LINE) + "\n"
 
@@ -101,7 +101,8 @@ def excess_text(study: Path, factors: pd.DataFrame, published: pd.DataFrame) -> 
     """Return the factors of the volume, one candidate at a time."""
     columns = ["scheme", "wear_coefficient_per_pa", "revolution", *CANDIDATES, "product", "published", "unexplained"]
     note = groove_remark(published).replace(r"$\alpha F L$", "alpha F L")
-    told = textwrap.fill(f"{note[0].upper()}{note[1:]}. {first_revolution(factors)}", LINE)
+    said = " ".join((first_revolution(factors), what_is_left(factors), f"{note[0].upper()}{note[1:]}."))
+    told = textwrap.fill(said, LINE)
     return markdown(shown_factors(factors, published)[[*columns, "summing_over_all", "contacts"]]) + f"\n{told}\n"
 
 
@@ -112,6 +113,20 @@ def first_revolution(factors: pd.DataFrame) -> str:
     return (
         f"In the first revolution of conserving runs alpha times the sliding work differs from alpha F L by "
         f"{excess.min():.2g} to {excess.max():.2g} %."
+    )
+
+
+def what_is_left(factors: pd.DataFrame) -> str:
+    """Return the two rules' factors over all per-triangle runs that have a published fit, and what they leave."""
+    chosen = factors[(factors["scheme"] == "per_triangle") & factors["published"].notna()]
+    names = ("force_rise", "displacement_rule", "summing_rule", "unexplained")
+    rise, moved, summed, left = (f"{chosen[name].min():.3g} to {chosen[name].max():.3g}" for name in names)
+    last = chosen.loc[chosen.groupby("run", sort=False)["revolution"].idxmax()]
+    ends = ", ".join(f"{row.unexplained:.3g} at {row.wear_coefficient_per_pa:.2g} 1/Pa" for row in last.itertuples())
+    return (
+        f"By the per-triangle rule the summed normal force is {rise} of the load, the displacement rule takes {moved} "
+        f"times the law's volume and Eq 5.9 over the touched triangles finds {summed} of that; the published volume is "
+        f"{left} times this product, after the last revolution {ends}."
     )
 
 

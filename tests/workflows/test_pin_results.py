@@ -77,6 +77,21 @@ def test_first_revolution_of_conserving_runs():
     assert "by 0.1 to 0.3 %." in pin_results.first_revolution(factors)
 
 
+def test_what_the_rules_leave():
+    """Ranges over per-triangle runs with a published fit, and what is left at the end of each."""
+    rows = [
+        ("a", "per_triangle", 1, 1.7e-11, 1.0, 6.1, 0.5, 3.1, 1.02),
+        ("a", "per_triangle", 2, 1.7e-11, 1.01, 6.3, 0.7, 4.0, 0.9),
+        ("b", "per_triangle", 1, 6.8e-11, 1.5, 9.0, 0.1, float("nan"), float("nan")),
+        ("c", "conserving", 1, 1.7e-11, 1.0, 1.0, 1.0, 3.1, 3.1),
+    ]
+    names = ("run", "scheme", "revolution", "wear_coefficient_per_pa", "force_rise", "displacement_rule")
+    factors = pd.DataFrame(rows, columns=[*names, "summing_rule", "published", "unexplained"])
+    text = pin_results.what_is_left(factors)
+    assert "1 to 1.01 of the load" in text and "takes 6.1 to 6.3 times" in text and "finds 0.5 to 0.7 of that" in text
+    assert text.endswith("0.9 to 1.02 times this product, after the last revolution 0.9 at 1.7e-11 1/Pa.")
+
+
 def test_only_sections_with_a_table_are_written(tmp_path):
     """A study without a series of meshes has no section on it."""
     assert pin_results.sections(tmp_path) == []
