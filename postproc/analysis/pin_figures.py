@@ -30,6 +30,7 @@ MAP_SPACING = 20e-6  # m, of the places across the unrolled track
 MAP_SIDE = 1.2e-3  # m, shown either side of the track
 SAME_VOLUME = 0.02  # -, in which the law's volume of a run is the laboratory's
 CALIBRATED_FROM = 8  # revolutions on, where the thesis has its run-in behind it
+TOUCHED = "per triangle, volume by Eq 5.9 over touched triangles"
 PUBLISHED_FITS = "Yan 2022, Eq 5.11 to 5.15"
 
 
@@ -184,12 +185,15 @@ def laboratory_sections(folder: str | Path, compared: pd.DataFrame, cases: pd.Da
 
 
 def calibrated(volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
-    """Calibration of both schemes and of the published fits against the laboratory's volume.
+    """Calibration of both schemes, of Eq 5.9 and of the published fits against the laboratory's volume.
 
     volumes : of all runs; each number of revolutions from CALIBRATED_FROM on (or the last, if a run is shorter) is
     calibrated with the runs that have it. As from `analysis.coefficient.calibration_table`.
     """
     ours = volumes[volumes["series"] == "coefficient"].rename(columns={"removed_volume_m3": "volume_m3"})
+    touched = ours[ours["scheme"] == "per_triangle"]
+    touched = touched.assign(volume_m3=touched["touched_centroid_path_volume_m3"], scheme=TOUCHED)
+    ours = pd.concat([ours, touched], ignore_index=True)
     longest = int(ours["revolution"].max())
     shown = range(min(CALIBRATED_FROM, longest), longest + 1)
     theirs = pd.DataFrame(

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from postproc.analysis.coefficient import scaling_factor
 from postproc.analysis.display import CUBIC_MILLIMETRES
+from postproc.analysis.pin_figures import PUBLISHED_FITS, TOUCHED
 from postproc.analysis.pin_volume import CANDIDATES, VOLUMES, law_volume, published_volume
 from postproc.plots.pin import (
     LABORATORY_COLOUR,
@@ -62,7 +63,7 @@ def _volume_panel(axes: Axes, chosen: pd.DataFrame, coefficient: float, publishe
     law = law_volume(coefficient, first["load_n"], first["track_radius_m"], x)
     axes.plot(x, CUBIC_MILLIMETRES * law, color=LAW_COLOUR, linewidth=1.2, label=r"$\alpha F L$")
     of_theirs = published_volume(published, coefficient, x[x >= 1.0])
-    axes.plot(x[x >= 1.0], CUBIC_MILLIMETRES * of_theirs, label="Yan 2022, Eq 5.11 to 5.15", **PUBLISHED)
+    axes.plot(x[x >= 1.0], CUBIC_MILLIMETRES * of_theirs, label=PUBLISHED_FITS, **PUBLISHED)
     for (_, scheme), run in chosen.groupby(["run", "scheme"], sort=False):
         for volume, (style, words) in VOLUME_LOOKS.items():
             if volume != "removed" and scheme != "per_triangle":
@@ -175,7 +176,7 @@ def calibration(
     line, band = (scaling_factor(test_revolutions, x) * value for value in laboratory)
     axes.plot(x, line, color=LABORATORY_COLOUR, label="laboratory's coefficient times scaling factor (Archard)")
     axes.fill_between(x, line - band, line + band, color=LABORATORY_COLOUR, alpha=0.2)
-    looks = SCHEME_COLOURS | {"Yan 2022, Eq 5.11 to 5.15": "black"}
+    looks = SCHEME_COLOURS | {TOUCHED: CANDIDATE_COLOURS["summing_rule"], PUBLISHED_FITS: "black"}
     for index, (scheme, rows) in enumerate(table.groupby("scheme", sort=False)):
         best, least, most = (rows[f"{part}wear_coefficient_per_pa"] for part in ("", "least_", "largest_"))
         place = rows["revolutions"] + 0.1 * (index - 1)
