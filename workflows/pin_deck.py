@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -93,8 +92,3 @@ def _both(run: Parameters, cycle: int) -> dict[str, Any]:
 def _table(value: float) -> list[list[float]]:
     """Return the table of a property of pin against disc; there is no other pair."""
     return [[value] * 2] * 2
-
-
-def contact_radius(run: Parameters) -> float:
-    """Return the radius (m) of the pin's contact with the flat disc, sqrt(R overlap) (Hertz 1882)."""
-    return math.sqrt(run["pin"]["radius_m"] * run["derived"]["overlap_m"])

@@ -46,7 +46,7 @@ class Case:
 
     material_keys: (section, key, kind in materials.yaml) of the settings that name a material
     checks: of a run, see run_checks.py
-    run_templates, bed_templates: names of the templates of a run's and of a bed's decks
+    run_templates: names of the templates of a run's decks
     alternatives: two settings of which exactly one is given; the stronger layer's replaces the other
     geometry: sections of a run's parameters that its pristine surface depends on
     first_title: what people call cycle 0
@@ -56,7 +56,6 @@ class Case:
     material_keys: tuple[tuple[str, str, str], ...] = ()
     checks: tuple[Check, ...] = ()
     run_templates: tuple[str, ...] = ()
-    bed_templates: tuple[str, ...] = ()
     alternatives: tuple[tuple[str, str], ...] = ()
     geometry: tuple[str, ...] = ()
     first_title = ""

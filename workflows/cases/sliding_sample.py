@@ -39,7 +39,6 @@ class SlidingSample(Case):
     )
     checks = SLIDING_CHECKS
     run_templates = ("lowered_bed", "sliding_sample")
-    bed_templates = ("settled_bed",)
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")
     first_title = "lowering and run-in"
