@@ -50,11 +50,11 @@ def provenance(study: Path) -> str:
     runs = pin_runs(study / "design.csv")
     state = sorted((study / runs["run"].iloc[0]).glob("cycle_[0-9]*/state.json"))[-1]
     made = datetime.fromtimestamp(state.stat().st_mtime, UTC)
-    solver = (solver_version(state.parent / "log.liggghts") or "not reported").removeprefix("Version ")
+    solver = (solver_version(state.parent / "log.liggghts") or "LIGGGHTS of unknown version").removeprefix("Version ")
     finest, longest = runs["element_size_mm"].min(), runs["revolutions"].max()
     said = (
-        f"Simulated {made:%Y-%m-%d} with LIGGGHTS {solver}, page written by {commit()}: {len(runs)} runs of up to "
-        f"{longest:g} revolutions, elements from {finest:g} mm on the track."
+        f"Simulated {made:%Y-%m-%d} with {solver.partition(',')[0]}, page written by {commit()}: {len(runs)} run(s) of "
+        f"up to {longest:g} revolutions, elements from {finest:g} mm on the track."
     )
     return textwrap.fill(said, LINE) + "\n"
 
