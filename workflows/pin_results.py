@@ -131,10 +131,11 @@ def what_is_left(factors: pd.DataFrame) -> str:
 
 
 def fits_text(study: Path, fits: pd.DataFrame, published: pd.DataFrame) -> str:
-    """Return the fits of removed volumes beside the published ones."""
-    ours = fits[fits["volume"] == "removed"].drop(columns=["run", "volume"])
+    """Return the fits of removed volumes, and of those by Eq 5.9, beside the published ones."""
+    summed = (fits["scheme"] == "per_triangle") & (fits["volume"] == "Eq 5.9, touched")
+    ours = fits[(fits["volume"] == "removed") | summed].drop(columns="run")
     theirs = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv").rename(columns={"source": "scheme"})
-    return markdown(pd.concat([ours, theirs.assign(fit="quadratic")], ignore_index=True))
+    return markdown(pd.concat([ours, theirs.assign(volume="published", fit="quadratic")], ignore_index=True))
 
 
 def run_in_text(study: Path, statistics: pd.DataFrame, published: pd.DataFrame) -> str:

@@ -228,7 +228,7 @@ def shown_factors(factors: pd.DataFrame, published: pd.DataFrame) -> pd.DataFram
     parts = []
     for scheme, coefficient in ((s, c) for s in SCHEMES for c in wanted):
         rows = same_coefficient(factors[factors["scheme"] == scheme], coefficient)
-        if scheme == SCHEMES[0] and coefficient == coefficients.min():
+        if scheme == SCHEMES[0] and len(wanted) > 1 and coefficient == coefficients.min():
             continue
         ends = rows.sort_values("revolution").iloc[[-1] if scheme == SCHEMES[0] else [0, -1]] if len(rows) else rows
         parts.append(ends.drop_duplicates("revolution"))
