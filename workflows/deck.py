@@ -141,8 +141,8 @@ def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
     step = bed["time_step_s"]
     settling = steps(math.sqrt(2.0 * filled / GRAVITY), step)
     return {
-        **_integration(bed, step, particle, settling),
-        **_materials(particle, bed["floor_material"], bed["floor_material"], bed),
+        **integration(bed, step, particle, settling),
+        **material_tables(particle, bed["floor_material"], bed["floor_material"], bed),
         **_domain(bed),
         "temporary_floor_m": floor,
         "fill_bottom_m": floor + gap,
@@ -153,7 +153,7 @@ def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
         "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
         "density_kg_per_m3": particle["density_kg_per_m3"],
         "particle_diameter_m": particle["diameters_m"],
-        "size_distribution": _size_distribution(particle["mass_fractions"]),
+        "size_distribution": size_distribution(particle["mass_fractions"]),
         "size_count": len(particle["mass_fractions"]),
         "seeds": primes(bed["seed"], len(particle["diameters_m"]) + 2),
         "settling_steps": settling,
@@ -170,7 +170,7 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
     step = derived["time_step_s"]
     lowering = steps(LOWERING_FREE_FALLS * math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY), step)
     return {
-        **_integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
+        **integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
         **_sliding(run, bed, cycle=0, steps_before=0),
         "bed_restart": bed_restart,
         "lowering_steps": lowering,
@@ -182,7 +182,7 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
     """Return the parameters of the deck of one wear cycle; arguments as for `lowered_bed`."""
     derived = run["derived"]
     return {
-        **_integration(run["solver"], derived["time_step_s"], run["particle"], span.steps),
+        **integration(run["solver"], derived["time_step_s"], run["particle"], span.steps),
         **_sliding(run, bed, span.cycle, derived["run_in_steps"] + span.first_step),
         "run_restart": run_restart,
         "cycle_steps": span.steps,
@@ -236,7 +236,7 @@ def primes(above: int, count: int) -> list[int]:
 # ---------------------------------------------------------------- shared blocks
 
 
-def _integration(
+def integration(
     solver: Mapping[str, Any], time_step: float, particle: Mapping[str, Any], longest_run: int
 ) -> dict[str, Any]:
     """Return what every deck needs to integrate; `solver` has rayleigh_fraction (-), `longest_run` is in steps."""
@@ -273,7 +273,7 @@ def end_wall_corners(bed: Mapping[str, Any]) -> tuple[float, float, float]:
     return domain["half_width_m"], -0.5 * domain["domain_margin_m"], domain["domain_top_m"] - END_WALL_CLEARANCE
 
 
-def _materials(
+def material_tables(
     particle: Mapping[str, Any],
     sample: Mapping[str, Any],
     floor: Mapping[str, Any],
@@ -307,7 +307,9 @@ def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, steps_b
     coefficient = run["wear"]["accelerated_wear_coefficient_per_pa"]
     convention = {key: run["solver"][key] for key in ("rolling_radius", "rolling_friction")}
     return {
-        **_materials(run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}),
+        **material_tables(
+            run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}
+        ),
         "finnie_coefficient_per_pa": _pairs([coefficient] * 3),
         "velocity_m_per_s": run["sliding"]["velocity_m_per_s"],
         "cycle": cycle,
@@ -327,5 +329,5 @@ def _ends(bed: Mapping[str, Any], ahead: float) -> dict[str, Any]:
     }
 
 
-def _size_distribution(fractions: Sequence[float]) -> str:
+def size_distribution(fractions: Sequence[float]) -> str:
     return " ".join(f"size_{index} {fraction:.9g}" for index, fraction in enumerate(fractions, start=1))

@@ -89,7 +89,7 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
         "thin_bed": layers < THIN_BED_LAYERS * (1.0 - ROUNDING),
         "equivalent_size_ratio": _size_ratio(parameters),
         "physical_patch_factor": physical_patch_factor(parameters),
-        **_derived_materials(parameters),
+        **derived_materials(parameters),
         **_derived_geometry(parameters),
         **_derived_times(parameters),
     }
@@ -120,7 +120,7 @@ def physical_patch_factor(parameters: dict[str, Any]) -> float:
     return float(physical_radius(1.0, 1.0 / compliances[0], 1.0 / compliances[1], particle["scale"]))
 
 
-def _derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
+def derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
     """Return Young's moduli, and the rolling coefficients in the solver's convention."""
     sections = {name: parameters[name] for name in ("particle", "sample_material", "floor_material")}
     convention = parameters["solver"]["rolling_radius"]
