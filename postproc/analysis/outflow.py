@@ -1,0 +1,66 @@
+"""Outflow of a bulk test: mass against time from the solver's log, discharge time, and the count of particles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.readers.solver_log import thermo_table
+
+DISCHARGED = 0.99  # -, of the mass that flows out in the end; the last grains trickle
+DISCHARGED_BAND = (0.98, 0.995)  # -, other readings of "has stopped"; half their distance in time is the uncertainty
+
+
+class OutflowError(ValueError):
+    """An outflow that cannot be trusted; the message names the log and what is wrong."""
+
+
+def outflow_curve(log: str | Path, time_step: float) -> pd.DataFrame:
+    """Return time_s since the opening, mass_kg and count that have flowed out by then, and the particles still there.
+
+    log: of a bulk test, with the columns opened, out_kg and out_n; time_step: s. Raises OutflowError when nothing was
+    opened.
+    """
+    thermo = pd.DataFrame(thermo_table(log)).drop_duplicates("Step", keep="last")
+    opened = thermo[thermo["opened"] == 1.0]
+    if opened.empty:
+        raise OutflowError(f"{log}: the box was never opened, allowed is the log of a test that was run to its end.")
+    return pd.DataFrame(
+        {
+            "time_s": ((opened["Step"] - opened["Step"].iloc[0]) * time_step).to_numpy(),
+            "mass_kg": (opened["out_kg"] - opened["out_kg"].iloc[0]).to_numpy(),
+            "count": (opened["out_n"] - opened["out_n"].iloc[0]).to_numpy(),
+            "particles": opened["Atoms"].to_numpy(),
+        }
+    )
+
+
+def check_count(curve: pd.DataFrame, removed: bool, log: str | Path) -> None:
+    """Raise OutflowError unless every particle is accounted for: still there, or, where outflow is removed, counted."""
+    present = curve["particles"].iloc[-1] + (curve["count"].iloc[-1] if removed else 0.0)
+    missing = int(curve["particles"].iloc[0] - present)
+    if missing:
+        raise OutflowError(f"{log}: {missing} particles left the domain uncounted, allowed are none.")
+
+
+def discharge_time(curve: pd.DataFrame) -> tuple[float, float]:
+    """Return the time (s) from the opening until 99 % of the outflow has passed, and its uncertainty.
+
+    The uncertainty is half the time between 98 and 99.5 %: how much the reading depends on what counts as stopped.
+    Raises OutflowError when nothing flowed.
+    """
+    mass = curve["mass_kg"].to_numpy()
+    if mass[-1] <= 0.0:
+        raise OutflowError("nothing flowed out: the opening is blocked, allowed is a wider one or smaller particles.")
+    share = np.maximum.accumulate(mass) / mass[-1]
+    early, at, late = np.interp([DISCHARGED_BAND[0], DISCHARGED, DISCHARGED_BAND[1]], share, curve["time_s"])
+    return float(at), float((late - early) / 2.0)
+
+
+def mass_flow(curve: pd.DataFrame) -> float:
+    """Return the mean mass flow (kg/s) between 20 and 80 % of the outflow."""
+    mass = curve["mass_kg"].to_numpy()
+    times = np.interp([0.2, 0.8], np.maximum.accumulate(mass) / mass[-1], curve["time_s"])
+    return float(0.6 * mass[-1] / (times[1] - times[0]))
