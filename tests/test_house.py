@@ -183,7 +183,7 @@ def test_snakemake_object_stays_in_scripts():
 def test_third_party_imports_are_direct_requirements():
     """What is imported is named in requirements.in, not there by some other package's grace."""
     lines = [line.partition("#")[0].strip() for line in text_of("requirements.in").splitlines()]
-    required = {re.sub(r"\[.*", "", line).replace("-", "_") for line in lines} | {"yaml", "PIL", "igl"}
+    required = {re.sub(r"\[.*", "", line).replace("-", "_") for line in lines} | {"yaml", "PIL", "igl", "sklearn"}
     ours = {path.name for path in REPOSITORY.iterdir()}
     siblings = {path.stem for path in tracked("*.py")}
     sources = {name_of(path): path.read_text() for path in tracked("*.py")}

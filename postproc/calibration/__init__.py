@@ -1,0 +1,1 @@
+"""Calibration: parameters of a simulation from measured responses, by a surrogate and few simulations."""
