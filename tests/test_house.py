@@ -24,11 +24,13 @@ LAYERS = {
     "postproc.readers": ("postproc.mesh", "postproc.readers"),
     "postproc.wear": ("postproc.mesh", "postproc.wear"),
     "postproc.reference": ("postproc.reference",),
+    "postproc.calibration": ("postproc.calibration",),
     "postproc.analysis": (
         "postproc.mesh",
         "postproc.readers",
         "postproc.wear",
         "postproc.reference",
+        "postproc.calibration",
         "postproc.analysis",
     ),
     "postproc.plots": ("postproc",),

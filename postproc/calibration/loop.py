@@ -83,9 +83,9 @@ def calibrate(problem: Problem, simulate: Simulate, say: Callable[[str], None] =
     return Result(simulations, pd.DataFrame(looks), posterior(problem, simulations))
 
 
-def posterior(problem: Problem, simulations: pd.DataFrame) -> Posterior:
-    """Return the posterior that a table of simulations leads to."""
-    points = problem.spread_points(CANDIDATES_POWER)
+def posterior(problem: Problem, simulations: pd.DataFrame, power: int = CANDIDATES_POWER) -> Posterior:
+    """Return the posterior that a table of simulations leads to, on 2^power points."""
+    points = problem.spread_points(power)
     surrogates = fit_surrogates(problem, simulations)
     predicted = predictions(surrogates, points)
     return Posterior(points, posterior_weights(predicted, problem.measured), predicted, surrogates)
