@@ -14,6 +14,7 @@ include: "workflows/solve.smk"
 include: "workflows/analyse.smk"
 include: "workflows/report.smk"
 include: "workflows/pin_on_disc.smk"
+include: "workflows/calibration.smk"
 
 
 for STUDY in STUDIES:

@@ -33,6 +33,8 @@ TYPE_NAMES = {
     "shear_box": ["particle", "side walls", "floor"],
     "draw_down": ["particle", "side walls and floors", "front and back walls"],
 }
+WIDTH_PERIODIC = "periodic"  # value of front_and_back, and what a shear box always is
+LEAST_WIDTH_DIAMETERS = 4.0  # -, of a periodic slice
 MESH_CLEARANCE = 1e-6  # m, between a mesh and the domain's faces
 FILL_EXCESS = 1.1  # -, poured over levelled volume: loose packings of rough particles still fill the box
 
@@ -79,6 +81,16 @@ def slot_length(test: Mapping[str, Any]) -> float:
     particle = test["particle"]
     real = particle["median_diameter_m"] / particle["scale"]
     return test["box"]["opening_m"] + EMPTY_ANNULUS * (particle["median_diameter_m"] - real)
+
+
+def simulated_width(box: Mapping[str, Any], particle: Mapping[str, Any]) -> float:
+    """Return the width (m) of a box as simulated: a periodic slice holds at least four median diameters.
+
+    Narrower ones hold a slope up (Yan 2022, section 3.3.2).
+    """
+    if box.get("front_and_back", WIDTH_PERIODIC) != WIDTH_PERIODIC:
+        return box["width_m"]
+    return max(box["width_m"], LEAST_WIDTH_DIAMETERS * particle["median_diameter_m"])
 
 
 def rest_energy(test: Mapping[str, Any]) -> float:

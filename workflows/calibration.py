@@ -1,6 +1,7 @@
-"""Calibrate contact parameters on bulk tests: from a study's settings to simulations, and from these to a result.
+"""Calibrate contact parameters on bulk tests: from a study's parameters to simulations, and from these to tables.
 
-Settings are those of `case: calibration` in SI (config/cases/calibration.yaml tells what they mean).
+Parameters are those of a run of `case: calibration` (cases/calibration.py), SI; the first run's box is the
+calibration's, all runs' are compared by size. One job each, resumable: a simulation that was done is not done again.
 """
 
 from __future__ import annotations
@@ -10,58 +11,51 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from postproc.analysis.bulk_test import RESPONSES
-from postproc.calibration.loop import Request, Result, calibrate
-from postproc.calibration.problem import Experiment, Measured, Parameter, Problem
+from postproc.analysis.calibration import RECOMMENDED, read_measured
+from postproc.calibration.loop import Posterior, Request, calibrate, posterior
+from postproc.calibration.problem import Experiment, Parameter, Problem
+from workflows import state
 from workflows.bulk_simulations import answer, simulate_all
+from workflows.bulk_tests import simulated_width
+from workflows.cases.base import Parameters
+from workflows.progress import Progress
 
-LEAST_WIDTH_DIAMETERS = 4.0  # -, of a periodic slice; narrower ones hold the slope up (Yan 2022, section 3.3.2)
 SIMULATIONS = "simulations"
+FIRST_REPEAT = 1000  # added to the calibration's seed: repeats share no packing with the calibration
+SHEAR_BOX, SHEAR_ANGLE = "shear_box", "shear_angle_deg"
 
-Settings = Mapping[str, Any]
 
-
-def problem_of(settings: Settings, measured: Mapping[str, Measured]) -> Problem:
-    """Return the calibration that the settings ask for."""
-    calibration = settings["calibration"]
+def problem_of(parameters: Parameters, measured: str | Path) -> Problem:
+    """Return the calibration that a study's parameters ask for; `measured` is the table of measured responses."""
+    asked = parameters["calibration"]
     return Problem(
-        parameters=tuple(
-            Parameter(name, bounds["low"], bounds["high"]) for name, bounds in calibration["parameters"].items()
-        ),
+        parameters=tuple(Parameter(each["name"], each["low"], each["high"]) for each in asked["parameters"]),
         tests=tuple(
-            Experiment(kind, RESPONSES[kind], calibration["initial"][kind], calibration["most"][kind])
-            for kind in calibration["tests"]
+            Experiment(kind, RESPONSES[kind], asked["initial"][kind], asked["most"][kind]) for kind in asked["tests"]
         ),
-        measured=measured,
-        parallel=calibration["parallel"],
-        surrogate_share=calibration["surrogate_share"],
-        seed=calibration["seed"],
+        measured=read_measured(measured),
+        parallel=asked["batch"],
+        surrogate_share=asked["surrogate_share"],
+        seed=asked["seed"],
     )
 
 
-def test_of(
-    settings: Settings, materials: Mapping[str, Any], kind: str, values: Mapping[str, float], seed: int
-) -> dict[str, Any]:
-    """Return the parameters of a bulk test (see bulk_tests.py).
-
-    materials: particle (coarse-grained), and walls by name, SI; values: of the calibrated parameters, by dotted name
-    """
-    box = dict(settings[kind])
-    walls = materials["walls"]
-    floor = box.pop("floor_material") if kind == "shear_box" else box.pop("front_material")
-    diameter = materials["particle"]["median_diameter_m"]
-    if box.get("front_and_back", "periodic") == "periodic":
-        box["width_m"] = max(box["width_m"], LEAST_WIDTH_DIAMETERS * diameter)
+def test_of(parameters: Parameters, kind: str, values: Mapping[str, float], seed: int) -> dict[str, Any]:
+    """Return a bulk test (see bulk_tests.py) with values of the calibrated parameters, by dotted name."""
+    box, walls = dict(parameters[kind]), parameters["walls"]
+    second = box.pop("floor_material" if kind == SHEAR_BOX else "front_material")
     test = {
         "kind": kind,
         "wall_material": walls[box.pop("wall_material")],
-        "floor_material": walls[floor],
-        "box": box,
-        "rest": dict(settings["rest"]),
-        "particle": materials["particle"],
-        "solver": {key: settings["solver"][key] for key in ("rayleigh_fraction", "rolling_friction", "rolling_radius")},
+        "floor_material": walls[second],
+        "box": {**box, "width_m": simulated_width(box, parameters["particle"])},
+        "rest": dict(parameters["rest"]),
+        "particle": parameters["particle"],
+        "solver": dict(parameters["solver"]),
         "seed": seed,
     }
     return with_values(test, values)
@@ -79,46 +73,120 @@ def with_values(test: Mapping[str, Any], values: Mapping[str, float]) -> dict[st
     return changed
 
 
-def calibrated(
-    settings: Settings,
-    materials: Mapping[str, Any],
-    measured: Mapping[str, Measured],
-    folder: Path,
-    say: Callable[[str], None],
-) -> Result:
-    """Return the calibration; its simulations are kept in the folder and are not done again. Raises SolverError."""
+def pair_of(pairs: pd.DataFrame, row: str, names: Sequence[str], parameters: Parameters) -> dict[str, float]:
+    """Return the values of a row of a table of pairs; a parameter that it does not have keeps the material's value."""
+    found = pairs[pairs["row"] == row].iloc[0]
+    present = test_of(parameters, SHEAR_BOX, {}, 0)
+    return {name: float(found[name]) if name in found else _value_at(present, name) for name in names}
 
-    def simulate(requests: Sequence[Request]) -> list[dict[str, float]]:
-        tests = [test_of(settings, materials, each.test, each.values, each.seed) for each in requests]
-        parallel = settings["calibration"]["parallel"]
-        return [answer(found) for found in simulate_all(tests, folder / SIMULATIONS, parallel, say)]
 
-    return calibrate(problem_of(settings, measured), simulate, say)
+def _value_at(test: Mapping[str, Any], name: str) -> float:
+    found: Any = test
+    for key in name.split("."):
+        found = found[key]
+    return float(found)
+
+
+# ---------------------------------------------------------------- jobs
+
+
+def run_calibration(
+    parameters: Parameters, measured: Path, pairs: Path, folder: Path, workers: int
+) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
+    """Calibrate, then simulate the recommended and the compared pair with several seeds.
+
+    workers: simulations at the same time. Returns the simulations, the looks at the surrogate and the repeats, one row
+    each. Raises SolverError; what was simulated is kept in the folder.
+    """
+    say = Progress("calibration", 1).say
+    problem = problem_of(parameters, measured)
+    with state.only_driver(folder / SIMULATIONS, say):
+
+        def simulate(requests: Sequence[Request]) -> list[dict[str, float]]:
+            tests = [test_of(parameters, each.test, each.values, each.seed) for each in requests]
+            return [answer(found) for found in simulate_all(tests, folder / SIMULATIONS, workers, say)]
+
+        result = calibrate(problem, simulate, say)
+        compared = compared_pairs(problem, result.posterior, parameters, pd.read_csv(pairs))
+        repeats = repeated(parameters, compared, folder, workers, say)
+    return result.simulations, result.shares, repeats
+
+
+def compared_pairs(
+    problem: Problem, known: Posterior, parameters: Parameters, pairs: pd.DataFrame
+) -> dict[str, dict[str, float]]:
+    """Return {name: values} of the recommended pair and of the one that it is compared with."""
+    values = problem.from_unit(known.points[known.recommended][None])[0]
+    other = parameters["calibration"]["compared_pair"]
+    return {
+        RECOMMENDED: dict(zip(problem.names, map(float, values), strict=True)),
+        other: pair_of(pairs, other, problem.names, parameters),
+    }
 
 
 def repeated(
-    settings: Settings,
-    materials: Mapping[str, Any],
+    parameters: Parameters,
     pairs: Mapping[str, Mapping[str, float]],
     folder: Path,
+    workers: int,
     say: Callable[[str], None],
 ) -> pd.DataFrame:
-    """Return one row per pair, test and seed: the responses of pairs simulated with several seeds.
-
-    pairs: {name: values of the calibrated parameters}. The seeds follow those of the calibration.
-    """
-    calibration = settings["calibration"]
-    first = calibration["seed"] + 1000
+    """Return one row per pair, test and seed: pair, test, seed, the parameters and the responses."""
     asked = [
         (name, kind, seed)
-        for kind in calibration["tests"]
+        for kind in parameters["calibration"]["tests"]
         for name in pairs
-        for seed in range(first, first + calibration["repeats"])
+        for seed in repeat_seeds(parameters)
     ]
-    tests = [test_of(settings, materials, kind, pairs[name], seed) for name, kind, seed in asked]
-    found = simulate_all(tests, folder / SIMULATIONS, calibration["parallel"], say)
+    tests = [test_of(parameters, kind, pairs[name], seed) for name, kind, seed in asked]
+    found = simulate_all(tests, folder / SIMULATIONS, workers, say)
     rows = [
         {"pair": name, "test": kind, "seed": seed, **pairs[name], **answer(each)}
         for (name, kind, seed), each in zip(asked, found, strict=True)
     ]
     return pd.DataFrame(rows)
+
+
+def repeat_seeds(parameters: Parameters) -> range:
+    """Return the seeds of the packings that are repeated."""
+    first = parameters["calibration"]["seed"] + FIRST_REPEAT
+    return range(first, first + parameters["calibration"]["repeats"])
+
+
+def run_box_sizes(runs: Mapping[str, Parameters], pairs: Path, folder: Path, workers: int) -> pd.DataFrame:
+    """Return one row per box size: the shear angle at the pair of the sizes, its mean and scatter over seeds."""
+    say = Progress("box sizes", 1).say
+    table = pd.read_csv(pairs)
+    rows = []
+    with state.only_driver(folder / SIMULATIONS, say):
+        for name, parameters in runs.items():
+            asked = parameters["calibration"]
+            names = [each["name"] for each in asked["parameters"]]
+            values = pair_of(table, asked["sizes_pair"], names, parameters)
+            tests = [test_of(parameters, SHEAR_BOX, values, seed) for seed in repeat_seeds(parameters)]
+            found = simulate_all(tests, folder / SIMULATIONS, workers, say)
+            rows.append(_size_row(name, parameters, [each.responses[SHEAR_ANGLE] for each in found]))
+    return pd.DataFrame(rows)
+
+
+def _size_row(name: str, parameters: Parameters, angles: Sequence[float]) -> dict[str, Any]:
+    box, particle = parameters[SHEAR_BOX], parameters["particle"]
+    width = simulated_width(box, particle)
+    return {
+        "row": name,
+        "varied": parameters["varied"],
+        "length_mm": 1e3 * box["length_m"],
+        "width_mm": 1e3 * width,
+        "width_in_diameters": width / particle["median_diameter_m"],
+        "mean": float(np.mean(angles)),
+        "deviation": float(np.std(angles, ddof=1)) if len(angles) > 1 else np.nan,
+        "seeds": len(angles),
+    }
+
+
+def read_posterior(
+    parameters: Parameters, measured: Path, simulations: Path
+) -> tuple[Problem, pd.DataFrame, Posterior]:
+    """Return the calibration, its simulations and the posterior that they lead to, from a finished table."""
+    problem, table = problem_of(parameters, measured), pd.read_csv(simulations)
+    return problem, table, posterior(problem, table)

@@ -106,7 +106,9 @@ def of_every_run(pattern):
 
 
 def study_decks(study):
-    """The folders with all decks of a study: its beds and its runs."""
+    """The decks of a study: of its beds and its runs, or of its tests."""
+    if STUDIES[study].case == "calibration":
+        return [f"results/{study}/decks/{test}/deck.in" for test in CASES["calibration"].run_templates]
     names = [f"beds/{bed}" for bed in STUDIES[study].beds] + [run.name for run in STUDIES[study].runs]
     return [f"results/{study}/decks/{name}/cycle_000/deck.in" for name in names if "/" not in name] + [
         f"results/{study}/decks/{name}/deck.in" for name in names if "/" in name

@@ -21,6 +21,7 @@ from workflows.run_checks import CheckedRun, check_run
 from workflows.validation import (
     case_schema,
     check_alternatives,
+    check_calibrated_for,
     check_layer,
     check_material_names,
     check_materials,
@@ -45,6 +46,7 @@ RULE_NAMES = frozenset(
     for path in Path(__file__).parent.glob("*.smk")
     for found in re.finditer(r"^rule (\w+):", path.read_text(encoding="utf-8"), re.MULTILINE)
 )
+MATERIALS = "materials.yaml"  # in config, where a study names no other
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 
@@ -78,6 +80,7 @@ class Study:
     design_rows: tuple[dict[str, Any], ...]
     factors: dict[str, str]
     paper_settings: dict[str, Any]
+    materials: dict[str, Any]
 
     def run(self, name: str) -> Run:
         """Return the run of that name. Raises ConfigError naming the runs there are."""
@@ -137,8 +140,9 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     fidelity = _fidelity(sources)
     layers = sources.stack(fidelity)
     settings = sources.merged(layers)
-    materials = check_materials(read_yaml(root / "config" / "materials.yaml", root))
+    materials = check_materials(read_yaml(_materials_file(settings, root), root))
     check_material_names(layers, settings, materials, CASES[sources.case].material_keys)
+    check_calibrated_for(layers, settings, materials, CASES[sources.case].material_keys)
     head = sources.study.values
     rows = _design_rows(sources, fidelity, root)
     runs = tuple(
@@ -157,7 +161,15 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         design_rows=tuple(row_layer.values for row_layer in rows),
         factors=_factors(sources, rows),
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
+        materials=materials,
     )
+
+
+def _materials_file(settings: dict[str, Any], root: Path) -> Path:
+    """Return the path of a study's materials: a file in config, or any other one, as a calibration writes it."""
+    name = settings.get("materials", MATERIALS)
+    in_config, elsewhere = root / "config" / name, root / name
+    return elsewhere if elsewhere.is_file() and not in_config.is_file() else in_config
 
 
 @dataclass(frozen=True)

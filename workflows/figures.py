@@ -14,7 +14,7 @@ from workflows.pages import PAGES
 from workflows.remarks import figure_remarks
 
 REPORT_FOLDER = Path(__file__).resolve().parent / "report"
-TEMPLATE = "study.html.j2"
+TEMPLATE, STYLE = "study.html.j2", "style.html.j2"
 INTERACTIVE = ("worn_surface_3d",)  # pages, not pictures; their table is that of the picture
 FILMS = ("worn_film",)  # animated pictures
 OF_SAMPLES = (  # of every study of sliding samples
@@ -100,7 +100,7 @@ def figure_files(study: Study) -> list[str]:
 
 def page_templates(study: Study) -> list[str]:
     """Return the paths of the templates of a study's page."""
-    return [str(REPORT_FOLDER / name) for name in (TEMPLATE, PAGES[study.case].KEY_NUMBERS)]
+    return [str(REPORT_FOLDER / name) for name in (TEMPLATE, STYLE, PAGES[study.case].KEY_NUMBERS)]
 
 
 def is_deformed(study: Study) -> bool:

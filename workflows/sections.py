@@ -27,6 +27,7 @@ def particle_section(name: str, materials: Mapping[str, Any], scale: float) -> d
     """Return a bulk material; its lengths are coarse-grained, `scale` times the real ones."""
     particle = dict(materials["particles"][name])
     particle.pop("physical_shear_modulus_pa", None)  # concerns wear alone, and no bed is filled again for it
+    particle.pop("calibrated", None)  # provenance
     distribution = particle.pop("size_distribution")
     median_diameter = scale * particle.pop("median_diameter_m")
     return {

@@ -29,6 +29,7 @@ from workflows.config_files import (
 )
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
+CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
 
 # Suffix of a key -> unit as written in the schemas (x-unit); no suffix: "-".
 UNIT_OF_SUFFIX = {
@@ -40,6 +41,7 @@ UNIT_OF_SUFFIX = {
     "per_pa": "1/Pa",
     "kg_per_m3": "kg/m3",
     "m_per_s": "m/s",
+    "s": "s",
     "steps": "steps",
     "h": "h",
 }
@@ -49,7 +51,7 @@ FOREIGN_SUFFIXES = (
     *("rad", "degrees", "radians", "percent"),
     *("kpa", "mpa", "gpa", "per_kpa", "per_mpa", "per_gpa"),
     *("mm_per_s", "cm_per_s", "km_per_h", "g_per_cm3", "t_per_m3"),
-    *("s", "ms", "min", "kg", "g"),
+    *("ms", "min", "kg", "g"),
 )
 ALL_SUFFIXES = sorted([*UNIT_OF_SUFFIX, *FOREIGN_SUFFIXES], key=len, reverse=True)
 VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z")
@@ -366,6 +368,27 @@ def check_material_names(
         if value not in known:
             where = locate(layers, (section, key))
             raise ConfigError(unknown_name(where, f"{section}.{key}", value, sorted(known)))
+
+
+def check_calibrated_for(
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    materials: dict[str, Any],
+    keys: tuple[tuple[str, str, str], ...],
+) -> None:
+    """Raise ConfigError if a bulk material was calibrated in another rolling friction model or convention.
+
+    A rolling coefficient is a number of the model and of the radius that it was found with; keys as for
+    `check_material_names`.
+    """
+    for section, key, kind in keys:
+        found = materials.get(kind, {}).get(settings[section][key], {}).get("calibrated")
+        for word in CALIBRATED_WITH if found and kind == "particles" else ():
+            if settings["solver"][word] != found[word]:
+                raise ConfigError(
+                    f"{locate(layers, ('solver', word))}: solver.{word} is '{settings['solver'][word]}', allowed is"
+                    f" {found[word]}, in which study {found['study']} calibrated {settings[section][key]}."
+                )
 
 
 def locate(layers: tuple[Layer, ...], path: KeyPath) -> str:

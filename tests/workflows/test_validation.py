@@ -89,7 +89,8 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, ledger, wear, remeshing, solver, sample, pattern, bed, sliding, design.",
+        " allowed are particle_scale, materials, ledger, wear, remeshing, solver, sample, pattern, bed, sliding,"
+        " design.",
     ),
     (
         OWN_SETTINGS,
@@ -469,7 +470,7 @@ BAD_COMBINATIONS = [
     ),
     (
         {"title": "x"},
-        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, ledger, wear,"
+        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, materials, ledger, wear,"
         " remeshing, solver, sample, pattern, bed, sliding.",
     ),
 ]

@@ -9,6 +9,10 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from workflows.pages import pin_on_disc, sliding_sample
+from workflows.pages import calibration, pin_on_disc, sliding_sample
 
-PAGES: dict[str, ModuleType] = {"sliding_sample": sliding_sample, "pin_on_disc": pin_on_disc}
+PAGES: dict[str, ModuleType] = {
+    "sliding_sample": sliding_sample,
+    "pin_on_disc": pin_on_disc,
+    "calibration": calibration,
+}

@@ -1,0 +1,12 @@
+"""Simulate shear boxes of other sizes."""
+
+from pathlib import Path
+
+from workflows.calibration import run_box_sizes
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    table = run_box_sizes(
+        snakemake.params.runs, Path(snakemake.input.pairs), Path(snakemake.output[0]).parent, snakemake.threads
+    )
+    table.to_csv(snakemake.output[0], index=False)

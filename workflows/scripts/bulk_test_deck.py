@@ -1,0 +1,12 @@
+"""Render the deck of a bulk test with the meshes that it reads."""
+
+from pathlib import Path
+
+from workflows.bulk_tests import write_test
+from workflows.calibration import test_of
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    run = snakemake.params.run
+    test = test_of(run, snakemake.wildcards.test, {}, run["calibration"]["seed"])
+    write_test(test, Path(snakemake.output[0]).parent)

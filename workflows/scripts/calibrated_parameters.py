@@ -1,0 +1,17 @@
+"""Simulate bulk tests until the contact parameters are known as well as the measurement allows."""
+
+from pathlib import Path
+
+from workflows.calibration import run_calibration
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    tables = run_calibration(
+        snakemake.params.run,
+        Path(snakemake.input.measured),
+        Path(snakemake.input.pairs),
+        Path(snakemake.output.simulations).parent,
+        snakemake.threads,
+    )
+    for name, table in zip(("simulations", "looks", "repeats"), tables, strict=True):
+        table.to_csv(snakemake.output[name], index=False)
