@@ -2,10 +2,9 @@
 
 from workflows.calibration_page import page_parameters as calibration_parameters
 from workflows.calibration_tables import FIGURES as CALIBRATION_FIGURES
-from workflows.cases.calibration import PUBLISHED
 
 CALIBRATIONS = "|".join(name for name in STUDIES if STUDIES[name].case == "calibration") or "no_calibration"
-SIZES_BEFORE = f"{PUBLISHED}/shear_box_sizes.csv"
+SIZES_BEFORE = f"{PUBLISHED_TABLES}/shear_box_sizes.csv"
 
 
 # summary.csv and report.html of a calibration are made of other files than those of a wear study
@@ -13,23 +12,10 @@ ruleorder: calibration_results > summary
 ruleorder: calibration_page > report
 
 
-def first_run(wildcards):
-    return study_of(wildcards).runs[0].parameters
-
-
-def published(key):
-    """An input function: the published table that a setting of the calibration names."""
-    return lambda wildcards: f"{PUBLISHED}/{first_run(wildcards)['calibration'][key]}"
-
-
-def calibration_threads(wildcards):
-    return first_run(wildcards)["calibration"]["batch"]
-
-
 rule calibrated_parameters:
     input:
-        measured=published("measured"),
-        pairs=published("simulated_before"),
+        measured=published_table("measured"),
+        pairs=published_table("simulated_before"),
     output:
         simulations="results/{study}/simulations.csv",
         looks="results/{study}/looks.csv",
@@ -50,7 +36,7 @@ rule calibrated_parameters:
 
 rule box_sizes:
     input:
-        pairs=published("simulated_before"),
+        pairs=published_table("simulated_before"),
     output:
         "results/{study}/box_sizes.csv",
     log:
@@ -69,8 +55,8 @@ rule box_sizes:
 
 rule calibration_results:
     input:
-        measured=published("measured"),
-        pairs=published("simulated_before"),
+        measured=published_table("measured"),
+        pairs=published_table("simulated_before"),
         simulations="results/{study}/simulations.csv",
         looks="results/{study}/looks.csv",
         repeats="results/{study}/repeats.csv",
@@ -109,8 +95,8 @@ rule calibration_results:
 
 rule calibration_page:
     input:
-        measured=published("measured"),
-        pairs=published("simulated_before"),
+        measured=published_table("measured"),
+        pairs=published_table("simulated_before"),
         results="results/{study}/summary.csv",
         materials="results/{study}/materials.yaml",
         templates=lambda wildcards: page_templates(study_of(wildcards)),

@@ -15,6 +15,7 @@ from workflows.solver import CYCLE_EXECUTABLES, missing_program
 min_version("9.0")
 
 ROOT = Path(workflow.basedir)
+PUBLISHED_TABLES = ROOT / "config" / "published"
 let_jobs_import(ROOT)
 
 
@@ -113,3 +114,18 @@ def study_decks(study):
     return [f"results/{study}/decks/{name}/cycle_000/deck.in" for name in names if "/" not in name] + [
         f"results/{study}/decks/{name}/deck.in" for name in names if "/" in name
     ]
+
+
+def first_run(wildcards):
+    """The parameters of the first run, whose box is that of a calibration."""
+    return study_of(wildcards).runs[0].parameters
+
+
+def published_table(key):
+    """An input function: the published table that a setting of the calibration names."""
+    return lambda wildcards: f"{PUBLISHED_TABLES}/{first_run(wildcards)['calibration'][key]}"
+
+
+def calibration_threads(wildcards):
+    """Simulations that a calibration has at the same time."""
+    return first_run(wildcards)["calibration"]["batch"]

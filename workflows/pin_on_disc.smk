@@ -304,7 +304,7 @@ rule excess_volume:
         "scripts/excess_volume.py"
 
 
-rule calibration:
+rule coefficient_calibration:
     input:
         design="results/{study}/design.csv",
         published=PUBLISHED,

@@ -77,7 +77,7 @@ def initial_below_most(run: CheckedRun) -> Fault | None:
     calibration = run.settings["calibration"]
     for test in calibration["tests"]:
         if calibration["initial"][test] > calibration["most"][test]:
-            return f"calibration.most.{test}", f"at least calibration.initial.{test}, {calibration['initial'][test]}"
+            return "calibration.most", f"for {test} at least calibration.initial.{test}, {calibration['initial'][test]}"
     return None
 
 

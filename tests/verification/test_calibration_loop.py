@@ -1,0 +1,48 @@
+"""A calibration with LIGGGHTS in the loop finds the friction that its responses were simulated with."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.calibration.posterior import densest, interval
+from workflows.bulk_simulations import simulate_all
+from workflows.calibration import compared_pairs, read_posterior, run_calibration
+from workflows.calibration import test_of as bulk_test_of
+from workflows.cases.calibration import PUBLISHED
+from workflows.design import load_study
+
+pytestmark = [pytest.mark.solver, pytest.mark.verify]
+
+HIDDEN = {"particle.contact.sliding_friction": 0.3, "particle.contact.rolling_friction": 0.35}
+SEEDS = range(31_000, 31_004)  # of the packings that stand for the laboratory's
+MOST_SIMULATIONS = 20  # what a closed loop may cost, repeats included
+STATED_SHARE = 0.95  # of the posterior, in the region and in the intervals that must hold the hidden pair
+WORKERS = 2
+
+
+def test_hidden_friction_is_found_by_the_solver(tmp_path):
+    """The mean shear angle of four packings with hidden friction leads back to it, in at most 20 simulations."""
+    run = load_study("calibration", overrides={"fidelity": "quick", "calibration": {"repeats": 2}}).runs[0].parameters
+    laboratory = [bulk_test_of(run, "shear_box", HIDDEN, seed) for seed in SEEDS]
+    found = simulate_all(laboratory, tmp_path / "laboratory", WORKERS, print)
+    angles = [each.responses["shear_angle_deg"] for each in found]
+    deviation = np.std(angles, ddof=1) / np.sqrt(len(angles))
+    row = {
+        "response": "shear_angle_deg",
+        "value": np.mean(angles),
+        "deviation": max(deviation, 0.4),
+        "source": "hidden",
+    }
+    pd.DataFrame([row]).to_csv(tmp_path / "measured.csv", index=False)
+    pairs = PUBLISHED / "gravel_pairs.csv"
+    simulations, _, repeats = run_calibration(run, tmp_path / "measured.csv", pairs, tmp_path, WORKERS)
+    assert len(simulations) + len(repeats) <= MOST_SIMULATIONS
+    simulations.to_csv(tmp_path / "simulations.csv", index=False)
+    problem, _, known = read_posterior(run, tmp_path / "measured.csv", tmp_path / "simulations.csv")
+    values = problem.from_unit(known.points)
+    nearest = int(np.argmin(np.linalg.norm(values - np.array(list(HIDDEN.values())), axis=1)))
+    assert densest(known.weights, STATED_SHARE)[nearest]
+    for column, hidden in enumerate(HIDDEN.values()):
+        low, high = interval(values[:, column], known.weights)
+        assert low < hidden < high
+    assert set(compared_pairs(problem, known, run, pd.read_csv(pairs))) == set(repeats["pair"])
