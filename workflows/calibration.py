@@ -16,7 +16,7 @@ import pandas as pd
 
 from postproc.analysis.bulk_test import RESPONSES
 from postproc.analysis.calibration import RECOMMENDED, read_measured
-from postproc.calibration.loop import Posterior, Request, calibrate, posterior
+from postproc.calibration.loop import Posterior, Request, calibrate, packing_seed, posterior
 from postproc.calibration.problem import Experiment, Parameter, Problem
 from workflows import state
 from workflows.bulk_simulations import answer, simulate_all
@@ -25,7 +25,7 @@ from workflows.cases.base import Parameters
 from workflows.progress import Progress
 
 SIMULATIONS = "simulations"
-FIRST_REPEAT = 1000  # added to the calibration's seed: repeats share no packing with the calibration
+FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
 SHEAR_BOX, SHEAR_ANGLE = "shear_box", "shear_angle_deg"
 
 
@@ -147,10 +147,10 @@ def repeated(
     return pd.DataFrame(rows)
 
 
-def repeat_seeds(parameters: Parameters) -> range:
+def repeat_seeds(parameters: Parameters) -> list[int]:
     """Return the seeds of the packings that are repeated."""
-    first = parameters["calibration"]["seed"] + FIRST_REPEAT
-    return range(first, first + parameters["calibration"]["repeats"])
+    asked = parameters["calibration"]
+    return [packing_seed(asked["seed"], FIRST_REPEAT + number) for number in range(asked["repeats"])]
 
 
 def run_box_sizes(runs: Mapping[str, Parameters], pairs: Path, folder: Path, workers: int) -> pd.DataFrame:

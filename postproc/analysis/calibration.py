@@ -160,7 +160,7 @@ def repeat_table(repeats: pd.DataFrame, responses: Sequence[str]) -> pd.DataFram
     """Return mean and scatter between seeds of every response and pair.
 
     repeats: a row per simulation with pair and responses. Columns: pair, response, seeds, mean, deviation (between
-    seeds; NaN with one), uncertainty (of the mean; with one seed that of its measurement).
+    seeds; NaN with one), uncertainty (of the mean: a single one's is at least that of its measurement).
     """
     rows = []
     for pair, table in repeats.groupby("pair", sort=False):
@@ -169,7 +169,7 @@ def repeat_table(repeats: pd.DataFrame, responses: Sequence[str]) -> pd.DataFram
             values, several = known[name].to_numpy(float), len(known) > 1
             deviation = float(np.std(values, ddof=1)) if several else np.nan
             single = float(known[f"{name}_uncertainty"].mean())
-            uncertainty = deviation / np.sqrt(len(values)) if several else single
+            uncertainty = max(deviation, single) / np.sqrt(len(values)) if several else single
             head = {"pair": pair, "response": name, "seeds": len(values), "mean": float(values.mean())}
             rows.append(head | {"deviation": deviation, "uncertainty": float(uncertainty)})
     return pd.DataFrame(rows)

@@ -19,7 +19,16 @@ from postproc.calibration.problem import Experiment, Problem
 from postproc.calibration.surrogate import Surrogate, fit_surrogates, predictions
 
 CANDIDATES_POWER = 12  # 4096 points carry the posterior
+SEED_SPACING = 1000  # the largest gap between primes below 4e8 is 282, and a simulation needs a handful of them
 INITIAL_POWER = 6  # of the sequence that the first simulations are the beginning of
+
+
+def packing_seed(first: int, number: int) -> int:
+    """Return the seed of a simulation's packing, far enough from that of the one before.
+
+    The solver's own seeds are the next few primes above it; between numbers that are closer there may be none.
+    """
+    return first + SEED_SPACING * number
 
 
 @dataclass(frozen=True)
@@ -108,10 +117,10 @@ def _simulate(
     problem: Problem, test: Experiment, points: np.ndarray, why: str, simulate: Simulate, rows: list[dict[str, Any]]
 ) -> None:
     """Simulate points and append a row for each."""
-    requests = [
-        Request(test.name, dict(zip(problem.names, map(float, values), strict=True)), problem.seed + len(rows) + k, why)
-        for k, values in enumerate(problem.from_unit(points))
-    ]
+    requests = []
+    for number, values in enumerate(problem.from_unit(points), start=len(rows)):
+        named = dict(zip(problem.names, map(float, values), strict=True))
+        requests.append(Request(test.name, named, packing_seed(problem.seed, number), why))
     for request, answer in zip(requests, simulate(requests), strict=True):
         head = {"test": request.test, "seed": request.seed, "why": request.why}
         rows.append({**head, **request.values, **answer})

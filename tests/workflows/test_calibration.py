@@ -7,12 +7,22 @@ import pytest
 import yaml
 
 from postproc.analysis.calibration import RECOMMENDED
+from postproc.calibration.loop import packing_seed
 from workflows import calibration
 from workflows.bulk_simulations import Measurement
-from workflows.calibration import compared_pairs, pair_of, problem_of, read_posterior, run_box_sizes, run_calibration
+from workflows.calibration import (
+    compared_pairs,
+    pair_of,
+    problem_of,
+    read_posterior,
+    repeat_seeds,
+    run_box_sizes,
+    run_calibration,
+)
 from workflows.calibration_page import page_context, page_parameters
 from workflows.calibration_tables import FIGURES, calibrated_materials, draw_all, read_calibrated
 from workflows.cases.calibration import PUBLISHED
+from workflows.deck import primes
 from workflows.design import REPOSITORY, ConfigError, load_study
 
 MEASURED, PAIRS = PUBLISHED / "gravel_tests.csv", PUBLISHED / "gravel_pairs.csv"
@@ -187,3 +197,11 @@ def test_problem_is_what_the_config_says():
     assert (problem.tests[0].initial, problem.tests[0].most) == (5, 7)
     assert problem.measured["repose_angle_deg"].deviation == 0.9
     assert Path(MEASURED).is_file()
+
+
+def test_every_packing_is_another_one():
+    """Seeds of a calibration and of its repeats lead to other primes in the deck: no packing is simulated twice."""
+    run = study().runs[0].parameters
+    seeds = [packing_seed(run["calibration"]["seed"], number) for number in range(20)] + repeat_seeds(run)
+    drawn = [prime for seed in seeds for prime in primes(seed, 5)]
+    assert len(set(drawn)) == len(drawn)
