@@ -16,7 +16,7 @@ import pandas as pd
 
 from postproc.analysis.bed import read_snapshot
 from postproc.analysis.free_surface import Slope, fitted_slope, surface_points
-from postproc.analysis.outflow import check_count, discharge_time, outflow_curve
+from postproc.analysis.outflow import check_count, check_not_blocked, discharge_time, outflow_curve
 
 HEAP, LOG = "heap.dump", "log.liggghts"
 
@@ -54,6 +54,7 @@ def measured_draw_down(folder: Path, boxes: Boxes, time_step: float) -> Measurem
     """Return both angles, each of two slopes, and the discharge time of a draw-down test. Raises as the shear box."""
     curve = outflow_curve(folder / LOG, time_step)
     check_count(curve, False, folder / LOG)
+    check_not_blocked(curve, folder / LOG)
     particles = read_snapshot(folder / HEAP)
     upper, lower = particles[particles["z_m"] > 0.0], particles[particles["z_m"] <= 0.0]
     middle, edge = boxes.length / 2.0, boxes.slot / 2.0

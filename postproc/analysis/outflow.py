@@ -10,6 +10,7 @@ import pandas as pd
 from postproc.readers.solver_log import thermo_table
 
 DISCHARGED = 0.99  # -, of the mass that flows out in the end; the last grains trickle
+LEAST_OUTFLOW = 0.2  # -, of the particles: an upper box that keeps more is blocked, no slope is so steep
 DISCHARGED_BAND = (0.98, 0.995)  # -, other readings of "has stopped"; half their distance in time is the uncertainty
 
 
@@ -43,6 +44,16 @@ def check_count(curve: pd.DataFrame, removed: bool, log: str | Path) -> None:
     missing = int(curve["particles"].iloc[0] - present)
     if missing:
         raise OutflowError(f"{log}: {missing} particles left the domain uncounted, allowed are none.")
+
+
+def check_not_blocked(curve: pd.DataFrame, log: str | Path) -> None:
+    """Raise OutflowError when less than a fifth of the particles flowed out: an arch stands over the slot."""
+    share = curve["count"].iloc[-1] / curve["particles"].iloc[0]
+    if share < LEAST_OUTFLOW:
+        raise OutflowError(
+            f"{log}: {share:.0%} of the particles flowed out, allowed is {LEAST_OUTFLOW:.0%} or more; an arch blocks"
+            " the slot, a wider one or smaller particles let it flow."
+        )
 
 
 def discharge_time(curve: pd.DataFrame) -> tuple[float, float]:

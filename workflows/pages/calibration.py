@@ -17,7 +17,9 @@ def remarks(study: Study) -> list[str]:
     """Return what figures must say about model, convention and width."""
     run = study.runs[0].parameters
     solver = run["solver"]
+    scale = run["particle"]["scale"]
     said = [
+        *([f"particles at scale {scale:g}"] if scale != 1.0 else []),
         f"rolling friction {solver['rolling_friction']}, coefficients for the {solver['rolling_radius']} radius",
     ]
     for section in run["calibration"]["tests"]:

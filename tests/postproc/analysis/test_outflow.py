@@ -4,7 +4,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.analysis.outflow import OutflowError, check_count, discharge_time, mass_flow, outflow_curve
+from postproc.analysis.outflow import (
+    OutflowError,
+    check_count,
+    check_not_blocked,
+    discharge_time,
+    mass_flow,
+    outflow_curve,
+)
 
 EXACT = 1e-9  # relative: interpolation on a straight line
 
@@ -35,6 +42,13 @@ def test_a_blocked_opening_is_refused():
     """Without outflow there is no discharge time."""
     with pytest.raises(OutflowError, match="blocked"):
         discharge_time(constant_flow(rate=0.0))
+
+
+def test_an_arch_over_the_slot_is_refused():
+    """A box of which only a few per cent flowed out is blocked, not discharged."""
+    check_not_blocked(constant_flow(), "log")
+    with pytest.raises(OutflowError, match="5% of the particles"):
+        check_not_blocked(constant_flow(rate=0.2), "log")
 
 
 def test_missing_particles_are_refused():
