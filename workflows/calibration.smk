@@ -1,7 +1,7 @@
 """Calibrations: bulk tests simulated where a rule says, and what they tell about contact parameters."""
 
 from workflows.calibration_page import page_parameters as calibration_parameters
-from workflows.calibration_tables import FIGURES as CALIBRATION_FIGURES
+from workflows.figures import OF_CALIBRATIONS
 
 CALIBRATIONS = "|".join(name for name in STUDIES if STUDIES[name].case == "calibration") or "no_calibration"
 SIZES_BEFORE = f"{PUBLISHED_TABLES}/shear_box_sizes.csv"
@@ -71,9 +71,9 @@ rule calibration_results:
                 category="Calibration",
                 labels={"figure": name.replace("_", " ").capitalize()},
             )
-            for name in CALIBRATION_FIGURES
+            for name in OF_CALIBRATIONS
         ],
-        [f"results/{{study}}/figures/{name}.csv" for name in CALIBRATION_FIGURES],
+        [f"results/{{study}}/figures/{name}.csv" for name in OF_CALIBRATIONS],
         summary="results/{study}/summary.csv",
         materials="results/{study}/materials.yaml",
     log:

@@ -17,7 +17,8 @@ from postproc.calibration.posterior import FAMILY_SHARE
 from postproc.plots.calibration import parameter_name, response_name
 from workflows import state
 from workflows.calibration import SIMULATIONS
-from workflows.calibration_tables import FIGURES, Calibrated, read_calibrated
+from workflows.calibration_tables import Calibrated, read_calibrated
+from workflows.figures import OF_CALIBRATIONS
 from workflows.page_text import setting_rows
 from workflows.pages.calibration import KEY_NUMBERS, simplifications
 from workflows.study_report import commit, data_uri, environment, figure
@@ -63,7 +64,7 @@ def page_context(done: Calibrated, study: Mapping[str, Any]) -> dict[str, Any]:
         ],
         "said": sentences(done, statements),
         "statements_csv": data_uri(statements.to_csv(index=False).encode(), "text/csv"),
-        "figures": [figure(name, index, done.folder) for index, name in enumerate(FIGURES, start=1)],
+        "figures": [figure(name, index, done.folder) for index, name in enumerate(OF_CALIBRATIONS, start=1)],
         "settings": setting_rows(study["settings"], study["paper_settings"]),
         "simplified": simplifications(study["settings"]),
         "cost": cost_table(done.folder).to_dict("records"),

@@ -29,8 +29,8 @@ from workflows.bulk_simulations import measured, simulated
 from workflows.bulk_tests import slot_length
 from workflows.calibration import SIMULATIONS, compared_pairs, read_posterior, repeat_seeds, test_of
 from workflows.cases.base import Parameters
+from workflows.figures import OF_CALIBRATIONS
 
-FIGURES = ("heaps", "response_maps", "family", "pairs_against_bands", "box_sizes", "calibration_progress")
 TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test"}
 
 
@@ -99,7 +99,7 @@ def draw_all(
             pd.concat([looks, information]),
         ),
     }
-    for name in FIGURES:
+    for name in OF_CALIBRATIONS:
         figure, table = drawn[name]
         save(figure, done.folder / "figures" / f"{name}.png")
         table.to_csv(done.folder / "figures" / f"{name}.csv", index=False, float_format="%.6g")

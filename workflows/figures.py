@@ -58,6 +58,15 @@ REGRESSION = (
 )
 COMPARING_ROWS = ("relative_wear",)  # of studies with more than one design row and a plain twin
 
+OF_CALIBRATIONS = (  # drawn by one job, calibration_tables.py
+    "heaps",
+    "response_maps",
+    "family",
+    "pairs_against_bands",
+    "box_sizes",
+    "calibration_progress",
+)
+
 
 def figures_of(study: Study) -> list[str]:
     """Return the names of a study's figures in the order of its page."""
@@ -85,7 +94,11 @@ RUN_RULES = {  # case -> rules that make a job of every run
     "sliding_sample": ("surface_mesh", "worn_run"),
     "pin_on_disc": ("surface_mesh", "worn_run", "track_tables"),
 }
-FIGURES = {"sliding_sample": _figures_of_samples, "pin_on_disc": _figures_of_pins}  # case -> names of a study's figures
+FIGURES = {  # case -> names of a study's figures
+    "sliding_sample": _figures_of_samples,
+    "pin_on_disc": _figures_of_pins,
+    "calibration": lambda study: list(OF_CALIBRATIONS),
+}
 
 
 def figure_file(name: str) -> str:

@@ -20,10 +20,11 @@ from workflows.calibration import (
     run_calibration,
 )
 from workflows.calibration_page import page_context, page_parameters
-from workflows.calibration_tables import FIGURES, calibrated_materials, draw_all, read_calibrated
+from workflows.calibration_tables import calibrated_materials, draw_all, read_calibrated
 from workflows.cases.calibration import PUBLISHED
 from workflows.deck import primes
 from workflows.design import REPOSITORY, ConfigError, load_study
+from workflows.figures import OF_CALIBRATIONS
 
 MEASURED, PAIRS = PUBLISHED / "gravel_tests.csv", PUBLISHED / "gravel_pairs.csv"
 TABLES = ("simulations", "looks", "repeats")
@@ -175,13 +176,13 @@ def test_page_tells_every_response(done, monkeypatch):
     sizes = run_box_sizes({run.name: run.parameters for run in asked.runs}, PAIRS, folder, 1)
     looks = pd.read_csv(folder / "looks.csv")
     draw_all(done, looks, sizes, pd.read_csv(PUBLISHED / "shear_box_sizes.csv"), ["a remark"])
-    assert all((folder / "figures" / f"{name}.{kind}").is_file() for name in FIGURES for kind in ("png", "csv"))
+    assert all((folder / "figures" / f"{name}.{kind}").is_file() for name in OF_CALIBRATIONS for kind in ("png", "csv"))
     (folder / "materials.yaml").write_text("particles: {}\n")
     monkeypatch.setattr("workflows.calibration_page.cost_table", lambda folder: pd.DataFrame())
     monkeypatch.setattr("workflows.calibration_page.solver_said", lambda folder: "none")
     shown = page_context(done, page_parameters(asked, ["a remark"]))
     assert any("Angle of repose" in sentence and "not simulated" in sentence for sentence in shown["said"])
-    assert len(shown["figures"]) == len(FIGURES) and len(shown["statements"]) == 2
+    assert len(shown["figures"]) == len(OF_CALIBRATIONS) and len(shown["statements"]) == 2
 
 
 def _empty_figure():
