@@ -157,16 +157,22 @@ def run_box_sizes(runs: Mapping[str, Parameters], pairs: Path, folder: Path, wor
     """Return one row per box size: the shear angle at the pair of the sizes, its mean and scatter over seeds."""
     say = Progress("box sizes", 1).say
     table = pd.read_csv(pairs)
-    rows = []
+    asked = [(name, seed) for name, parameters in runs.items() for seed in repeat_seeds(parameters)]
+    tests = [test_of(runs[name], SHEAR_BOX, _pair_of_sizes(runs[name], table), seed) for name, seed in asked]
     with state.only_driver(folder / SIMULATIONS, say):
-        for name, parameters in runs.items():
-            asked = parameters["calibration"]
-            names = [each["name"] for each in asked["parameters"]]
-            values = pair_of(table, asked["sizes_pair"], names, parameters)
-            tests = [test_of(parameters, SHEAR_BOX, values, seed) for seed in repeat_seeds(parameters)]
-            found = simulate_all(tests, folder / SIMULATIONS, workers, say)
-            rows.append(_size_row(name, parameters, [each.responses[SHEAR_ANGLE] for each in found]))
-    return pd.DataFrame(rows)
+        found = simulate_all(tests, folder / SIMULATIONS, workers, say)
+    angles = [each.responses[SHEAR_ANGLE] for each in found]
+    return pd.DataFrame(
+        [
+            _size_row(name, parameters, [angle for (row, _), angle in zip(asked, angles, strict=True) if row == name])
+            for name, parameters in runs.items()
+        ]
+    )
+
+
+def _pair_of_sizes(parameters: Parameters, table: pd.DataFrame) -> dict[str, float]:
+    asked = parameters["calibration"]
+    return pair_of(table, asked["sizes_pair"], [each["name"] for each in asked["parameters"]], parameters)
 
 
 def _size_row(name: str, parameters: Parameters, angles: Sequence[float]) -> dict[str, Any]:
