@@ -188,7 +188,8 @@ def calibrated(volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFram
     """Calibration of both schemes, of Eq 5.9 and of the published fits against the laboratory's volume.
 
     volumes : of all runs; each number of revolutions from CALIBRATED_FROM on (or the last, if a run is shorter) is
-    calibrated with the runs that have it. As from `analysis.coefficient.calibration_table`.
+    calibrated with the runs that have it; the published fits where they grow with the coefficient. As from
+    `analysis.coefficient.calibration_table`.
     """
     ours = volumes[volumes["series"] == "coefficient"].rename(columns={"removed_volume_m3": "volume_m3"})
     touched = ours[ours["scheme"] == "per_triangle"]
@@ -196,17 +197,25 @@ def calibrated(volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFram
     ours = pd.concat([ours, touched], ignore_index=True)
     longest = int(ours["revolution"].max())
     shown = range(min(CALIBRATED_FROM, longest), longest + 1)
-    theirs = pd.DataFrame(
-        [
-            {"scheme": PUBLISHED_FITS, "revolution": revolution, "wear_coefficient_per_pa": coefficient}
-            | {"volume_m3": float(published_volume(fits, coefficient, revolution))}
-            for revolution in shown
-            for coefficient in fits["wear_coefficient_per_pa"]
-        ]
-    )
-    simulated = pd.concat([ours[ours["revolution"].isin(shown)], theirs], ignore_index=True)
+    simulated = pd.concat([ours[ours["revolution"].isin(shown)], growing_fits(fits, shown)], ignore_index=True)
     volume, error = laboratory_volume(published)
     return calibration_table(simulated, volume, error, published_value(published, "revolutions", "laboratory"))
+
+
+def growing_fits(fits: pd.DataFrame, revolutions: Sequence[int]) -> pd.DataFrame:
+    """Volumes (m3) by the published fits after those revolutions where they grow with the wear coefficient.
+
+    After 1 and 2 the fit of 2e-11 1/Pa lies below that of 1.7e-11 (Yan 2022, Eq 5.11 to 5.15): no coefficient
+    follows from a volume. Columns: scheme, revolution, wear_coefficient_per_pa, volume_m3.
+    """
+    coefficients = np.sort(fits["wear_coefficient_per_pa"].to_numpy())
+    parts = []
+    for revolution in revolutions:
+        volume = np.array([float(published_volume(fits, coefficient, revolution)) for coefficient in coefficients])
+        if volume[0] > 0.0 and (np.diff(volume) > 0.0).all():
+            columns = {"scheme": PUBLISHED_FITS, "revolution": revolution, "wear_coefficient_per_pa": coefficients}
+            parts.append(pd.DataFrame(columns | {"volume_m3": volume}))
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
 
 
 def laboratory_volume(published: pd.DataFrame) -> tuple[float, float]:

@@ -168,6 +168,16 @@ def test_calibration_of_all_schemes(study):
     assert set(table["scheme"]) == {"conserving", "per_triangle", pin_figures.TOUCHED, pin_figures.PUBLISHED_FITS}
 
 
+@pytest.mark.parametrize(("revolutions", "theirs"), [(1, False), (2, False), (3, True)])
+def test_few_revolutions_are_calibrated_without_the_published_fits(study, revolutions, theirs):
+    """After 1 and 2 revolutions the published fits do not grow with the coefficient: ours alone are calibrated."""
+    *_, volumes = study
+    table = pin_figures.calibrated(volumes[volumes["revolution"] <= revolutions], FITS, VALUES)
+    assert set(table["revolutions"]) == {revolutions}
+    assert {"conserving", "per_triangle"} < set(table["scheme"])
+    assert (pin_figures.PUBLISHED_FITS in set(table["scheme"])) == theirs
+
+
 def test_map_of_the_track(study):
     """Depth over radius and angle: deepest in the middle of the track, a tenth deeper at 0 than at 180 degrees."""
     folder, runs, *_ = study
