@@ -1,5 +1,6 @@
 """Pin on disc: contours and volumes of every run, and the figures of the study (Yan 2022, chapter 5)."""
 
+from workflows.pages.pin_on_disc import update_remark
 from workflows.remarks import figure_remarks
 
 PUBLISHED = str(ROOT / "config" / "published" / "pin_on_disc.csv")
@@ -297,7 +298,7 @@ rule excess_volume:
     benchmark:
         "results/{study}/logs/excess_volume.benchmark.tsv"
     params:
-        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        remarks=lambda wildcards: [update_remark(study_of(wildcards)), *figure_remarks(study_of(wildcards))],
     message:
         "Figure of the excess volume of {wildcards.study}"
     script:

@@ -17,6 +17,7 @@ from workflows.cases.pin_on_disc import LOAD_TOLERANCE
 from workflows.chain import MOST_DECKS, Chain, deck_text, write_decks
 from workflows.config_files import ConfigError
 from workflows.design import load_study
+from workflows.pages.pin_on_disc import update_remark
 from workflows.pin_deck import pin_on_disc
 from workflows.progress import Progress
 from workflows.schedule import known_spans
@@ -80,6 +81,12 @@ def test_the_per_triangle_rule_has_no_patch():
     assert study.run("c17-conserving").parameters["wear"]["patch"] == "simulated"
 
 
+def test_the_excess_figure_says_how_long_an_update_is():
+    """Eq 5.9 over touched triangles depends on it: 12 cycles per revolution are arcs of 30 degrees."""
+    study = load_study("pin_on_disc", overrides={"fidelity": "standard"})
+    assert update_remark(study).startswith("wear updates of 30 degrees: ")
+
+
 FAULTS = [
     (
         {"ledger": "dumps"},
@@ -110,8 +117,8 @@ FAULTS = [
     ),
     (
         {"sample": {"width_mm": 9}},
-        "command line: sample (a block of keys) is no known key, allowed are fidelity, particle_scale, ledger, wear,"
-        " remeshing, solver, pin, disc, sliding.",
+        "command line: sample (a block of keys) is no known key, allowed are fidelity, particle_scale, materials,"
+        " ledger, wear, remeshing, solver, pin, disc, sliding.",
     ),
 ]
 

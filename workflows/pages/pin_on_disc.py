@@ -37,6 +37,15 @@ def remarks(study: Study) -> list[str]:
     return said
 
 
+def update_remark(study: Study) -> str:
+    """Return how long a wear update is, on which Eq 5.9 over touched triangles depends."""
+    arc = 360.0 / study.settings["sliding"]["cycles_per_revolution"]
+    return (
+        f"wear updates of {arc:g} degrees: on a flat disc Eq 5.9 over touched triangles gives the law's volume with "
+        "one triangle per update, about 3 times it with an arc of many"
+    )
+
+
 def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the table of runs tells of a run's parameters."""
     derived, pin = run["derived"], run["pin"]

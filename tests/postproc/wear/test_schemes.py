@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from meshes.disc import track_disc
 from meshes.plate import flat_plate, sphere
 from postproc.mesh import areas, enclosed_volume, volume_above_plane
 from postproc.wear.directions import rim_directions
@@ -13,6 +14,8 @@ from postproc.wear.update import wear_update
 ROUNDING = 1e-12  # relative: sums over a few thousand numbers
 GEOMETRY = 1e-9  # relative: volumes of bodies are differences of numbers some 1e4 times larger
 SIX = 6.0  # triangles at a node of a regular mesh, each moves it
+# of the two limits on an unstructured mesh: 3 and 6 are those of a regular one, seen 3.24 and 6.15
+IRREGULAR = 0.1
 
 
 def regular_plate(cells=20, edge=1e-3):
@@ -145,3 +148,44 @@ def test_centroid_paths_of_the_triangles_in_contact():
     inner = row & (middle[:, 0] > 2e-3) & (middle[:, 0] < 18e-3)
     expected = 3.0 * 1e-13 * np.count_nonzero(inner)
     assert centroid_path_volume(points, moved, triangles, inner) == pytest.approx(expected, rel=GEOMETRY)
+
+
+def track_triangles(mesh, track_radius, arc):
+    """Triangles of a flat disc that a circle (m) passes through, between 0 and an angle (degrees)."""
+    corners = mesh.points[mesh.triangles]
+    radius = np.hypot(corners[:, :, 0], corners[:, :, 1])
+    angle = np.degrees(np.arctan2(*corners.mean(axis=1)[:, 1::-1].T))
+    passed = (radius.min(axis=1) < track_radius) & (radius.max(axis=1) > track_radius)
+    return np.flatnonzero(passed & (angle > 0.0) & (angle < arc))
+
+
+def updates_by_centroid_paths(mesh, updates, volume):
+    """Eq 5.9 over the touched and over all triangles, over the law's volume: one wear update after the other.
+
+    updates: (k,) triangles of each update, every one of which wears by `volume` (m3)
+    """
+    points, sums = mesh.points, np.zeros(2)
+    for worn in updates:
+        volumes = np.zeros(len(mesh.triangles))
+        volumes[worn] = volume
+        moved = per_triangle(points, mesh.triangles, volumes).points
+        sums += [centroid_path_volume(points, moved, mesh.triangles, *counted) for counted in ((volumes > 0.0,), ())]
+        points = moved
+    return sums / (volume * sum(np.size(worn) for worn in updates))
+
+
+def test_centroid_paths_depend_on_the_length_of_an_update():
+    """Flat disc, every triangle of a track worn alike: Eq 5.9 over touched ones has two limits, over all ones none.
+
+    One triangle per update (Yan 2022, Eq 5.3 to 5.9, step by step): exactly the law's volume. All triangles of an arc
+    of 30 degrees in one update: about three times. Over all triangles: about six times, either way.
+    """
+    mesh = track_disc(22e-3, 20e-3, 24e-3, 0.2e-3, 0.4e-3)
+    few, many = (track_triangles(mesh, 22e-3, arc) for arc in (5.0, 30.0))
+    assert len(many) > 100
+    touched, every = updates_by_centroid_paths(mesh, list(few), 1e-18)
+    assert touched == pytest.approx(1.0, rel=GEOMETRY)
+    assert every == pytest.approx(SIX, rel=IRREGULAR)
+    touched, every = updates_by_centroid_paths(mesh, [many], 1e-18)
+    assert touched == pytest.approx(SIX / 2.0, rel=IRREGULAR)
+    assert every == pytest.approx(SIX, rel=IRREGULAR)
