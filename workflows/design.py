@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from workflows.cases import CASES, DEFAULT_CASE
-from workflows.config_files import ConfigError, Layer, command_line_layer, merge, read_yaml
+from workflows.config_files import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
 from workflows.run_checks import CheckedRun, check_run
 from workflows.validation import (
     case_schema,
@@ -252,7 +252,10 @@ def _design_rows(sources: _Sources, fidelity: str, root: Path) -> list[Layer]:
     there = sorted(path.name for path in folder.glob("*.csv"))
     if name not in there:
         raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
-    return read_design(folder / name, root, load_schema(f"cases/{sources.case}/design"))
+    rows = read_design(folder / name, root, load_schema(f"cases/{sources.case}/design"))
+    if fault := CASES[sources.case].design_fault([row.values for row in rows]):
+        raise ConfigError(f"{display_name(folder / name, root)}: {fault}.")
+    return rows
 
 
 def _factors(sources: _Sources, rows: list[Layer]) -> dict[str, str]:

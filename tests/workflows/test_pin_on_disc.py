@@ -103,8 +103,13 @@ FAULTS = [
     ),
     (
         {"sliding": {"revolutions": 1.3}},
-        "command line: sliding.revolutions is 1.3 for row c17-conserving, allowed is a multiple of 1/12, so that wear"
-        " cycles are whole.",
+        "command line: sliding.revolutions is 1.3 for row c17-conserving, allowed is a multiple of 1/12 from 1 on,"
+        " so that wear cycles are whole and a revolution has its contours.",
+    ),
+    (
+        {"sliding": {"revolutions": 0.5}},
+        "command line: sliding.revolutions is 0.5 for row c17-conserving, allowed is a multiple of 1/12 from 1 on,"
+        " so that wear cycles are whole and a revolution has its contours.",
     ),
     (
         {"disc": {"element_size_mm": 1.5}},
@@ -140,8 +145,21 @@ def test_a_fault_of_a_rows_own_value_names_the_table(config):
     with pytest.raises(ConfigError) as caught:
         load_study("pin_on_disc", config.root)
     assert str(caught.value) == (
-        "config/designs/pin_on_disc_quick.csv, line 2, row half: revolutions is 0.55, allowed is a multiple of 1/12, so"
-        " that wear cycles are whole."
+        "config/designs/pin_on_disc_quick.csv, line 2, row half: revolutions is 0.55, allowed is a multiple of 1/12"
+        " from 1 on, so that wear cycles are whole and a revolution has its contours."
+    )
+
+
+def test_a_design_without_the_series_of_coefficients_is_refused(config):
+    """Figures of groove and volume are made of that series; another one alone is refused before anything runs."""
+    for name in ("cases/pin_on_disc.yaml", "materials.yaml", "studies/pin_on_disc.yaml"):
+        config.write(name, (Path(__file__).parents[2] / "config" / name).read_text(encoding="utf-8"))
+    config.write("designs/pin_on_disc_quick.csv", "row,series\nm1,mesh\ns1,size\n")
+    with pytest.raises(ConfigError) as caught:
+        load_study("pin_on_disc", config.root)
+    assert str(caught.value) == (
+        "config/designs/pin_on_disc_quick.csv: column series holds mesh, size, allowed is a design with at least one"
+        " row of series coefficient."
     )
 
 

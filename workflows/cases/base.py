@@ -67,6 +67,10 @@ class Case:
         """Return the surfaces of which each design row makes a run; `head` holds the keys that are the study's own."""
         return ("",)
 
+    def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
+        """Return what is wrong with a design as a whole, a phrase after the table's name, or None."""
+        return None
+
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
     ) -> dict[str, Any]:

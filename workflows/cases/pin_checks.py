@@ -34,12 +34,15 @@ def track_on_disc(run: CheckedRun) -> Fault | None:
 
 
 def whole_cycles(run: CheckedRun) -> Fault | None:
-    """The revolutions are a whole number of wear cycles."""
+    """The revolutions are a whole number of wear cycles; contours and volumes are those of whole revolutions."""
     sliding = run.settings["sliding"]
     cycles = sliding["revolutions"] * sliding["cycles_per_revolution"]
-    if round(cycles) >= 1 and abs(cycles - round(cycles)) <= ROUNDING * cycles:
+    if sliding["revolutions"] >= 1.0 and abs(cycles - round(cycles)) <= ROUNDING * cycles:
         return None
-    return "sliding.revolutions", f"a multiple of 1/{sliding['cycles_per_revolution']}, so that wear cycles are whole"
+    return "sliding.revolutions", (
+        f"a multiple of 1/{sliding['cycles_per_revolution']} from 1 on, so that wear cycles are whole and a revolution "
+        "has its contours"
+    )
 
 
 def cycle_long_enough(run: CheckedRun) -> Fault | None:

@@ -22,6 +22,7 @@ from workflows.solver import LOG
 if TYPE_CHECKING:
     import pandas as pd
 
+COMPARED = "coefficient"  # series of the design that figures of groove and volume are made of
 FORCE_WINDOWS = "forces.txt"  # of the solver: means over windows of equal length
 # Relative, of the mean vertical force of a cycle: what a pin lacks that is off the disc for that share of the cycle.
 # One that swings when a cycle ends lacks its momentum: seen 0.2 %, at 3 m/s, where it meets its own groove for the
@@ -43,6 +44,13 @@ class PinOnDisc(Case):
     geometry = ("disc",)
     first_title = "setting the pin down"
     leftovers = (SETUP_LOADS, FORCE_WINDOWS)
+
+    def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
+        """Return a phrase if no row is of the series of coefficients: most figures and the page are made of it."""
+        if any(row["series"] == COMPARED for row in rows):
+            return None
+        found = ", ".join(dict.fromkeys(row["series"] for row in rows)) or "no row"
+        return f"column series holds {found}, allowed is a design with at least one row of series {COMPARED}"
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
