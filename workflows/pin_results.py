@@ -19,6 +19,7 @@ from postproc.analysis.pin_runs import pin_runs, reference_runs
 from postproc.analysis.pin_series import EDGES_PER_WIDTH, STABLE_PERCENT, published_value
 from postproc.analysis.pin_volume import CANDIDATES
 from postproc.analysis.run_in import run_in_table
+from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from workflows.page_text import number
 from workflows.study_report import REPOSITORY, commit
@@ -48,7 +49,7 @@ def write_results(study: Path, docs: Path) -> None:
 def provenance(study: Path) -> str:
     """Return when and by which versions the study was made, and how fine it is."""
     runs = pin_runs(study / "design.csv")
-    state = sorted((study / runs["run"].iloc[0]).glob("cycle_[0-9]*/state.json"))[-1]
+    state = cycle_files(study / runs["run"].iloc[0], "state.json")[-1]
     made = datetime.fromtimestamp(state.stat().st_mtime, UTC)
     solver = (solver_version(state.parent / "log.liggghts") or "LIGGGHTS of unknown version").removeprefix("Version ")
     finest, longest = runs["element_size_mm"].min(), runs["revolutions"].max()

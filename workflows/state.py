@@ -17,6 +17,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from postproc.readers.cycle_folders import cycle_folders
+
 STATE = "state.json"
 DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder
 
@@ -118,12 +120,15 @@ def _holds(folder: Path, inputs: str) -> bool:
 def set_aside_others(run_folder: Path, inputs: str) -> str | None:
     """Move cycles of other inputs to superseded/<digest> and bring back those of these inputs, if there are any.
 
+    What was left unfinished of other inputs is removed.
     Returns a sentence about what was moved, or None.
     """
     said = []
     first = cycle_folder(run_folder, 0)
     if first.exists() and (other := _inputs_of(first)) != inputs:
         target = run_folder / "superseded" / other[:DIGEST_LETTERS]
+        for part in run_folder.glob("cycle_*.part"):
+            shutil.rmtree(part)
         _move_cycles(run_folder, target)
         said.append(f"its inputs changed, earlier cycles are kept in {target}")
     stored = run_folder / "superseded" / inputs[:DIGEST_LETTERS]
@@ -143,7 +148,7 @@ def _inputs_of(folder: Path) -> str:
 def _move_cycles(source: Path, target: Path) -> None:
     """Move all cycles, the first one last: it tells whose cycles a folder holds, also when the move is interrupted."""
     target.mkdir(parents=True, exist_ok=True)
-    for folder in sorted(source.glob("cycle_[0-9]*[0-9]"), reverse=True):
+    for folder in reversed(cycle_folders(source)):
         shutil.rmtree(target / folder.name, ignore_errors=True)
         os.replace(folder, target / folder.name)
 

@@ -22,6 +22,7 @@ import pandas as pd
 
 from postproc.analysis.comparison import read_summary
 from postproc.analysis.cost import BENCHMARK_SUFFIX, benchmark_seconds, job_costs, outside_solver_share
+from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from workflows.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
 from workflows.page_text import decks_of, name_and_unit, number, setting_rows, simplifications
@@ -249,5 +250,5 @@ def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, An
 
 def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:
     for folder in folders:
-        for path in sorted(folder.glob("cycle_[0-9]*/state.json")):
+        for path in cycle_files(folder, "state.json"):
             yield from json.loads(path.read_text()).get("solver_warnings", {}).items()

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from postproc.mesh import SurfaceMesh
+from postproc.readers.cycle_folders import cycle_folders
 
 SHOWN_LENGTHS = 1.0  # piece of bed shown to either side of the middle of the sample, in lengths of the sample
 MOST_PARTICLES = 8_000  # drawn per picture: thicker beds become a slab behind the cut
@@ -19,8 +20,7 @@ def last_snapshot(run_folder: str | Path) -> Path:
     """Return the newest bed dump of a run's last cycle that has one. Raises FileNotFoundError when there is
     none.
     """
-    folders = sorted(Path(run_folder).glob("cycle_[0-9]*"), reverse=True)
-    for folder in folders:
+    for folder in reversed(cycle_folders(run_folder)):
         dumps = sorted(folder.glob("bed_*.dump"), key=lambda path: int(path.stem.removeprefix("bed_")))
         if dumps:
             return dumps[-1]

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from postproc.analysis.display import in_display_units
+from postproc.readers.cycle_folders import cycle_files
 
 ROWS_PER_RUN = 400  # forces drawn per run; more would not show in a figure
 
@@ -58,7 +59,7 @@ def force_history(design: str | Path, run_folders: Sequence[str | Path]) -> pd.D
 
 
 def _run_forces(run: dict[str, str], folder: Path) -> pd.DataFrame:
-    files = sorted(folder.glob("cycle_[0-9]*/forces.csv"))
+    files = cycle_files(folder, "forces.csv")
     if not files:
         raise FileNotFoundError(f"{folder}: no cycle_*/forces.csv found, at least one wear cycle must have been run.")
     forces = pd.concat([pd.read_csv(path) for path in files], ignore_index=True)

@@ -12,6 +12,7 @@ from postproc.analysis.display import MILLIMETRES
 from postproc.analysis.pin_series import published_value
 from postproc.analysis.pin_volume import COEFFICIENT_TOLERANCE
 from postproc.analysis.run_in import chi_squared_normality
+from postproc.readers.cycle_folders import cycle_files
 
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "load_n", "track_radius_mm")
 SCHEMES = ("conserving", "per_triangle")  # in the order in which they are shown
@@ -66,7 +67,7 @@ def window_forces(folder: str | Path) -> pd.DataFrame:
     folder : of the run, with cycle_<nnn>/forces.csv. Columns: revolution, vertical_force_N, normal_force_N (the sum of
     those of all contacts). Raises FileNotFoundError when there is none.
     """
-    files = sorted(Path(folder).glob("cycle_[0-9]*/forces.csv"))
+    files = cycle_files(folder, "forces.csv")
     if not files:
         raise FileNotFoundError(f"{folder}: no cycle_*/forces.csv found, at least one wear cycle must have been run.")
     forces = pd.concat([pd.read_csv(file) for file in files], ignore_index=True)

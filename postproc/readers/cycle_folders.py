@@ -1,0 +1,19 @@
+"""The folders `cycle_<nnn>` of a run: those of finished cycles, in their order."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+FINISHED = re.compile(r"cycle_(\d+)")  # one that is worked on, or was left by a killed run, ends in .part
+
+
+def cycle_folders(run_folder: str | Path) -> list[Path]:
+    """Return the folders of a run's finished cycles, by number."""
+    found = ((FINISHED.fullmatch(path.name), path) for path in Path(run_folder).glob("cycle_*"))
+    return [path for _, path in sorted((int(match[1]), path) for match, path in found if match)]
+
+
+def cycle_files(run_folder: str | Path, name: str) -> list[Path]:
+    """Return the files of that name that finished cycles have, by number of the cycle."""
+    return [folder / name for folder in cycle_folders(run_folder) if (folder / name).is_file()]
