@@ -82,6 +82,7 @@ rule contour_extraction:
 rule mesh_series:
     input:
         design="results/{study}/design.csv",
+        published=PUBLISHED,
         statistics="results/{study}/figures/run_in.csv",
     output:
         figure=report(
@@ -107,6 +108,7 @@ rule mesh_series:
 rule mesh_contours:
     input:
         design="results/{study}/design.csv",
+        published=PUBLISHED,
         series="results/{study}/figures/mesh_series.csv",
         worn=WORN_DISCS,
     output:

@@ -15,7 +15,7 @@ import pandas as pd
 
 from postproc.analysis.coefficient import laboratory_coefficient
 from postproc.analysis.pin_figures import groove_remark, laboratory_volume, run_in_words, shown_factors
-from postproc.analysis.pin_runs import pin_runs, reference_runs
+from postproc.analysis.pin_runs import REFERENCE, pin_runs, reference_runs
 from postproc.analysis.pin_series import EDGES_PER_WIDTH, STABLE_PERCENT, published_value
 from postproc.analysis.pin_volume import CANDIDATES
 from postproc.analysis.run_in import run_in_table
@@ -142,7 +142,7 @@ def fits_text(study: Path, fits: pd.DataFrame, published: pd.DataFrame) -> str:
 def run_in_text(study: Path, statistics: pd.DataFrame, published: pd.DataFrame) -> str:
     """Return the run-in of the reference runs and of the thesis by the same rule, and their p values."""
     normality = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
-    chosen = reference_runs(pin_runs(study / "design.csv"), published)
+    chosen = reference_runs(pin_runs(study / "design.csv"), published, REFERENCE)
     shown = statistics[statistics["run"].isin(chosen.values())]
     tested = shown[shown["size"].isin(("depth", "opening width"))]
     p_values = tested.pivot(index="revolution", columns=["scheme", "size"], values="p_value")

@@ -14,7 +14,7 @@ import pandas as pd
 from postproc.analysis.coefficient import calibration_table
 from postproc.analysis.contours import CONTOURS, depth_map, section_table, track_radii
 from postproc.analysis.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
-from postproc.analysis.pin_runs import SCHEMES, reference_runs, same_coefficient, size_histogram
+from postproc.analysis.pin_runs import CALIBRATED, SCHEMES, reference_runs, same_coefficient, size_histogram
 from postproc.analysis.pin_series import circular_segment, published_value
 from postproc.analysis.pin_volume import groove_volume, law_volume, published_volume
 from postproc.analysis.run_in import SIZES, revolution_statistics, run_in_revolution, whole_revolutions
@@ -34,9 +34,9 @@ TOUCHED = "per triangle, volume by Eq 5.9 over touched triangles"
 PUBLISHED_FITS = "Yan 2022, Eq 5.11 to 5.15"
 
 
-def only_reference(table: pd.DataFrame, runs: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
-    """Rows of the runs that stand for the thesis', the conserving one first."""
-    chosen = reference_runs(runs, published)
+def only_reference(table: pd.DataFrame, runs: pd.DataFrame, published: pd.DataFrame, of: str) -> pd.DataFrame:
+    """Rows of the runs that stand for the thesis', the conserving one first; of : as in `reference_runs`."""
+    chosen = reference_runs(runs, published, of)
     return pd.concat([table[table["run"] == run] for run in chosen.values()], ignore_index=True)
 
 
@@ -72,6 +72,19 @@ def histograms(contours: pd.DataFrame) -> pd.DataFrame:
         ],
         ignore_index=True,
     )
+
+
+def published_ranges(published: pd.DataFrame) -> pd.DataFrame:
+    """Published ranges of depth and opening after ten revolutions: `size`, `least_m`, `largest_m`, `source`."""
+    rows = []
+    for size, name in (("depth", "depth"), ("opening width", "width")):
+        least, largest = (
+            published_value(published, f"{part}_{name}_after_10", "simulation") / MILLIMETRES
+            for part in ("least", "largest")
+        )
+        source = published.loc[published["quantity"] == f"least_{name}_after_10", "source"].iloc[0]
+        rows.append({"size": size, "least_m": least, "largest_m": largest, "source": source})
+    return pd.DataFrame(rows)
 
 
 def common_revolution(table: pd.DataFrame, at_most: int) -> int:
@@ -120,7 +133,7 @@ def compared_runs(runs: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     )
     reach = runs["wear_coefficient_per_pa"] * runs["revolutions"] / (of_test * revolutions)
     same = (runs["series"] == "coefficient") & (np.abs(reach - 1.0) <= SAME_VOLUME)
-    chosen = dict.fromkeys([*reference_runs(runs, published).values(), *runs.loc[same, "run"]])
+    chosen = dict.fromkeys([*reference_runs(runs, published, CALIBRATED).values(), *runs.loc[same, "run"]])
     return runs.set_index("run", drop=False).loc[list(chosen)].reset_index(drop=True)
 
 
@@ -255,10 +268,11 @@ def size_cases(volumes: pd.DataFrame) -> pd.DataFrame:
 def reference_discs(
     folder: str | Path, runs: pd.DataFrame, published: pd.DataFrame
 ) -> tuple[dict[str, SurfaceMesh], float]:
-    """Worn discs of the runs that stand for the thesis', by scheme, and the radius (m) of their track."""
-    chosen = reference_runs(runs, published)
+    """Worn discs of the runs that stand for the thesis' Fig 5.17, by scheme, and the radius (m) of their track."""
+    chosen = reference_runs(runs, published, CALIBRATED)
     meshes = {scheme: read_surface(Path(folder) / run / "worn_surface.vtu") for scheme, run in chosen.items()}
-    return meshes, float(runs["track_radius_m"].iloc[0])
+    track = runs.loc[runs["run"].isin(chosen.values()), "track_radius_m"]
+    return meshes, float(track.iloc[0])
 
 
 def track_map(mesh: SurfaceMesh, track_radius: float) -> pd.DataFrame:

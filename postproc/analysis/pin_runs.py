@@ -16,6 +16,8 @@ from postproc.readers.cycle_folders import cycle_files
 
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "load_n", "track_radius_mm")
 SCHEMES = ("conserving", "per_triangle")  # in the order in which they are shown
+REFERENCE = "reference_wear_coefficient"  # published, of the reference simulations: Yan 2022, Fig 5.7 to 5.14
+CALIBRATED = "wear_coefficient"  # published, of the simulation with the laboratory's volume: Fig 5.17, 5.18, Table 5.4
 FORCES = ("vertical_force_N", "normal_force_N")
 WINDOW_ROUNDING = 1e-6  # revolutions by which a window of forces may end behind a whole one
 
@@ -42,17 +44,42 @@ def of_runs(runs: pd.DataFrame, files: Sequence[str | Path]) -> pd.DataFrame:
     return together.merge(runs[["run", *runs.columns.difference(together.columns)]], on="run")
 
 
-def reference_runs(runs: pd.DataFrame, published: pd.DataFrame) -> dict[str, str]:
+def reference_runs(runs: pd.DataFrame, published: pd.DataFrame, of: str) -> dict[str, str]:
     """The run of each scheme that stands for the thesis': its coefficient, or the nearest one; finest mesh.
 
-    runs : as from `pin_runs`; published : with the coefficient of the simulation. Only of the series of coefficients.
+    runs : as from `pin_runs`; published : with the coefficients of the simulations; of : which one, REFERENCE or
+    CALIBRATED. Only of the series of coefficients.
     """
-    wanted = published_value(published, "wear_coefficient", "simulation")
+    wanted = published_value(published, of, "simulation")
     series = runs[runs["series"] == "coefficient"]
     far = np.abs(np.log(series["wear_coefficient_per_pa"] / wanted))
     ordered = series.assign(far=far.round(9)).sort_values(["far", "element_size_mm"], kind="stable")
     first = ordered.drop_duplicates("scheme").set_index("scheme")["run"]
     return {scheme: first[scheme] for scheme in SCHEMES if scheme in first}
+
+
+def coefficient_remark(shown: pd.DataFrame, published: pd.DataFrame, of: str) -> str:
+    """The wear coefficient of the runs of a figure in words, and the published one where theirs is another.
+
+    shown : rows of `pin_runs`; published, of : as in `reference_runs`.
+    """
+    wanted = published_value(published, of, "simulation")
+    source = published.loc[(published["quantity"] == of) & (published["of"] == "simulation"), "source"].iloc[0]
+    theirs = {}
+    for scheme, rows in shown.groupby("scheme"):
+        others = rows[~rows.index.isin(same_coefficient(rows, wanted).index)]
+        values = ", ".join(f"{value:.3g}" for value in rows["wear_coefficient_per_pa"].drop_duplicates())
+        instead = f" instead of the published {wanted:.3g} ({source})" if len(others) else ""
+        theirs[scheme.replace("_", " ")] = f"{values} 1/Pa{instead}"
+    if len(set(theirs.values())) == 1:
+        return f"wear coefficient {next(iter(theirs.values()))}"
+    return "wear coefficient, " + ", ".join(f"{scheme}: {words}" for scheme, words in theirs.items())
+
+
+def reference_remark(runs: pd.DataFrame, published: pd.DataFrame, of: str) -> str:
+    """As `coefficient_remark`, of the runs that stand for the thesis'."""
+    chosen = reference_runs(runs, published, of)
+    return coefficient_remark(runs[runs["run"].isin(chosen.values())], published, of)
 
 
 def same_coefficient(table: pd.DataFrame, coefficient: float) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -33,6 +34,8 @@ RIM_DEPTH = 0.01  # -, of the deepest section: what is drawn ends a little beyon
 ROOM = 1.25  # -, of what is worn
 BOX_STEP = 0.2  # revolutions that the boxes of two forces stand beside their revolution
 FORCE_COLOUR = "#009E73"
+BAND_COLOUR = "#dddddd"  # of published ranges, behind what is simulated
+TITLE_CHARACTERS = 48  # of a line above one of two panels
 SIDE_STEP = 0.12  # revolutions that two schemes stand apart
 
 
@@ -69,7 +72,7 @@ def run_in(
         lower.set(yscale="log", ylim=(0.5 * LEAST_P_VALUE, 2.0), xlabel="Revolution")
         upper.set_ylim(bottom=0.0)
         upper.set_ylabel(label)
-        upper.set_title(found[size], loc="left", fontsize=SMALLEST_FONT)
+        upper.set_title(textwrap.fill(found[size], TITLE_CHARACTERS), loc="left", fontsize=SMALLEST_FONT)
     grid[1, 0].set_ylabel("p of normality (-)")
     figure.legend(*named_once(grid[:, 0]), loc="outside upper center", ncols=3)
     return figure
@@ -89,17 +92,24 @@ def _p_values(axes: Axes, revolution: pd.Series, p_value: pd.Series, style: str,
 
 
 def contour_distribution(
-    contours: pd.DataFrame, histograms: Mapping[tuple[str, str], pd.DataFrame], remarks: Sequence[str]
+    contours: pd.DataFrame,
+    histograms: Mapping[tuple[str, str], pd.DataFrame],
+    ranges: pd.DataFrame,
+    remarks: Sequence[str],
 ) -> Figure:
     """Draw depth and opening of the 360 contours round the disc, and how they are distributed beside the normal curve.
 
     contours : `scheme`, `angle_deg` and sizes (m) after one revolution; histograms : by (scheme, size), as from
-    `analysis.pin_runs.size_histogram` in m.
+    `analysis.pin_runs.size_histogram` in m; ranges : published ones, `size`, `least_m`, `largest_m`, `label`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     grid = figure.subplots(2, 2, sharey="row", width_ratios=(3, 2))
     for (left, right), (size, column) in zip(grid, tuple(SIZES.items())[:2], strict=True):
         label, factor = _axis(size)
+        for band in ranges[ranges["size"] == size].itertuples():
+            bounds = (factor * band.least_m, factor * band.largest_m)
+            left.axhspan(*bounds, color=BAND_COLOUR, label=band.label, zorder=0)
+            right.axhspan(*bounds, color=BAND_COLOUR, zorder=0)
         said = []
         for scheme, rows in contours.groupby("scheme", sort=False):
             colour = SCHEME_COLOURS[scheme]
@@ -114,7 +124,9 @@ def contour_distribution(
         right.set_title(f"p: {', '.join(said)}", loc="left", fontsize=SMALLEST_FONT)
         left.set_ylabel(label)
         left.set_xticks(range(0, 361, 60))
-    figure.legend(*grid[0, 1].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    named = [axes.get_legend_handles_labels() for axes in (grid[0, 1], *grid[:, 0])]
+    handles, labels = ([part for parts in kind for part in parts] for kind in zip(*named, strict=True))
+    figure.legend(handles, labels, loc="outside upper center", ncols=2)
     grid[1, 0].set_xlabel("Angle of the contour (degrees)")
     grid[1, 1].set_xlabel("Contours (of 360)")
     return figure
@@ -218,10 +230,10 @@ def mesh_contours(sections: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     return figure
 
 
-def normal_force(forces: pd.DataFrame, load: float, remarks: Sequence[str]) -> Figure:
+def normal_force(forces: pd.DataFrame, loads: Mapping[str, float], remarks: Sequence[str]) -> Figure:
     """Draw the vertical force of the pin and the sum of its normal forces per revolution as boxes with their means.
 
-    forces : `scheme` and as from `analysis.pin_runs.window_forces`; load : N.
+    forces : `scheme` and as from `analysis.pin_runs.window_forces`; loads : N, by scheme.
     """
     schemes = list(dict.fromkeys(forces["scheme"]))
     figure = new_figure(remarks, 4.4)
@@ -230,12 +242,12 @@ def normal_force(forces: pd.DataFrame, load: float, remarks: Sequence[str]) -> F
         revolutions = forces[forces["scheme"] == scheme].groupby("revolution")
         _boxes(axes, revolutions["vertical_force_N"], -BOX_STEP, OTHER_COLOUR, "vertical force")
         _boxes(axes, revolutions["normal_force_N"], BOX_STEP, FORCE_COLOUR, "sum of the normal forces of all contacts")
-        axes.axhline(load, label=f"load {load:g} N", color=LABORATORY_COLOUR, linewidth=0.9)
+        axes.axhline(loads[scheme], label=f"load {loads[scheme]:g} N", color=LABORATORY_COLOUR, linewidth=0.9)
         axes.set_title(SCHEME_NAMES[scheme], loc="left")
         axes.set_xticks(list(revolutions.groups), [str(revolution) for revolution in revolutions.groups])
         axes.set_xlabel("Revolution")
     grid[0].set_ylabel("Force on the disc (N)")
-    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    figure.legend(*named_once(grid), loc="outside upper center", ncols=3)
     return figure
 
 

@@ -4,7 +4,7 @@ import pandas as pd
 
 from postproc.analysis.coefficient import laboratory_coefficient, scaling_limits, step_cap_limits
 from postproc.analysis.pin_figures import calibrated, laboratory_volume, only_reference
-from postproc.analysis.pin_runs import of_runs, pin_runs
+from postproc.analysis.pin_runs import REFERENCE, of_runs, pin_runs, reference_remark
 from postproc.analysis.pin_series import published_value
 from postproc.analysis.run_in import run_in_table
 from postproc.plots.pin_volume import calibration
@@ -18,10 +18,11 @@ with job_log(snakemake.log[0]):
     load, distance, revolutions = (
         published_value(published, name, "laboratory") for name in ("load", "sliding_distance", "revolutions")
     )
-    statistics = only_reference(pd.read_csv(snakemake.input.statistics), runs, published)
+    statistics = only_reference(pd.read_csv(snakemake.input.statistics), runs, published, REFERENCE)
     limits = scaling_limits(run_in_table(statistics, pd.read_csv(snakemake.input.normality)), revolutions)
     laboratory = laboratory_coefficient(*laboratory_volume(published), load, distance)
-    save(calibration(table, laboratory, revolutions, limits, snakemake.params.remarks), snakemake.output.figure)
+    remarks = [f"run-in: {reference_remark(runs, published, REFERENCE)}", *snakemake.params.remarks]
+    save(calibration(table, laboratory, revolutions, limits, remarks), snakemake.output.figure)
     limits = limits.merge(step_cap_limits(volumes, laboratory[0]), on="run", how="left")
     table.to_csv(snakemake.output.table, index=False)
     limits.to_csv(snakemake.output.limits, index=False)

@@ -2,18 +2,21 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_figures import common_revolution, histograms, only_reference
-from postproc.analysis.pin_runs import of_runs, pin_runs
+from postproc.analysis.pin_figures import common_revolution, histograms, only_reference, published_ranges
+from postproc.analysis.pin_runs import REFERENCE, of_runs, pin_runs, reference_remark
 from postproc.plots.contours import contour_distribution
 from postproc.plots.style import save
 from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
-    contours = only_reference(of_runs(runs, snakemake.input.contours), runs, published)
+    contours = only_reference(of_runs(runs, snakemake.input.contours), runs, published, REFERENCE)
+    ranges = published_ranges(published)
+    ranges["label"] = ranges["source"] + f", revolution {snakemake.params.revolution}"
     last = common_revolution(contours, snakemake.params.revolution)
     shown = contours[contours["revolution"] == last]
     bars = histograms(shown)
-    remarks = [f"after revolution {last}", *snakemake.params.remarks]
-    save(contour_distribution(shown, dict(list(bars.groupby(["scheme", "size"]))), remarks), snakemake.output.figure)
+    remarks = [f"after revolution {last}", reference_remark(runs, published, REFERENCE), *snakemake.params.remarks]
+    by_panel = dict(list(bars.groupby(["scheme", "size"])))
+    save(contour_distribution(shown, by_panel, ranges, remarks), snakemake.output.figure)
     bars.to_csv(snakemake.output.table, index=False)

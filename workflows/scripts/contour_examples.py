@@ -5,14 +5,15 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.analysis.pin_figures import example_sections
-from postproc.analysis.pin_runs import of_runs, pin_runs, reference_runs
+from postproc.analysis.pin_runs import REFERENCE, of_runs, pin_runs, reference_remark, reference_runs
 from postproc.plots.contours import contour_examples
 from postproc.plots.style import save
 from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
-    chosen = runs[runs["run"].isin(reference_runs(runs, published).values())]
+    chosen = runs[runs["run"].isin(reference_runs(runs, published, REFERENCE).values())]
     sections = example_sections(Path(snakemake.input.design).parent, chosen, of_runs(runs, snakemake.input.contours))
-    save(contour_examples(sections, snakemake.params.remarks), snakemake.output.figure)
+    remarks = [reference_remark(runs, published, REFERENCE), *snakemake.params.remarks]
+    save(contour_examples(sections, remarks), snakemake.output.figure)
     sections.to_csv(snakemake.output.table, index=False, float_format="%.6g")

@@ -6,7 +6,7 @@ import pandas as pd
 
 from postproc.analysis.contours import section_table
 from postproc.analysis.pin_figures import MESH_ANGLE
-from postproc.analysis.pin_runs import pin_runs, reference_runs
+from postproc.analysis.pin_runs import REFERENCE, coefficient_remark, pin_runs, reference_runs
 from postproc.mesh import read_surface
 from postproc.plots.disc import contour_extraction
 from postproc.plots.style import save
@@ -14,7 +14,9 @@ from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
-    run = runs.set_index("run").loc[next(iter(reference_runs(runs, published).values()))]
+    run = runs.set_index("run").loc[next(iter(reference_runs(runs, published, REFERENCE).values()))]
     mesh = read_surface(Path(snakemake.input.design).parent / run.name / "worn_surface.vtu")
-    save(contour_extraction(mesh, run["track_radius_m"], MESH_ANGLE, snakemake.params.remarks), snakemake.output.figure)
+    shown = runs[runs["run"] == run.name]
+    remarks = [coefficient_remark(shown, published, REFERENCE), *snakemake.params.remarks]
+    save(contour_extraction(mesh, run["track_radius_m"], MESH_ANGLE, remarks), snakemake.output.figure)
     section_table(mesh, run["track_radius_m"], [MESH_ANGLE]).to_csv(snakemake.output.table, index=False)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.pin_runs import pin_runs, reference_runs
+from postproc.analysis.pin_runs import REFERENCE, pin_runs, reference_runs
 from postproc.mesh import read_surface
 from postproc.plots.disc import disc_setup
 from postproc.plots.style import save
@@ -12,7 +12,7 @@ from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
-    run = runs.set_index("run").loc[next(iter(reference_runs(runs, published).values()))]
+    run = runs.set_index("run").loc[next(iter(reference_runs(runs, published, REFERENCE).values()))]
     mesh = read_surface(Path(snakemake.input.design).parent / run.name / "surface.vtu")
     figure = disc_setup(
         mesh, run["track_radius_m"], run["pin_radius_mm"] / 1e3, run["load_n"], snakemake.params.remarks

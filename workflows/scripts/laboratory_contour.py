@@ -10,7 +10,7 @@ from postproc.analysis.pin_figures import (
     laboratory_sections,
     laboratory_segment,
 )
-from postproc.analysis.pin_runs import pin_runs
+from postproc.analysis.pin_runs import CALIBRATED, pin_runs, reference_remark
 from postproc.plots.contours import laboratory_contour
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -20,5 +20,6 @@ with job_log(snakemake.log[0]):
     cases = pd.read_csv(snakemake.input.cases)
     sections = laboratory_sections(Path(snakemake.input.design).parent, compared_runs(runs, published), cases)
     boxes, segment = laboratory_boxes(published), laboratory_segment(published)
-    save(laboratory_contour(sections, boxes, segment, snakemake.params.remarks), snakemake.output.figure)
+    remarks = [f"beside Yan 2022: {reference_remark(runs, published, CALIBRATED)}", *snakemake.params.remarks]
+    save(laboratory_contour(sections, boxes, segment, remarks), snakemake.output.figure)
     sections.to_csv(snakemake.output.table, index=False, float_format="%.6g")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.analysis.pin_figures import mesh_sections
-from postproc.analysis.pin_runs import pin_runs
+from postproc.analysis.pin_runs import REFERENCE, coefficient_remark, pin_runs
 from postproc.plots.contours import mesh_contours
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -13,5 +13,7 @@ from workflows.job import job_log
 with job_log(snakemake.log[0]):
     runs, series = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.series)
     sections = mesh_sections(Path(snakemake.input.design).parent, runs, series)
-    save(mesh_contours(sections, snakemake.params.remarks), snakemake.output.figure)
+    shown = runs[runs["run"].isin(series["run"])]
+    remarks = [coefficient_remark(shown, pd.read_csv(snakemake.input.published), REFERENCE), *snakemake.params.remarks]
+    save(mesh_contours(sections, remarks), snakemake.output.figure)
     sections.to_csv(snakemake.output.table, index=False, float_format="%.6g")

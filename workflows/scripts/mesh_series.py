@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_runs import pin_runs
+from postproc.analysis.pin_runs import REFERENCE, coefficient_remark, pin_runs
 from postproc.analysis.pin_series import mesh_series, mesh_stability
 from postproc.plots import contours
 from postproc.plots.style import save
@@ -12,7 +12,9 @@ with job_log(snakemake.log[0]):
     runs = pin_runs(snakemake.input.design)
     series = mesh_series(runs, pd.read_csv(snakemake.input.statistics).drop(columns="scheme"))
     stability = mesh_stability(series)
-    remarks = [f"after revolution {series['revolution'].iloc[0]}", *snakemake.params.remarks]
+    published, shown = pd.read_csv(snakemake.input.published), runs[runs["run"].isin(series["run"])]
+    said = [f"after revolution {series['revolution'].iloc[0]}", coefficient_remark(shown, published, REFERENCE)]
+    remarks = [*said, *snakemake.params.remarks]
     save(contours.mesh_series(series, stability, remarks), snakemake.output.figure)
     series.to_csv(snakemake.output.table, index=False)
     stability.to_csv(snakemake.output.stability, index=False)

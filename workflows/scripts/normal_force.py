@@ -4,16 +4,25 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.pin_runs import force_boxes, pin_runs, reference_runs, window_forces
+from postproc.analysis.pin_runs import (
+    REFERENCE,
+    force_boxes,
+    pin_runs,
+    reference_remark,
+    reference_runs,
+    window_forces,
+)
 from postproc.plots.contours import normal_force
 from postproc.plots.style import save
 from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
-    folder, chosen = Path(snakemake.input.design).parent, reference_runs(runs, published)
+    folder, chosen = Path(snakemake.input.design).parent, reference_runs(runs, published, REFERENCE)
     forces = pd.concat(
         [window_forces(f"{folder}/{run}").assign(run=run, scheme=scheme) for scheme, run in chosen.items()]
     )
-    save(normal_force(forces, runs["load_n"].iloc[0], snakemake.params.remarks), snakemake.output.figure)
+    loads = runs.set_index("run")["load_n"]
+    remarks = [reference_remark(runs, published, REFERENCE), *snakemake.params.remarks]
+    save(normal_force(forces, {scheme: loads[run] for scheme, run in chosen.items()}, remarks), snakemake.output.figure)
     force_boxes(forces).to_csv(snakemake.output.table, index=False)

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from postproc.analysis.pin_figures import only_reference, run_in_words, statistics_of
-from postproc.analysis.pin_runs import of_runs, pin_runs
+from postproc.analysis.pin_runs import REFERENCE, of_runs, pin_runs, reference_remark
 from postproc.plots.contours import run_in
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -12,6 +12,8 @@ with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
     statistics = statistics_of(runs, of_runs(runs, snakemake.input.contours))
     statistics.to_csv(snakemake.output.table, index=False)
-    normality, shown = pd.read_csv(snakemake.input.normality), only_reference(statistics, runs, published)
-    figure = run_in(shown, normality, run_in_words(shown, normality), snakemake.params.remarks)
+    normality = pd.read_csv(snakemake.input.normality)
+    shown = only_reference(statistics, runs, published, REFERENCE)
+    remarks = [reference_remark(runs, published, REFERENCE), *snakemake.params.remarks]
+    figure = run_in(shown, normality, run_in_words(shown, normality), remarks)
     save(figure, snakemake.output.figure)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.analysis.pin_figures import reference_discs
-from postproc.analysis.pin_runs import pin_runs
+from postproc.analysis.pin_runs import CALIBRATED, pin_runs, reference_remark
 from postproc.plots.disc import worn_disc
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -13,4 +13,5 @@ from workflows.job import job_log
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)
     meshes, track = reference_discs(Path(snakemake.input.design).parent, runs, published)
-    save(worn_disc(meshes, track, snakemake.params.remarks), snakemake.output.figure)
+    remarks = [reference_remark(runs, published, CALIBRATED), *snakemake.params.remarks]
+    save(worn_disc(meshes, track, remarks), snakemake.output.figure)

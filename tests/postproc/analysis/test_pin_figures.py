@@ -8,8 +8,12 @@ import pytest
 
 from postproc.analysis import pin_figures
 from postproc.analysis.pin_runs import (
+    CALIBRATED,
+    REFERENCE,
+    coefficient_remark,
     force_boxes,
     pin_runs,
+    reference_remark,
     reference_runs,
     same_coefficient,
     size_histogram,
@@ -40,12 +44,45 @@ def test_design_without_its_columns_is_refused(tmp_path):
 
 
 def test_reference_runs_have_the_thesis_coefficient(study):
-    """1.7e-11 of the series of coefficients, one run per scheme; without it the nearest one."""
+    """5e-11 for the reference simulations, 1.7e-11 for Table 5.4, of the series of coefficients, one run per scheme."""
     _, runs, *_ = study
-    assert reference_runs(runs, VALUES) == {"conserving": "a", "per_triangle": "b"}
-    others = runs[runs["wear_coefficient_per_pa"] != 1.7e-11]
-    assert reference_runs(others, VALUES) == {"conserving": "c", "per_triangle": "d"}
+    assert reference_runs(runs, VALUES, REFERENCE) == {"conserving": "c", "per_triangle": "d"}
+    assert reference_runs(runs, VALUES, CALIBRATED) == {"conserving": "a", "per_triangle": "b"}
     assert same_coefficient(runs, 1.7e-11)["run"].tolist() == ["a", "b"]
+
+
+def test_other_coefficient_than_the_thesis_is_said(study):
+    """Without the wanted coefficient the nearest one stands for it, scheme by scheme, and the remark says so."""
+    _, runs, *_ = study
+    assert reference_remark(runs, VALUES, REFERENCE) == "wear coefficient 5e-11 1/Pa"
+    others = runs[runs["wear_coefficient_per_pa"] != 1.7e-11]
+    assert reference_runs(others, VALUES, CALIBRATED) == {"conserving": "c", "per_triangle": "d"}
+    said = "wear coefficient 5e-11 1/Pa instead of the published 1.7e-11 (Yan 2022, section 5.4.3)"
+    assert reference_remark(others, VALUES, CALIBRATED) == said
+    one = runs[runs["run"] != "d"]
+    assert reference_runs(one, VALUES, REFERENCE) == {"conserving": "c", "per_triangle": "b"}
+    assert reference_remark(one, VALUES, REFERENCE) == (
+        "wear coefficient, conserving: 5e-11 1/Pa, "
+        "per triangle: 1.7e-11 1/Pa instead of the published 5e-11 (Yan 2022, Table 5.2)"
+    )
+
+
+def test_mesh_series_takes_its_finest_from_the_coefficients(study):
+    """The mesh that only the series of coefficients has is that of the same coefficient."""
+    _, runs, contours, _ = study
+    series = mesh_series(runs, pin_figures.statistics_of(runs, contours).drop(columns="scheme"))
+    finest = series[series["element_size_mm"] == 0.5]
+    assert set(finest["run"]) == {"c", "d"}
+    shown = runs[runs["run"].isin(series["run"])]
+    assert coefficient_remark(shown, VALUES, REFERENCE) == "wear coefficient 5e-11 1/Pa"
+
+
+def test_published_ranges_are_in_metres():
+    """42 to 70 um and 0.8 to 1.6 mm (Yan 2022, Fig 5.10 and 5.11)."""
+    ranges = pin_figures.published_ranges(VALUES).set_index("size")
+    np.testing.assert_allclose(ranges.loc["depth", ["least_m", "largest_m"]].astype(float), [42e-6, 70e-6])
+    np.testing.assert_allclose(ranges.loc["opening width", ["least_m", "largest_m"]].astype(float), [0.8e-3, 1.6e-3])
+    assert ranges["source"].tolist() == ["Yan 2022, Fig 5.10", "Yan 2022, Fig 5.11"]
 
 
 def test_forces_fall_into_their_revolution(study):
@@ -94,7 +131,7 @@ def test_sections_of_the_meshes(study):
 def test_words_of_the_run_in(study):
     """A smooth wave round the disc is not normal: never for ours, 8 for the published depth."""
     _, runs, contours, _ = study
-    statistics = pin_figures.only_reference(pin_figures.statistics_of(runs, contours), runs, VALUES)
+    statistics = pin_figures.only_reference(pin_figures.statistics_of(runs, contours), runs, VALUES, REFERENCE)
     words = pin_figures.run_in_words(statistics, NORMALITY)
     assert words["depth"] == "normal from: conserving never, per triangle never, Yan 8"
 

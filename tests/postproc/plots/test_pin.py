@@ -8,7 +8,7 @@ import pytest
 
 from postproc.analysis import pin_figures
 from postproc.analysis.coefficient import laboratory_coefficient, scaling_limits
-from postproc.analysis.pin_runs import reference_runs, window_forces
+from postproc.analysis.pin_runs import REFERENCE, reference_runs, window_forces
 from postproc.analysis.pin_series import comparison, mesh_series, mesh_stability, size_invariance
 from postproc.analysis.pin_volume import excess_factors, published_volume
 from postproc.analysis.run_in import run_in_table
@@ -23,6 +23,7 @@ VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
 NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
 REMARKS = ["pin softened", "coarse mesh"]
+RANGES = ["Yan 2022, Fig 5.10, revolution 10", "Yan 2022, Fig 5.11, revolution 10"]
 
 
 @pytest.fixture(scope="module")
@@ -35,12 +36,17 @@ def study(tmp_path_factory):
 @pytest.fixture(scope="module")
 def figures(study):
     """All figures, by name."""
-    folder, runs, contours, volumes = study
+    return drawn_figures(*study)
+
+
+def drawn_figures(folder, runs, contours, volumes):
+    """All figures of some runs, by name."""
     statistics = pin_figures.statistics_of(runs, contours)
-    reference = pin_figures.only_reference(statistics, runs, VALUES)
-    chosen = reference_runs(runs, VALUES)
+    reference = pin_figures.only_reference(statistics, runs, VALUES, REFERENCE)
+    chosen = reference_runs(runs, VALUES, REFERENCE)
     series = mesh_series(runs, statistics.drop(columns="scheme"))
-    last = pin_figures.only_reference(contours[contours["revolution"] == 3], runs, VALUES)
+    last = pin_figures.only_reference(contours[contours["revolution"] == 3], runs, VALUES, REFERENCE)
+    ranges = pin_figures.published_ranges(VALUES).assign(label=RANGES)
     compared = pin_figures.compared_runs(runs, VALUES)
     cases = pin_figures.compared_cases(compared, contours, volumes, VALUES)
     coefficients = volumes[volumes["series"] == "coefficient"]
@@ -56,11 +62,11 @@ def figures(study):
     words = pin_figures.run_in_words(reference, NORMALITY)
     return {
         "run_in": contour_plots.run_in(reference, NORMALITY, words, REMARKS),
-        "contour_distribution": contour_plots.contour_distribution(last, bars, REMARKS),
+        "contour_distribution": contour_plots.contour_distribution(last, bars, ranges, REMARKS),
         "contour_examples": contour_plots.contour_examples(examples, REMARKS),
         "mesh_series": contour_plots.mesh_series(series, mesh_stability(series), REMARKS),
         "mesh_contours": contour_plots.mesh_contours(pin_figures.mesh_sections(folder, runs, series), REMARKS),
-        "normal_force": contour_plots.normal_force(forces, 5.0, REMARKS),
+        "normal_force": contour_plots.normal_force(forces, dict.fromkeys(chosen, 5.0), REMARKS),
         "laboratory_contour": contour_plots.laboratory_contour(sections, boxes, segment, REMARKS),
         "wear_volume": pin_volume.wear_volume(coefficients, FITS, REMARKS),
         "force_rise": pin_volume.force_rise(factors, REMARKS),
@@ -71,7 +77,7 @@ def figures(study):
         "size_invariance": pin_volume.size_invariance(size_invariance(pin_figures.size_cases(volumes)), 0.6, REMARKS),
         "comparison": pin_volume.comparison(comparison(VALUES, cases), REMARKS),
         "disc_setup": disc.disc_setup(pin_study.ring(0.5), pin_study.TRACK, pin_study.PIN, 5.0, REMARKS),
-        "contour_extraction": disc.contour_extraction(meshes["conserving"], track, 90, REMARKS),
+        "contour_extraction": disc.contour_extraction(next(iter(meshes.values())), track, 90, REMARKS),
         "unrolled_track": disc.unrolled_track(
             {scheme: pin_figures.track_map(mesh, track) for scheme, mesh in meshes.items()}, REMARKS
         ),
@@ -108,6 +114,35 @@ def test_published_p_values_are_drawn_as_published(figures):
     drawn = line(figures["run_in"].axes[2], "Yan 2022, Table 5.3")
     np.testing.assert_allclose(drawn[:, 0], NORMALITY["revolution"])
     np.testing.assert_allclose(drawn[5:, 1], NORMALITY["depth_p_value"][5:])
+
+
+def test_published_ranges_are_drawn_as_published(figures):
+    """Shaded from 42 to 70 um and from 0.8 to 1.6 mm, named in the legend."""
+    figure = figures["contour_distribution"]
+    for axes, label, bounds in zip(figure.axes[::2], RANGES, ((42.0, 70.0), (0.8, 1.6)), strict=True):
+        band = next(patch for patch in axes.patches if patch.get_label() == label)
+        np.testing.assert_allclose([band.get_y(), band.get_y() + band.get_height()], bounds)
+    assert set(RANGES) < {text.get_text() for text in figure.legends[0].get_texts()}
+
+
+def test_load_is_that_of_each_scheme(study):
+    """The line of a panel is at the load of its run."""
+    folder, *_ = study
+    forces = pd.concat(
+        [window_forces(folder / run).assign(scheme=name) for name, run in (("conserving", "c"), ("per_triangle", "d"))]
+    )
+    figure = contour_plots.normal_force(forces, {"conserving": 5.0, "per_triangle": 4.0}, REMARKS)
+    lines = [line(axes, label)[0, 1] for axes, label in zip(figure.axes, ("load 5 N", "load 4 N"), strict=True)]
+    assert lines == [5.0, 4.0]
+
+
+@pytest.mark.parametrize("missing", [["d"], ["b", "d", "f"], ["a", "c", "e", "g", "h"]])
+def test_designs_with_one_scheme_are_drawn(study, missing):
+    """A coefficient that only one scheme has, or a study of one scheme alone: every figure is drawn that has runs."""
+    folder, *tables = study
+    runs, contours, volumes = (table[~table["run"].isin(missing)] for table in tables)
+    for name, figure in drawn_figures(folder, runs, contours, volumes).items():
+        assert figure.axes, name
 
 
 def test_published_volumes_are_drawn_as_published(figures):
