@@ -102,14 +102,17 @@ def excess_text(study: Path, factors: pd.DataFrame, published: pd.DataFrame) -> 
     """Return the factors of the volume, one candidate at a time."""
     columns = ["scheme", "wear_coefficient_per_pa", "revolution", *CANDIDATES, "product", "published", "unexplained"]
     note = groove_remark(published).replace(r"$\alpha F L$", "alpha F L")
-    said = " ".join((first_revolution(factors), what_is_left(factors), f"{note[0].upper()}{note[1:]}."))
+    parts = (first_revolution(factors), what_is_left(factors), f"{note[0].upper()}{note[1:]}.")
+    said = " ".join(part for part in parts if part)
     told = textwrap.fill(said, LINE)
     return markdown(shown_factors(factors, published)[[*columns, "summing_over_all", "contacts"]]) + f"\n{told}\n"
 
 
 def first_revolution(factors: pd.DataFrame) -> str:
-    """Return how far the law's volume of the first revolution is from alpha F L, over all conserving runs."""
+    """Return how far the law's volume of the first revolution is from alpha F L, over all conserving runs, if any."""
     first = factors[(factors["scheme"] == "conserving") & (factors["revolution"] == 1)]
+    if first.empty:
+        return ""
     excess = 100.0 * (first["force_rise"] * first["slip"] - 1.0)
     return (
         f"In the first revolution of conserving runs alpha times the sliding work differs from alpha F L by "
@@ -118,8 +121,13 @@ def first_revolution(factors: pd.DataFrame) -> str:
 
 
 def what_is_left(factors: pd.DataFrame) -> str:
-    """Return the two rules' factors over all per-triangle runs that have a published fit, and what they leave."""
+    """Return the two rules' factors over all per-triangle runs that have a published fit, and what they leave.
+
+    Empty without such runs.
+    """
     chosen = factors[(factors["scheme"] == "per_triangle") & factors["published"].notna()]
+    if chosen.empty:
+        return ""
     names = ("force_rise", "displacement_rule", "summing_rule", "unexplained")
     rise, moved, summed, left = (f"{chosen[name].min():.3g} to {chosen[name].max():.3g}" for name in names)
     last = chosen.loc[chosen.groupby("run", sort=False)["revolution"].idxmax()]

@@ -77,6 +77,14 @@ def test_first_revolution_of_conserving_runs():
     assert "by 0.1 to 0.3 %." in pin_results.first_revolution(factors)
 
 
+def test_scheme_without_runs_is_not_spoken_of():
+    """A study of one scheme says nothing of the other."""
+    columns = ["run", "scheme", "revolution", "wear_coefficient_per_pa", "force_rise", "slip", "published"]
+    one = pd.DataFrame([("a", "per_triangle", 1, 1.7e-11, 1.0, 1.0, 3.1)], columns=columns)
+    assert pin_results.first_revolution(one) == ""
+    assert pin_results.what_is_left(one.assign(scheme="conserving")) == ""
+
+
 def test_what_the_rules_leave():
     """Ranges over per-triangle runs with a published fit, and what is left at the end of each."""
     rows = [

@@ -5,6 +5,7 @@ import html
 import io
 import json
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,7 @@ from postproc.analysis.screening_tables import regression_tables, screen_summary
 from postproc.analysis.summary import summary_table
 from postproc.plots.regression import DRAWN
 from workflows.design import load_study
-from workflows.figures import figure_file, figures_of, page_parameters
+from workflows.figures import FIGURES, OF_SERIES, figure_file, figures_of, page_parameters
 from workflows.page_text import UNDEFINED, name_and_unit, number, setting_rows
 from workflows.study_report import TABLE_OF, caption, commit, write_page
 
@@ -358,3 +359,14 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
 def test_without_factors_there_is_no_regression(config):
     """Nothing is regressed that a study does not name."""
     assert not any(name.startswith("regression_") for name in figures_of(load_study("small", config.root)))
+
+
+@pytest.mark.parametrize("left_out", ["mesh", "size"])
+def test_pins_without_a_series_have_no_figures_of_it(left_out):
+    """A design of pins without its mesh or size series leaves out the figures of that series, and no other."""
+    rows = [{"series": series} for series in ("coefficient", *OF_SERIES)]
+    whole, fewer = (
+        FIGURES["pin_on_disc"](SimpleNamespace(design_rows=chosen))
+        for chosen in (rows, [row for row in rows if row["series"] != left_out])
+    )
+    assert set(whole) - set(fewer) == set(OF_SERIES[left_out])
