@@ -134,8 +134,8 @@ def what_is_left(factors: pd.DataFrame) -> str:
     ends = ", ".join(f"{row.unexplained:.3g} at {row.wear_coefficient_per_pa:.2g} 1/Pa" for row in last.itertuples())
     return (
         f"By the per-triangle rule the summed normal force is {rise} of the load, the displacement rule takes {moved} "
-        f"times the law's volume and Eq 5.9 over the touched triangles finds {summed} of that; the published volume is "
-        f"{left} times this product, after the last revolution {ends}."
+        f"times the wear taken up and Eq 5.9 over the touched triangles finds {summed} of that; the published volume "
+        f"is {left} times this product, after the last revolution {ends}."
     )
 
 

@@ -26,6 +26,7 @@ AVERAGED = ("mean_normal_force_N", "mean_vertical_force_N", "contacts_per_step")
 CANDIDATES = {
     "force_rise": "summed normal force over load",
     "slip": "path of the contact point over the track",
+    "taken_up": "wear taken up, the rest is carried",
     "displacement_rule": "displacement rule",
     "summing_rule": "Eq 5.9 over touched triangles",
 }
@@ -126,10 +127,12 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
         coefficient, load, track = (row[name].iloc[0] for name in FIXED)
         law = law_volume(coefficient, load, track, row["revolution"])
         rise = row["mean_normal_force_N"] / load
+        taken_up = row["archard_volume_m3"] - row["carried_volume_m3"]
         table = row[["run", "scheme", "wear_coefficient_per_pa", "revolution"]].assign(
             force_rise=rise,
             slip=row["archard_volume_m3"] / law / rise,
-            displacement_rule=row["removed_volume_m3"] / row["archard_volume_m3"],
+            taken_up=taken_up / row["archard_volume_m3"],
+            displacement_rule=row["removed_volume_m3"] / taken_up,
             summing_rule=row[SUMMED[row["scheme"].iloc[0] != CONSERVING]] / row["removed_volume_m3"],
             summing_over_all=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
             contacts=row["contacts_per_step"],

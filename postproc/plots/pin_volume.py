@@ -26,9 +26,9 @@ from postproc.plots.pin import (
 )
 from postproc.plots.style import LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, facets, label_all, new_figure
 
-CANDIDATE_COLOURS = dict(zip(CANDIDATES, ("#56B4E9", "#999999", "#E69F00", "#CC79A7"), strict=True))
+CANDIDATE_COLOURS = dict(zip(CANDIDATES, ("#56B4E9", "#999999", "#F0E442", "#E69F00", "#CC79A7"), strict=True))
 UNEXPLAINED_LOOK = {"color": "white", "edgecolor": "black", "hatch": "////", "linewidth": 0.6}
-BAR = 0.15  # of the space of a run
+BAR = 0.13  # of the space of a run
 SHOWN_FORCES = (0.98, 1.05)  # -, of the load, at least
 HEADROOM = 1.3  # -, of the highest bar
 VOLUME_LOOKS = {  # volume, line and what it is called
@@ -136,6 +136,7 @@ def _factor_table(axes: Axes, factors: pd.DataFrame) -> None:
     columns = {
         "force_rise": "force\nrise",
         "slip": "slip",
+        "taken_up": "taken\nup",
         "displacement_rule": "displace-\nment rule",
         "summing_rule": "Eq 5.9,\ntouched",
         "product": "product",

@@ -109,9 +109,8 @@ def two_revolutions(tmp_path):
 
 
 def test_factors_multiply_to_the_whole(tmp_path):
-    """Rise, slip, displacement rule and summing rule multiply to the volume by Eq 5.9 over touched triangles over
-    alpha F L, exactly;
-    the published volume over that product is left."""
+    """Rise, slip, share taken up, displacement rule and summing rule multiply to the volume by Eq 5.9 over touched
+    triangles over alpha F L, exactly; the published volume over that product is left."""
     volumes = two_revolutions(tmp_path)
     factors = excess_factors(volumes, PUBLISHED)
     law = law_volume(1e-11, LOAD, TRACK, [1, 2])
@@ -123,6 +122,18 @@ def test_factors_multiply_to_the_whole(tmp_path):
     np.testing.assert_allclose(factors["vertical_force_over_load"], 1.0)
     np.testing.assert_allclose(factors["published"], [0.0138e-9, 0.0282e-9] / law, rtol=1e-9)
     np.testing.assert_allclose(factors["unexplained"] * factors["product"], factors["published"], rtol=1e-12)
+
+
+def test_carried_wear_is_a_factor_of_its_own(tmp_path):
+    """A fifth of the law's wear carried: the share 0.8 is taken up, which the rule turns into 1.8 / 0.8 of it; the
+    product stays."""
+    volumes = two_revolutions(tmp_path)
+    carried = volumes.assign(carried_volume_m3=0.2 * volumes["archard_volume_m3"])
+    factors, without = (excess_factors(each, PUBLISHED) for each in (carried, volumes))
+    np.testing.assert_allclose(factors["taken_up"], 0.8)
+    np.testing.assert_allclose(without["taken_up"], 1.0)
+    np.testing.assert_allclose(factors["displacement_rule"], 1.8 / 0.8)
+    np.testing.assert_allclose(factors["product"], without["product"], rtol=1e-12)
 
 
 def test_fits_of_every_volume(tmp_path):
