@@ -18,7 +18,7 @@ from postproc.analysis.pin_figures import groove_remark, laboratory_volume, run_
 from postproc.analysis.pin_runs import REFERENCE, pin_runs, reference_runs
 from postproc.analysis.pin_series import EDGES_PER_WIDTH, STABLE_PERCENT, published_value
 from postproc.analysis.pin_volume import CANDIDATES
-from postproc.analysis.run_in import run_in_table
+from postproc.analysis.run_in import run_in_table, whole_revolutions
 from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from workflows.page_text import number
@@ -209,8 +209,21 @@ def calibration_text(study: Path, table: pd.DataFrame, published: pd.DataFrame) 
         f"published ({1e13 * published_value(published, 'wear_coefficient', 'laboratory'):.1f} ± 1)e-13.",
         LINE,
     )
-    limit = "Largest scaling factor that the run-in allows, and at which a wear update reaches its cap:"
-    return f"{told}\n\n{markdown(table)}\n{limit}\n\n{markdown(limits, 4)}"
+    return f"{told}\n\n{markdown(table)}\n{limits_sentence(study, limits)}\n\n{markdown(limits, 4)}"
+
+
+def limits_sentence(study: Path, limits: pd.DataFrame) -> str:
+    """Return what the limits of scaling are, and for which wear cycles and elements the one by the cap holds."""
+    runs = pin_runs(study / "design.csv").set_index("run")
+    shown = runs.loc[[run for run in limits["run"] if run in runs.index]]
+    cycles = whole_revolutions(pd.read_csv(study / shown.index[0] / "wear.csv"))["cycle"].iloc[0]
+    sizes = ", ".join(f"{size:g}" for size in sorted(shown["element_size_mm"].unique()))
+    return textwrap.fill(
+        "Largest scaling factor that the run-in allows, and at which a wear update reaches its cap. The second holds "
+        f"for {cycles} wear cycles per revolution and elements of {sizes} mm on the track only. A run-in that ends "
+        "with revolution 1 sets no limit: its factor is that of the whole test in one revolution.",
+        LINE,
+    )
 
 
 def size_text(study: Path, table: pd.DataFrame, published: pd.DataFrame) -> str:

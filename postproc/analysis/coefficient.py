@@ -70,7 +70,8 @@ def scaling_limits(run_in: pd.DataFrame, test_revolutions: float) -> pd.DataFram
     """Largest scaling factor of each run, which its run-in allows: `run`, `run_in_revolution`, `largest_factor`.
 
     run_in : as from `analysis.run_in.run_in_table`. NaN where the run-in has not ended: then the factor lies below
-    that of all revolutions of the run. For 8 revolutions Yan (2022, section 5.6) has 162.8.
+    that of all revolutions of the run. A run-in of 1 sets no limit: that factor is the whole test in one revolution.
+    For 8 revolutions Yan (2022, section 5.6) has 162.8.
     """
     return run_in[["run", "run_in_revolution"]].assign(
         largest_factor=scaling_factor(test_revolutions, run_in["run_in_revolution"].to_numpy(dtype=float))
@@ -81,7 +82,8 @@ def step_cap_limits(volumes: pd.DataFrame, laboratory: float) -> pd.DataFrame:
     """Scaling factor at which the steps of wear updates reach their cap: `run`, `largest_factor_by_step_cap`.
 
     volumes : `run`, `wear_coefficient_per_pa`, `revolution` and `step_demand` (largest step asked for over its cap);
-    laboratory : coefficient, 1/Pa. Steps grow with the coefficient; beyond, wear is carried and lags behind.
+    laboratory : coefficient, 1/Pa. Steps grow with the coefficient; beyond, wear is carried and lags behind. Holds for
+    the run's wear cycles per revolution and element size: steps grow with the arc of an update, caps with the edges.
     """
     last = volumes.loc[volumes.groupby("run", sort=False)["revolution"].idxmax()]
     factor = last["wear_coefficient_per_pa"] / laboratory / last["step_demand"]

@@ -3,6 +3,7 @@
 import pandas as pd
 import pytest
 
+from tests.postproc import pin_study
 from workflows import pin_results
 from workflows.pin_results import PUBLISHED, markdown
 
@@ -55,12 +56,16 @@ def test_sentence_of_the_meshes(tmp_path):
 
 
 def test_coefficient_of_the_laboratory_is_stated(tmp_path):
-    """(6.28 +- 0.99)e-13 beside the published (6.3 +- 1)e-13."""
+    """(6.28 +- 0.99)e-13 beside the published (6.3 +- 1)e-13; the limit by the cap names cycles and elements."""
+    pin_study.write_study(tmp_path)
     (tmp_path / "figures").mkdir()
     pd.DataFrame({"run": ["a"], "largest_factor": [162.8]}).to_csv(tmp_path / "figures" / "scaling_limits.csv")
     text = pin_results.calibration_text(tmp_path, pd.DataFrame({"revolutions": [12]}), PUBLISHED_VALUES)
     assert "(6.28 ± 0.99)e-13 1/Pa" in text
     assert "162.8" in text
+    words = " ".join(text.split())
+    assert "holds for 2 wear cycles per revolution and elements of 0.5 mm on the track only." in words
+    assert "A run-in that ends with revolution 1 sets no limit" in words
 
 
 def test_first_revolution_of_conserving_runs():
