@@ -58,29 +58,28 @@ def difference(one, other):
     return np.abs(one - other).sum() / other.sum()
 
 
-def a_turn(folder, case, element_size, count, tolerance):
-    """One revolution in `count` cycles on the flat disc: alpha F L, whatever the mesh; no rolling, no impact."""
+@pytest.mark.parametrize(
+    ("case", "element_size", "count", "tolerance"),
+    [
+        (FAST, 1e-3, 3, WORK),
+        (FAST, 5e-4, 3, WORK),
+        pytest.param(PinCase().exact(), 2.5e-4, 12, FINE_WORK, marks=pytest.mark.verify),
+        pytest.param(PinCase().exact(), 1e-4, 12, FINE_WORK, marks=pytest.mark.verify),
+    ],
+)
+def test_a_turn_is_load_times_distance(tmp_path, case, element_size, count, tolerance):
+    """One revolution in several cycles on the flat disc: F L, whatever the mesh; no rolling, no impact.
+
+    The fine meshes at the study's 180 degrees per second and in its twelve cycles.
+    """
     mesh, steps = disc(element_size), case.steps_per_turn
-    sums = cycles(folder, case, mesh, np.linspace(0, steps, count + 1).astype(int).tolist())
+    sums = cycles(tmp_path, case, mesh, np.linspace(0, steps, count + 1).astype(int).tolist())
     expected = case.load_times_distance(steps)
     assert expected == pytest.approx(LOAD * 2.0 * math.pi * TRACK_RADIUS, rel=ROUNDING)
     assert sums["sliding_work_J"].sum() == pytest.approx(expected, rel=tolerance)
     assert sums["normal_impulse_N_s"].sum() == pytest.approx(LOAD * steps * case.time_step, rel=tolerance)
     assert sums["rolling_work_J"].sum() == sums["impact_energy_J"].sum() == 0.0
     assert np.count_nonzero(sums["contact_time_s"]) > 2.0 * math.pi * TRACK_RADIUS / element_size
-
-
-@pytest.mark.parametrize("element_size", [1e-3, 5e-4])
-def test_a_turn_is_load_times_distance(tmp_path, element_size):
-    """One revolution in three cycles over three stretches: alpha F L."""
-    a_turn(tmp_path, FAST, element_size, 3, WORK)
-
-
-@pytest.mark.verify
-@pytest.mark.parametrize("element_size", [2.5e-4, 1e-4])
-def test_a_turn_of_the_study_is_load_times_distance(tmp_path, element_size):
-    """The same at 180 degrees per second and in twelve cycles, on the fine meshes."""
-    a_turn(tmp_path, PinCase().exact(), element_size, 12, FINE_WORK)
 
 
 def test_a_disc_that_turns_and_a_pin_that_goes_round_are_the_same(tmp_path, coarse):
