@@ -16,6 +16,7 @@ from postproc.mesh import SurfaceMesh, areas, centroids, read_surface, sum_over_
 from postproc.wear.update import CARRIED_VOLUME, REMOVED_THICKNESS, worn_faces
 
 WORN_VOLUME = "worn_volume_m3"
+ROUNDED_SHARE = 1e-9  # -, of the worn volume: less is rounding of the displacement, which balances to that
 DISTRIBUTION_LEVELS = 200  # points of a distribution's curve
 DISTRIBUTION_DECADES = 3.0  # that a distribution's depths span
 DISTRIBUTION_SHARE = 0.999  # -, of the area that a distribution's depths reach
@@ -68,6 +69,8 @@ def carried_remark(meshes: Mapping[str, SurfaceMesh], deformed: bool) -> str:
     if not deformed:
         return "rigid sample: depth is worn volume over area, not applied"
     share = max(carried_share(mesh) for mesh in meshes.values())
+    if abs(share) < ROUNDED_SHARE:
+        return "all worn volume is applied, nothing is carried"
     return f"up to {100.0 * share:.3g} % of a run's worn volume is still carried, not yet applied"
 
 

@@ -23,6 +23,7 @@ PIN_COLOUR = "#D55E00"
 RELIEF_SPACING = 20e-6  # m, of the places across the track in 3-D
 RELIEF_SIDE = 1.2e-3  # m, shown either side of the track
 DEEPEST_SHARE = 0.995  # of the places of a map: deeper ones share the top colour
+PLAIN_BOX = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}  # behind words that stand on lines
 SHOWN_SLICE = 12.0  # degrees, of the disc that shows how contours are taken
 RELIEF = 0.15  # -, of the track's radius: how deep the exaggerated groove of the picture is
 STRETCH = 5.0  # -, by which it is wider
@@ -84,7 +85,8 @@ def contour_extraction(mesh: SurfaceMesh, track_radius: float, angle: int, remar
     section.plot(across, MICROMETRES * depth, color="black", linewidth=1.2)
     deepest = across[np.argmax(depth)]
     section.annotate("", (deepest, 0.0), (deepest, MICROMETRES * row["depth_m"]), arrowprops={"arrowstyle": "<->"})
-    section.text(deepest, 0.5 * MICROMETRES * row["depth_m"], f"  depth {MICROMETRES * row['depth_m']:.3g} µm")
+    half = (deepest, 0.5 * MICROMETRES * row["depth_m"])
+    section.annotate(f"depth {MICROMETRES * row['depth_m']:.3g} µm", half, ha="center", bbox=PLAIN_BOX)
     middle = 0.5 * across[depth > OPENING_LEVEL * depth.max()][[0, -1]].sum()
     for name, level, words in (
         ("opening_width_m", OPENING_LEVEL, f"opening (at {100 * OPENING_LEVEL:g} % of the depth)"),
@@ -97,10 +99,12 @@ def contour_extraction(mesh: SurfaceMesh, track_radius: float, angle: int, remar
             (middle + width / 2, height),
             arrowprops={"arrowstyle": "<->", "color": SCHEME_COLOURS["conserving"]},
         )
-        section.text(
-            middle,
-            height,
+        section.annotate(
             f"{width:.3g} mm {words}",
+            (middle, height),
+            (0.0, 4.0),
+            textcoords="offset points",
+            bbox=PLAIN_BOX,
             ha="center",
             va="bottom",
             color=SCHEME_COLOURS["conserving"],

@@ -45,8 +45,8 @@ def flow_views(
         for axes, view in zip(grid[:, column], AXES, strict=True):
             _draw(axes, table[table["view"] == view], lines[run][view] * MILLIMETRES, norm)
             axes.set(xlim=limits[view][0], ylim=limits[view][1], xlabel=LABELS[view][0])
-            axes.set_title(f"{run.replace('_', ' ')}, {view}", loc="left", fontsize=SMALLEST_FONT, pad=2)
-        grid[0, column].annotate("bed →", (1.0, 1.0), xycoords="axes fraction", ha="right", va="bottom", fontsize=9)
+            moves = ", bed →" if view == SIDE else ""
+            axes.set_title(f"{run.replace('_', ' ')}, {view}{moves}", loc="left", fontsize=SMALLEST_FONT, pad=2)
     for axes, view in zip(grid[:, 0], AXES, strict=True):
         axes.set_ylabel(LABELS[view][1])
     bar = figure.colorbar(ScalarMappable(norm, MAP), ax=grid, extend="max", shrink=0.85, pad=0.02, aspect=30)

@@ -8,6 +8,7 @@ from meshes.plate import flat_plate
 from postproc.analysis.depth import (
     area_quantile,
     area_share_above,
+    carried_remark,
     carried_share,
     depth_distribution,
     depth_summary,
@@ -59,6 +60,14 @@ def test_equivalent_depth_conserves_volume():
     np.testing.assert_allclose(face_depth(mesh, False) * area, volume, rtol=RELATIVE)
     share = np.bincount(mesh.triangles.ravel(), np.repeat(area / 3.0, 3))
     assert node_depth(mesh, False) @ share == pytest.approx(volume.sum(), rel=RELATIVE)
+
+
+def test_a_map_says_what_is_carried_unless_it_is_rounding():
+    """A quarter of the worn volume is told as 25 %; rounding is not told as a share."""
+    mesh = worn_plate(holder_beyond=1.0)
+    for share, words in ((0.25, "up to 25 % of a run's"), (1e-16, "nothing is carried")):
+        mesh.point_data["carried_volume_m3"][:] = share * mesh.cell_data["worn_volume_m3"].sum() / len(mesh.points)
+        assert words in carried_remark({"run": mesh}, deformed=True)
 
 
 def test_carried_share():

@@ -76,7 +76,9 @@ def test_figure_shows_all_views_of_all_runs(particles, sample):
     assert "(°/s)" in bar.get_ylabel()
     assert panels[2].get_xlabel() == "Along the travel, y (mm)"
     assert panels[0].get_ylabel() == "z (mm)"
-    assert [axes.get_title(loc="left") for axes in panels[:2]] == ["R9 convex, side view", "R9 plain, side view"]
+    assert [axes.get_title(loc="left") for axes in panels[:2]] == [
+        f"R9 {kind}, side view, bed →" for kind in ("convex", "plain")
+    ]
     circles = panels[0].collections[0]
     side = views["R9_convex"][views["R9_convex"]["view"] == SIDE]
     np.testing.assert_allclose(circles.get_offsets(), 1e3 * side[["horizontal_m", "vertical_m"]])
