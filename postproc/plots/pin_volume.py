@@ -193,8 +193,8 @@ def calibration(
             axes.axvline(test_revolutions / factor, color=OTHER_COLOUR, linewidth=0.8, linestyle=":")
             axes.text(
                 test_revolutions / factor,
-                1.0,
-                f" {words}: at most {factor:.1f}",
+                0.97,
+                f"{words}: at most {factor:.1f}",
                 rotation=90,
                 va="top",
                 fontsize=SMALLEST_FONT,

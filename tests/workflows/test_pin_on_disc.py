@@ -150,17 +150,28 @@ def test_a_fault_of_a_rows_own_value_names_the_table(config):
     )
 
 
-def test_a_design_without_the_series_of_coefficients_is_refused(config):
-    """Figures of groove and volume are made of that series; another one alone is refused before anything runs."""
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        (
+            "row,series\nm1,mesh\ns1,size\n",
+            "column series holds mesh, size, allowed is a design with at least one row of series coefficient.",
+        ),
+        (
+            "row,series,wear_coefficient_per_pa\nc1,coefficient,2e-11\nm1,mesh,1e-11\nm2,mesh,5e-11\nm3,mesh,\n",
+            "column wear_coefficient_per_pa holds 1e-11, 5e-11, nothing in series mesh, allowed is one for all its"
+            " rows.",
+        ),
+    ],
+)
+def test_a_design_of_which_no_figures_can_be_made_is_refused(config, table, words):
+    """Without the series of coefficients, or with meshes that differ in their coefficient: before anything runs."""
     for name in ("cases/pin_on_disc.yaml", "materials.yaml", "studies/pin_on_disc.yaml"):
         config.write(name, (Path(__file__).parents[2] / "config" / name).read_text(encoding="utf-8"))
-    config.write("designs/pin_on_disc_quick.csv", "row,series\nm1,mesh\ns1,size\n")
+    config.write("designs/pin_on_disc_quick.csv", table)
     with pytest.raises(ConfigError) as caught:
         load_study("pin_on_disc", config.root)
-    assert str(caught.value) == (
-        "config/designs/pin_on_disc_quick.csv: column series holds mesh, size, allowed is a design with at least one"
-        " row of series coefficient."
-    )
+    assert str(caught.value) == f"config/designs/pin_on_disc_quick.csv: {words}"
 
 
 # ---------------------------------------------------------------- decks

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 COMPARED = "coefficient"  # series of the design that figures of groove and volume are made of
+MESHES = "mesh"  # series of the design that differs in its elements only
 FORCE_WINDOWS = "forces.txt"  # of the solver: means over windows of equal length
 # Relative, of the mean vertical force of a cycle: what a pin lacks that is off the disc for that share of the cycle.
 # One that swings when a cycle ends lacks its momentum: seen 0.2 %, at 3 m/s, where it meets its own groove for the
@@ -46,11 +47,16 @@ class PinOnDisc(Case):
     leftovers = (SETUP_LOADS, FORCE_WINDOWS)
 
     def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
-        """Return a phrase if no row is of the series of coefficients: most figures and the page are made of it."""
-        if any(row["series"] == COMPARED for row in rows):
-            return None
-        found = ", ".join(dict.fromkeys(row["series"] for row in rows)) or "no row"
-        return f"column series holds {found}, allowed is a design with at least one row of series {COMPARED}"
+        """Return a phrase if no row is of the series of coefficients, of which most figures and the page are made,
+        or if the rows of the series of meshes differ in more than their mesh."""
+        if not any(row["series"] == COMPARED for row in rows):
+            found = _listed(row["series"] for row in rows) or "no row"
+            return f"column series holds {found}, allowed is a design with at least one row of series {COMPARED}"
+        coefficients = [row.get("wear_coefficient_per_pa", "nothing") for row in rows if row["series"] == MESHES]
+        if len(set(coefficients)) > 1:
+            found = _listed(map(str, coefficients))
+            return f"column wear_coefficient_per_pa holds {found} in series {MESHES}, allowed is one for all its rows"
+        return None
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
@@ -189,6 +195,11 @@ class PinOnDisc(Case):
         from postproc.analysis.summary import pin_summary_table
 
         return pin_summary_table(design, wear, pristine, worn)
+
+
+def _listed(values: Iterable[str]) -> str:
+    """Each value once, with commas."""
+    return ", ".join(dict.fromkeys(values))
 
 
 def _contact(parameters: Parameters) -> tuple[float, float, float, float, float]:
