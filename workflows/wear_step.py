@@ -17,7 +17,14 @@ from postproc.wear.laws import worn_volume
 from postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
 from postproc.wear.patch import ContactPatch, chosen_radius
 from postproc.wear.remesh import RemeshError, remesh
-from postproc.wear.update import CARRIED_VOLUME, lost_volume, volume_balance, wear_update, worn_faces
+from postproc.wear.update import (
+    CARRIED_VOLUME,
+    lost_volume,
+    volume_balance,
+    wear_update,
+    with_depths,
+    worn_faces,
+)
 from workflows import state
 from workflows.cases import CASES
 from workflows.cases.base import Case
@@ -54,12 +61,11 @@ def wear(
         surface = with_target_edges(surface)
     volume = law_volume(parameters, ledger)
     limit = node_limits(case, parameters, surface, span)
-    worn, update = wear_update(
-        surface, pristine, volume, limit, patch=contact_patch(parameters, ledger), scheme=parameters["wear"]["scheme"]
-    )
+    patch = contact_patch(parameters, ledger)
+    worn, update = wear_update(surface, volume, limit, patch=patch, scheme=parameters["wear"]["scheme"])
     asked = {"step_limit_m": float(limit.max()), **planned(case, parameters, span, surface, worn)}
     asked |= case.geometry_columns(surface, worn, volume > 0.0)
-    worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume))
+    worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume), surface)
     if fault := case.worn_through(worn):
         raise WearError(
             f"{chain.name}, cycle {span.cycle}: {fault}; wear is accelerated too much, or the travel too long."
@@ -72,13 +78,18 @@ def wear(
     return {**row, "balance_error": error}
 
 
-def remeshed(chain: Chain, span: Span, worn: SurfaceMesh) -> tuple[SurfaceMesh, dict[str, float | int]]:
+def remeshed(
+    chain: Chain, span: Span, worn: SurfaceMesh, before: SurfaceMesh
+) -> tuple[SurfaceMesh, dict[str, float | int]]:
     """Return the worn surface within the study's bounds, and what a cycle's row of wear.csv tells of that.
 
-    Raises WearError for a surface that cannot be repaired; the message names run, cycle, place and cause.
+    The surface `before` is one that an earlier cycle left without faces that cut one another, or the pristine one, of
+    which nobody has looked. Raises WearError for a surface that cannot be repaired; the message names run, cycle,
+    place and cause.
     """
     try:
-        outcome = remesh(as_densities(worn), bounds(chain.parameters))
+        moved = (worn.points != before.points).any(axis=1)[worn.triangles].any(axis=1) if span.cycle > 1 else None
+        outcome = remesh(as_densities(worn), bounds(chain.parameters), moved)
     except RemeshError as fault:
         raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}") from fault
     mesh = as_sums(outcome.mesh, worn) if outcome.faces_changed else worn
@@ -227,8 +238,11 @@ def update_row(chain: Chain, span: Span, update: Mapping[str, float]) -> dict[st
 
 
 def worn_surface(chain: Chain, last: Span) -> SurfaceMesh:
-    """Return the surface after the last cycle with its mean normal traction (Pa) beside the sums over all cycles."""
+    """Return the surface after the last cycle with its mean normal traction (Pa) beside the sums over all cycles, and
+    with all depths.
+    """
     surface = read_surface(state.cycle_folder(chain.folder, last.cycle) / SURFACE)
     duration = last.end * chain.parameters["derived"]["time_step_s"]
     traction = surface.cell_data["normal_impulse_N_s"] / duration / areas(surface.points, surface.triangles)
-    return replace(surface, cell_data={**surface.cell_data, "normal_traction_Pa": traction})
+    surface = replace(surface, cell_data={**surface.cell_data, "normal_traction_Pa": traction})
+    return with_depths(surface, read_surface(chain.surface))

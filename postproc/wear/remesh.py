@@ -59,13 +59,14 @@ class Remeshed:
     faults: MeshFaults
 
 
-def remesh(mesh: SurfaceMesh, bounds: Bounds = DEFAULT_BOUNDS) -> Remeshed:
+def remesh(mesh: SurfaceMesh, bounds: Bounds = DEFAULT_BOUNDS, moved: np.ndarray | None = None) -> Remeshed:
     """Bring a worn surface back within the bounds as far as its volume and shape allow.
 
     Parameters
     ----------
     mesh : normals out of the body; point data `target_edge_m` (see `with_target_edges`), else the present edges count
     bounds : when a face is bad
+    moved : (m,) bool, faces with a corner that has moved since no two faces cut one another; None: look at all
 
     Returns
     -------
@@ -77,7 +78,7 @@ def remesh(mesh: SurfaceMesh, bounds: Bounds = DEFAULT_BOUNDS) -> Remeshed:
     RemeshError : folds or faces that cut one another remain.
     """
     present = mesh if TARGET_EDGE in mesh.point_data else with_target_edges(mesh)
-    faults = mesh_faults(present, bounds)
+    faults = mesh_faults(present, bounds, moved)
     if not faults.faces.any():
         return Remeshed(mesh, 0, 0.0, 0.0, 0.0, faults)
     start, tangled, advanced = present, faults.tangled, 0.0

@@ -32,7 +32,6 @@ def worn_faces(mesh: SurfaceMesh) -> np.ndarray:
 
 def wear_update(
     mesh: SurfaceMesh,
-    pristine: SurfaceMesh,
     worn_volume: np.ndarray,
     step_limit: np.ndarray | None = None,
     wall: tuple[float, float, float] | None = (0.0, 0.0, -1.0),
@@ -44,7 +43,6 @@ def wear_update(
     Parameters
     ----------
     mesh : present surface, m; point data of earlier updates are taken up (zero where absent)
-    pristine : surface before any wear, in the same frame, m; its triangulation may differ (after remeshing)
     worn_volume : (m,) m3 >= 0 of this cycle; ignored on the holder
     step_limit : (n,) m, see `postproc.wear.caps`; None: no caps, too large a step is refused
     wall : direction in which nodes at the rim of the worn faces slide; None: along their normal, like others
@@ -54,7 +52,7 @@ def wear_update(
 
     Returns
     -------
-    mesh : new points; point data `removed_thickness_m`, `height_loss_m`, `ray_depth_m`, `carried_volume_m3`
+    mesh : new points; point data `removed_thickness_m`, `carried_volume_m3`
     record : worn_volume_m3 (this cycle, worn faces only), applied_volume_m3 (this cycle), carried_volume_m3
         (now), excess_volume_m3 (applied this cycle beyond what was due and is not carried: rounding for
         `conserving`, several times the wear for `per_triangle`), largest_step_m, smallest_angle_deg (worn
@@ -72,7 +70,6 @@ def wear_update(
     moved = scheme_of(scheme)(mesh.points, mesh.triangles, volume, carried, step_limit, rim, worn, part)
     thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
     fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
-    fields |= _depths(moved.points, mesh.triangles, worn, thickness, pristine)
     law, applied, left = (
         float(v) for v in (np.sum(worn_volume, where=worn), moved.applied_volume.sum(), moved.carried_volume.sum())
     )
@@ -86,6 +83,22 @@ def wear_update(
         "largest_depth_m": float(thickness.max(initial=0.0)),
     }
     return SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields), record
+
+
+def with_depths(worn: SurfaceMesh, pristine: SurfaceMesh) -> SurfaceMesh:
+    """The worn surface with `height_loss_m` and `ray_depth_m` as point data (see `postproc.wear.depth`).
+
+    Both are sought where the surface's removed thickness is above 0, and are 0 elsewhere. `pristine` is the surface
+    before any wear, in the same frame, m; its triangulation may differ (after remeshing).
+    """
+    thickness = _point_data(worn, REMOVED_THICKNESS)
+    touched = np.flatnonzero(thickness > 0.0)
+    outward = -inward_directions(worn.points, worn.triangles, worn_faces(worn))
+    fields = {HEIGHT_LOSS: np.zeros(len(thickness)), RAY_DEPTH: np.zeros(len(thickness))}
+    at, old = worn.points[touched], (pristine.points, pristine.triangles)
+    fields[HEIGHT_LOSS][touched] = height_loss(at, *old)
+    fields[RAY_DEPTH][touched] = ray_depth(at, outward[touched], thickness[touched], *old)
+    return SurfaceMesh(worn.points, worn.triangles, worn.cell_data, worn.point_data | fields)
 
 
 def lost_volume(pristine: SurfaceMesh, present: SurfaceMesh) -> tuple[float, float]:
@@ -131,14 +144,3 @@ def recession_fault(mesh: SurfaceMesh, floor_z: float = 0.0, clearance: float = 
 
 def _point_data(mesh: SurfaceMesh, name: str) -> np.ndarray:
     return np.asarray(mesh.point_data.get(name, np.zeros(len(mesh.points))), dtype=np.float64)
-
-
-def _depths(points, triangles, worn, thickness, pristine: SurfaceMesh) -> dict[str, np.ndarray]:
-    """Height loss and ray depth (n,) m, computed where something was removed and 0 elsewhere."""
-    touched = np.flatnonzero(thickness > 0.0)
-    outward = -inward_directions(points, triangles, worn)
-    fields = {HEIGHT_LOSS: np.zeros(len(points)), RAY_DEPTH: np.zeros(len(points))}
-    old = (pristine.points, pristine.triangles)
-    fields[HEIGHT_LOSS][touched] = height_loss(points[touched], *old)
-    fields[RAY_DEPTH][touched] = ray_depth(points[touched], outward[touched], thickness[touched], *old)
-    return fields

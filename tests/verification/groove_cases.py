@@ -166,7 +166,7 @@ def worn_once(groove: Groove, columns, coefficient: float, scheme: str) -> Groov
     present = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, fields)
     displacement = "per_triangle" if scheme == "per_triangle" else "conserving"
     with spread_once() if scheme == "spread_once" else nullcontext():
-        worn, record = wear_update(present, groove.pristine, volume, limit, patch=patch, scheme=displacement)
+        worn, record = wear_update(present, volume, limit, patch=patch, scheme=displacement)
     section = mean_section(worn, SECTIONS)
     row = {
         "coefficient_per_pa": coefficient,

@@ -73,7 +73,7 @@ def test_remeshing_hands_sums_on_part_by_part(chain):
 def test_a_surface_beyond_repair_stops_with_run_and_cycle(chain, monkeypatch):
     """The sentence of the remeshing, with the run and the cycle in front; nothing is written."""
 
-    def refuses(mesh, bounds):
+    def refuses(mesh, bounds, moved):
         raise RemeshError("faces cut one another at (1, 2, 3) mm")
 
     monkeypatch.setattr(wear_step, "remesh", refuses)

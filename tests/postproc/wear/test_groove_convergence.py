@@ -115,7 +115,7 @@ def section(mesh, y):
 
 def groove(contact, edge, radius, area, scheme="conserving"):
     """Mean depth (m), width (m) and area (m2) of a groove worn in UPDATES updates on triangles of that edge (m)."""
-    pristine = mesh = sample_top(WIDTH, LENGTH, edge, None)
+    mesh = sample_top(WIDTH, LENGTH, edge, None)
     for _ in range(UPDATES):
         volume, position = contact(mesh, area / UPDATES)
         patch = None if scheme == "per_triangle" else ContactPatch(position, np.full(len(volume), radius))
@@ -123,7 +123,6 @@ def groove(contact, edge, radius, area, scheme="conserving"):
         fields = {"carried_volume_m3": mesh.point_data.get("carried_volume_m3", np.zeros(len(mesh.points)))}
         mesh, record = wear_update(
             SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, fields),
-            pristine,
             volume,
             limit,
             patch=patch,

@@ -49,7 +49,7 @@ def sample():
 def distorted(sample):
     """The sample worn by 0.1 mm, then nodes off curves and rim shifted in the plane of a face: slivers; carried set."""
     random = np.random.default_rng(SEED)
-    worn, _ = wear_update(sample, sample, 1e-4 * worn_faces(sample) * areas(sample.points, sample.triangles))
+    worn, _ = wear_update(sample, 1e-4 * worn_faces(sample) * areas(sample.points, sample.triangles))
     points, free = worn.points.copy(), labels_at_nodes(worn) >= 0
     free[worn.triangles[~worn_faces(worn)]] = False
     free[boundary_edges(worn.triangles)] = False
@@ -194,6 +194,16 @@ def test_self_intersection_is_repaired(sample):
     assert not mesh_faults(outcome.mesh).tangled.any()
     change = volume_above_plane(outcome.mesh.points, outcome.mesh.triangles) - volume_above_plane(points, bad.triangles)
     assert change == pytest.approx(-outcome.advanced_volume_m3, abs=1e-12 * volume_above_plane(points, bad.triangles))
+
+
+def test_faces_that_have_not_moved_are_not_looked_at():
+    """A cut between faces is found where one of them has moved, which one does not matter, and only there."""
+    points = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0], [1, 1, -1], [1, 1, 2], [5, 5, 2.0]]) * 1e-3
+    mesh = with_target_edges(SurfaceMesh(points, np.array([[0, 1, 2], [3, 4, 5]])))
+    for moved in (np.array([True, False]), np.array([False, True])):
+        with pytest.raises(RemeshError, match="cut one another"):
+            remesh(mesh, moved=moved)
+    assert remesh(mesh, moved=np.zeros(2, dtype=bool)).mesh is mesh
 
 
 def test_hopeless_mesh_is_refused():

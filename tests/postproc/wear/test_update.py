@@ -17,6 +17,7 @@ from postproc.wear.update import (
     recession_fault,
     volume_balance,
     wear_update,
+    with_depths,
     worn_faces,
 )
 
@@ -40,8 +41,9 @@ def random_volume(mesh, depth, seed=SEED):
 
 
 def test_zero_load_leaves_every_bit(sample):
-    """No wear: coordinates bit-identical, all four fields zero, labels and triangles kept."""
-    worn, record = wear_update(sample, sample, np.zeros(len(sample.triangles)))
+    """No wear: coordinates bit-identical, all fields zero, labels and triangles kept."""
+    worn, record = wear_update(sample, np.zeros(len(sample.triangles)))
+    worn = with_depths(worn, sample)
     assert worn.points.tobytes() == sample.points.tobytes()
     assert all(not worn.point_data[name].any() for name in FIELDS)
     assert np.array_equal(worn.cell_data["part"], sample.cell_data["part"])
@@ -53,9 +55,10 @@ def test_uniform_wear_of_a_plate_gives_one_depth():
     plate, down = flat_plate(0.06, 0.039, 0.003), 1e-5
     mesh = plate
     for _ in range(3):
-        mesh, record = wear_update(mesh, plate, down * areas(mesh.points, mesh.triangles))
+        mesh, record = wear_update(mesh, down * areas(mesh.points, mesh.triangles))
+    worn = with_depths(mesh, plate)
     for name in FIELDS[:3]:
-        np.testing.assert_allclose(mesh.point_data[name], 3.0 * down, rtol=DEPTH)
+        np.testing.assert_allclose(worn.point_data[name], 3.0 * down, rtol=DEPTH)
     assert record["largest_depth_m"] == pytest.approx(3.0 * down, rel=DEPTH)
     assert record["largest_step_m"] == pytest.approx(down, rel=DEPTH)
     assert record["smallest_angle_deg"] == pytest.approx(45.0, rel=DEPTH)
@@ -67,7 +70,7 @@ def test_balance_closes_over_capped_cycles(sample):
     for cycle in range(5):
         volume = random_volume(mesh, 2e-5, seed=cycle)
         limit = step_limit(mesh.points, mesh.triangles, 0.1, 0.01, 0.2)
-        new, record = wear_update(mesh, sample, volume, limit)
+        new, record = wear_update(mesh, volume, limit)
         swept = swept_volume(mesh.points, new.points - mesh.points, mesh.triangles)[worn_faces(mesh)]
         assert record["applied_volume_m3"] == pytest.approx(swept.sum(), rel=ROUNDING)
         assert record["worn_volume_m3"] == pytest.approx(volume.sum(), rel=ROUNDING)
@@ -83,7 +86,7 @@ def test_balance_closes_over_capped_cycles(sample):
 def test_wear_of_the_holder_is_not_counted(sample):
     """Volumes on the skirt move nothing and stand in no sum."""
     volume = np.where(worn_faces(sample), 0.0, 1e-9)
-    worn, record = wear_update(sample, sample, volume)
+    worn, record = wear_update(sample, volume)
     assert worn.points.tobytes() == sample.points.tobytes()
     assert record["worn_volume_m3"] == record["carried_volume_m3"] == 0.0
 
@@ -92,7 +95,7 @@ def test_rim_goes_straight_down_and_never_out(sample):
     """Rim nodes keep x and y; no node of the skirt below the rim moves."""
     worn = sample
     for cycle in range(3):  # after uneven wear the normals at the rim lean, its path must not
-        worn, _ = wear_update(worn, sample, random_volume(sample, 1e-5, seed=cycle))
+        worn, _ = wear_update(worn, random_volume(sample, 1e-5, seed=cycle))
     faces = worn_faces(sample)
     rim = np.intersect1d(sample.triangles[faces], sample.triangles[~faces])
     assert np.array_equal(worn.points[rim, :2], sample.points[rim, :2])
@@ -104,7 +107,8 @@ def test_rim_goes_straight_down_and_never_out(sample):
 def test_fields_are_zero_where_nothing_was_removed(sample):
     """Wear on one bump leaves all depths of nodes off that bump at zero; on it all are positive."""
     volume = np.where(sample.cell_data["part"] == 1, random_volume(sample, 1e-5), 0.0)
-    worn, _ = wear_update(sample, sample, volume)
+    worn, _ = wear_update(sample, volume)
+    worn = with_depths(worn, sample)
     on_bump = np.zeros(len(sample.points), dtype=bool)
     on_bump[sample.triangles[sample.cell_data["part"] == 1]] = True
     for name in FIELDS[:3]:
@@ -116,14 +120,14 @@ def test_smallest_angle_is_that_of_the_worn_faces():
     """An acute triangle of the holder is not reported: 45 degrees, not its 5.7."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, -0.05, 0.0]])
     mesh = SurfaceMesh(points, np.array([[0, 1, 2], [0, 3, 1]]), {"part": np.array([0, -1])})
-    _, record = wear_update(mesh, mesh, np.zeros(2))
+    _, record = wear_update(mesh, np.zeros(2))
     assert record["smallest_angle_deg"] == pytest.approx(45.0, rel=DEPTH)
 
 
 def test_other_point_data_survive(sample):
     """Data that the update does not know are handed on."""
     marked = SurfaceMesh(sample.points, sample.triangles, sample.cell_data, {"mark": np.arange(len(sample.points))})
-    worn, _ = wear_update(marked, sample, random_volume(sample, 1e-5))
+    worn, _ = wear_update(marked, random_volume(sample, 1e-5))
     assert np.array_equal(worn.point_data["mark"], marked.point_data["mark"])
 
 
@@ -133,8 +137,8 @@ def test_patch_spreads_and_the_balance_still_closes(sample):
     centres = sample.points[sample.triangles].mean(axis=1)
     patch = ContactPatch(centres, np.full(len(centres), 6e-3))
     limit = step_limit(sample.points, sample.triangles, 0.1, 0.01, 0.2)
-    spread_mesh, spread_record = wear_update(sample, sample, volume, limit, patch=patch)
-    mesh, record = wear_update(sample, sample, volume, limit)
+    spread_mesh, spread_record = wear_update(sample, volume, limit, patch=patch)
+    mesh, record = wear_update(sample, volume, limit)
     assert spread_record["worn_volume_m3"] == record["worn_volume_m3"] == pytest.approx(volume.sum(), rel=ROUNDING)
     moved, spread_moved = ((each.point_data["removed_thickness_m"] > 0.0).sum() for each in (mesh, spread_mesh))
     assert spread_moved > moved
@@ -146,13 +150,13 @@ def test_patch_spreads_and_the_balance_still_closes(sample):
 def test_unknown_scheme_is_refused(sample):
     """The message names the allowed ones."""
     with pytest.raises(ValueError, match="scheme 'other' is unknown, allowed are: conserving, per_triangle"):
-        wear_update(sample, sample, np.zeros(len(sample.triangles)), scheme="other")
+        wear_update(sample, np.zeros(len(sample.triangles)), scheme="other")
 
 
 def test_too_large_a_step_is_refused(sample):
     """Without caps wear of a centimetre on millimetre triangles is refused."""
     with pytest.raises(StepTooLargeError, match="of the shortest altitude"):
-        wear_update(sample, sample, random_volume(sample, 1e-2))
+        wear_update(sample, random_volume(sample, 1e-2))
 
 
 def test_balance_raises_above_its_tolerance():
