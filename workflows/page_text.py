@@ -98,7 +98,7 @@ def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: Modul
     reduced = "; ".join(study["remarks"]) or "nothing: all sizes and the travel are those of the paper fidelity"
     return [
         ("Reduced scale", f"{reduced}."),
-        *_wear_simplifications(study, summary, page.cap_words(settings)),
+        *_wear_simplifications(study, summary, page.further_cap(settings)),
         *page.simplifications(study),
         *_comparison(settings["wear"]["law"]),
     ]
@@ -115,7 +115,7 @@ def _comparison(law: str) -> list[tuple[str, str]]:
     return [("LIGGGHTS' Finnie differs", how)]
 
 
-def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, cap_words: str) -> list[tuple[str, str]]:
+def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, further_cap: str) -> list[tuple[str, str]]:
     """Return what concerns wear: law, acceleration, rigid sample or caps and what they hold back."""
     wear = study["settings"]["wear"]
     coefficients = [run["wear"]["wear_coefficient_per_pa"] for run in study["parameters"].values()]
@@ -132,7 +132,8 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, cap_w
     carried = 100.0 * (summary["carried_volume_m3"] / summary["archard_volume_m3"]).max()
     caps = (
         "Capped steps",
-        f"{cap_words} The rest is carried into later cycles: at the end "
+        f"In one wear cycle a node moves at most {wear['largest_step_edge_fraction']:g} of its shortest edge, and at "
+        f"most {further_cap}. The rest is carried into later cycles: at the end "
         f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
     )
     return [law, acceleration, caps]

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from postproc.analysis.display import in_display_units
+from postproc.analysis.display import MILLIMETRES, in_display_units
 from postproc.analysis.evaluation import regime_table
-from postproc.analysis.moving_bins import MovingBins, bin_history, relative_velocity_history, surcharge_history
+from postproc.analysis.moving_bins import (
+    MovingBins,
+    bin_history,
+    relative_velocity_history,
+    surcharge_history,
+    velocity_profile,
+)
 from postproc.analysis.steady import FEWEST_VALUES, steady_window
 
 INTERVAL = 0.01  # m of travel that is averaged (Yan 2022, section 3.4)
 LAYER_HEIGHT = 0.005  # m, of layers of real particles; coarse-grained ones have layers as much higher
 SIDE_SHARE = 0.25  # -, width of the side bins over the sample's: 50 mm beside 200 mm
+LEAST_PARTICLES = 5.0  # in a bin, mean over frames: of fewer a profile tells single particles
 HIGHEST = 3.0  # -, top of the layers over the thickness of the bed; room for what piles up
 
 
@@ -71,6 +78,36 @@ def settled_value(travel: np.ndarray, measure: np.ndarray) -> tuple[float, bool]
         return (float(np.nanmean(measure)) if np.isfinite(measure).any() else float("nan")), False
     window = steady_window(travel, measure)
     return window.mean, window.steady
+
+
+def steady_start(travel: np.ndarray, measure: np.ndarray) -> float:
+    """Return from where on a measure is steady (its unit of travel), 0 where it is not: then all of it is used."""
+    if np.isfinite(measure).sum() < FEWEST_VALUES:
+        return 0.0
+    window = steady_window(travel, measure)
+    return window.start if window.steady else 0.0
+
+
+def row_profiles(
+    bins: pd.DataFrame, along: pd.DataFrame, velocities: Mapping[str, float], rows: Sequence[str]
+) -> pd.DataFrame:
+    """Return the profiles by layer of all runs of some design rows, in display units.
+
+    bins: of all runs, as from `flow_tables`; along: histories, likewise; velocities: of the beds (m/s) by run
+    Columns run, row, surface, window_start_mm, window_end_mm, then those of `moving_bins.velocity_profile`. The window
+    is that in which the relative velocity is steady, or else all. Bins of fewer than LEAST_PARTICLES are left out.
+    """
+    tables = []
+    for row in rows:
+        for (run, surface), one in along[along["row"] == row].groupby(["run", "surface"], sort=False):
+            history = bins[bins["run"] == run]
+            first = steady_start(one["travel_mm"].to_numpy(), one["relative_velocity_percent"].to_numpy())
+            start = float(np.floor(first / MILLIMETRES / INTERVAL) * INTERVAL)
+            end = float(history["travel_end_m"].max())
+            profile = velocity_profile(history, velocities[run], start, end)
+            names = {"run": run, "row": row, "surface": surface, "window_start_m": start, "window_end_m": end}
+            tables.append(profile[profile["particles"] >= LEAST_PARTICLES].assign(**names)[[*names, *profile]])
+    return in_display_units(pd.concat(tables, ignore_index=True))
 
 
 def study_regimes(histories: Mapping[str, pd.DataFrame]) -> pd.DataFrame:

@@ -18,7 +18,7 @@ from postproc.analysis.factors import Factor
 from postproc.analysis.model_terms import Heredity, Term, candidate_terms, parse_term, term_name, told_apart
 from postproc.analysis.optimum import best_design
 from postproc.analysis.regression import CONSTANT, Fit, coefficient_table, fit, fit_measures, predict, residual_table
-from postproc.analysis.selection import MOST_TERMS, PERMUTATIONS, Choice, PermutationTest, best_models, permutation_test
+from postproc.analysis.selection import MOST_TERMS, PERMUTATIONS, Choice, PermutationTest, Search, best_models, permutation_test
 
 HEREDITIES: tuple[Heredity, ...] = ("none", "weak", "strong")
 FEWEST_RUNS = 4
@@ -98,7 +98,8 @@ def screen(
     if used.sum() < FEWEST_RUNS:
         raise ValueError(f"found {used.sum()} runs with wear above zero, allowed are {FEWEST_RUNS} or more")
     candidates, lost = told_apart(candidate_terms(len(factors)), coded[used])
-    choices = {each: best_models(candidates, coded[used], response[used], most, each) for each in HEREDITIES}
+    searches = {each: Search(candidates, coded[used], response[used], most, each) for each in HEREDITIES}
+    choices = {each: best_models(search) for each, search in searches.items()}
     return Screening(
         factors=tuple(factors.values()),
         design_rows=design["row"].astype(str).to_numpy(),
@@ -128,9 +129,8 @@ def model_table(study: Screening) -> pd.DataFrame:
 
 def chance_test(study: Screening, permutations: int = PERMUTATIONS, seed: int = 0) -> PermutationTest:
     """Return how often the whole search finds in shuffled responses what it found here."""
-    return permutation_test(
-        study.candidates, study.coded, study.response, study.most, permutations=permutations, seed=seed
-    )
+    search = Search(study.candidates, study.coded, study.response, study.most)
+    return permutation_test(search, permutations, seed)
 
 
 def chosen_coefficients(study: Screening, chance: PermutationTest) -> pd.DataFrame:

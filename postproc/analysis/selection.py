@@ -27,6 +27,37 @@ class Choice:
     aicc: float
 
 
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What models are chosen from: candidate terms that the runs tell apart, and the runs.
+
+    coded: (n, factors) in coded units; response: (n,) without gaps
+    most: terms of a model; heredity: which models are models at all
+    """
+
+    terms: Sequence[Term]
+    coded: np.ndarray
+    response: np.ndarray
+    most: int = MOST_TERMS
+    heredity: Heredity = "none"
+
+    @property
+    def columns(self) -> np.ndarray:
+        """Return the columns of the terms about their means, (n, terms)."""
+        columns = term_columns(self.terms, self.coded)
+        return columns - columns.mean(axis=0)
+
+    @property
+    def centred(self) -> np.ndarray:
+        """Return the response about its mean, (n,)."""
+        response = np.asarray(self.response, dtype=float)
+        return response - response.mean()
+
+    def models(self) -> Iterator[np.ndarray]:
+        """Yield all models, see `all_models`."""
+        return all_models(self.terms, len(self.response), self.most, self.heredity)
+
+
 @dataclass(frozen=True)
 class PermutationTest:
     """What a search finds in responses dealt to the runs at random.
@@ -93,30 +124,16 @@ def _scores(choices: np.ndarray, centred: np.ndarray, responses: np.ndarray) -> 
     return scores
 
 
-def _centred(terms: Sequence[Term], coded: np.ndarray, response: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    columns = term_columns(terms, coded)
-    response = np.asarray(response, dtype=float)
-    return columns - columns.mean(axis=0), response - response.mean()
+def best_models(search: Search, within: float = AS_GOOD) -> list[Choice]:
+    """Return every model whose AICc is within that of the best by `within`, best first, of all of a search.
 
-
-def best_models(
-    terms: Sequence[Term],
-    coded: np.ndarray,
-    response: np.ndarray,
-    most: int = MOST_TERMS,
-    heredity: Heredity = "none",
-    within: float = AS_GOOD,
-) -> list[Choice]:
-    """Return every model whose AICc is within that of the best by `within`, best first, of all of up to `most` terms.
-
-    terms: candidates that the runs tell apart; coded: (n, factors); response: (n,) without gaps.
     Models whose terms the runs cannot tell apart are no models. Raises ValueError for fewer than four runs.
     """
-    if len(response) < 4:
-        raise ValueError(f"{len(response)} runs with a result, allowed are four or more to choose a model")
-    columns, centred = _centred(terms, coded, response)
+    if len(search.response) < 4:
+        raise ValueError(f"{len(search.response)} runs with a result, allowed are four or more to choose a model")
+    terms, columns, centred = search.terms, search.columns, search.centred
     found: list[Choice] = []
-    for choices in all_models(terms, len(centred), most, heredity):
+    for choices in search.models():
         scores = _scores(choices, columns, centred[None])[:, 0]
         best = min([scores.min(), *(choice.aicc for choice in found)])
         found = [choice for choice in found if choice.aicc <= best + within]
@@ -125,31 +142,23 @@ def best_models(
     return sorted(found, key=lambda choice: (choice.aicc, len(choice.terms)))
 
 
-def permutation_test(
-    terms: Sequence[Term],
-    coded: np.ndarray,
-    response: np.ndarray,
-    most: int = MOST_TERMS,
-    heredity: Heredity = "none",
-    permutations: int = PERMUTATIONS,
-    seed: int = 0,
-) -> PermutationTest:
+def permutation_test(search: Search, permutations: int = PERMUTATIONS, seed: int = 0) -> PermutationTest:
     """Return how good a model the same search finds when the response has nothing to do with the factors.
 
     The whole selection is repeated for every permutation of the response over the runs. Seeded.
     Raises ValueError as `best_models`.
     """
-    best = best_models(terms, coded, response, most, heredity, within=0.0)[0]
-    columns, centred = _centred(terms, coded, response)
+    best = best_models(search, within=0.0)[0]
+    centred = search.centred
     dealt = np.random.default_rng(seed).permuted(np.tile(centred, (permutations, 1)), axis=1)
     parts = [dealt[k : k + RESPONSES_AT_A_TIME] for k in range(0, permutations, RESPONSES_AT_A_TIME)]
-    found = [_best_of_each(terms, columns, part, most, heredity) for part in parts]
+    found = [_best_of_each(search, part) for part in parts]
     scores = np.concatenate([score for score, _ in found])
     models = [model for _, chosen in found for model in chosen]
-    fits = [fit([terms[k] for k in model], coded, y) for model, y in zip(models, dealt, strict=True)]
+    fits = [fit([search.terms[k] for k in model], search.coded, y) for model, y in zip(models, dealt, strict=True)]
     largest = np.array([np.abs(each.t_values[1:]).max(initial=0.0) for each in fits])
     total = centred @ centred
-    model = fit(best.terms, coded, centred)
+    model = fit(best.terms, search.coded, centred)
     count = permutations + 1
     return PermutationTest(
         permutations=permutations,
@@ -162,13 +171,12 @@ def permutation_test(
     )
 
 
-def _best_of_each(
-    terms: Sequence[Term], columns: np.ndarray, responses: np.ndarray, most: int, heredity: Heredity
-) -> tuple[np.ndarray, list[np.ndarray]]:
+def _best_of_each(search: Search, responses: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
     """Return the lowest AICc (responses,) of each response and the positions of the terms of the model that has it."""
     scores = np.full(len(responses), np.inf)
     models: list[np.ndarray] = [np.empty(0, dtype=np.intp)] * len(responses)
-    for choices in all_models(terms, len(columns), most, heredity):
+    columns = search.columns
+    for choices in search.models():
         each = _scores(choices, columns, responses)
         best = each.argmin(axis=0)
         lowest = each[best, np.arange(len(responses))]

@@ -92,10 +92,7 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def cap_words(settings: Mapping[str, Any]) -> str:
-    """Return how far a node may move in one update."""
-    wear = settings["wear"]
-    return (
-        f"In one wear cycle a node moves at most {wear['largest_step_edge_fraction']:g} of its shortest edge, and at "
-        f"most {wear['largest_step_overlap_fraction']:g} of the pin's overlap, so that the pin keeps contact."
-    )
+def further_cap(settings: Mapping[str, Any]) -> str:
+    """Return how far a node may move in one update, besides what its edges allow."""
+    fraction = settings["wear"]["largest_step_overlap_fraction"]
+    return f"{fraction:g} of the pin's overlap, so that the pin keeps contact"

@@ -101,14 +101,9 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def cap_words(settings: Mapping[str, Any]) -> str:
-    """Return how far a node may move in one update."""
-    wear = settings["wear"]
-    return (
-        f"In one of {settings['sliding']['cycles']} cycles a node moves at most {wear['largest_step_edge_fraction']:g} "
-        "of its shortest edge, and at most as far as particles fall in "
-        f"{wear['gap_closing_fraction']:g} of the cycle's duration."
-    )
+def further_cap(settings: Mapping[str, Any]) -> str:
+    """Return how far a node may move in one update, besides what its edges allow."""
+    return f"as far as particles fall in {settings['wear']['gap_closing_fraction']:g} of the cycle's duration"
 
 
 def _sampling(study: Mapping[str, Any]) -> list[tuple[str, str]]:

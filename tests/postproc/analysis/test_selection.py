@@ -12,7 +12,7 @@ from postproc.analysis import selection
 from postproc.analysis.factors import coded_table, factors_of
 from postproc.analysis.model_terms import candidate_terms, parse_term, term_columns, told_apart
 from postproc.analysis.regression import fit, fit_measures
-from postproc.analysis.selection import all_models, best_models, largest_size, permutation_test
+from postproc.analysis.selection import Search, all_models, best_models, largest_size, permutation_test
 
 ROOT = Path(__file__).resolve().parents[3]
 NAMES = "abdhvt"
@@ -50,7 +50,7 @@ def test_all_models_are_tried(table):
 
 def test_the_known_model_is_returned_without_noise(table):
     """Without noise the best model is the true one, alone, with its coefficients."""
-    found = best_models(candidate_terms(6), table, response_of(table))
+    found = best_models(Search(candidate_terms(6), table, response_of(table)))
     assert [choice.terms for choice in found] == [terms_of(*MODEL)]
     model = fit(found[0].terms, table, response_of(table))
     np.testing.assert_allclose(model.coefficients, COEFFICIENTS, rtol=ROUNDING)
@@ -61,14 +61,14 @@ def test_the_known_terms_are_returned_with_noise(table):
     rng = np.random.default_rng(3)
     for _ in range(20):
         noisy = response_of(table) + rng.normal(0.0, QUIET, 13)
-        assert best_models(candidate_terms(6), table, noisy)[0].terms == terms_of(*MODEL)
+        assert best_models(Search(candidate_terms(6), table, noisy))[0].terms == terms_of(*MODEL)
 
 
 def test_scores_are_those_of_single_fits(table):
     """AICc and the order of models agree with fitting each model by itself (four factors, all models)."""
     response = np.random.default_rng(4).normal(size=13)
     terms = candidate_terms(4)
-    found = best_models(terms, table[:, :4], response, within=np.inf)
+    found = best_models(Search(terms, table[:, :4], response), within=np.inf)
     singly = {}
     for size in range(5):
         for model in itertools.combinations(terms, size):
@@ -87,8 +87,8 @@ def test_scores_are_those_of_single_fits(table):
 def test_every_model_as_good_is_returned(table):
     """All models within 2 of the best come back, none beyond, whatever the size of the blocks."""
     response = response_of(table) + np.random.default_rng(5).normal(0.0, 0.5, 13)
-    every = best_models(candidate_terms(6), table, response, within=50.0)
-    found = best_models(candidate_terms(6), table, response)
+    every = best_models(Search(candidate_terms(6), table, response), within=50.0)
+    found = best_models(Search(candidate_terms(6), table, response))
     assert found == [choice for choice in every if choice.aicc <= every[0].aicc + 2.0]
     assert len(every) > len(found) > 1
 
@@ -96,19 +96,19 @@ def test_every_model_as_good_is_returned(table):
 def test_blocks_do_not_matter(table, monkeypatch):
     """Many small blocks of models give the same choice as a few large ones."""
     response = np.random.default_rng(6).normal(size=13)
-    whole = best_models(candidate_terms(6), table, response)
+    whole = best_models(Search(candidate_terms(6), table, response))
     monkeypatch.setattr(selection, "MODELS_AT_A_TIME", 777)
-    assert best_models(candidate_terms(6), table, response) == whole
+    assert best_models(Search(candidate_terms(6), table, response)) == whole
 
 
 def test_heredity_binds_the_choice(table):
     """With strong heredity b*d needs b and d, so four terms cannot hold the known model, and none is chosen without."""
     response = response_of(table)
-    strong = best_models(candidate_terms(6), table, response, heredity="strong")
+    strong = best_models(Search(candidate_terms(6), table, response, heredity="strong"))
     for choice in strong:
         mains = {term[0] for term in choice.terms if len(term) == 1}
         assert all(set(term) <= mains for term in choice.terms)
-    assert best_models(candidate_terms(6), table, response, most=6, heredity="strong")[0].terms == terms_of(
+    assert best_models(Search(candidate_terms(6), table, response, 6, "strong"))[0].terms == terms_of(
         "a", "b", "d", "v", "t", "b*d"
     )
 
@@ -119,7 +119,7 @@ def test_published_terms_are_chosen(heredity, most, model):
     data = pd.read_csv(ROOT / "tests/data/filtration_rate.csv", comment="#")
     coded, rate = data[list("ABCD")].to_numpy(float), data["rate"].to_numpy(float)
     terms, _ = told_apart(candidate_terms(4), coded)
-    best = best_models(terms, coded, rate, most, heredity)
+    best = best_models(Search(terms, coded, rate, most, heredity))
     assert [choice.terms for choice in best] == [tuple(parse_term(name, "ABCD") for name in model.split())]
 
 
@@ -132,7 +132,7 @@ def test_few_runs_bound_the_models(runs, size):
 def test_too_few_runs_are_refused(table):
     """Three runs choose nothing."""
     with pytest.raises(ValueError, match="3 runs with a result, allowed are four or more"):
-        best_models(candidate_terms(6), table[:3], np.arange(3.0))
+        best_models(Search(candidate_terms(6), table[:3], np.arange(3.0)))
 
 
 # --- permutations
@@ -141,7 +141,7 @@ def test_too_few_runs_are_refused(table):
 def test_a_real_model_is_beyond_chance(table):
     """For the known model with little noise, hardly any permutation is as good: p is the least that can be."""
     response = response_of(table) + np.random.default_rng(7).normal(0.0, QUIET, 13)
-    chance = permutation_test(candidate_terms(6), table, response, permutations=99)
+    chance = permutation_test(Search(candidate_terms(6), table, response), permutations=99)
     assert chance.model_p == 0.01
     assert set(chance.term_p) == set(terms_of(*MODEL))
     assert chance.r_squared.shape == (99,)
@@ -153,7 +153,7 @@ def test_the_p_value_holds_where_there_is_nothing():
     coded = rng.choice([-1.0, 0.0, 1.0], (12, 4))
     terms, _ = told_apart(candidate_terms(4), coded)
     trials = [
-        permutation_test(terms, coded, rng.normal(size=12), 2, permutations=19, seed=k).model_p for k in range(TRIALS)
+        permutation_test(Search(terms, coded, rng.normal(size=12), 2), permutations=19, seed=k).model_p for k in range(TRIALS)
     ]
     for level in (0.2, 0.5):
         share = np.mean(np.array(trials) <= level)
@@ -163,9 +163,9 @@ def test_the_p_value_holds_where_there_is_nothing():
 def test_chance_alone_explains_much(table):
     """Four of 27 terms chosen for 13 runs explain most of pure noise: why p values after selection mislead."""
     noise = np.random.default_rng(9).normal(size=13)
-    chance = permutation_test(candidate_terms(6), table, noise, permutations=50)
+    chance = permutation_test(Search(candidate_terms(6), table, noise), permutations=50)
     assert np.median(chance.r_squared) > 0.5
-    best = best_models(candidate_terms(6), table, noise)[0]
+    best = best_models(Search(candidate_terms(6), table, noise))[0]
     naive = fit(best.terms, table, noise).p_values[1:].min(initial=1.0)
     assert min(chance.term_p.values(), default=1.0) > naive
 
@@ -174,7 +174,7 @@ def test_permutations_are_seeded(table):
     """The same seed gives the same test, another one another."""
     noise = np.random.default_rng(10).normal(size=13)
     first, same, other = (
-        permutation_test(candidate_terms(6), table, noise, 2, permutations=30, seed=seed).r_squared
+        permutation_test(Search(candidate_terms(6), table, noise, 2), permutations=30, seed=seed).r_squared
         for seed in (1, 1, 2)
     )
     assert (first == same).all()

@@ -1,0 +1,79 @@
+"""Runs of a screening study by flow regime: wear gradient, relative wear and normal force, as the source groups them.
+
+A design row is in the group of its convex run's regime, its plain twin with it (Yan 2022, Fig 3.12, 3.13 and 3.16).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from postproc.analysis.comparison import PLAIN, rows_to_show
+from postproc.analysis.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED, gradient_history, relative_to_largest
+
+ORDER = (CONTINUOUS, DISCONTINUOUS, UNDECIDED)
+FEWEST_CYCLES = 3  # of a run that has a deviation along its travel
+
+
+def groups_of_rows(regimes: pd.DataFrame) -> pd.Series:
+    """Return the regime of each design row, that of its patterned run; index: row.
+
+    regimes: run, row, surface and regime, as from `flow_history.flow_tables`.
+    """
+    return regimes[regimes["surface"] != PLAIN].drop_duplicates("row").set_index("row")["regime"]
+
+
+def by_group(table: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
+    """Return a table with column row as one with the column regime of the row's group, groups in ORDER; rows without
+    a patterned run are undecided.
+    """
+    group = table["row"].map(groups_of_rows(regimes)).fillna(UNDECIDED)
+    return table.assign(regime=group).sort_values("regime", key=lambda name: name.map(ORDER.index), kind="stable")
+
+
+def gradients_by_group(history: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
+    """Return the relative wear gradient of every run along its travel with its group (Yan 2022, Eq 3.8, Fig 3.12).
+
+    history: as from `history.wear_history`; columns as from `evaluation.gradient_history`, and regime.
+    """
+    return by_group(gradient_history(history), regimes)
+
+
+def wear_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
+    """Return run, row, surface, regime and relative_wear (Yan 2022, Eq 3.10), and its parts base_relative_wear and
+    bump_relative_wear, of every run (-): wear per metre over the largest of its group.
+    """
+    table = by_group(summary, regimes)
+    per_metre = table["archard_volume_m3"] / table["travel_m"]
+    relative = relative_to_largest(per_metre, table["regime"])
+    parts = {
+        f"{part}_relative_wear": relative * table[f"{part}_archard_volume_m3"] / table["archard_volume_m3"]
+        for part in ("base", "bump")
+    }
+    return table[["run", "row", "surface", "regime"]].assign(relative_wear=relative, **parts).reset_index(drop=True)
+
+
+def force_by_group(summary: pd.DataFrame, wear_files: Sequence[str | Path], regimes: pd.DataFrame) -> pd.DataFrame:
+    """Return run, row, surface, regime, mean_normal_force_N and its deviation_N between wear cycles (Yan 2022, Fig 3.16).
+
+    wear_files: wear.csv of the runs, in the order of the summary. The deviation is NaN with fewer than FEWEST_CYCLES.
+    """
+    forces = [pd.read_csv(path)["mean_normal_force_N"] for path in wear_files]
+    deviation = [one.std(ddof=1) if len(one) >= FEWEST_CYCLES else float("nan") for one in forces]
+    table = summary[["run", "row", "surface", "mean_normal_force_N"]].assign(deviation_N=deviation)
+    return by_group(table, regimes)[["run", "row", "surface", "regime", "mean_normal_force_N", "deviation_N"]]
+
+
+def rows_in_detail(
+    summary: pd.DataFrame, regimes: pd.DataFrame, preferred: Sequence[str] = (), most: int = 2
+) -> list[str]:
+    """Return up to `most` design rows that are shown in detail: preferred ones, then the lowest relative wear of each
+    regime, then the lowest of all.
+    """
+    group = groups_of_rows(regimes)
+    ranked = [row for row in rows_to_show(summary, len(summary)) if row in group.index]
+    lowest = [next((row for row in ranked if group[row] == regime), None) for regime in ORDER]
+    chosen = [*(row for row in preferred if row in group.index), *(row for row in lowest if row), *ranked]
+    return list(dict.fromkeys(chosen))[:most]
