@@ -13,6 +13,7 @@ include: "workflows/mesh.smk"
 include: "workflows/solve.smk"
 include: "workflows/analyse.smk"
 include: "workflows/report.smk"
+include: "workflows/screening.smk"
 include: "workflows/pin_on_disc.smk"
 include: "workflows/calibration.smk"
 

@@ -5,15 +5,25 @@ here."""
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from typing import Any
 
-from workflows.design import Study
+from workflows.design import REPOSITORY, Study
 from workflows.page_text import name_and_unit
 from workflows.pages import PAGES
 from workflows.remarks import figure_remarks
 
 REPORT_FOLDER = Path(__file__).resolve().parent / "report"
+PUBLISHED_DESIGN = REPOSITORY / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
+PATTERN = (  # columns that make two rows the same
+    "major_radius_mm",
+    "minor_radius_mm",
+    "column_spacing_mm",
+    "height_mm",
+    "velocity_m_per_s",
+    "bed_thickness_mm",
+)
 TEMPLATE, STYLE = "study.html.j2", "style.html.j2"
 INTERACTIVE = ("worn_surface_3d",)  # pages, not pictures; their table is that of the picture
 FILMS = ("worn_film",)  # animated pictures
@@ -49,7 +59,16 @@ OF_PINS = (  # of every study of pins on discs: what answers its question first,
 )
 OF_SERIES = {"mesh": ("mesh_series", "mesh_contours"), "size": ("size_invariance",)}  # of them, where the design has it
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
-FLOW = ("relative_velocity",)  # of studies that name factors, and:
+FLOW = (  # of studies that name factors, and:
+    "relative_velocity",
+    "wear_gradient",
+    "wear_by_regime",
+    "normal_force_by_regime",
+    "velocity_profiles",
+    "angular_velocity_profiles",
+    "flow_views_second",
+)
+PROFILES = ("velocity_profiles", "angular_velocity_profiles")  # of them, drawn by one job
 REGRESSION = (
     "regression_coefficients",
     "regression_residuals",
@@ -77,8 +96,8 @@ def _figures_of_samples(study: Study) -> list[str]:
     several = len(study.design_rows) > 1 and any(run.surface == "plain" for run in study.runs)
     return [
         *(COMPARING_ROWS if several else ()),
-        *(REGRESSION if study.factors else ()),
         *(FLOW if study.factors else ()),
+        *(REGRESSION if study.factors else ()),
         *OF_SAMPLES,
         *(OF_WEAR_UPDATES if is_deformed(study) else ()),
     ]
@@ -128,8 +147,13 @@ def job_names(study: Study) -> list[str]:
         "summary",
         *(f"settled_bed_{bed}" for bed in study.beds),
         *(f"{rule}_{run.name}" for run in study.runs for rule in RUN_RULES[study.case]),
-        *dict.fromkeys("regression" if name in REGRESSION else name for name in figures_of(study)),
+        *dict.fromkeys(job_of_figure(name) for name in figures_of(study)),
     ]
+
+
+def job_of_figure(name: str) -> str:
+    """Return the name of the job that draws a figure."""
+    return "regression" if name in REGRESSION else "profiles" if name in PROFILES else name
 
 
 def page_parameters(study: Study) -> dict[str, Any]:
@@ -163,6 +187,19 @@ def factor_labels(study: Study) -> dict[str, str]:
 def flow_runs(study: Study) -> dict[str, dict[str, float]]:
     """Return by run what the bins of its flow need, see `postproc.analysis.flow_history.RunFlow`."""
     return {run.name: _flow_run(run.parameters) for run in study.runs}
+
+
+def flow_velocities(study: Study) -> dict[str, float]:
+    """Return the velocity of the bed (m/s) by run."""
+    return {run.name: run.parameters["sliding"]["velocity_m_per_s"] for run in study.runs}
+
+
+def published_rows(study: Study) -> dict[str, str]:
+    """Return {row: row of Yan 2022, Table 3.8} of the rows of a study that have the factors of a published one."""
+    with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:
+        published = {tuple(float(row[name]) for name in PATTERN): row["row"] for row in csv.DictReader(stream)}
+    levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in study.design_rows}
+    return {row: published[found] for row, found in levels.items() if found in published}
 
 
 def _flow_run(parameters: dict[str, Any]) -> dict[str, float]:

@@ -9,10 +9,16 @@ from workflows.figures import (
     is_deformed,
     page_parameters,
     page_templates,
+    published_rows,
 )
 
 WORN_SURFACES = of_every_run("results/{study}/{run}/worn_surface.vtu")
 WEAR_TABLES = of_every_run("results/{study}/{run}/wear.csv")
+
+
+def regimes_of_study(wildcards):
+    """The table of flow regimes of a study that has one."""
+    return [f"results/{wildcards.study}/flow/regimes.csv"] if study_of(wildcards).factors else []
 
 
 rule worn_surface:
@@ -341,6 +347,7 @@ rule regression:
 
 rule flow_views:
     input:
+        regimes=regimes_of_study,
         summary="results/{study}/summary.csv",
         surfaces=WORN_SURFACES,
     output:
@@ -357,6 +364,8 @@ rule flow_views:
         "results/{study}/logs/flow_views.benchmark.tsv"
     params:
         remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        published_rows=lambda wildcards: published_rows(study_of(wildcards)),
+        place=0,
     message:
         "Figure of the flow of {wildcards.study}"
     script:

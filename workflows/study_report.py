@@ -30,7 +30,7 @@ from workflows.pages import PAGES, pin_numbers, sliding_numbers
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 TABLE_OF = {"worn_surface_3d": "worn_surface", "worn_disc": "unrolled_track"}  # figures that share another's table
-DETAILED = ("worn_surface_3d", "bed", "flow_views", "worn_film")  # figures that show a few design rows only
+DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
 KEY_NUMBERS = {  # case -> (study, folder, summary) -> what is shown
     "sliding_sample": sliding_numbers.key_numbers,

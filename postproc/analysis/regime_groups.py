@@ -5,7 +5,7 @@ A design row is in the group of its convex run's regime, its plain twin with it 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -13,6 +13,7 @@ import pandas as pd
 from postproc.analysis.comparison import PLAIN, rows_to_show
 from postproc.analysis.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED, gradient_history, relative_to_largest
 
+PUBLISHED_IN_DETAIL = ("R5", "R2")  # of least wear in continuous and in discontinuous flow (Yan 2022, Fig 3.14 on)
 ORDER = (CONTINUOUS, DISCONTINUOUS, UNDECIDED)
 FEWEST_CYCLES = 3  # of a run that has a deviation along its travel
 
@@ -29,8 +30,9 @@ def by_group(table: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
     """Return a table with column row as one with the column regime of the row's group, groups in ORDER; rows without
     a patterned run are undecided.
     """
-    group = table["row"].map(groups_of_rows(regimes)).fillna(UNDECIDED)
-    return table.assign(regime=group).sort_values("regime", key=lambda name: name.map(ORDER.index), kind="stable")
+    group = groups_of_rows(regimes)
+    table = table.assign(regime=[group.get(row, UNDECIDED) for row in table["row"]])
+    return table.sort_values("regime", key=lambda name: name.map(ORDER.index), kind="stable")
 
 
 def gradients_by_group(history: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
@@ -56,9 +58,10 @@ def wear_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
 
 
 def force_by_group(summary: pd.DataFrame, wear_files: Sequence[str | Path], regimes: pd.DataFrame) -> pd.DataFrame:
-    """Return run, row, surface, regime, mean_normal_force_N and its deviation_N between wear cycles (Yan 2022, Fig 3.16).
+    """Return the normal force on every run by group (Yan 2022, Fig 3.16).
 
-    wear_files: wear.csv of the runs, in the order of the summary. The deviation is NaN with fewer than FEWEST_CYCLES.
+    Columns run, row, surface, regime, mean_normal_force_N and its deviation_N between wear cycles, NaN with fewer than
+    FEWEST_CYCLES. wear_files: wear.csv of the runs, in the order of the summary.
     """
     forces = [pd.read_csv(path)["mean_normal_force_N"] for path in wear_files]
     deviation = [one.std(ddof=1) if len(one) >= FEWEST_CYCLES else float("nan") for one in forces]
@@ -77,3 +80,35 @@ def rows_in_detail(
     lowest = [next((row for row in ranked if group[row] == regime), None) for regime in ORDER]
     chosen = [*(row for row in preferred if row in group.index), *(row for row in lowest if row), *ranked]
     return list(dict.fromkeys(chosen))[:most]
+
+
+def of_published_rows(published: pd.DataFrame, rows: Mapping[str, str]) -> pd.DataFrame:
+    """Return a published table (column row) under the names of a study's rows; its other rows are left out.
+
+    rows: {row of the study: published row of the same factors}; several rows may have the same.
+    """
+    tables = [published[published["row"] == theirs].assign(row=ours) for ours, theirs in rows.items()]
+    return pd.concat(tables, ignore_index=True) if tables else published[:0]
+
+
+def force_remarks(table: pd.DataFrame) -> list[str]:
+    """Return what a figure of `force_by_group` must say where runs have no deviation."""
+    lacking = table["deviation_N"].isna()
+    if not lacking.any():
+        return []
+    which = "no run has" if lacking.all() else f"{lacking.sum()} of {len(table)} runs do not have"
+    return [f"{which} the {FEWEST_CYCLES} wear cycles that a deviation needs"]
+
+
+def published_rows_in_detail(rows: Mapping[str, str]) -> list[str]:
+    """Return the rows of a study that have the factors of those which the source shows in detail, in its order.
+
+    rows: {row of the study: published row of the same factors}
+    """
+    return [ours for wanted in PUBLISHED_IN_DETAIL for ours, theirs in rows.items() if theirs == wanted]
+
+
+def regime_remarks(regimes: pd.DataFrame) -> list[str]:
+    """Return what figures by regime must say where the flow is not steady; regimes: with steady of every run."""
+    unsteady = int((~regimes["steady"].astype(bool)).sum())
+    return [f"regimes of {unsteady} of {len(regimes)} runs are of a flow not shown to be steady"] if unsteady else []

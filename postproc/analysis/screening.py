@@ -18,7 +18,15 @@ from postproc.analysis.factors import Factor
 from postproc.analysis.model_terms import Heredity, Term, candidate_terms, parse_term, term_name, told_apart
 from postproc.analysis.optimum import best_design
 from postproc.analysis.regression import CONSTANT, Fit, coefficient_table, fit, fit_measures, predict, residual_table
-from postproc.analysis.selection import MOST_TERMS, PERMUTATIONS, Choice, PermutationTest, Search, best_models, permutation_test
+from postproc.analysis.selection import (
+    MOST_TERMS,
+    PERMUTATIONS,
+    Choice,
+    PermutationTest,
+    Search,
+    best_models,
+    permutation_test,
+)
 
 HEREDITIES: tuple[Heredity, ...] = ("none", "weak", "strong")
 FEWEST_RUNS = 4

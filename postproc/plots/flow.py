@@ -26,8 +26,10 @@ STYLES = {"central": ("-", "o"), "side": ("--", "^")}
 FILLS = {"central": "white", "side": "#c9c9c9"}  # of published marks
 PUBLISHED_MARKS = {"about": "D", "below": "<", "above": ">"}
 STRONG, FAINT = 1.4, 0.8  # pt, curves of convex and of plain samples
-END_ROOM = 0.08  # -, of the travel, for the names at the ends of curves
+END_ROOM = 0.1  # -, of the travel, for the names at the ends of curves
+HEIGHT_ROOM = 0.1  # -, of a profile's height, above its highest mark
 FEW_VALUES = 6  # up to which a curve shows each of its values as a mark
+LEADER = 0.02  # -, of the axis, from the end of a curve to its name
 LEAST_STEP = 0.045  # -, of the axis, between two names
 
 
@@ -81,10 +83,12 @@ def _name_ends(axes: Axes, table: pd.DataFrame, column: str) -> None:
     """Write the rows' names at the ends of their curves, moved apart where they would overlap."""
     ends = table.groupby("row", sort=False)[["travel_mm", column]].last().dropna().sort_values(column)
     low, high = axes.get_ylim()
+    away = LEADER * float(np.ptp(axes.get_xlim()))
     place = -np.inf
     for row, (travel, value) in ends.iterrows():
         place = max(value, place + LEAST_STEP * (high - low))
-        axes.text(travel, place, f" {row}", fontsize=SMALLEST_FONT, va="center", clip_on=False)
+        axes.plot([travel, travel + away], [value, place], color="#888888", linewidth=0.5, label="_leader")
+        axes.text(travel + away, place, f" {row}", fontsize=SMALLEST_FONT, va="center", clip_on=False)
 
 
 def velocity_profiles(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
@@ -133,7 +137,8 @@ def _profile(axes: Axes, column: str, table: pd.DataFrame, published: pd.DataFra
     for _, point in published[published["quantity"] == PANELS[column][0]].iterrows():
         height = (point["layer"] - 0.5) * LAYER
         drawn = {"color": colour(point["surface"]), "markerfacecolor": FILLS[point["zone"]], "markersize": 8}
-        axes.plot(point["value"], height, PUBLISHED_MARKS[point["relation"]], zorder=3, **drawn)
+        axes.plot(point["value"], height, PUBLISHED_MARKS[point["relation"]], zorder=3, clip_on=False, **drawn)
+    axes.margins(y=HEIGHT_ROOM)
     axes.axvline(0.0, color="#888888", linewidth=0.6)
 
 

@@ -17,7 +17,7 @@ from postproc.analysis.screening_tables import regression_tables, screen_summary
 from postproc.analysis.summary import summary_table
 from postproc.plots.regression import DRAWN
 from workflows.design import load_study
-from workflows.figures import FIGURES, OF_SERIES, figure_file, figures_of, page_parameters
+from workflows.figures import FIGURES, OF_SERIES, figure_file, figures_of, page_parameters, published_rows
 from workflows.page_text import UNDEFINED, name_and_unit, number, setting_rows
 from workflows.study_report import TABLE_OF, caption, commit, write_page
 
@@ -340,6 +340,7 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
     path = config.path("designs/small.csv")
     path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\n")
     study = load_study("small", config.root)
+    assert {"wear_gradient", "wear_by_regime", "velocity_profiles", "flow_views_second"} <= set(figures_of(study))
     names = [name for name in figures_of(study) if name.startswith("regression_")]
     assert names == [f"regression_{name}" for name in DRAWN]
     assert [job for job in page_parameters(study)["jobs"] if "regression" in job] == ["regression"]
@@ -354,6 +355,14 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
     assert tables["models"]["model"][0] in text
     for warning in tables["warnings"]["warning"]:
         assert f"Mind: {warning}." in text
+
+
+def test_published_rows_have_the_published_factors(config):
+    """A row is a published one by its factors, whatever its name; R5 of another thickness is none."""
+    config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "own,8,2,20,6.0,1.0,40")
+    assert published_rows(load_study("small", config.root)) == {"own": "R9"}
+    screening = published_rows(load_study("screening"))
+    assert len(screening) == 13 and all(ours == theirs for ours, theirs in screening.items())
 
 
 def test_without_factors_there_is_no_regression(config):

@@ -6,6 +6,7 @@ import pandas as pd
 
 from postproc.analysis.flow_history import RunFlow, flow_tables, published_window
 from postproc.analysis.history import runs_of
+from postproc.analysis.regime_groups import regime_remarks
 from postproc.plots.flow import along_travel
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -19,6 +20,9 @@ with job_log(snakemake.log[0]):
     regimes.to_csv(snakemake.output.regimes, index=False)
     along.to_csv(snakemake.output.table, index=False, float_format="%.6g")
     label = "Relative velocity of the particles (%)"
-    window = published_window(pd.read_csv(snakemake.input.published), snakemake.params.run_in)
-    figure = along_travel(along, "relative_velocity_percent", label, window, snakemake.params.remarks)
+    published = pd.read_csv(snakemake.input.published)
+    window = published_window(published, snakemake.params.run_in)
+    lines = published[published["quantity"] == "relative_velocity"]
+    remarks = [*snakemake.params.remarks, *regime_remarks(regimes)]
+    figure = along_travel(along, "relative_velocity_percent", label, window, remarks, lines)
     save(figure, snakemake.output.figure)

@@ -1,4 +1,4 @@
-"""Draw the flow over the samples of the rows that are shown in detail."""
+"""Draw the flow over the samples of one of the rows that are shown in detail."""
 
 from pathlib import Path
 
@@ -6,14 +6,18 @@ from postproc.analysis.bed import last_snapshot, read_snapshot
 from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_rows
 from postproc.analysis.depth import read_worn_surfaces
 from postproc.analysis.flow_views import flow_views, sample_lines
+from postproc.analysis.regime_groups import published_rows_in_detail, rows_in_detail
 from postproc.plots import flow_views as figures
 from postproc.plots.style import save
 from workflows.job import job_log
-from workflows.pages.sliding_sample import ROWS_IN_DETAIL
 
 with job_log(snakemake.log[0]):
-    summary = read_summary(snakemake.input.summary)
-    shown = runs_of_rows(summary, rows_to_show(summary, ROWS_IN_DETAIL))
+    summary, place = read_summary(snakemake.input.summary), snakemake.params.place
+    rows = rows_to_show(summary)
+    if snakemake.input.regimes:
+        preferred = published_rows_in_detail(snakemake.params.published_rows)
+        rows = rows_in_detail(summary, read_summary(snakemake.input.regimes[0]), preferred)
+    shown = runs_of_rows(summary, rows[place : place + 1])
     files = dict(zip(summary["run"], snakemake.input.surfaces, strict=True))
     meshes = read_worn_surfaces(shown, [files[run] for run in shown])
     views = {run: flow_views(read_snapshot(last_snapshot(Path(files[run]).parent)), meshes[run]) for run in shown}

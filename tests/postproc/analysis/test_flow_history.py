@@ -10,6 +10,7 @@ from postproc.analysis.flow_history import (
     RunFlow,
     flow_tables,
     published_window,
+    row_profiles,
     run_bins,
     settled_value,
     study_regimes,
@@ -83,6 +84,12 @@ def test_tables_of_a_study(tmp_path):
     np.testing.assert_allclose(along.loc[along["run"] == "R1_convex", "relative_velocity_percent"], 50.0, rtol=1e-4)
     assert along["travel_mm"].max() == pytest.approx(155.0)
     assert set(bins["run"]) == set(speeds)
+    profiles = row_profiles(bins, along, dict.fromkeys(speeds, RUN.velocity), ["R1"])
+    plain = profiles[(profiles["surface"] == "plain") & (profiles["zone"] == "central")]
+    np.testing.assert_allclose(plain["velocity_m_per_s"], 1.98, rtol=SIX_DIGITS)  # 2 m/s less that of the bed, 0.02
+    np.testing.assert_allclose(plain["angular_speed_deg_per_s"], np.degrees(3.0), rtol=SIX_DIGITS)  # of (1, 2, 2) rad/s
+    assert plain["height_mm"].tolist() == [2.5, 7.5]
+    assert plain["window_end_mm"].unique().tolist() == pytest.approx([160.0])
 
 
 def test_few_values_are_not_called_steady():

@@ -153,7 +153,8 @@ def test_the_p_value_holds_where_there_is_nothing():
     coded = rng.choice([-1.0, 0.0, 1.0], (12, 4))
     terms, _ = told_apart(candidate_terms(4), coded)
     trials = [
-        permutation_test(Search(terms, coded, rng.normal(size=12), 2), permutations=19, seed=k).model_p for k in range(TRIALS)
+        permutation_test(Search(terms, coded, rng.normal(size=12), 2), permutations=19, seed=k).model_p
+        for k in range(TRIALS)
     ]
     for level in (0.2, 0.5):
         share = np.mean(np.array(trials) <= level)

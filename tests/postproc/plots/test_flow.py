@@ -34,6 +34,7 @@ def profile():
     parts = [
         pd.DataFrame(
             {
+                "row": "R5",
                 "surface": surface,
                 "zone": zone,
                 "height_mm": [5.0, 15.0],
@@ -55,7 +56,7 @@ def test_regimes_have_panels(velocities):
     left, right = figure.axes
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["continuous", "discontinuous"]
     curves = {line.get_label(): line.get_ydata() for line in left.lines}
-    assert set(curves) == {"R5_convex", "R9_convex", "R5_plain"}
+    assert {name for name in curves if name[0] != "_"} == {"R5_convex", "R9_convex", "R5_plain"}
     np.testing.assert_array_equal(curves["R9_convex"], [30.1] * 3)
     places = {text.get_text().strip(): text.get_position()[1] for text in left.texts}
     assert set(places) == {"R5", "R9"}
@@ -72,33 +73,51 @@ def test_a_window_beyond_the_travel_is_left_out(velocities):
     assert all(len(axes.patches) == 0 for axes in figure.axes)
 
 
+def test_published_values_are_lines_in_their_panel(velocities):
+    """What is published of a regime is a line across its panel alone, named with its source."""
+    published = pd.DataFrame(
+        {"of": ["continuous", "continuous"], "value": [15.0, 70.0], "source": "Yan 2022, section 3"}
+    )
+    figure = flow.along_travel(velocities, "eta", "Relative velocity (%)", None, REMARKS, published)
+    lines = [[line.get_ydata()[0] for line in axes.lines if line.get_linestyle() == ":"] for axes in figure.axes]
+    assert lines == [[15.0, 70.0], []]
+    assert figure.legends[0].get_texts()[-1].get_text() == "Yan 2022, section 3"
+
+
+NOTHING = pd.DataFrame(columns=["row", "zone", "quantity", "relation"])
+
+
 def test_profiles_over_and_beside(profile):
-    """Four panels with units; convex and plain, over and beside, as tabled; other zones are not drawn."""
-    figure = flow.profiles(profile, pd.DataFrame(columns=["zone", "quantity", "relation"]), REMARKS)
-    assert len(figure.axes) == 4
-    first = figure.axes[0]
-    lines = [line for line in first.lines if len(line.get_xdata()) == 2 and line.get_label()[0] != "_"]
+    """Panels with units per row; convex and plain, over and beside, as tabled; other zones are not drawn."""
+    other = profile.assign(row="R2", velocity_m_per_s=0.2)
+    figure = flow.velocity_profiles(pd.concat([profile, other], ignore_index=True), NOTHING, REMARKS)
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["R5"] * 3 + ["R2"] * 3
+    lines = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 2 and line.get_label()[0] != "_"]
     assert {line.get_label() for line in lines} == {"convex central", "convex side", "plain central", "plain side"}
     np.testing.assert_array_equal(lines[0].get_xydata(), [[1.0, 5.0], [0.5, 15.0]])
-    assert [axes.get_xlabel()[-5:] for axes in figure.axes] == ["(m/s)", "e (-)", "e (-)", "(°/s)"]
+    assert [axes.get_xlabel()[-5:] for axes in figure.axes[3:]] == ["(m/s)", "e (-)", "e (-)"]
     assert remarks_of(figure) == "; ".join(REMARKS)
+    angular = flow.angular_velocity_profiles(profile, NOTHING, REMARKS)
+    np.testing.assert_array_equal(angular.axes[0].lines[0].get_xydata(), [[300.0, 5.0], [100.0, 15.0]])
+    assert angular.axes[0].get_xlabel() == "Angular speed (°/s)"
 
 
 def test_published_profiles_are_overlaid(profile):
     """Every published number of R5 is drawn once, at the height of its layer, in the colour of its surface."""
     published = pd.read_csv(ROOT / "config/published/screening_profiles.csv")
-    published = published[published["row"] == "R5"]
-    figure = flow.profiles(profile, published, REMARKS)
+    figures = [draw(profile, published, REMARKS) for draw in (flow.velocity_profiles, flow.angular_velocity_profiles)]
     drawn = {
         (float(line.get_xdata()[0]), float(line.get_ydata()[0]), line.get_color())
+        for figure in figures
         for axes in figure.axes
         for line in axes.lines
         if len(line.get_xdata()) == 1
     }
+    of_row = published[published["row"] == "R5"]
     expected = {
         (value, 5.0 * layer - 2.5, colour(surface))
-        for value, layer, surface in published[["value", "layer", "surface"]].itertuples(index=False)
+        for value, layer, surface in of_row[["value", "layer", "surface"]].itertuples(index=False)
     }
     assert drawn == expected
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    labels = [text.get_text() for figure in figures for text in figure.legends[0].get_texts()]
     assert {"Yan 2022", "Yan 2022 (at most)", "Yan 2022 (at least)", "grey: Yan 2022, beside it"} <= set(labels)

@@ -1,0 +1,19 @@
+"""Draw the relative wear gradient along the travel by regime."""
+
+import pandas as pd
+
+from postproc.analysis.comparison import read_history, read_summary
+from postproc.analysis.flow_history import published_window
+from postproc.analysis.regime_groups import gradients_by_group, regime_remarks
+from postproc.plots.flow import along_travel
+from postproc.plots.style import save
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    regimes = read_summary(snakemake.input.regimes)
+    table = gradients_by_group(read_history(snakemake.input.history), regimes)
+    table.to_csv(snakemake.output.table, index=False)
+    window = published_window(pd.read_csv(snakemake.input.published), snakemake.params.run_in)
+    label = "Wear gradient over the largest of all runs (-)"
+    remarks = [*snakemake.params.remarks, *regime_remarks(regimes)]
+    save(along_travel(table, "relative_gradient", label, window, remarks), snakemake.output.figure)
