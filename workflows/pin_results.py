@@ -14,6 +14,7 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.analysis.coefficient import laboratory_coefficient
+from postproc.analysis.cost import run_cost
 from postproc.analysis.pin_figures import groove_remark, laboratory_volume, run_in_words, shown_factors
 from postproc.analysis.pin_runs import REFERENCE, pin_runs, reference_runs
 from postproc.analysis.pin_series import EDGES_PER_WIDTH, STABLE_PERCENT, published_value
@@ -40,7 +41,7 @@ def write_results(study: Path, docs: Path) -> None:
 
     Raises FileNotFoundError when the study is not finished.
     """
-    (docs / PAGE).write_text("\n".join([HEAD, provenance(study), *sections(study)]), encoding="utf-8")
+    (docs / PAGE).write_text("\n".join([HEAD, provenance(study), *sections(study), durations(study)]), encoding="utf-8")
     for name in PICTURES:
         if (study / "figures" / f"{name}.png").is_file():
             shutil.copyfile(study / "figures" / f"{name}.png", docs / f"pin_on_disc_{name}.png")
@@ -230,6 +231,19 @@ def size_text(study: Path, table: pd.DataFrame, published: pd.DataFrame) -> str:
     """Return simulated over theoretical volumes by scale."""
     bound = published_value(published, "size_invariance_difference", "simulation")
     return markdown(table, 5) + f"\nPublished (Yan 2022, Fig 4.6): under {bound:g} %.\n"
+
+
+def durations(study: Path) -> str:
+    """Return the section with the wall time of each run, all starts together, and the solver's share of it."""
+    runs = pin_runs(study / "design.csv")
+    costs = pd.DataFrame([run_cost(pd.read_csv(study / run / "cost.csv")) for run in runs["run"]], index=runs.index)
+    table = runs[["run", "scheme", "wear_coefficient_per_pa", "element_size_mm", "revolutions"]].assign(
+        steps=costs["steps"],
+        duration_min=(costs["solver_s"] + costs["other_s"]) / 60.0,
+        solver_share=costs["solver_s"] / (costs["solver_s"] + costs["other_s"]),
+    )
+    told = "Wall times of runs on a core each. What else the machine did at the time lengthens them."
+    return f"## Durations\n\n{markdown(table)}\n{told}\n"
 
 
 def main() -> None:

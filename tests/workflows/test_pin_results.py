@@ -105,6 +105,17 @@ def test_what_the_rules_leave():
     assert text.endswith("0.9 to 1.02 times this product, after the last revolution 0.9 at 1.7e-11 1/Pa.")
 
 
+def test_durations_are_those_of_all_cycles(tmp_path):
+    """Seconds of solver and of the rest summed over the cycles: 2 minutes, three quarters the solver's."""
+    pin_study.write_study(tmp_path)
+    runs = pd.read_csv(tmp_path / "design.csv")["run"]
+    for run in runs:
+        rows = {"solver_s": [60.0, 30.0], "other_s": [10.0, 20.0], "steps": [100, 50], "particles": 1}
+        pd.DataFrame(rows).to_csv(tmp_path / run / "cost.csv", index=False)
+    lines = [line for line in pin_results.durations(tmp_path).splitlines() if line.startswith(f"| {runs.iloc[0]} ")]
+    assert [cell.strip() for cell in lines[0].split("|")[-4:-1]] == ["150", "2", "0.75"]
+
+
 def test_only_sections_with_a_table_are_written(tmp_path):
     """A study without a series of meshes has no section on it."""
     assert pin_results.sections(tmp_path) == []
