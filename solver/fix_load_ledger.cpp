@@ -199,7 +199,10 @@ void FixLoadLedger::end_of_step() {
   contacts_ += static_cast<double>(observed_.size());
   const bool last = update->ntimestep == update->laststep;
   if (!proven_) prove_called(last);
-  if (last) write_file();
+  if (last)
+    write_file(file_);
+  else if (history_ > 0 && steps_ % history_ == 0)
+    write_file(file_ + '.' + std::to_string(steps_));
 }
 
 // Gathers the contacts of each particle: a sphere can touch several triangles at once.

@@ -1,7 +1,8 @@
-// fix ID group load/ledger mesh MESH_ID file FILE [kernels NAME ...]
+// fix ID group load/ledger mesh MESH_ID file FILE [history STEPS] [kernels NAME ...]
 //
 // Sums, per triangle of one mesh and at every time step, what particles do to it: the load ledger. The sums are written
-// to FILE at the end of every run and are part of every restart file. Definitions: README.md beside this file.
+// to FILE at the end of every run and are part of every restart file; history writes those so far every so many steps to
+// FILE.<steps>. Definitions: README.md beside this file.
 #pragma once
 
 #include <cstdint>
@@ -108,11 +109,12 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   std::string header(double contacts) const;
   std::string identity() const;
   std::vector<std::vector<double>> table(const LedgerSums& sums) const;
-  void write_file();
+  void write_file(const std::string& name);
 
   std::string mesh_id_, file_;
   std::vector<Kernel> kernels_;
   int triangles_ = 0;
+  std::int64_t history_ = 0;  // steps between two files of the sums so far, 0 without
 
   LAMMPS_NS::FixMeshSurface* mesh_ = nullptr;
   LAMMPS_NS::TriMesh* triangles_of_ = nullptr;  // the mesh that the sums belong to

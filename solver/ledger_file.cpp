@@ -77,12 +77,12 @@ std::vector<std::vector<double>> FixLoadLedger::table(const LedgerSums& sums) co
 }
 
 // Written under another name first, so that a reader never meets half a file.
-void FixLoadLedger::write_file() {
+void FixLoadLedger::write_file(const std::string& name) {
   const LedgerSums all = sums_.reduced(world);
   double contacts = 0.0;
   MPI_Reduce(&contacts_, &contacts, 1, MPI_DOUBLE, MPI_SUM, 0, world);
   if (comm->me != 0) return;
-  const std::string unfinished = file_ + ".part";
+  const std::string unfinished = name + ".part";
   bool written = false;
   if (FILE* file = std::fopen(unfinished.c_str(), "wb")) {
     const std::string first_line = header(contacts);
@@ -91,8 +91,8 @@ void FixLoadLedger::write_file() {
       written = written && std::fwrite(column.data(), sizeof(double), column.size(), file) == column.size();
     written = std::fclose(file) == 0 && written;
   }
-  if (!written || std::rename(unfinished.c_str(), file_.c_str()) != 0)
-    error->one(FLERR, ("fix load/ledger cannot write " + file_ + ": " + std::strerror(errno) + ".").c_str());
+  if (!written || std::rename(unfinished.c_str(), name.c_str()) != 0)
+    error->one(FLERR, ("fix load/ledger cannot write " + name + ": " + std::strerror(errno) + ".").c_str());
 }
 
 // ---------------------------------------------------------------- restart

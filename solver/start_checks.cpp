@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <sstream>
 
@@ -50,6 +51,12 @@ void FixLoadLedger::parse(int narg, char** arg) {
     const std::string key = arg[k++];
     if ((key == "mesh" || key == "file") && k < narg) {
       (key == "mesh" ? mesh_id_ : file_) = arg[k++];
+    } else if (key == "history" && k < narg) {
+      char* end = nullptr;
+      history_ = std::strtoll(arg[k], &end, 10);
+      if (history_ < 1 || *end != '\0')
+        stop("found history '" + std::string(arg[k]) + "', allowed is a whole number of steps from 1.");
+      ++k;
     } else if (key == "kernels") {
       for (; k < narg; ++k) {
         const Kernel* found = nullptr;
@@ -59,7 +66,7 @@ void FixLoadLedger::parse(int narg, char** arg) {
         kernels_.push_back(*found);
       }
     } else {
-      stop("found '" + key + "', allowed are mesh MESH_ID, file FILE and kernels NAME ...");
+      stop("found '" + key + "', allowed are mesh MESH_ID, file FILE, history STEPS and kernels NAME ...");
     }
   }
   if (mesh_id_.empty() || file_.empty()) stop("it needs mesh MESH_ID and file FILE.");

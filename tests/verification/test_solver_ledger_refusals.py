@@ -54,7 +54,15 @@ def test_the_plain_solver_does_not_know_the_ledger(tmp_path):
         (LEDGER_LINE + " oka", r"found kernel 'oka', allowed are .*finnie_work"),
         ("fix load_ledger all load/ledger mesh sample", r"it needs mesh MESH_ID and file FILE"),
         ("fix load_ledger all load/ledger file load_ledger.bin", r"it needs mesh MESH_ID and file FILE"),
-        (LEDGER_LINE.replace("file ", "path "), r"found 'path', allowed are mesh MESH_ID, file FILE and kernels"),
+        (
+            LEDGER_LINE.replace("file ", "path "),
+            r"found 'path', allowed are mesh MESH_ID, file FILE, history STEPS and",
+        ),
+        (
+            LEDGER_LINE.replace(" kernels", " history 0 kernels"),
+            r"found history '0', allowed is a whole number of steps",
+        ),
+        (LEDGER_LINE.replace(" kernels", " history 2e3 kernels"), r"found history '2e3', allowed is a whole number"),
     ],
 )
 def test_a_wrong_word_in_the_deck(tmp_path, ledger, sentence):

@@ -49,6 +49,29 @@ def write_drag(folder, case, outputs=(), **variables):
     write_case(folder, mesh, particles, PIN_MOTION, mesh_lines=[carried], outputs=outputs, **settings)
 
 
+def test_sums_so_far_are_those_of_a_shorter_run(tmp_path):
+    """A history is the ledger as it was: of a pin dragged steadily every file holds F v t, and the last ones stay the
+    same to the last bit; its steps and time are told, and every file is whole."""
+    ledgers = {}
+    for name, line in (
+        ("whole", LEDGER_LINE),
+        ("looked_into", LEDGER_LINE.replace(" kernels", " history 3000 kernels")),
+    ):
+        write_drag(tmp_path / name, "steady")
+        (tmp_path / name / "ledger.in").write_text(line + "\n")
+        run(tmp_path / name)
+        ledgers[name] = read_load_ledger(tmp_path / name / "load_ledger.bin", "sample", steps=STEPS)
+    for column, values in ledgers["whole"].columns.items():
+        np.testing.assert_array_equal(values, ledgers["looked_into"].columns[column], err_msg=column)
+    looks = sorted(tmp_path.glob("looked_into/load_ledger.bin.*"), key=lambda path: int(path.suffix[1:]))
+    assert [int(path.suffix[1:]) for path in looks] == list(range(3000, STEPS, 3000))
+    for path in looks:
+        look = read_load_ledger(path, "sample", steps=int(path.suffix[1:]))
+        assert look.time_s == pytest.approx(look.steps * TIME_STEP, rel=LAW_TOLERANCE)
+        assert total(look, "sliding_work_J") == pytest.approx(LOAD * SPEED * look.time_s, rel=LAW_TOLERANCE)
+    assert not list(tmp_path.glob("whole/load_ledger.bin.*"))
+
+
 def kill_in_the_middle(folder, by=signal.SIGKILL):
     """Run until a second restart file is there and send a signal; return the name of the newest whole restart file.
 
