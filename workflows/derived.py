@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from meshes.sample import skirt_width
@@ -79,6 +80,20 @@ def whole_steps(duration: float, largest_time_step: float, multiple: int) -> tup
     count = math.ceil(duration / (largest_time_step * multiple) * (1.0 - ROUNDING))
     steps = max(count, 1) * multiple
     return steps, duration / steps
+
+
+def flow_measures(parameters: Mapping[str, Any]) -> dict[str, float]:
+    """Return what the bins of a run's flow need (SI), see `postproc.analysis.flow_history.RunFlow`."""
+    return {
+        "width": parameters["sample"]["width_m"],
+        "length": parameters["sample"]["length_m"],
+        "bed_width": parameters["bed"]["width_m"],
+        "bed_length": parameters["derived"]["bed_length_m"],
+        "bed_thickness": parameters["bed"]["thickness_m"],
+        "velocity": parameters["sliding"]["velocity_m_per_s"],
+        "time_step": parameters["derived"]["time_step_s"],
+        "particle_scale": parameters["particle"]["scale"],
+    }
 
 
 def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import csv
 from pathlib import Path
 from typing import Any
 
+from workflows.derived import flow_measures
 from workflows.design import REPOSITORY, Study
 from workflows.page_text import name_and_unit
 from workflows.pages import PAGES
@@ -186,7 +187,7 @@ def factor_labels(study: Study) -> dict[str, str]:
 
 def flow_runs(study: Study) -> dict[str, dict[str, float]]:
     """Return by run what the bins of its flow need, see `postproc.analysis.flow_history.RunFlow`."""
-    return {run.name: _flow_run(run.parameters) for run in study.runs}
+    return {run.name: flow_measures(run.parameters) for run in study.runs}
 
 
 def flow_velocities(study: Study) -> dict[str, float]:
@@ -200,19 +201,6 @@ def published_rows(study: Study) -> dict[str, str]:
         published = {tuple(float(row[name]) for name in PATTERN): row["row"] for row in csv.DictReader(stream)}
     levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in study.design_rows}
     return {row: published[found] for row, found in levels.items() if found in published}
-
-
-def _flow_run(parameters: dict[str, Any]) -> dict[str, float]:
-    return {
-        "width": parameters["sample"]["width_m"],
-        "length": parameters["sample"]["length_m"],
-        "bed_width": parameters["bed"]["width_m"],
-        "bed_length": parameters["derived"]["bed_length_m"],
-        "bed_thickness": parameters["bed"]["thickness_m"],
-        "velocity": parameters["sliding"]["velocity_m_per_s"],
-        "time_step": parameters["derived"]["time_step_s"],
-        "particle_scale": parameters["particle"]["scale"],
-    }
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:

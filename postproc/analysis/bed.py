@@ -16,13 +16,17 @@ HEADER_LINES = 9  # of a dump custom with one frame
 NEEDED = ("id", "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz", "radius")
 
 
+def snapshots(cycle_folder: str | Path) -> list[Path]:
+    """Return the bed dumps of a wear cycle in the order of their time steps."""
+    return sorted(Path(cycle_folder).glob("bed_*.dump"), key=lambda path: int(path.stem.removeprefix("bed_")))
+
+
 def last_snapshot(run_folder: str | Path) -> Path:
     """Return the newest bed dump of a run's last cycle that has one. Raises FileNotFoundError when there is
     none.
     """
     for folder in reversed(cycle_folders(run_folder)):
-        dumps = sorted(folder.glob("bed_*.dump"), key=lambda path: int(path.stem.removeprefix("bed_")))
-        if dumps:
+        if dumps := snapshots(folder):
             return dumps[-1]
     raise FileNotFoundError(f"{run_folder}: no cycle_*/bed_*.dump found, at least one wear cycle must have been run.")
 

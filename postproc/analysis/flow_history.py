@@ -1,24 +1,27 @@
-"""The flow over every run of a study along its travel, from the snapshots of the bed that its cycles left."""
+"""The flow over every run of a study along its travel: bins of each wear cycle, made of its snapshots when it ends."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from postproc.analysis.bed import snapshots
 from postproc.analysis.display import MILLIMETRES, in_display_units
 from postproc.analysis.evaluation import regime_table
 from postproc.analysis.moving_bins import (
     MovingBins,
     bin_history,
+    joined,
     relative_velocity_history,
     surcharge_history,
     velocity_profile,
 )
 from postproc.analysis.steady import FEWEST_VALUES, steady_window
+from postproc.readers.cycle_folders import FLOW_TABLE, cycle_files
 
 INTERVAL = 0.01  # m of travel that is averaged (Yan 2022, section 3.4)
 LAYER_HEIGHT = 0.005  # m, of layers of real particles; coarse-grained ones have layers as much higher
@@ -47,22 +50,45 @@ class RunFlow:
         side = min(SIDE_SHARE * self.width, 0.5 * (self.bed_width - self.width))
         return MovingBins(self.width, self.length, side, height, int(np.ceil(HIGHEST * self.bed_thickness / height)))
 
+    @property
+    def definition(self) -> dict[str, float]:
+        """Return what tells bins of this run from others; stored with them."""
+        return {**asdict(self.bins), "interval": INTERVAL, "travel_per_step": self.velocity * self.time_step}
+
+
+def reduce_snapshots(cycle_folder: str | Path, run: RunFlow, start: float) -> None:
+    """Write the bins of a wear cycle from its snapshots, and remove all of them but the last.
+
+    start: m, travel at step 0 of the cycle. Disk is then bounded by a snapshot and bins times intervals per cycle.
+    Raises FileNotFoundError when there is no snapshot, and the errors of `moving_bins.bin_history`.
+    """
+    dumps = snapshots(cycle_folder)
+    if not dumps:
+        raise FileNotFoundError(f"{cycle_folder}: no bed_*.dump found, at least one is needed to know the flow.")
+    bins = bin_history(((path, start) for path in dumps), run.bins, run.velocity * run.time_step, INTERVAL)
+    bins.attrs = run.definition
+    bins.to_parquet(Path(cycle_folder) / FLOW_TABLE, index=False)
+    for path in dumps[:-1]:
+        path.unlink()
+
 
 def run_bins(folder: str | Path, run: RunFlow) -> pd.DataFrame:
-    """Return the bin history of a run, see `moving_bins.bin_history`; folder: with wear.csv and cycle_*/bed_*.dump.
+    """Return the bin history of a run, see `moving_bins.bin_history`, from what its wear cycles were reduced to.
 
-    Raises FileNotFoundError when no cycle has a snapshot.
+    Raises FileNotFoundError when no cycle was, ValueError for one whose bins are not those of `run`.
     """
-    folder = Path(folder)
-    ends = pd.read_csv(folder / "wear.csv").set_index("cycle")["travel_m"]
-    dumps = []
-    for cycle in ends.index:
-        files = (folder / f"cycle_{cycle:03d}").glob("bed_*.dump")
-        start = ends.get(cycle - 1, 0.0)
-        dumps += [(path, start) for path in sorted(files, key=lambda path: int(path.stem.removeprefix("bed_")))]
-    if not dumps:
-        raise FileNotFoundError(f"{folder}: no cycle_*/bed_*.dump found, at least one wear cycle must have been run.")
-    return bin_history(dumps, run.bins, run.velocity * run.time_step, INTERVAL)
+    tables = []
+    for path in cycle_files(folder, FLOW_TABLE):
+        table = pd.read_parquet(path)
+        if table.attrs != run.definition:
+            raise ValueError(
+                f"{path}: its bins are not those asked for now, allowed are bins of {run.definition}; remove it"
+                " and the run's wear.csv, and its cycles from this one on are simulated again."
+            )
+        tables.append(table)
+    if not tables:
+        raise FileNotFoundError(f"{folder}: no cycle_*/{FLOW_TABLE} found, at least one wear cycle must have been run.")
+    return joined(tables)
 
 
 def along_travel(bins: pd.DataFrame, run: RunFlow, particles: int) -> pd.DataFrame:

@@ -51,6 +51,7 @@ class Case:
     geometry: sections of a run's parameters that its pristine surface depends on
     first_title: what people call cycle 0
     leftovers: files that a wear cycle's solver leaves and nobody needs once the cycle is accounted
+    kept: files that `reduce` leaves, without which a wear cycle is not whole
     """
 
     material_keys: tuple[tuple[str, str, str], ...] = ()
@@ -60,6 +61,7 @@ class Case:
     geometry: tuple[str, ...] = ()
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)
+    kept: tuple[str, ...] = ()
 
     # ---------------------------------------------------------------- from settings to runs
 
@@ -126,6 +128,9 @@ class Case:
     def own_columns(self, parameters: Parameters, span: Span, folder: Path) -> dict[str, float]:
         """Return the case's own columns of a cycle's row of wear.csv."""
         return {}
+
+    def reduce(self, parameters: Parameters, span: Span, folder: Path) -> None:
+        """Make tables of what a wear cycle wrote in bulk, and remove that; the leftovers are gone by then."""
 
     def cycle_fault(self, parameters: Parameters, own: Mapping[str, float]) -> str | None:
         """Return a phrase if a cycle went wrong unnoticed by the solver, from its own columns; else None."""

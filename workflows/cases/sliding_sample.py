@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from postproc.mesh import SurfaceMesh, write_stl
+from postproc.readers.cycle_folders import FLOW_TABLE
 from postproc.readers.solver_log import thermo_table
 from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows import deck
 from workflows.cases.base import SETUP_LOADS, Case, Parameters
-from workflows.derived import ADAPTIVE, WALLS, derived_parameters
+from workflows.derived import ADAPTIVE, WALLS, derived_parameters, flow_measures
 from workflows.geometry import sample_surface
 from workflows.run_checks import SLIDING_CHECKS
 from workflows.schedule import Span
@@ -43,6 +44,7 @@ class SlidingSample(Case):
     geometry = ("sample", "pattern")
     first_title = "lowering and run-in"
     leftovers = (SETUP_LOADS, SETUP_BED)
+    kept = (FLOW_TABLE,)
 
     def surfaces(self, head: Mapping[str, Any]) -> Sequence[str]:
         """Return convex, plain, or both, as the study says."""
@@ -133,6 +135,12 @@ class SlidingSample(Case):
             return {}
         pace = thermo_table(folder / LOG)["bed_pace"][1:].mean()
         return {"bed_over_floor_velocity": float(pace / parameters["sliding"]["velocity_m_per_s"])}
+
+    def reduce(self, parameters: Parameters, span: Span, folder: Path) -> None:
+        """Reduce the snapshots of the bed to the bins of its flow; the last one stays for pictures."""
+        from postproc.analysis.flow_history import RunFlow, reduce_snapshots
+
+        reduce_snapshots(folder, RunFlow(**flow_measures(parameters)), deck.travelled(parameters, span.first_step))
 
     def closing_gap(self, parameters: Parameters, duration: float) -> float:
         """Return the gap (m) that particles fall through in the stated part of a cycle."""

@@ -1,5 +1,6 @@
 """The flow over every run of a study, from snapshots of a flow that is known."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,14 +8,17 @@ import pandas as pd
 import pytest
 
 from postproc.analysis.flow_history import (
+    INTERVAL,
     RunFlow,
     flow_tables,
     published_window,
+    reduce_snapshots,
     row_profiles,
     run_bins,
     settled_value,
     study_regimes,
 )
+from postproc.analysis.moving_bins import bin_history
 
 ROOT = Path(__file__).resolve().parents[3]
 RUN = RunFlow(
@@ -27,6 +31,7 @@ RUN = RunFlow(
     time_step=1e-5,
     particle_scale=1.0,
 )
+ROUND_OFF = 1e-12  # relative: the same sums in another order
 SIX_DIGITS = 2e-5  # relative: numbers in a dump have six digits
 LATTICE = np.stack(
     np.meshgrid(np.arange(-0.0375, 0.04, 0.005), np.arange(-0.0775, 0.08, 0.005), np.arange(0.00125, 0.01, 0.0025)), -1
@@ -48,9 +53,8 @@ def write_run(folder, speeds):
         where.mkdir(parents=True)
         for step in (600, 1000):
             write_snapshot(where / f"bed_{step}.dump", step, speed)
+        reduce_snapshots(where, RUN, 0.02 * (cycle - 1))
     folder.mkdir(exist_ok=True)
-    cycles = np.arange(1, len(speeds) + 1)
-    pd.DataFrame({"cycle": cycles, "travel_m": 0.02 * cycles}).to_csv(folder / "wear.csv", index=False)
     pd.DataFrame({"particles": [len(LATTICE)]}).to_csv(folder / "cost.csv", index=False)
     return folder
 
@@ -64,10 +68,38 @@ def test_cycles_follow_each_other(tmp_path):
     assert bins["frames"].unique().tolist() == [2]
 
 
+def test_a_cycle_keeps_its_bins_and_its_last_snapshot(tmp_path):
+    """Reduced to bins, a cycle tells the same flow as all its snapshots together, and keeps one of them."""
+    folder = write_run(tmp_path / "run", [2.0, 1.0])
+    whole = tmp_path / "snapshots"
+    whole.mkdir()
+    dumps = []
+    for cycle, speed in enumerate((2.0, 1.0)):
+        for step in (600, 1000):
+            dumps.append((whole / f"bed_{cycle}{step}.dump", 0.02 * cycle))
+            write_snapshot(dumps[-1][0], step, speed)
+    expected = bin_history(dumps, RUN.bins, RUN.velocity * RUN.time_step, INTERVAL)
+    pd.testing.assert_frame_equal(run_bins(folder, RUN)[expected.columns], expected, rtol=ROUND_OFF)
+    assert [path.name for path in sorted(folder.glob("cycle_*/bed_*.dump"))] == ["bed_1000.dump"] * 2
+
+
+def test_bins_of_another_definition_are_not_taken(tmp_path):
+    """Snapshots are gone, so bins made for layers of another height cannot be made anew: they are refused by name."""
+    folder = write_run(tmp_path / "run", [2.0])
+    with pytest.raises(ValueError, match=r"cycle_001/flow.parquet: its bins are not those asked for now.*layer_height"):
+        run_bins(folder, replace(RUN, particle_scale=2.0))
+
+
+def test_a_cycle_without_snapshots_is_named(tmp_path):
+    """A cycle whose solver wrote no snapshot has no flow to tell of."""
+    with pytest.raises(FileNotFoundError, match=r"no bed_\*.dump found"):
+        reduce_snapshots(tmp_path, RUN, 0.0)
+
+
 def test_a_run_without_snapshots_is_named(tmp_path):
     """Without a snapshot there is no flow to tell of."""
     folder = write_run(tmp_path / "run", [])
-    with pytest.raises(FileNotFoundError, match=r"run: no cycle_\*/bed_\*.dump found"):
+    with pytest.raises(FileNotFoundError, match=r"run: no cycle_\*/flow.parquet found"):
         run_bins(folder, RUN)
 
 
