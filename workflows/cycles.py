@@ -16,7 +16,7 @@ from postproc.mesh import read_surface, write_surface
 from postproc.readers.load_ledger import announcement
 from postproc.readers.solver_log import solver_version, thermo_table, warnings
 from workflows import deck, state
-from workflows.accounting import LEDGER, account_and_wear
+from workflows.accounting import HISTORY, LEDGER, account_and_wear
 from workflows.cases import CASES
 from workflows.chain import (
     RESTART,
@@ -103,7 +103,8 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         }
         if inputs_digest(chain) != inputs:
             raise state.StateError(f"{chain.name}: its inputs changed while {title(chain, cycle)} ran; start again.")
-        files = (RESTART,) if span is None else (RESTART, SURFACE, LEDGER, *producer(chain.parameters).kept)
+        kept = (*producer(chain.parameters).kept, *CASES[chain.case].kept)
+        files = (RESTART, SURFACE, LEDGER, HISTORY, *kept) if span else (RESTART,)
         state.write_state(folder, inputs, files, record)
 
 

@@ -188,17 +188,30 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
         "cycle_steps": span.steps,
         "picture_steps": min(derived["picture_interval_steps"], span.steps),
         "ledger": run["ledger"],
-        **LEDGERS[run["ledger"]](run),
+        **LEDGERS[run["ledger"]](run, span),
     }
 
 
-def exact_ledger(run: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a deck needs to sum every contact in the solver."""
+def exact_ledger(run: Mapping[str, Any], history_steps: int = 0) -> dict[str, Any]:
+    """Return what a deck needs to sum every contact in the solver, and to write the sums so far every so many steps."""
     kernels = law_kernels(run["wear"]["law"])
-    return {"ledger_kernels": " ".join(["", "kernels", *kernels]) if kernels else ""}
+    return {
+        "ledger_history": f" history {history_steps}" if history_steps else "",
+        "ledger_kernels": " ".join(["", "kernels", *kernels]) if kernels else "",
+    }
 
 
-def _sampled_contacts(run: Mapping[str, Any]) -> dict[str, Any]:
+def wear_interval_steps(run: Mapping[str, Any], span: Span) -> int:
+    """Return the steps between two looks at the wear of a cycle: equal parts of it of about solver.wear_interval_m."""
+    parts = max(round(travelled(run, span.steps) / run["solver"]["wear_interval_m"]), 1)
+    return math.ceil(span.steps / parts)
+
+
+def _exact_ledger_of_sample(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
+    return exact_ledger(run, wear_interval_steps(run, span))
+
+
+def _sampled_contacts(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
     """Return what a deck needs to write sampled contacts."""
     columns = range(1, CONTACT_COLUMNS + 1)
     return {
@@ -209,7 +222,7 @@ def _sampled_contacts(run: Mapping[str, Any]) -> dict[str, Any]:
 
 
 # Producers of the load ledger -> what their part of the deck is filled with.
-LEDGERS = {"solver": exact_ledger, "dumps": _sampled_contacts}
+LEDGERS = {"solver": _exact_ledger_of_sample, "dumps": _sampled_contacts}
 
 
 def travelled(run: Mapping[str, Any], steps: int) -> float:

@@ -6,7 +6,7 @@ of every step. `dumps`: the contacts of some steps, written by any LIGGGHTS, are
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,17 +38,23 @@ class Producer:
     """A producer of load ledgers.
 
     columns: (chain, span of the cycle, its folder, its surface) -> {column: (m,) array}, units in the names
-    files: what the solver writes for it; of no use once the ledger is written
+    patterns: names of what the solver writes for it; of no use once the ledger is written
+    history: the same arguments -> (steps of the cycle, columns until then) of looks inside it, in order
     kept: what it leaves for the next cycle
     """
 
     columns: Callable[[Chain, Span, Path, SurfaceMesh], Columns]
-    files: tuple[str, ...]
+    patterns: tuple[str, ...]
+    history: Callable[[Chain, Span, Path, SurfaceMesh], Iterator[tuple[int, Columns]]]
     kept: tuple[str, ...] = ()
 
+    def written(self, folder: Path) -> list[Path]:
+        """Return the files that the solver wrote into a cycle's folder for the ledger."""
+        return [path for pattern in self.patterns for path in folder.glob(pattern)]
+
     def written_bytes(self, folder: Path) -> int:
-        """Return how much the solver wrote into a cycle's folder for the ledger."""
-        return sum((folder / name).stat().st_size for name in self.files)
+        """Return how much that is."""
+        return sum(path.stat().st_size for path in self.written(folder))
 
 
 def producer(parameters: Mapping[str, Any]) -> Producer:
@@ -58,15 +64,19 @@ def producer(parameters: Mapping[str, Any]) -> Producer:
 
 def summed_by_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Columns:
     """Return the ledger that the solver has summed. Raises LoadLedgerError where it is not that of this cycle."""
-    parameters = chain.parameters
-    loads = read_load_ledger(
-        folder / LOAD_LEDGER,
-        mesh=f"sample_{span.cycle}",
-        n_triangles=len(surface.triangles),
-        steps=span.solver_steps,
-    )
+    return _columns_of_file(folder / LOAD_LEDGER, chain, span, surface, span.solver_steps)
+
+
+def history_of_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Iterator[tuple[int, Columns]]:
+    """Yield steps of a cycle and what the solver had summed until then. Raises LoadLedgerError."""
+    for steps in sorted(int(path.suffix[1:]) for path in folder.glob(f"{LOAD_LEDGER}.*")):
+        yield steps, _columns_of_file(folder / f"{LOAD_LEDGER}.{steps}", chain, span, surface, steps)
+
+
+def _columns_of_file(path: Path, chain: Chain, span: Span, surface: SurfaceMesh, steps: int) -> Columns:
+    loads = read_load_ledger(path, mesh=f"sample_{span.cycle}", n_triangles=len(surface.triangles), steps=steps)
     corners = surface.points[surface.triangles]
-    return columns_of_solver(loads.columns, corners, law_kernels(parameters["wear"]["law"]))
+    return columns_of_solver(loads.columns, corners, law_kernels(chain.parameters["wear"]["law"]))
 
 
 def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Columns:
@@ -98,6 +108,11 @@ def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMe
     return builder.table()
 
 
+def no_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Iterator[tuple[int, Columns]]:
+    """Yield nothing: sampled contacts are summed over whole cycles."""
+    return iter(())
+
+
 def _touching_before(chain: Chain, cycle: int) -> np.ndarray | None:
     path = state.cycle_folder(chain.folder, cycle - 1) / TOUCHING
     return np.load(path) if path.exists() else None
@@ -111,6 +126,6 @@ def effective_modulus(parameters: Mapping[str, Any]) -> float:
 
 
 PRODUCERS = {
-    "solver": Producer(summed_by_solver, files=(LOAD_LEDGER,)),
-    "dumps": Producer(summed_from_dumps, files=(CONTACTS, SPINS), kept=(TOUCHING,)),
+    "solver": Producer(summed_by_solver, (LOAD_LEDGER, f"{LOAD_LEDGER}.*"), history_of_solver),
+    "dumps": Producer(summed_from_dumps, (CONTACTS, SPINS), no_history, kept=(TOUCHING,)),
 }

@@ -212,20 +212,34 @@ def wear_row(
     chain: Chain, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray
 ) -> dict[str, float | int]:
     """Return what a cycle's row of wear.csv tells of its loads and of the wear law's volume, by part of the sample."""
-    part, worn = surface.cell_data["part"], worn_faces(surface)
+    worn = worn_faces(surface)
     time_step = chain.parameters["derived"]["time_step_s"]
     time_s = span.end * time_step
     finnie = ledger["finnie_wear"].to_numpy() * areas(surface.points, surface.triangles)
-    faces = volume * worn
+    sums = load_sums(surface, ledger, volume)
     return {
         "cycle": span.cycle,
         "time_s": time_s,
         "travel_m": time_s * chain.parameters["sliding"]["velocity_m_per_s"],
+        **{name: sums[name] for name in ("sliding_work_J", "base_archard_volume_m3", "bump_archard_volume_m3")},
+        "finnie_volume_m3": float(finnie[worn].sum()),
+        "mean_normal_force_N": sums["normal_impulse_N_s"] / (span.steps * time_step),
+    }
+
+
+def load_sums(surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray) -> dict[str, float]:
+    """Return the loads and the wear law's volume, summed over the faces that wear: all, base and bumps.
+
+    ledger: a row per triangle of the surface; volume: (m,) m3 per triangle
+    """
+    part, worn = surface.cell_data["part"], worn_faces(surface)
+    faces = volume * worn
+    return {
         "sliding_work_J": float(ledger["sliding_work_J"].to_numpy()[worn].sum()),
+        "normal_impulse_N_s": float(ledger["normal_impulse_N_s"].to_numpy()[worn].sum()),
+        "archard_volume_m3": float(faces.sum()),
         "base_archard_volume_m3": float(faces[part == 0].sum()),
         "bump_archard_volume_m3": float(faces[part > 0].sum()),
-        "finnie_volume_m3": float(finnie[worn].sum()),
-        "mean_normal_force_N": float(ledger["normal_impulse_N_s"].to_numpy()[worn].sum()) / (span.steps * time_step),
     }
 
 

@@ -26,8 +26,8 @@ def wear_gradient(travel: np.ndarray, volume: np.ndarray) -> np.ndarray:
 def gradient_history(history: pd.DataFrame) -> pd.DataFrame:
     """Return run, row, surface, travel_mm (middle), gradient_mm3_per_mm and relative_gradient of every run.
 
-    history: as from `history.wear_history`; each cycle is an increment. The relative gradient is the gradient over the
-    largest one of all runs (Yan 2022, Eq 3.8, 3.9); NaN where nothing was worn at all.
+    history: as from `history.wear_within_cycles` or `history.wear_history`; each row is an increment. The relative
+    gradient is that over the largest one of all runs (Yan 2022, Eq 3.8, 3.9); NaN where nothing was worn at all.
     """
     tables = []
     for (run, row, surface), one in history.groupby(["run", "row", "surface"], sort=False):

@@ -45,6 +45,32 @@ def _run_history(run: dict[str, str], wear: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([start, table], ignore_index=True).assign(**run)[[*run, *table]]
 
 
+def wear_within_cycles(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
+    """Return cumulative wear along the travel of each run, from zero: run, row, surface, cycle, travel_mm,
+    archard_volume_mm3, base_archard_volume_mm3, bump_archard_volume_mm3 (what the law takes).
+
+    Finer than `wear_history` where cycles were looked into: about every solver.wear_interval_mm of travel.
+    run_folders: folders of the runs, in the order of the design, with cycle_*/wear_history.csv.
+    Raises FileNotFoundError when a run has none.
+    """
+    runs = runs_of(design).to_dict("records")
+    tables = [_run_stretches(run, Path(folder)) for run, folder in zip(runs, run_folders, strict=True)]
+    return in_display_units(pd.concat(tables, ignore_index=True))
+
+
+def _run_stretches(run: dict[str, str], folder: Path) -> pd.DataFrame:
+    files = cycle_files(folder, "wear_history.csv")
+    if not files:
+        raise FileNotFoundError(
+            f"{folder}: no cycle_*/wear_history.csv found, at least one wear cycle must have been run."
+        )
+    stretches = pd.concat([pd.read_csv(path) for path in files], ignore_index=True)
+    volumes = stretches[["archard_volume_m3", "base_archard_volume_m3", "bump_archard_volume_m3"]].cumsum()
+    table = stretches[["cycle", "travel_m"]].join(volumes)
+    start = pd.DataFrame({name: [0] if name == "cycle" else [0.0] for name in table})
+    return pd.concat([start, table], ignore_index=True).assign(**run)[[*run, *table]]
+
+
 def force_history(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
     """Return the bed's force on the sample along the travel: run, row, surface, travel_mm, normal_force_N
     (down), drag_force_N (along the bed's motion), side_force_N; at most about `ROWS_PER_RUN` evenly spaced

@@ -32,7 +32,7 @@ SETTLING_TIME = 0.014  # s; the pin's oscillation of 0.34 ms has lost all but 1e
 
 COLUMNS = range(1, 19)  # of the dump of contacts
 LEDGERS = {
-    "solver": {"ledger_kernels": ""},
+    "solver": {"ledger_history": "", "ledger_kernels": ""},
     "dumps": {
         "sampling_interval_steps": 1,
         "contact_columns": " ".join(f"c_wall_contact[{k}]" for k in COLUMNS),

@@ -34,6 +34,8 @@ STL_ROUNDING = 1e-9  # m; %.9g of coordinates below 0.1 m is good to 5e-11
 FORCE_TOLERANCE = 0.1  # relative; ledger and log sample the same fluctuating force at different steps
 RANKS_TOLERANCE = 1e-2  # relative; rounding differs between ranks and chaos lets it grow over 580 steps
 ROUND_OFF = 1e-9  # relative; sums of 580 equal time steps
+STRETCH_TOLERANCE = 0.05  # relative; a stretch is a whole number of some 58 time steps, the last one what is left
+VELOCITY = 1.0  # m/s, of the demo's row
 # Relative, of totals: a dump evaluates forces once more, with the velocities of the end of the step, and damping is
 # part of the normal force (seen 0.0035, 0.0011 and 0.015).
 DUMP_TOLERANCES = {"normal_impulse_N_s": 0.02, "sliding_work_J": 0.02, "rolling_work_J": 0.05}
@@ -50,6 +52,16 @@ run_chain(pickle.load(open(sys.argv[1], "rb")))
 def finished(tmp_path_factory):
     """An undisturbed run of the convex sample."""
     chain = tiny_chain(tiny_study(), tmp_path_factory.mktemp("undisturbed"))
+    cycles.run_chain(chain)
+    return chain
+
+
+@pytest.fixture(scope="module")
+def looked_into(finished):
+    """The same run with a look at its wear every 2 mm and at its bed every mm."""
+    study = tiny_study(solver={"wear_interval_mm": 2, "picture_interval_mm": 1})
+    folder = finished.folder.parent / "looked_into"
+    chain = replace(twin(finished, folder), parameters=study.run(finished.name).parameters)
     cycles.run_chain(chain)
     return chain
 
@@ -77,8 +89,10 @@ def test_every_cycle_leaves_its_contract(finished):
         folder = state.cycle_folder(finished.folder, cycle)
         names = {path.name for path in folder.iterdir()}
         assert {"deck.in", "log.liggghts", "run.restart", "surface.stl", "state.json"} <= names
-        assert ({"ledger.parquet", "surface.vtu", "forces.csv"} <= names) == (cycle > 0)
-        assert not names & {"load_ledger.bin", "contacts.dump", "spins.dump", "touching.npy"}
+        of_wear = {"ledger.parquet", "surface.vtu", "forces.csv", "wear_history.csv", "flow.parquet"}
+        assert of_wear & names == (of_wear if cycle else set())
+        assert not names & {"contacts.dump", "spins.dump", "touching.npy"}
+        assert not [name for name in names if name.startswith("load_ledger.bin")]
         said = state.read_state(finished.folder, cycle)["solver_ledger"]
         assert (said is not None) == (cycle > 0), said
 
@@ -91,6 +105,58 @@ def test_applied_plus_carried_is_alpha_times_work_at_every_cycle(finished):
     work = table["sliding_work_J"].cumsum()
     assert (work > 0).all()
     np.testing.assert_allclose(balance, alpha * work, rtol=BALANCE_TOLERANCE)
+
+
+def history_of(chain, cycle: int) -> pd.DataFrame:
+    return pd.read_csv(state.cycle_folder(chain.folder, cycle) / "wear_history.csv")
+
+
+def test_wear_within_a_cycle_adds_up_to_it(looked_into):
+    """Stretches of equal travel, none without wear; work, volumes and impulse add up to the cycle's row of wear.csv."""
+    table, step = wear_table(looked_into), looked_into.parameters["derived"]["time_step_s"]
+    travelled = 0.0
+    for _, row in table.iterrows():
+        stretches = history_of(looked_into, int(row["cycle"]))
+        lengths = np.diff(stretches["travel_m"], prepend=travelled)
+        np.testing.assert_allclose(lengths, 0.002, rtol=STRETCH_TOLERANCE)
+        travelled = row["travel_m"]
+        assert stretches["travel_m"].iloc[-1] == pytest.approx(travelled, rel=ROUND_OFF)
+        assert (stretches["archard_volume_m3"] > 0).all()
+        for name in ("sliding_work_J", "archard_volume_m3", "base_archard_volume_m3", "bump_archard_volume_m3"):
+            assert stretches[name].sum() == pytest.approx(row[name], rel=ROUND_OFF)
+        duration = np.diff(stretches["time_s"], prepend=stretches["time_s"].iloc[0] - lengths[0] / VELOCITY)
+        mean = np.average(stretches["mean_normal_force_N"], weights=duration)
+        assert mean == pytest.approx(row["mean_normal_force_N"], rel=10 * step / duration.sum())
+
+
+def test_looking_into_a_cycle_does_not_change_it(looked_into, finished):
+    """The motion goes on undisturbed between looks: the same ledger to the last bit as with a look at the end only."""
+    one, other = (
+        pd.read_parquet(state.cycle_folder(chain.folder, 1) / "ledger.parquet") for chain in (looked_into, finished)
+    )
+    pd.testing.assert_frame_equal(one, other, check_exact=True)
+
+
+def test_snapshots_do_not_fill_the_disk(looked_into):
+    """Of the snapshots of a cycle one is left, whatever their number; all of them are in the bins of its flow."""
+    for cycle in range(1, wear_cycles(looked_into) + 1):
+        folder = state.cycle_folder(looked_into.folder, cycle)
+        assert len(list(folder.glob("bed_*.dump"))) == 1
+        flow = pd.read_parquet(folder / "flow.parquet")
+        assert flow.groupby("travel_start_m")["frames"].first().sum() == 10  # every mm of 10 mm
+        central = flow[flow["zone"] == "central"]
+        assert central["velocity_y_m_per_s"].dropna().between(0.0, 1.5 * VELOCITY).all()
+
+
+def test_a_cycle_whose_flow_is_lost_is_done_again(looked_into, tmp_path):
+    """Without its bins, and with its snapshots gone, a cycle is not whole: it and what follows are simulated again."""
+    chain = twin(looked_into, tmp_path)
+    for cycle in range(3):
+        shutil.copytree(state.cycle_folder(looked_into.folder, cycle), state.cycle_folder(chain.folder, cycle))
+    inputs = cycles.inputs_digest(chain)
+    assert state.finished_cycles(chain.folder, inputs) == 3
+    (state.cycle_folder(chain.folder, 2) / "flow.parquet").unlink()
+    assert state.finished_cycles(chain.folder, inputs) == 2
 
 
 def test_wear_stays_on_the_top_surface_and_goes_inward(finished):

@@ -81,6 +81,23 @@ def test_least_layers_lowers_the_scale_of_thin_beds_only():
     assert crowded.run("R2_plain").parameters["particle"]["scale"] == 1
 
 
+@pytest.mark.parametrize("fidelity", ["quick", "paper"])
+def test_one_regression_has_one_particle_scale(fidelity):
+    """Rows that one regression compares differ in their factors alone: one scale, at least three layers everywhere."""
+    study = load_study("screening", overrides={"fidelity": fidelity})
+    assert len({run.parameters["particle"]["scale"] for run in study.runs}) == 1
+    assert min(run.parameters["derived"]["layers"] for run in study.runs) >= 3.0
+    assert not any("scale" in remark and "row to row" in remark for remark in figure_remarks(study))
+
+
+def test_a_study_whose_scale_follows_thickness_says_so():
+    """At standard fidelity a bed of 10 mm has smaller particles than one of 40 mm: every figure tells."""
+    study = load_study("screening", overrides={"fidelity": "standard"})
+    scale = {run.parameters["bed"]["thickness_m"]: run.parameters["particle"]["scale"] for run in study.runs}
+    assert scale[0.01] < scale[0.02] == scale[0.04]
+    assert any("different from row to row" in remark for remark in figure_remarks(study))
+
+
 def test_an_unknown_study_is_named_with_the_nearest(config):
     """A misspelt study gives the studies there are."""
     with pytest.raises(ConfigError) as caught:

@@ -123,8 +123,22 @@ def test_a_producer_tells_its_files_and_its_bytes(tmp_path, name):
     folder = tmp_path / "cycle_001"
     columns_of(name, folder)
     source = PRODUCERS[name]
-    assert {path.name for path in folder.iterdir()} == {*source.files, *source.kept}
-    assert source.written_bytes(folder) == sum((folder / file).stat().st_size for file in source.files) > 0
+    written = {path.name for path in source.written(folder)}
+    assert {path.name for path in folder.iterdir()} == written | set(source.kept)
+    assert source.written_bytes(folder) == sum((folder / name).stat().st_size for name in written) > 0
+
+
+def test_looks_inside_a_cycle_come_in_order(tmp_path):
+    """The solver's files of sums so far are read by their steps, not their names, and removed with the ledger."""
+    chain, looks = chain_of(tmp_path, "solver"), (1000, 90, 400)
+    for steps in looks:
+        write_load_ledger(chain, tmp_path, steps=steps)
+        (tmp_path / LOAD_LEDGER).rename(tmp_path / f"{LOAD_LEDGER}.{steps}")
+    write_load_ledger(chain, tmp_path)
+    source = producer(chain.parameters)
+    found = [steps for steps, _ in source.history(chain, cycle(chain, 1), tmp_path, SURFACE)]
+    assert found == sorted(looks)
+    assert len(source.written(tmp_path)) == len(looks) + 1
 
 
 def test_the_solver_ledger_does_not_grow_with_the_steps(tmp_path):

@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.analysis.history import ROWS_PER_RUN, force_history, force_summary, wear_history
+from postproc.analysis.evaluation import gradient_history
+from postproc.analysis.history import ROWS_PER_RUN, force_history, force_summary, wear_history, wear_within_cycles
 
 RELATIVE = 1e-12  # rounding of means over a thousand rows
 
@@ -43,6 +44,30 @@ def test_wear_starts_from_zero_and_keeps_units(design, tmp_path):
     np.testing.assert_allclose(run["archard_volume_mm3"], [0.0, 1.0, 3.0])
     np.testing.assert_allclose(run["archard_volume_mm3"], run["applied_volume_mm3"] + run["carried_volume_mm3"])
     assert set(history["row"]) == {"1"}
+
+
+def test_wear_within_cycles_goes_on_over_them(design, tmp_path):
+    """Stretches of travel of all cycles add up from zero, and their gradients are volumes over lengths (Eq 3.9)."""
+    for cycle, volume in ((1, [4e-9, 2e-9]), (2, [1e-9, 1e-9])):
+        where = tmp_path / "run" / f"cycle_{cycle:03d}"
+        where.mkdir(parents=True)
+        travel = 0.02 * (cycle - 1) + np.array([0.01, 0.02])
+        parts = {"base_archard_volume_m3": 0.75 * np.array(volume), "bump_archard_volume_m3": 0.25 * np.array(volume)}
+        table = pd.DataFrame({"cycle": cycle, "travel_m": travel, "archard_volume_m3": volume, **parts})
+        table.to_csv(where / "wear_history.csv", index=False)
+    history = wear_within_cycles(design, [tmp_path / "run"] * 2)
+    run = history[history["run"] == "1_convex"]
+    np.testing.assert_allclose(run["travel_mm"], [0.0, 10.0, 20.0, 30.0, 40.0])
+    np.testing.assert_allclose(run["archard_volume_mm3"], [0.0, 4.0, 6.0, 7.0, 8.0])
+    np.testing.assert_allclose(run["bump_archard_volume_mm3"], 0.25 * run["archard_volume_mm3"])
+    gradient = gradient_history(history)
+    np.testing.assert_allclose(gradient["gradient_mm3_per_mm"], [0.4, 0.2, 0.1, 0.1] * 2)
+
+
+def test_a_run_without_wear_within_cycles_is_named(design, tmp_path):
+    """A run whose cycles are missing is named."""
+    with pytest.raises(FileNotFoundError, match=r"run: no cycle_\*/wear_history.csv found"):
+        wear_within_cycles(design, [tmp_path / "run"] * 2)
 
 
 def test_forces_keep_their_mean_and_count_down_as_positive(design, tmp_path):
