@@ -43,7 +43,7 @@ def remarks(study: Study) -> list[str]:
     if sizes != whole:
         said.append(f"sample {sizes} of {whole}")
     for section, key, words in REDUCED:
-        if now[section][key] != full[section][key]:
+        if now[section][key] < full[section][key]:
             said.append(f"{words} {now[section][key]:g} mm of {full[section][key]:g} mm")
     (kind, length), (full_kind, full_length) = (travel_words(settings["sliding"]) for settings in (now, full))
     if (kind, length) != (full_kind, full_length):
