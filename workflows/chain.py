@@ -23,7 +23,8 @@ class Chain:
     """A run as the driver sees it.
 
     `case`: name in `CASES`; `parameters` and `bed` as the case makes them (SI), no bed where the case has none; paths,
-    and the MPI ranks that the solver gets, which change nothing but the time it takes.
+    the MPI ranks that the solver gets, which change nothing but the time it takes, and the folder of a finished run
+    with the same parameters, whose cycles this one shares.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Chain:
     bed: Mapping[str, Any] | None = None
     bed_restart: Path | None = None
     ranks: int = 1
+    same_as: Path | None = None
 
 
 def surface_before(chain: Chain, cycle: int) -> Path:

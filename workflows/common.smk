@@ -92,6 +92,12 @@ def bed_restart_of_run(folder):
     return paths
 
 
+def same_run(wildcards):
+    """The table of the run that simulates this one as well; nothing where the run is simulated itself."""
+    same = study_of(wildcards).same_as(wildcards.run)
+    return [f"results/{wildcards.study}/{same}/wear.csv"] if same else []
+
+
 def run_templates(wildcards):
     """The sources of the templates of a run's decks: a run is done again when one changes."""
     return [template_sources(name) for name in CASES[case_of(wildcards)].run_templates]

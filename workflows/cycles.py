@@ -53,6 +53,8 @@ def run_chain(chain: Chain) -> None:
         inputs = inputs_digest(chain)
         if moved := state.set_aside_others(chain.folder, inputs):
             announce(moved)
+        if chain.same_as and (shared := state.share_cycles(chain.folder, chain.same_as, inputs)):
+            announce(f"is the same simulation as {chain.same_as.name} and shares {shared} cycles with it")
         finished = state.finished_cycles(chain.folder, inputs, needed=(RESTART, SURFACE))
         span = span_of(chain, finished) if finished else None
         unfinished = finished == 0 or span is not None
@@ -154,7 +156,10 @@ def write_products(chain: Chain, finished: int) -> None:
     """Write wear.csv, cost.csv and worn_surface.vtu of a run from what its finished cycles left."""
     states = [state.read_state(chain.folder, cycle) for cycle in range(finished)]
     write_table(chain.folder / "wear.csv", [found["wear"] for found in states[1:]])
-    write_table(chain.folder / "cost.csv", [found["cost"] for found in states])
+    free = {"solver_s": 0.0, "other_s": 0.0}  # what another run has paid for
+    write_table(
+        chain.folder / "cost.csv", [found["cost"] | (free if "shared_with" in found else {}) for found in states]
+    )
     write_surface(chain.folder / WORN_SURFACE, worn_surface(chain, Span(**states[-1]["span"])))
 
 

@@ -89,6 +89,15 @@ class Study:
             raise ConfigError(unknown_name(f"study {self.name}", "run", name, [run.name for run in self.runs]))
         return found
 
+    def same_as(self, run_name: str) -> str | None:
+        """Return the first run with the parameters of this one, which simulates both; None for that run itself.
+
+        So do plain samples of rows that differ in their pattern only. Raises ConfigError for an unknown run.
+        """
+        wanted = self.run(run_name).parameters
+        first = next(run.name for run in self.runs if run.parameters == wanted)
+        return first if first != run_name else None
+
     def design_table(self) -> list[dict[str, Any]]:
         """Return one row per run: run, row, surface where there are any, the factors with their units, and what follows
         from them in this case.

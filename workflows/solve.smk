@@ -23,6 +23,7 @@ rule worn_run:
     input:
         surface="results/{study}/{run}/surface.vtu",
         bed=bed_restart_of_run("beds"),
+        same=same_run,
     output:
         wear="results/{study}/{run}/wear.csv",
         cost="results/{study}/{run}/cost.csv",

@@ -117,6 +117,31 @@ def _holds(folder: Path, inputs: str) -> bool:
     return state["inputs"] == inputs and found == state["files"]
 
 
+def share_cycles(run_folder: Path, other: Path, inputs: str) -> int:
+    """Give a run the finished cycles that it lacks of another one made from the same inputs; return how many.
+
+    Files are linked where the file system can, and the state tells whose they are (`shared_with`). Cycles of other
+    inputs and damaged ones are not taken.
+    """
+    missing = range(finished_cycles(run_folder, inputs), finished_cycles(other, inputs))
+    for cycle in missing:
+        source = cycle_folder(other, cycle)
+        with working_folder(run_folder, cycle) as folder:
+            for path in source.iterdir():
+                if path.name != STATE:
+                    _link(path, folder / path.name)
+            state = {**read_state(other, cycle), "shared_with": other.name}
+            (folder / STATE).write_text(json.dumps(state, indent=1, sort_keys=False) + "\n")
+    return len(missing)
+
+
+def _link(source: Path, target: Path) -> None:
+    try:
+        os.link(source, target)
+    except OSError:  # a file system without hard links
+        shutil.copy2(source, target)
+
+
 def set_aside_others(run_folder: Path, inputs: str) -> str | None:
     """Move cycles of other inputs to superseded/<digest> and bring back those of these inputs, if there are any.
 

@@ -366,6 +366,18 @@ def test_a_finished_run_is_not_done_again(finished):
     assert {path: path.stat().st_mtime_ns for path in finished.folder.glob("cycle_???/*")} == before
 
 
+def test_the_same_simulation_is_run_once(finished, tmp_path, monkeypatch):
+    """A run with the inputs of a finished one gets its tables and its surface without the solver, at no cost."""
+    monkeypatch.setattr(cycles, "run_deck", lambda *given, **named: pytest.fail("the solver was called"))
+    chain = replace(twin(finished, tmp_path), name="R1_convex", same_as=finished.folder)
+    cycles.run_chain(chain)
+    for name in ("wear.csv", "worn_surface.vtu"):
+        assert (chain.folder / name).read_bytes() == (finished.folder / name).read_bytes()
+    cost, paid = (pd.read_csv(folder / "cost.csv") for folder in (chain.folder, finished.folder))
+    assert not cost[["solver_s", "other_s"]].any(axis=None)
+    assert paid["solver_s"].all() and cost["particles"].equals(paid["particles"])
+
+
 def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):
     """Another wear coefficient: cycles are done again, the old ones are kept and come back with the old inputs."""
     chain = twin(finished, tmp_path)

@@ -81,6 +81,15 @@ def test_least_layers_lowers_the_scale_of_thin_beds_only():
     assert crowded.run("R2_plain").parameters["particle"]["scale"] == 1
 
 
+def test_plain_twins_under_the_same_conditions_are_one_simulation():
+    """A plain sample knows no pattern: rows of equal velocity and thickness share it. Convex samples share nothing."""
+    study = load_study("screening")
+    shared = {run.name: study.same_as(run.name) for run in study.runs if study.same_as(run.name)}
+    assert shared == {
+        f"{row}_plain": f"{first}_plain" for row, first in (("R7", "R4"), ("R8", "R1"), ("R11", "R3"), ("R13", "R5"))
+    }
+
+
 @pytest.mark.parametrize("fidelity", ["quick", "paper"])
 def test_one_regression_has_one_particle_scale(fidelity):
     """Rows that one regression compares differ in their factors alone: one scale, at least three layers everywhere."""

@@ -24,3 +24,29 @@ def test_unfinished_cycles_of_other_inputs_are_removed(tmp_path):
     assert "brought back" in state.set_aside_others(tmp_path, "old")
     assert state.finished_cycles(tmp_path, "old") == 2
     assert sorted(path.name for path in tmp_path.glob("cycle_*")) == ["cycle_000", "cycle_001"]
+
+
+def test_cycles_are_shared_only_where_inputs_are_the_same(tmp_path):
+    """A run gets what it lacks of another run's whole cycles; damaged ones and those of other inputs stay there."""
+    one, other = tmp_path / "R1_plain", tmp_path / "R8_plain"
+    for cycle in range(4):
+        finished_cycle(one, cycle, "same")
+    finished_cycle(other, 0, "same")
+    (one / "cycle_003" / FILES[0]).write_text("damage")
+    own = (other / "cycle_000" / state.STATE).read_text()
+    assert state.share_cycles(other, one, "different") == 0
+    assert state.share_cycles(other, one, "same") == 2
+    assert state.finished_cycles(other, "same") == 3
+    assert (other / "cycle_000" / state.STATE).read_text() == own
+    assert [state.read_state(other, cycle).get("shared_with") for cycle in range(3)] == [None, "R1_plain", "R1_plain"]
+    assert state.share_cycles(other, one, "same") == 0
+
+
+def test_what_one_run_drops_the_other_keeps(tmp_path):
+    """Shared files are each run's own: what one removes is still there for the other, whose cycles stay whole."""
+    one, other = tmp_path / "R1_plain", tmp_path / "R8_plain"
+    finished_cycle(one, 0, "same")
+    state.share_cycles(other, one, "same")
+    state.drop_files(state.cycle_folder(one, 0), FILES)
+    assert (other / "cycle_000" / FILES[0]).read_text() == "same 0"
+    assert state.finished_cycles(other, "same") == state.finished_cycles(one, "same") == 1

@@ -17,5 +17,6 @@ with job_log(snakemake.log[0]):
             bed=snakemake.params.bed,
             bed_restart=next(map(Path, snakemake.input.bed), None),
             ranks=snakemake.threads,
+            same_as=next((Path(path).parent for path in snakemake.input.same), None),
         )
     )
