@@ -6,6 +6,7 @@ here."""
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 from typing import Any
 
@@ -171,6 +172,7 @@ def page_parameters(study: Study) -> dict[str, Any]:
         "remarks": figure_remarks(study),
         "figures": figures_of(study),
         "factors": study.factors,
+        "replicates": replicate_settings(study) if study.case == "sliding_sample" else {},
         "jobs": job_names(study),
         "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},
         "parameters": {run.name: run.parameters for run in study.runs},
@@ -196,11 +198,30 @@ def flow_velocities(study: Study) -> dict[str, float]:
 
 
 def published_rows(study: Study) -> dict[str, str]:
-    """Return {row: row of Yan 2022, Table 3.8} of the rows of a study that have the factors of a published one."""
+    """Return {row: row of Yan 2022, Table 3.8} of the rows, and settings of replicates, that have its factors."""
     with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:
         published = {tuple(float(row[name]) for name in PATTERN): row["row"] for row in csv.DictReader(stream)}
     levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in study.design_rows}
-    return {row: published[found] for row, found in levels.items() if found in published}
+    same = {row: published[found] for row, found in levels.items() if found in published}
+    settings = replicate_settings(study)
+    return same | {settings[row]: theirs for row, theirs in same.items()}
+
+
+def replicate_settings(study: Study) -> dict[str, str]:
+    """Return {row: name of its setting}; rows that differ in nothing but their seed have the same.
+
+    The name is R5 of R5-1 and R5-2, or that of the first of them where they are named otherwise.
+    """
+    groups: dict[tuple, list[str]] = {}
+    for row in study.design_rows:
+        key = tuple(sorted((name, value) for name, value in row.items() if name not in ("row", "seed")))
+        groups.setdefault(key, []).append(str(row["row"]))
+    stems = [{re.sub(r"-\d+$", "", row) for row in rows} for rows in groups.values()]
+    names = [
+        stem.copy().pop() if len(rows) > 1 and len(stem) == 1 and stems.count(stem) == 1 else rows[0]
+        for stem, rows in zip(stems, groups.values(), strict=True)
+    ]
+    return {row: name for name, rows in zip(names, groups.values(), strict=True) for row in rows}
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:

@@ -10,6 +10,7 @@ from workflows.figures import (
     page_parameters,
     page_templates,
     published_rows,
+    replicate_settings,
 )
 
 WORN_SURFACES = of_every_run("results/{study}/{run}/worn_surface.vtu")
@@ -269,6 +270,7 @@ rule relative_wear:
     input:
         summary="results/{study}/summary.csv",
         history="results/{study}/figures/wear_against_travel.csv",
+        published="config/published/screening_results.csv",
     output:
         figure=report(
             "results/{study}/figures/relative_wear.png",
@@ -284,6 +286,8 @@ rule relative_wear:
     params:
         remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
         size_ratios=lambda wildcards: equivalent_size_ratios(study_of(wildcards)),
+        settings=lambda wildcards: replicate_settings(study_of(wildcards)),
+        published_rows=lambda wildcards: published_rows(study_of(wildcards)),
     message:
         "Figure of the relative wear of {wildcards.study}"
     script:

@@ -49,6 +49,7 @@ rule wear_by_regime:
         "results/{study}/logs/wear_by_regime.benchmark.tsv"
     params:
         remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        settings=lambda wildcards: replicate_settings(study_of(wildcards)),
     message:
         "Figure of the relative wear by regime of {wildcards.study}"
     script:
@@ -74,6 +75,7 @@ rule normal_force_by_regime:
         "results/{study}/logs/normal_force_by_regime.benchmark.tsv"
     params:
         remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        settings=lambda wildcards: replicate_settings(study_of(wildcards)),
     message:
         "Figure of the normal force by regime of {wildcards.study}"
     script:

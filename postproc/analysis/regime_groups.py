@@ -91,6 +91,16 @@ def of_published_rows(published: pd.DataFrame, rows: Mapping[str, str]) -> pd.Da
     return pd.concat(tables, ignore_index=True) if tables else published[:0]
 
 
+def published_relative_wear(results: pd.DataFrame, rows: Mapping[str, str]) -> pd.DataFrame:
+    """Return row (a study's), relation, value (-) and source of published wear over the plain sample's.
+
+    results: quantity, of, relation, value (percent) and source; rows: {row of the study: published row}
+    """
+    wear = results[results["quantity"] == "wear_over_plain"].rename(columns={"of": "row"})
+    wear = wear.assign(value=wear["value"].astype(float) / 100.0)
+    return of_published_rows(wear, rows)[["row", "relation", "value", "source"]]
+
+
 def force_remarks(table: pd.DataFrame) -> list[str]:
     """Return what a figure of `force_by_group` must say where runs have no deviation."""
     lacking = table["deviation_N"].isna()

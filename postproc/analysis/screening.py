@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from postproc.analysis.effects import half_normal_table
 from postproc.analysis.factors import Factor
@@ -194,18 +193,6 @@ def best_design_table(
         wear = wear_at(study, coded, level).iloc[0][["predicted", "run_low", "run_high"]]
         lines.append({**real, **wear, "not_in_model": " ".join(silent)})
     return pd.DataFrame(lines)
-
-
-def spread_of_replicates(settings: np.ndarray, values: np.ndarray, level: float = 0.95) -> pd.DataFrame:
-    """Return setting, runs, mean, deviation and half_width of runs that share a setting.
-
-    settings: (n,) labels; values: (n,), NaN without a result. half_width: of the mean's interval at that confidence,
-    by Student's t; NaN, as the deviation, for a single run.
-    """
-    groups = pd.DataFrame({"setting": settings, "value": values}).dropna().groupby("setting", sort=False)["value"]
-    table = groups.agg(runs="count", mean="mean", deviation="std").reset_index()
-    reach = stats.t.ppf(0.5 + level / 2.0, np.maximum(table["runs"] - 1, 1)) / np.sqrt(table["runs"])
-    return table.assign(half_width=reach * table["deviation"])
 
 
 def pairs_to_show(study: Screening, most: int = 4) -> list[tuple[int, int]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -24,6 +24,8 @@ from postproc.plots.style import (
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY_RUNS = 6  # from here on run names stand upright
 SMALLEST_RANGE = 1e-6  # -, of the value: a single cycle has none
+PUBLISHED_MARKS_UPRIGHT = {"about": "D", "below": "v", "above": "^"}
+MEANING = {"about": "", "below": " (at most)", "above": " (at least)"}
 HEADROOM = 1.18  # -, of the highest bar, for the numbers above it
 ARCHARD_COLOUR, FINNIE_COLOUR = "#0072B2", "#CC79A7"
 
@@ -79,11 +81,11 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     return figure
 
 
-def relative_wear(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw convex over plain wear per run, lowest first, with the range over the cycles and alpha_ER written
-    in.
+def relative_wear(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw convex over plain wear per setting, lowest first, with its interval or else its range over the cycles, and
+    alpha_ER written in.
 
-    table: as from `analysis.comparison.relative_wear_table`.
+    table: as from `analysis.replicates.by_setting`; published: row, relation, value (-) and source; may be empty
     """
     figure = new_figure(remarks, 4.6)
     axes = figure.subplots()
@@ -92,13 +94,19 @@ def relative_wear(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     places = _run_axis(axes, table["row"])
     axes.set_xticks(places, table["row"], rotation=0)
     axes.bar(places, ratio, 0.7, color=[colour(surface) for surface in table["surface"]])
-    low, high = (table[name].to_numpy() for name in ("lowest_cycle_ratio", "highest_cycle_ratio"))
+    repeated = table["interval_low"].notna().any()
+    ends = ("interval_low", "interval_high") if repeated else ("lowest_cycle_ratio", "highest_cycle_ratio")
+    low, high = (table[name].to_numpy() for name in ends)
     spread = np.clip([ratio - low, high - ratio], 0.0, None)
     ranged = spread.sum(axis=0) > SMALLEST_RANGE * ratio
     axes.errorbar(
         places[ranged], ratio[ranged], spread[:, ranged], fmt="none", ecolor="black", elinewidth=0.8, capsize=3
     )
     top = HEADROOM * np.nanmax([1.0, *high, *ratio])
+    shown = published[published["row"].isin(table["row"])]
+    if len(shown):
+        _published_marks(axes, dict(zip(table["row"], places, strict=True)), shown)
+        figure.legend(loc="outside upper right", ncols=2)
     for place, value, size in zip(places, ratio, table["equivalent_size_ratio"], strict=True):
         axes.text(
             place,
@@ -116,6 +124,15 @@ def relative_wear(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     axes.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
     axes.set(xlabel="Design row", ylabel="Wear volume, convex over plain (-)", ylim=(0.0, top))
     return figure
+
+
+def _published_marks(axes: Axes, places: Mapping[str, float], published: pd.DataFrame) -> None:
+    """Draw published values and bounds at the places of their rows, each kind once in the legend."""
+    for relation, points in published.groupby("relation", sort=False):
+        words = f"{points['source'].iloc[0].partition(',')[0]}{MEANING[relation]}"
+        across = [places[row] for row in points["row"]]
+        drawn = {"color": "black", "markerfacecolor": "white", "markersize": 7, "linestyle": "", "label": words}
+        axes.plot(across, points["value"], PUBLISHED_MARKS_UPRIGHT[relation], **drawn)
 
 
 def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:

@@ -15,14 +15,16 @@ from postproc.plots.style import BASE_COLOUR, BUMP_COLOUR, LARGEST_HEIGHT, SMALL
 
 BAR = 0.4  # -, width of a bar over the distance of rows
 PLAIN_FILL = "#f4c9a8"  # of the plain samples' bars
+ERROR_BARS = {"fmt": "none", "ecolor": "black", "elinewidth": 0.9, "capsize": 2}
 HEADROOM = 1.08  # -, of the highest bar
 
 
 def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw relative wear of convex (base and bumps, stacked) and plain samples, rows of least convex wear first.
 
-    table: as from `analysis.regime_groups.wear_by_group`.
+    table: as from `analysis.regime_groups.wear_by_group`, with interval_low and interval_high, NaN where not known.
     """
+    highest = np.nanmax([1.0, *table["interval_high"]])
     figure = new_figure(remarks, LARGEST_HEIGHT)
     for axes, shown in _panels(figure, table, "relative_wear"):
         convex, plain = shown[shown["surface"] != PLAIN], shown[shown["surface"] == PLAIN]
@@ -31,7 +33,11 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         bumps = {"color": BUMP_COLOUR, "hatch": "//", "edgecolor": "white"}
         axes.bar(left, convex["bump_relative_wear"], BAR, bottom=convex["base_relative_wear"], **bumps)
         axes.bar(_places(plain) + 0.5 * BAR, plain["relative_wear"], BAR, color=PLAIN_FILL, edgecolor=colour(PLAIN))
-        axes.set_ylim(0.0, HEADROOM)
+        for places, runs in ((left, convex), (_places(plain) + 0.5 * BAR, plain)):
+            reach = np.abs(runs[["interval_low", "interval_high"]].to_numpy().T - runs["relative_wear"].to_numpy())
+            known = np.isfinite(reach).all(axis=0)
+            axes.errorbar(places[known], runs["relative_wear"][known], reach[:, known], **ERROR_BARS)
+        axes.set_ylim(0.0, HEADROOM * highest)
     figure.axes[0].set_ylabel("Wear over the largest of the regime (-)")
     handles = [
         Patch(color=BASE_COLOUR, label="convex, base"),
@@ -53,10 +59,7 @@ def normal_force_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figur
             known = runs["deviation_N"].notna()
             places = _places(runs) + shift * BAR
             axes.bar(places, runs["mean_normal_force_N"], BAR, color=colour(surface))
-            bars = {"fmt": "none", "ecolor": "black", "elinewidth": 0.9, "capsize": 2}
-            axes.errorbar(
-                places[known], runs["mean_normal_force_N"][known], runs["deviation_N"][known], label=surface, **bars
-            )
+            axes.errorbar(places[known], runs["mean_normal_force_N"][known], runs["deviation_N"][known], **ERROR_BARS)
     highest = (table["mean_normal_force_N"] + table["deviation_N"].fillna(0.0)).max()
     figure.axes[0].set_ylim(0.0, HEADROOM * highest)
     figure.axes[0].set_ylabel("Normal force on the sample (N)")

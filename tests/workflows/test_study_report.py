@@ -17,7 +17,15 @@ from postproc.analysis.screening_tables import regression_tables, screen_summary
 from postproc.analysis.summary import summary_table
 from postproc.plots.regression import DRAWN
 from workflows.design import load_study
-from workflows.figures import FIGURES, OF_SERIES, figure_file, figures_of, page_parameters, published_rows
+from workflows.figures import (
+    FIGURES,
+    OF_SERIES,
+    figure_file,
+    figures_of,
+    page_parameters,
+    published_rows,
+    replicate_settings,
+)
 from workflows.page_text import UNDEFINED, name_and_unit, number, setting_rows
 from workflows.study_report import TABLE_OF, caption, commit, write_page
 
@@ -363,6 +371,28 @@ def test_published_rows_have_the_published_factors(config):
     assert published_rows(load_study("small", config.root)) == {"own": "R9"}
     screening = published_rows(load_study("screening"))
     assert len(screening) == 13 and all(ours == theirs for ours, theirs in screening.items())
+
+
+REPLICATES = """\
+row,major_radius_mm,minor_radius_mm,column_spacing_mm,height_mm,velocity_m_per_s,bed_thickness_mm,seed
+R9-1,8,2,20,6.0,1.0,40,1000
+R9-2,8,2,20,6.0,1.0,40,2000
+R5,4,8,60,6.0,2.0,30,1000
+"""
+
+
+def test_rows_that_differ_in_their_seed_are_replicates(config, tmp_path, page):
+    """They share a setting, a published row and an interval on the page; without any it says what is not known."""
+    assert "scatter from packing to packing is not known" in " ".join(page.split())
+    config.write("designs/small.csv", REPLICATES)
+    study = load_study("small", config.root)
+    assert replicate_settings(study) == {"R9-1": "R9", "R9-2": "R9", "R5": "R5"}
+    assert published_rows(study) == {"R9-1": "R9", "R9-2": "R9", "R9": "R9"}
+    write_results(tmp_path / "small", study)
+    write_page(tmp_path / "small" / "report.html", page_parameters(study))
+    text = (tmp_path / "small" / "report.html").read_text(encoding="utf-8")
+    assert "95 % of the mean<small>" in text and "is not known" not in text
+    assert '<td class="n">0.800 to 0.800</td>' in text  # all convex runs wear 0.8 of plain ones
 
 
 def test_without_factors_there_is_no_regression(config):

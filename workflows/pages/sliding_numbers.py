@@ -11,6 +11,7 @@ import pandas as pd
 from postproc.analysis.comparison import cycle_ratios, read_history, rows_to_show
 from postproc.analysis.depth import depth_summary
 from postproc.analysis.display import in_display_units
+from postproc.analysis.replicates import relative_wear_intervals
 from workflows.page_text import number
 from workflows.pages.sliding_sample import ROWS_IN_DETAIL
 
@@ -27,8 +28,11 @@ def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -
     )
     acceleration = study["settings"]["wear"]["acceleration"]
     results = result_table(summary, depths, history, acceleration)
+    results = results.merge(relative_wear_intervals(summary, study["replicates"]), on="run", how="left")
     return {
         "results": results,
+        "repeated": bool(results["interval_low"].notna().any()),
+        "compared": len(study["design_rows"]) > 1,
         "accelerated": acceleration != 1.0,
         "cards": cards(results, acceleration),
         "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),

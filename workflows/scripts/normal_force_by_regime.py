@@ -2,6 +2,7 @@
 
 from postproc.analysis.comparison import read_summary
 from postproc.analysis.regime_groups import force_by_group, force_remarks, regime_remarks
+from postproc.analysis.replicates import mean_of_replicates
 from postproc.plots.regimes import normal_force_by_regime
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -9,7 +10,8 @@ from workflows.job import job_log
 with job_log(snakemake.log[0]):
     files = snakemake.input
     regimes = read_summary(files.regimes)
-    table = force_by_group(read_summary(files.summary), files.wear, regimes)
+    runs = force_by_group(read_summary(files.summary), files.wear, regimes)
+    table = mean_of_replicates(runs, snakemake.params.settings)
     table.to_csv(snakemake.output.table, index=False)
     remarks = [*snakemake.params.remarks, *regime_remarks(regimes), *force_remarks(table)]
     save(normal_force_by_regime(table, remarks), snakemake.output.figure)

@@ -16,7 +16,6 @@ from postproc.analysis.screening import (
     model_table,
     residuals,
     screen,
-    spread_of_replicates,
     wear_at,
 )
 from postproc.analysis.screening_warnings import screening_warnings
@@ -176,15 +175,3 @@ def test_a_model_without_parents_is_called_not_hierarchical(study):
     assert any(sentence.startswith("the model is not hierarchical") for sentence in sentences)
     assert any(sentence.startswith("b*d looks much like") for sentence in sentences)
     assert any("27 candidate terms compete for 13 runs" in sentence for sentence in sentences)
-
-
-# --- replicates
-
-
-def test_spread_of_replicates():
-    """Mean, deviation and Student's interval of runs that share a setting; a single run has no interval."""
-    table = spread_of_replicates(["R1", "R1", "R2", "R1", "R3"], [1.0, 2.0, 5.0, 3.0, np.nan]).set_index("setting")
-    assert table["runs"].to_dict() == {"R1": 3, "R2": 1}
-    assert table.loc["R1", ["mean", "deviation"]].tolist() == [2.0, 1.0]
-    assert table.loc["R1", "half_width"] == pytest.approx(4.302653 / np.sqrt(3), rel=1e-6)  # t of 2 degrees, 97.5 %
-    assert np.isnan(table.loc["R2", "half_width"])

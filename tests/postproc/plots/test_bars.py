@@ -51,9 +51,14 @@ def test_relative_wear_is_sorted_and_marked():
             "equivalent_size_ratio": [0.11, 0.22, 0.33],
             "lowest_cycle_ratio": [1.1, 0.7, np.nan],
             "highest_cycle_ratio": [1.4, 0.9, np.nan],
+            "interval_low": np.nan,
+            "interval_high": np.nan,
         }
     )
-    figure = bars.relative_wear(table, REMARKS)
+    published = pd.DataFrame(
+        {"row": ["R2", "R1"], "relation": ["about", "above"], "value": [0.34, 1.0], "source": "Yan, x"}
+    )
+    figure = bars.relative_wear(table, published, REMARKS)
     axes = figure.axes[0]
     assert [label.get_text() for label in axes.get_xticklabels()] == ["R2", "R3", "R1"]
     assert [patch.get_height() for patch in axes.patches] == [0.8, 1.0, 1.2]
@@ -63,6 +68,11 @@ def test_relative_wear_is_sorted_and_marked():
     segments = [segment for segment in axes.collections[0].get_segments() if segment.ndim == 2]
     ends = [segment[:, 1] for segment in segments if np.isfinite(segment).all()]
     np.testing.assert_allclose(ends, [[0.7, 0.9], [1.1, 1.4]], rtol=RELATIVE)
+    marks = {line.get_label(): tuple(line.get_xydata()[0]) for line in axes.lines if line.get_label()[0] != "_"}
+    assert marks == {"Yan": (0.0, 0.34), "Yan (at least)": (2.0, 1.0)}
+    repeated = table.assign(interval_low=[1.15, np.nan, np.nan], interval_high=[1.25, np.nan, np.nan])
+    drawn = bars.relative_wear(repeated, published[:0], REMARKS).axes[0].collections[0].get_segments()
+    np.testing.assert_allclose([segment[:, 1] for segment in drawn], [[1.15, 1.25]], rtol=RELATIVE)
     assert remarks_of(figure) == "; ".join(REMARKS)
 
 

@@ -22,6 +22,7 @@ def table():
     table = pd.DataFrame(runs)
     bumps = np.where(table["surface"] == "convex", 0.25, 0.0) * table["relative_wear"]
     table = table.assign(base_relative_wear=table["relative_wear"] - bumps, bump_relative_wear=bumps)
+    table = table.assign(interval_low=[0.7] + [np.nan] * 5, interval_high=[1.2] + [np.nan] * 5)
     return table.assign(mean_normal_force_N=10.0 * table["relative_wear"], deviation_N=[1.0] + [np.nan] * 5)
 
 
@@ -37,6 +38,9 @@ def test_wear_bars_are_the_table(table):
     assert heights(left) == pytest.approx(sorted([0.6, 0.3, 0.2, 0.1, 1.0, 0.6]))
     assert heights(right) == pytest.approx(sorted([0.675, 0.225, 1.0]))
     assert [label.get_text() for label in left.get_xticklabels()] == ["R2", "R1"]
+    assert left.get_ylim()[1] > 1.2
+    (segment,) = [each for bars in left.collections for each in bars.get_segments()]
+    assert segment[:, 1].tolist() == pytest.approx([0.7, 1.2])
     assert left.get_ylabel() == "Wear over the largest of the regime (-)"
     assert remarks_of(figure) == "; ".join(REMARKS)
 
