@@ -134,7 +134,19 @@ def figure_files(study: Study) -> list[str]:
 
 def page_templates(study: Study) -> list[str]:
     """Return the paths of the templates of a study's page."""
-    return [str(REPORT_FOLDER / name) for name in (TEMPLATE, STYLE, PAGES[study.case].KEY_NUMBERS)]
+    page = PAGES[study.case]
+    return [str(REPORT_FOLDER / name) for name in (TEMPLATE, STYLE, page.KEY_NUMBERS, *page.FURTHER_TEMPLATES)]
+
+
+def has_findings(study: Study) -> bool:
+    """Return whether a study can be held against the source's findings: it has some of its rows, and a regression."""
+    return study.case == "sliding_sample" and bool(study.factors and published_rows(study))
+
+
+def finding_tables(study: Study) -> list[str]:
+    """Return the paths of the tables of findings that the page of a study shows."""
+    names = ("findings", "runs") if has_findings(study) else ()
+    return [f"results/{study.name}/findings/{name}.csv" for name in names]
 
 
 def is_deformed(study: Study) -> bool:
@@ -150,6 +162,7 @@ def job_names(study: Study) -> list[str]:
         *(f"settled_bed_{bed}" for bed in study.beds),
         *(f"{rule}_{run.name}" for run in study.runs for rule in RUN_RULES[study.case]),
         *dict.fromkeys(job_of_figure(name) for name in figures_of(study)),
+        *(("findings",) if has_findings(study) else ()),
     ]
 
 
@@ -172,6 +185,7 @@ def page_parameters(study: Study) -> dict[str, Any]:
         "remarks": figure_remarks(study),
         "figures": figures_of(study),
         "factors": study.factors,
+        "findings": has_findings(study),
         "replicates": replicate_settings(study) if study.case == "sliding_sample" else {},
         "jobs": job_names(study),
         "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},

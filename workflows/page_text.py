@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import ModuleType
@@ -62,6 +63,11 @@ def number(value: Any, digits: int = 4) -> str:
     if value == int(value) and (isinstance(value, int) or abs(value) < 1e7):
         return f"{int(value):,}".replace(",", "\u202f")
     return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e6 else f"{value:.{digits - 1}e}"
+
+
+def data_uri(content: bytes, kind: str) -> str:
+    """Return content as an address that needs no network."""
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 def name_and_unit(key: str) -> tuple[str, str]:

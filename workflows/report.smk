@@ -5,6 +5,7 @@ from workflows.figures import (
     equivalent_size_ratios,
     factor_labels,
     figure_files,
+    finding_tables,
     flow_runs,
     is_deformed,
     page_parameters,
@@ -413,6 +414,7 @@ rule report:
         summary="results/{study}/summary.csv",
         design="results/{study}/design.csv",
         costs=of_every_run("results/{study}/{run}/cost.csv"),
+        findings=lambda wildcards: finding_tables(study_of(wildcards)),
         templates=lambda wildcards: page_templates(study_of(wildcards)),
     output:
         "results/{study}/report.html",

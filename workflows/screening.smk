@@ -138,3 +138,34 @@ use rule flow_views as flow_views_second with:
         place=1,
     message:
         "Figure of the flow of {wildcards.study} over a second row"
+
+
+rule findings:
+    input:
+        summary="results/{study}/summary.csv",
+        regimes=REGIMES,
+        profiles="results/{study}/flow/profiles.csv",
+        gradients="results/{study}/figures/wear_gradient.csv",
+        coefficients="results/{study}/regression/coefficients.csv",
+        models="results/{study}/regression/models.csv",
+        published_findings="config/published/screening_findings.csv",
+        published_regimes="config/published/screening_regimes.csv",
+        published_results="config/published/screening_results.csv",
+        published_coefficients="config/published/screening_coefficients.csv",
+        published_design="config/designs/screening.csv",
+    output:
+        findings="results/{study}/findings/findings.csv",
+        runs="results/{study}/findings/runs.csv",
+    log:
+        "results/{study}/logs/findings.log",
+    benchmark:
+        "results/{study}/logs/findings.benchmark.tsv"
+    params:
+        factors=lambda wildcards: study_of(wildcards).factors,
+        run_in=lambda wildcards: study_of(wildcards).settings["sliding"]["run_in_mm"],
+        settings=lambda wildcards: replicate_settings(study_of(wildcards)),
+        published_rows=lambda wildcards: published_rows(study_of(wildcards)),
+    message:
+        "Findings of the source beside those of {wildcards.study}"
+    script:
+        "scripts/findings.py"

@@ -5,7 +5,6 @@ figures."""
 
 from __future__ import annotations
 
-import base64
 import importlib.metadata
 import json
 import os
@@ -25,7 +24,7 @@ from postproc.analysis.cost import BENCHMARK_SUFFIX, benchmark_seconds, job_cost
 from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from workflows.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
-from workflows.page_text import decks_of, name_and_unit, number, setting_rows, simplifications
+from workflows.page_text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 from workflows.pages import PAGES, pin_numbers, sliding_numbers
 
 REPOSITORY = Path(__file__).resolve().parents[1]
@@ -137,11 +136,6 @@ def caption(name: str, folder: Path = REPORT_FOLDER) -> tuple[str, list[str]]:
         raise ValueError(f"{path}: line 2 must underline the title with '-', found {underline!r}.")
     blocks = re.split(r"\n\s*\n", "\n".join(rest).strip())
     return title, [" ".join(block.split()) for block in blocks]
-
-
-def data_uri(content: bytes, kind: str) -> str:
-    """Return content as an address that needs no network."""
-    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
 # ---------------------------------------------------------------- setting

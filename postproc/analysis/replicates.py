@@ -42,8 +42,9 @@ def replicate_intervals(settings: np.ndarray, values: np.ndarray, level: float =
 def by_setting(table: pd.DataFrame, settings: Mapping[str, str]) -> pd.DataFrame:
     """Return a table of relative wear with a line per setting instead of per row; `row` is then the setting's name.
 
-    table: as from `comparison.relative_wear_table`; settings: {row: setting}. Further columns: replicates, interval_low,
-    and interval_high of wear_over_plain, NaN without replicates. Ranges over the cycles are those of all replicates.
+    table: as from `comparison.relative_wear_table`; settings: {row: setting}
+    Columns more: replicates, and interval_low and interval_high of wear_over_plain, NaN without replicates. Ranges over
+    the cycles are those of all replicates.
     """
     setting = table["row"].map(settings)
     intervals = replicate_intervals(setting.to_numpy(), table["wear_over_plain"].to_numpy()).set_index("setting")

@@ -338,6 +338,29 @@ def test_the_page_of_a_pin_needs_no_bed_and_no_sample(tmp_path):
     assert "Damping assumed" in page and "Skirt not counted" not in page and "Layers:" not in page
 
 
+def write_findings(folder):
+    """The two tables of findings, a line each."""
+    folder.mkdir()
+    finding = {
+        "key": "x",
+        "finding": "R12 wears more",
+        "source": "Yan 2022",
+        "found": "0.98",
+        "verdict": "cannot be said",
+    }
+    pd.DataFrame([finding | {"reason": "too near to 1"}]).to_csv(folder / "findings.csv", index=False)
+    run = {
+        "row": "R5",
+        "regime": "continuous",
+        "published_regime": "",
+        "steady": False,
+        "published_wear_over_plain": "",
+    }
+    numbers = ("relative_velocity_percent", "wear_over_plain", "normalised_wear", "force_over_plain")
+    numbers += ("interval_low", "interval_high", "published_model", "bottom_spin_over_plain")
+    pd.DataFrame([run | dict.fromkeys(numbers, 0.5)]).to_csv(folder / "runs.csv", index=False)
+
+
 def test_a_study_with_factors_has_a_regression(config, tmp_path):
     """Its figures are drawn, and its page shows models, best designs and every warning."""
     config.edit(
@@ -357,8 +380,14 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
     (tmp_path / "small" / "regression").mkdir()
     for name, table in tables.items():
         table.to_csv(tmp_path / "small" / "regression" / f"{name}.csv", index=False)
+    write_findings(tmp_path / "small" / "findings")
     write_page(tmp_path / "small" / "report.html", page_parameters(study))
     text = html.unescape((tmp_path / "small" / "report.html").read_text(encoding="utf-8"))
+    assert "<td>R12 wears more</td>" in text.replace(' <small class="note">Yan 2022</small>', "")
+    assert "1 cannot be said" in " ".join(text.split())
+    assert embedded(text, "small_findings.csv")["verdict"].tolist() == ["cannot be said"]
+    assert len(embedded(text, "small_findings_runs.csv")) == 1
+    assert "findings" in page_parameters(study)["jobs"]
     assert "Regression of the wear" in text
     assert tables["models"]["model"][0] in text
     for warning in tables["warnings"]["warning"]:

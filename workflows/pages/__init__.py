@@ -1,8 +1,8 @@
 """What a study's page and figures say that depends on its case: one module per case.
 
-Each has KEY_NUMBERS, a template of workflows/report; run_columns() of the table of runs, RUNS_NOTE below it; remarks()
-of every figure; simplifications() and further_cap(); DECKS to be shown. What its template shows is in a module beside
-it, which only the page imports.
+Each has KEY_NUMBERS, a template of workflows/report, and FURTHER_TEMPLATES that it includes; run_columns() of the table
+of runs, RUNS_NOTE below it; remarks() of every figure; simplifications() and further_cap(); DECKS to be shown. What its
+template shows is in a module beside it, which only the page imports.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from workflows.design import Study
 
 KEY_NUMBERS = "key_numbers_pin_on_disc.html.j2"
+FURTHER_TEMPLATES = ()  # that it includes
 RUNS_NOTE = (
     "Overlap: of pin and flat disc as simulated (Hertz); contact radius: of the same. Time step: the stated fraction "
     "of the Rayleigh time. Empty cells of the design leave a setting as it is."

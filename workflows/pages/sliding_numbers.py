@@ -12,7 +12,7 @@ from postproc.analysis.comparison import cycle_ratios, read_history, rows_to_sho
 from postproc.analysis.depth import depth_summary
 from postproc.analysis.display import in_display_units
 from postproc.analysis.replicates import relative_wear_intervals
-from workflows.page_text import number
+from workflows.page_text import data_uri, number
 from workflows.pages.sliding_sample import ROWS_IN_DETAIL
 
 TEXTS = dict.fromkeys(("model", "given", "not_in_model", "warning"), str)  # columns that may be empty
@@ -37,6 +37,7 @@ def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -
         "cards": cards(results, acceleration),
         "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
         "regression": regression(folder / "regression") if study["factors"] else None,
+        "findings": findings(folder / "findings") if study["findings"] else None,
     }
 
 
@@ -45,6 +46,20 @@ def regression(folder: Path) -> dict[str, Any]:
     tables = {name: pd.read_csv(folder / f"{name}.csv", converters=TEXTS) for name in REGRESSION_TABLES}
     shown = {name: table.to_dict("records") for name, table in tables.items()}
     return shown | {"factors": list(tables["best_designs"].columns[1:-4])}
+
+
+def findings(folder: Path) -> dict[str, Any]:
+    """Return the verdicts on the source's findings, their counts and its runs, as lists of rows and for download."""
+    files = {name: folder / f"{name}.csv" for name in ("findings", "runs")}
+    verdicts = pd.read_csv(files["findings"], keep_default_na=False)
+    runs = pd.read_csv(files["runs"], converters=dict.fromkeys(("published_regime", "published_wear_over_plain"), str))
+    return {
+        "verdicts": verdicts.to_dict("records"),
+        "counts": verdicts["verdict"].value_counts().to_dict(),
+        "runs": runs.to_dict("records"),
+        "csv": data_uri(files["findings"].read_bytes(), "text/csv"),
+        "runs_csv": data_uri(files["runs"].read_bytes(), "text/csv"),
+    }
 
 
 def result_table(

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from workflows.design import Study
 
 KEY_NUMBERS = "key_numbers_sliding_sample.html.j2"
+FURTHER_TEMPLATES = ("findings.html.j2",)  # that it includes
 RUNS_NOTE = (
     "Layers: thickness of the bed over the median diameter of the (scaled) particles. Equivalent size ratio: particle "
     "over bump (Yan 2022, Eq 4.18). Particles: estimate from mass; the solver's number is under Cost."

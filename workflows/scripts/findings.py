@@ -1,0 +1,22 @@
+"""Write which findings of the source the study confirms, and its rows beside what the source tells of them."""
+
+import pandas as pd
+
+from postproc.analysis.comparison import read_summary
+from postproc.analysis.finding_tests import findings_table
+from postproc.analysis.findings import gather, published_model, runs_beside_source
+from postproc.analysis.screening_tables import screen_summary
+from workflows.job import job_log
+
+OF_RUNS = ("summary", "regimes", "profiles", "gradients")  # tables whose names are text
+
+with job_log(snakemake.log[0]):
+    given, files = snakemake.params, snakemake.input
+    tables = {name: (read_summary if name in OF_RUNS else pd.read_csv)(path) for name, path in files.items()}
+    study = screen_summary(tables["summary"], given.factors)
+    evidence = gather(tables, study, given.run_in, given.settings, given.published_rows)
+    told = tables["published_regimes"]
+    found = findings_table(evidence, tables["published_findings"], told)
+    found.to_csv(snakemake.output.findings, index=False)
+    model = published_model(tables["published_design"], tables["published_coefficients"], given.factors)
+    runs_beside_source(evidence, told, model).to_csv(snakemake.output.runs, index=False)
