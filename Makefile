@@ -17,7 +17,7 @@ SMK_FILES = Snakefile $(wildcard workflows/*.smk)
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 
-.PHONY: help setup doctor demo study test verify screening report decks lint format lock clean
+.PHONY: help setup doctor demo study forecast rates test verify screening report decks lint format lock clean
 
 help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
@@ -34,6 +34,12 @@ demo: setup ## Run the demonstration study, from mesh to report
 
 study: setup ## Run a whole study: make study STUDY=<name of a file in config/studies>
 	$(SNAKEMAKE) $(STUDY)
+
+forecast: setup ## What a study will cost: core hours, wall time, memory, disk of each run (STUDY=demo)
+	$(SNAKEMAKE) $(STUDY)_forecast
+
+rates: setup ## Measure what the solver's work costs on this machine, for forecasts; about a minute, best with nothing beside it
+	$(SNAKEMAKE) cost_rates --force
 
 screening: setup ## Run the screening study
 	$(SNAKEMAKE) screening

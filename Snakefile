@@ -1,14 +1,17 @@
-"""Contents page: a study's name makes its report, <study>_decks renders its decks without running the solver.
+"""Contents page: a study's name makes its report, <study>_decks renders its decks without running the solver,
+<study>_forecast tells what it will cost.
 
     snakemake                       the demo
     snakemake screening --config fidelity=standard
     snakemake demo_decks
+    snakemake screening_forecast --config fidelity=paper
 
 Snakemake finds the choices for one machine by itself: profiles/default, which links into workflows/.
 """
 
 
 include: "workflows/common.smk"
+include: "workflows/forecast.smk"
 include: "workflows/mesh.smk"
 include: "workflows/solve.smk"
 include: "workflows/analyse.smk"
@@ -37,3 +40,20 @@ for STUDY in STUDIES:
             study_decks(STUDY),
         message:
             "Decks of the study, rendered without running the solver"
+
+    rule:
+        name:
+            f"{STUDY}_forecast"
+        input:
+            rates=used_rates,
+        log:
+            f"results/{STUDY}/logs/forecast.log",
+        params:
+            work=solver_work(STUDY),
+            study=STUDY,
+            heading=f"{STUDY}, fidelity {STUDIES[STUDY].fidelity}: {STUDIES[STUDY].title}",
+            cores=CORES,
+        message:
+            "What the study will cost"
+        script:
+            "workflows/scripts/forecast.py"

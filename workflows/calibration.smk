@@ -99,6 +99,7 @@ rule calibration_page:
         pairs=published_table("simulated_before"),
         results="results/{study}/summary.csv",
         materials="results/{study}/materials.yaml",
+        forecast="results/{study}/forecast.csv",
         templates=lambda wildcards: page_templates(study_of(wildcards)),
     output:
         "results/{study}/report.html",

@@ -21,7 +21,7 @@ from workflows.calibration_tables import Calibrated, read_calibrated
 from workflows.figures import OF_CALIBRATIONS
 from workflows.page_text import setting_rows
 from workflows.pages.calibration import KEY_NUMBERS, simplifications
-from workflows.study_report import commit, data_uri, environment, figure
+from workflows.study_report import FORECAST, commit, data_uri, environment, figure
 
 PACKAGES = ("numpy", "scipy", "pandas", "scikit-learn", "matplotlib", "snakemake")
 
@@ -68,6 +68,7 @@ def page_context(done: Calibrated, study: Mapping[str, Any]) -> dict[str, Any]:
         "settings": setting_rows(study["settings"], study["paper_settings"]),
         "simplified": simplifications(study["settings"]),
         "cost": cost_table(done.folder).to_dict("records"),
+        "forecast": forecast_row(pd.read_csv(done.folder / FORECAST)),
         "materials": (done.folder / "materials.yaml").read_text(),
         "versions": {"this project": commit(), "LIGGGHTS": solver_said(done.folder)}
         | {name: version(name) for name in PACKAGES},
@@ -129,6 +130,11 @@ def cost_table(folder: Path) -> pd.DataFrame:
         most_particles=("particles", "max"),
         mean_steps=("steps", "mean"),
     )
+
+
+def forecast_row(forecast: pd.DataFrame) -> dict[str, Any]:
+    """Return what LIGGGHTS was forecast to take (s) if all simulations were needed, and by which rates."""
+    return {"solver_s": float(forecast["solver_s"].sum()), "by": forecast["by"].iloc[0]}
 
 
 def solver_said(folder: Path) -> str:

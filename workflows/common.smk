@@ -8,14 +8,17 @@ from snakemake.utils import min_version
 
 from workflows.cases import CASES
 from workflows.deck import template_sources
-from workflows.design import ConfigError, list_studies, load_study
+from workflows.design import TARGETS, ConfigError, list_studies, load_study
 from workflows.job import let_jobs_import
+from workflows.rates import rates_file
 from workflows.solver import CYCLE_EXECUTABLES, missing_program
 
 min_version("9.0")
 
 ROOT = Path(workflow.basedir)
 PUBLISHED_TABLES = ROOT / "config" / "published"
+SOLVER_RULES = ("settled_bed", "worn_run", "calibrated_parameters", "box_sizes")
+CORES = workflow.cores or 1  # on a cluster nobody says
 let_jobs_import(ROOT)
 
 
@@ -26,7 +29,8 @@ wildcard_constraints:
 
 
 def is_requested(study):
-    return any(word in (study, f"{study}_decks") or word.startswith(f"results/{study}/") for word in sys.argv[1:])
+    targets = (study, *(study + ending for ending in TARGETS))
+    return any(word in targets or word.startswith(f"results/{study}/") for word in sys.argv[1:])
 
 
 def checked_studies():
@@ -51,6 +55,25 @@ onstart:
         if job.rule.name == "worn_run":
             if fault := missing_program(CYCLE_EXECUTABLES[run_parameters(job.wildcards)["ledger"]]):
                 raise WorkflowError(fault)
+    for study, jobs in jobs_by_study(workflow.dag.needrun_jobs()).items():
+        announce_cost(study, jobs)
+
+
+def jobs_by_study(jobs):
+    """The jobs that call the solver, by study: the names they have in forecasts."""
+    found = {}
+    for job in jobs:
+        if job.rule.name in SOLVER_RULES:
+            words = dict(job.wildcards.items())
+            found.setdefault(words.pop("study"), set()).add("_".join([job.rule.name, *words.values()]))
+    return found
+
+
+def announce_cost(study, jobs):
+    """Say in one line what those jobs of a study will cost."""
+    from workflows.forecast import announcement  # slow to import, and jobs need none
+
+    logger.info(announcement(STUDIES[study], jobs, ROOT, CORES))
 
 
 def study_of(wildcards):
@@ -135,3 +158,19 @@ def published_table(key):
 def calibration_threads(wildcards):
     """Simulations that a calibration has at the same time."""
     return first_run(wildcards)["calibration"]["batch"]
+
+
+def used_rates(wildcards=None):
+    """The rates that were measured on this machine, or the default ones."""
+    return str(rates_file(ROOT))
+
+
+def solver_work(study):
+    """A function of wildcards: the jobs of a study that call the solver, with their sizes."""
+
+    def work(wildcards):
+        from workflows.forecast import work_of  # slow to import, and most jobs ask for no forecast
+
+        return work_of(STUDIES[study])
+
+    return work

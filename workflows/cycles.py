@@ -36,7 +36,16 @@ from workflows.chain import (
 from workflows.ledgers import producer
 from workflows.progress import Progress
 from workflows.schedule import Span, first_span
-from workflows.solver import CYCLE_EXECUTABLES, EXECUTABLE, LOG, SCREEN, SolverError, missing_program, run_deck
+from workflows.solver import (
+    CYCLE_EXECUTABLES,
+    EXECUTABLE,
+    LOG,
+    SCREEN,
+    SolverError,
+    missing_program,
+    processor_seconds,
+    run_deck,
+)
 from workflows.tables import write_table
 from workflows.wear_step import worn_surface
 
@@ -86,15 +95,17 @@ def inputs_digest(chain: Chain) -> str:
 
 def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:
     """Simulate, account, wear and displace one cycle; cycle 0 (None) brings the run to its start, without wear."""
-    started, cycle = time.monotonic(), span.cycle if span else 0
+    started, cycle, before = time.monotonic(), span.cycle if span else 0, processor_seconds()
     with state.working_folder(chain.folder, cycle) as folder:
         surface = read_surface(surface_before(chain, cycle))
         write_shared_files(chain)
         triangles = write_cycle(chain, span, folder, surface)
         solver_seconds = simulate(chain, span, folder, triangles, progress)
+        processor = processor_seconds() - before
         record = account_and_wear(chain, span, folder, surface) if span else {"cost": {}}
         record["cost"] = (
-            cost(chain, span, folder, triangles, solver_seconds, time.monotonic() - started) | record["cost"]
+            cost(chain, span, folder, triangles, (solver_seconds, processor), time.monotonic() - started)
+            | record["cost"]
         )
         record |= {
             "span": asdict(span) if span else None,
@@ -136,13 +147,18 @@ def cycle_executable(chain: Chain, span: Span | None) -> str:
 
 
 def cost(
-    chain: Chain, span: Span | None, folder: Path, triangles: int, solver_seconds: float, all_seconds: float
+    chain: Chain, span: Span | None, folder: Path, triangles: int, solver: tuple[float, float], all_seconds: float
 ) -> dict[str, float]:
-    """Return what a cycle cost: wall times in s and the sizes that they depend on."""
+    """Return what a cycle cost: times in s and the sizes that they depend on.
+
+    solver: its wall time and its processor time, of all ranks; all_seconds: wall time of the cycle
+    """
     thermo = thermo_table(folder / LOG)
+    solver_seconds, processor = solver
     return {
         "cycle": span.cycle if span else 0,
         "solver_s": round(solver_seconds, 3),
+        "processor_s": round(processor, 3),
         "other_s": round(all_seconds - solver_seconds, 3),
         "steps": span.solver_steps if span else run_in_steps(chain),
         "particles": int(thermo["Atoms"][-1]),
@@ -156,7 +172,7 @@ def write_products(chain: Chain, finished: int) -> None:
     """Write wear.csv, cost.csv and worn_surface.vtu of a run from what its finished cycles left."""
     states = [state.read_state(chain.folder, cycle) for cycle in range(finished)]
     write_table(chain.folder / "wear.csv", [found["wear"] for found in states[1:]])
-    free = {"solver_s": 0.0, "other_s": 0.0}  # what another run has paid for
+    free = {"solver_s": 0.0, "processor_s": 0.0, "other_s": 0.0}  # what another run has paid for
     write_table(
         chain.folder / "cost.csv", [found["cost"] | (free if "shared_with" in found else {}) for found in states]
     )
@@ -170,6 +186,9 @@ def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1) ->
     progress = Progress(name, total)
     with state.only_driver(folder, progress.say):
         write_bed(bed, folder)
+        before = processor_seconds()
         seconds = run_deck(folder, ranks, lambda step: progress.update(step, "filling and settling"))
     particles = int(thermo_table(folder / LOG)["Atoms"][-1])
-    write_table(folder / "cost.csv", [{"solver_s": round(seconds, 3), "steps": total, "particles": particles}])
+    processor = round(processor_seconds() - before, 3)
+    row = {"solver_s": round(seconds, 3), "processor_s": processor, "steps": total, "particles": particles}
+    write_table(folder / "cost.csv", [row])

@@ -37,6 +37,7 @@ from workflows.validation import (
 __all__ = ["ConfigError", "Run", "Study", "list_studies", "load_study", "to_si"]
 
 SECONDS_PER_HOUR = 3600.0
+TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
 FEWEST_RUNS = 4  # of a regression, see postproc/analysis/screening.py, which is slow to import
 DESIGN = "design"  # key of a study, and of its fidelity blocks
@@ -138,10 +139,10 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     Raises ConfigError: one sentence with file, line, key or row, the value found and what is allowed.
     """
     root = Path(root)
-    if not STUDY_NAME.fullmatch(name) or name in RULE_NAMES or name.endswith("_decks"):
+    if not STUDY_NAME.fullmatch(name) or name in RULE_NAMES or name.endswith(TARGETS):
         raise ConfigError(
             f"config/studies/{name}.yaml: a study cannot be called {name}, allowed are small letters, digits and"
-            f" underscores, not ending in _decks, and none of {', '.join(sorted(RULE_NAMES))}."
+            f" underscores, not ending in {' or '.join(TARGETS)}, and none of {', '.join(sorted(RULE_NAMES))}."
         )
     if name not in list_studies(root):
         raise ConfigError(unknown_name("config/studies", "study", name, list_studies(root)))

@@ -415,6 +415,7 @@ rule report:
         design="results/{study}/design.csv",
         costs=of_every_run("results/{study}/{run}/cost.csv"),
         findings=lambda wildcards: finding_tables(study_of(wildcards)),
+        forecast="results/{study}/forecast.csv",
         templates=lambda wildcards: page_templates(study_of(wildcards)),
     output:
         "results/{study}/report.html",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -50,6 +51,12 @@ def solver_environment() -> dict[str, str]:
     """Return the environment of the solver; Open MPI refuses to run as root unless told twice."""
     allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     return {**os.environ, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
+
+
+def processor_seconds() -> float:
+    """Return the processor time (s) of all programs that this process has run to their end so far."""
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return spent.ru_utime + spent.ru_stime
 
 
 def run_deck(

@@ -20,7 +20,13 @@ import jinja2
 import pandas as pd
 
 from postproc.analysis.comparison import read_summary
-from postproc.analysis.cost import BENCHMARK_SUFFIX, benchmark_seconds, job_costs, outside_solver_share
+from postproc.analysis.cost import (
+    BENCHMARK_SUFFIX,
+    against_forecast,
+    benchmark_seconds,
+    job_costs,
+    outside_solver_share,
+)
 from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from workflows.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
@@ -31,6 +37,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 TABLE_OF = {"worn_surface_3d": "worn_surface", "worn_disc": "unrolled_track"}  # figures that share another's table
 DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
+FORECAST = "forecast.csv"
 KEY_NUMBERS = {  # case -> (study, folder, summary) -> what is shown
     "sliding_sample": sliding_numbers.key_numbers,
     "pin_on_disc": pin_numbers.key_numbers,
@@ -98,6 +105,7 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "jobs": solver_jobs(jobs),
         "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
         "totals": cost_totals(jobs),
+        "forecast_by": pd.read_csv(folder / FORECAST)["by"].iloc[0],
         "balance": float(summary["largest_balance_error"].max()),
     }
 
@@ -169,7 +177,8 @@ def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
     costs = {f"worn_run_{run}": folder / run / "cost.csv" for run in study["runs"]}
     costs |= {f"settled_bed_{bed}": folder / "beds" / bed / "cost.csv" for bed in study["beds"]}
     tables = {job: pd.read_csv(path) for job, path in costs.items() if path.is_file()}
-    return job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
+    jobs = job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
+    return against_forecast(jobs, pd.read_csv(folder / FORECAST))
 
 
 def solver_jobs(jobs: pd.DataFrame) -> list[dict[str, Any]]:
@@ -190,8 +199,11 @@ def share_of(part: float | None, whole: float) -> float:
 
 
 def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
-    """Return the sums of all jobs: wall_s, solver_s, outside_s, outside_percent, particle steps per second."""
-    solver_seconds = float(jobs["solver_s"].sum())
+    """Return the sums of all jobs: wall_s, solver_s, outside_s, outside_percent, particle steps per second, forecast_s,
+    measured_over_forecast.
+    """
+    solver_seconds, expected = (float(jobs[name].sum()) for name in ("solver_s", "forecast_s"))
+    measured = float((jobs["measured_over_forecast"] * jobs["forecast_s"]).sum())
     steps = float((jobs["particle_steps_per_s"] * jobs["solver_s"]).sum()) if solver_seconds else 0.0
     return {
         "jobs": len(jobs),
@@ -200,6 +212,8 @@ def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
         "outside_s": float(jobs["outside_s"].sum()),
         "outside_percent": 100.0 * outside_solver_share(jobs),
         "particle_steps_per_s": steps / solver_seconds if solver_seconds else float("nan"),
+        "forecast_s": expected,
+        "measured_over_forecast": measured / expected if expected else float("nan"),
     }
 
 

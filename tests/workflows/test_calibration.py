@@ -180,7 +180,9 @@ def test_page_tells_every_response(done, monkeypatch):
     (folder / "materials.yaml").write_text("particles: {}\n")
     monkeypatch.setattr("workflows.calibration_page.cost_table", lambda folder: pd.DataFrame())
     monkeypatch.setattr("workflows.calibration_page.solver_said", lambda folder: "none")
+    pd.DataFrame({"solver_s": [3.0, 4.0], "by": "rates of a test"}).to_csv(folder / "forecast.csv", index=False)
     shown = page_context(done, page_parameters(asked, ["a remark"]))
+    assert shown["forecast"] == {"solver_s": 7.0, "by": "rates of a test"}
     assert any("Angle of repose" in sentence and "not simulated" in sentence for sentence in shown["said"])
     assert len(shown["figures"]) == len(OF_CALIBRATIONS) and len(shown["statements"]) == 2
 

@@ -289,6 +289,7 @@ def test_sampled_contacts_wear_a_sample_too(tmp_path):
     assert (wear_table(chain)["sliding_work_J"] > 0).all()
     costs = pd.read_csv(chain.folder / "cost.csv")
     assert (costs["ledger_bytes"] > 0).tolist() == [False, True, True]
+    assert costs["processor_s"].between(0.0, costs["solver_s"], inclusive="neither").all()  # one rank, one processor
 
 
 @pytest.mark.parametrize("rolling_friction", ["epsd2"])

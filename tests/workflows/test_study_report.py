@@ -94,7 +94,11 @@ def write_figures(folder, study, wear_files):
 
 
 def write_costs(folder, study):
-    """Benchmark files of every job, and the cost of the beds."""
+    """Benchmark files of every job, the cost of the beds, and a forecast of half of what each run takes."""
+    jobs = {f"worn_run_{run.name}": RUN_SOLVER / 2 for run in study.runs}
+    jobs |= {f"settled_bed_{bed}": BED_SOLVER for bed in study.beds}
+    forecast = pd.DataFrame({"job": jobs.keys(), "solver_s": jobs.values()}).assign(by="rates of a test")
+    forecast.to_csv(folder / "forecast.csv", index=False)
     for bed in study.beds:
         (folder / "beds" / bed).mkdir(parents=True)
         (folder / "beds" / bed / "cost.csv").write_text(f"solver_s,steps,particles\n{BED_SOLVER},1000,500\n")
@@ -197,6 +201,17 @@ def test_share_outside_the_solver(page, study):
     jobs = embedded(page, f"{study.name}_cost.csv")
     assert len(jobs) == runs + beds + others
     assert jobs["wall_s"].sum() == pytest.approx(wall, rel=RELATIVE)
+
+
+def test_measured_over_forecast(page, study):
+    """Each run took twice what was forecast, each bed as long: so says the table, with all in its last row."""
+    jobs = embedded(page, f"{study.name}_cost.csv").dropna(subset="measured_over_forecast")
+    ratios = {True: 1.0, False: 2.0}
+    assert jobs["measured_over_forecast"].tolist() == [ratios[name.startswith("settled")] for name in jobs["job"]]
+    runs, beds = len(study.runs), len(study.beds)
+    whole = (runs * RUN_SOLVER + beds * BED_SOLVER) / (0.5 * runs * RUN_SOLVER + beds * BED_SOLVER)
+    assert f'<td class="n">{whole:.3g}</td></tr>\n</tbody>' in page
+    assert "(rates of a test)" in page
 
 
 def test_provenance_is_there_and_escaped(page, study):

@@ -16,6 +16,7 @@ import numpy as np
 
 from postproc.mesh import SurfaceMesh
 from postproc.wear.caps import edge_limit
+from workflows.work import Stage, Work
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -114,6 +115,47 @@ class Case:
     def substeps(self, parameters: Parameters, wear: Mapping[str, float]) -> int:
         """Return in how many the solver takes each time step of a cycle whose predecessor left that row of wear.csv."""
         return 1
+
+    # ---------------------------------------------------------------- what a study will cost
+
+    def work(
+        self, runs: Sequence[Run], beds: Mapping[str, Parameters], bed_of: Mapping[str, str], ranks: int
+    ) -> tuple[Work, ...]:
+        """Return the jobs of a study that call the solver, those that others need first; see `workflows.work`.
+
+        beds, bed_of: as from `beds`; here a job for each bed and one for each run, which costs nothing where a run
+        before it has the same parameters
+        """
+        first = {bed_of[run.name]: run.parameters for run in reversed(runs) if run.name in bed_of}
+        jobs = [
+            Work("settled_bed", (name,), self.bed_stages(first[name], bed), "", ranks, 1, self.bed_bytes(first[name]))
+            for name, bed in beds.items()
+        ]
+        for run in runs:
+            bed, same = bed_of.get(run.name), next(each for each in runs if each.parameters == run.parameters)
+            if same is not run:
+                jobs.append(Work("worn_run", (run.name,), (), f"worn_run_{same.name}", ranks))
+                continue
+            stages = self.run_stages(run.parameters, beds.get(bed))
+            needs = f"settled_bed_{bed}" if bed else ""
+            jobs.append(Work("worn_run", (run.name,), stages, needs, ranks, 1, self.run_bytes(run.parameters)))
+        return tuple(jobs)
+
+    def bed_stages(self, parameters: Parameters, bed: Parameters) -> tuple[Stage, ...]:
+        """Return the stages of filling a bed; parameters are those of a run that starts from it."""
+        raise NotImplementedError
+
+    def bed_bytes(self, parameters: Parameters) -> float:
+        """Return what such a bed leaves on disk."""
+        raise NotImplementedError
+
+    def run_stages(self, parameters: Parameters, bed: Parameters | None) -> tuple[Stage, ...]:
+        """Return the stages of a run; the last one is of its wear cycles."""
+        raise NotImplementedError
+
+    def run_bytes(self, parameters: Parameters) -> float:
+        """Return what a run leaves on disk."""
+        raise NotImplementedError
 
     # ---------------------------------------------------------------- what a cycle leaves
 

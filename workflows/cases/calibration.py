@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
@@ -13,6 +13,10 @@ from workflows.cases.base import Case, Parameters
 from workflows.config_files import ConfigError
 from workflows.run_checks import Check, CheckedRun, Fault
 from workflows.sections import particle_section, wall_section
+from workflows.work import Work
+
+if TYPE_CHECKING:
+    from workflows.design import Run
 
 PUBLISHED = Path(__file__).resolve().parents[2] / "config" / "published"
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
@@ -125,3 +129,22 @@ class Calibration(Case):
             "particle_scale": parameters["particle"]["scale"],
             "simulated_width_m": bulk_tests.simulated_width(parameters["shear_box"], parameters["particle"]),
         }
+
+    def work(
+        self, runs: Sequence[Run], beds: Mapping[str, Parameters], bed_of: Mapping[str, str], ranks: int
+    ) -> tuple[Work, ...]:
+        """Return the calibration with the first row's box and the boxes of all sizes: a job with many simulations each.
+
+        The calibration is that of `calibration.most` simulations; it may stop before.
+        """
+        from workflows.cases import calibration_work as found
+
+        parallel = runs[0].parameters["calibration"]["batch"]
+        jobs = {
+            "calibrated_parameters": found.calibration_stages(runs[0].parameters),
+            "box_sizes": found.sizes_stages([run.parameters for run in runs]),
+        }
+        return tuple(
+            Work(rule, (), stages, parallel=parallel, disk_bytes=found.simulation_bytes(stages))
+            for rule, stages in jobs.items()
+        )

@@ -13,11 +13,13 @@ from meshes.disc import track_disc, track_stretch
 from postproc.mesh import SurfaceMesh
 from postproc.reference.sphere_contact import safe_time_step, stable_time_step, touching_reach
 from workflows import deck, pin_deck
+from workflows.cases import pin_work
 from workflows.cases.base import SETUP_LOADS, Case, Parameters, Piece
 from workflows.cases.pin_checks import PIN_CHECKS, ROUNDING
 from workflows.cases.pin_parameters import run_parameters
 from workflows.schedule import Span
 from workflows.solver import LOG
+from workflows.work import Stage
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -106,6 +108,14 @@ class PinOnDisc(Case):
         track = parameters["disc"]["track_radius_m"]
         triangles = track_stretch(surface, track, start - margin, end + margin, reach)
         return Piece(SurfaceMesh(surface.points, surface.triangles[triangles]), triangles)
+
+    def run_stages(self, parameters: Parameters, bed: Parameters | None) -> tuple[Stage, ...]:
+        """Return setting the pin down and the wear cycles; how much a groove widens the stretch is left out."""
+        return pin_work.run_stages(parameters, HEADROOM_OVERLAPS, 2.0 * SET_DOWN_ARC)
+
+    def run_bytes(self, parameters: Parameters) -> float:
+        """Return what a run leaves on disk."""
+        return pin_work.run_bytes(parameters, self.run_stages(parameters, None)[-1].triangles)
 
     def forces(self, parameters: Parameters, span: Span, folder: Path) -> pd.DataFrame:
         """Return means over windows of the track: force on the disc, sum of normal forces, contacts at once."""

@@ -13,6 +13,7 @@ from postproc.readers.cycle_folders import FLOW_TABLE
 from postproc.readers.solver_log import thermo_table
 from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows import deck
+from workflows.cases import sliding_work
 from workflows.cases.base import SETUP_LOADS, Case, Parameters
 from workflows.derived import ADAPTIVE, WALLS, derived_parameters, flow_measures
 from workflows.geometry import sample_surface
@@ -20,6 +21,7 @@ from workflows.run_checks import SLIDING_CHECKS
 from workflows.schedule import Span
 from workflows.sections import particle_section, solver_section, wall_section, wear_section
 from workflows.solver import LOG
+from workflows.work import Stage
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,6 +107,22 @@ class SlidingSample(Case):
         if span is None:
             return deck.render("lowered_bed", deck.lowered_bed(parameters, bed, restart))
         return deck.render("sliding_sample", deck.sliding_sample(parameters, bed, span, restart))
+
+    def bed_stages(self, parameters: Parameters, bed: Parameters) -> tuple[Stage, ...]:
+        """Return settling and, levelled, relaxing."""
+        return sliding_work.bed_stages(parameters, bed)
+
+    def bed_bytes(self, parameters: Parameters) -> float:
+        """Return what a bed leaves on disk."""
+        return sliding_work.bed_bytes(parameters)
+
+    def run_stages(self, parameters: Parameters, bed: Parameters | None) -> tuple[Stage, ...]:
+        """Return lowering, run-in and wear cycles."""
+        return sliding_work.run_stages(parameters, bed)
+
+    def run_bytes(self, parameters: Parameters) -> float:
+        """Return what a run leaves on disk."""
+        return sliding_work.run_bytes(parameters)
 
     def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
         """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0, if it has ends."""

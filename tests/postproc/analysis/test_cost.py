@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from postproc.analysis.cost import benchmark_seconds, job_costs, outside_solver_share, run_cost
+from postproc.analysis.cost import against_forecast, benchmark_seconds, job_costs, outside_solver_share, run_cost
 
 RUN = pd.DataFrame({"solver_s": [30.0, 50.0], "other_s": [1.0, 3.0], "particles": [100, 200], "steps": [10, 20]})
 RELATIVE = 1e-12  # rounding of one quotient
@@ -39,3 +39,13 @@ def test_benchmark_files_are_named_after_their_jobs(tmp_path):
     path = tmp_path / "worn_run_R9_convex.benchmark.tsv"
     path.write_text("s\th:m:s\n1.5\t0:00:01\n2.5\t0:00:02\n")
     assert benchmark_seconds([path]) == {"worn_run_R9_convex": 4.0}
+
+
+def test_measured_over_forecast():
+    """Processor time where it was measured, else wall time, over what was forecast; nothing for other jobs."""
+    costs = {"old": RUN, "new": RUN.assign(processor_s=[25.0, 35.0])}
+    jobs = job_costs({"figure": 6.0}, costs)
+    forecast = pd.DataFrame({"job": ["new", "old", "never run"], "solver_s": [50.0, 40.0, 7.0]})
+    found = against_forecast(jobs, forecast).set_index("job")["measured_over_forecast"]
+    assert found[["old", "new"]].tolist() == [80.0 / 40.0, 60.0 / 50.0]
+    assert pd.isna(found["figure"])

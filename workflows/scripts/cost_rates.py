@@ -1,0 +1,14 @@
+"""Measure what the solver's work costs on this machine."""
+
+import tempfile
+from pathlib import Path
+
+from workflows.job import job_log
+from workflows.progress import Progress
+from workflows.rate_benchmark import measured_rates
+from workflows.rates import write_rates
+
+with job_log(snakemake.log[0]), tempfile.TemporaryDirectory() as folder:
+    say = Progress("rates", 1).say
+    say("about a minute on an idle machine; other work on it makes them less sharp")
+    write_rates(Path(snakemake.output[0]), measured_rates(Path(folder), say))
