@@ -34,23 +34,26 @@ def rectangle_rim(width: float, length: float, element_size: float) -> np.ndarra
     return np.concatenate(sides)
 
 
-def mesh_plane(rim: np.ndarray, holes: np.ndarray, element_size: float, frame_width: float) -> PlaneMesh:
+def mesh_plane(
+    rim: np.ndarray, holes: np.ndarray, element_size: float, frame_width: float, fine_frame: bool = False
+) -> PlaneMesh:
     """Triangulate the rectangle within `rim` (r, 2) round `holes` (k, f, 2), and a frame of `frame_width`.
 
     The nodes begin with those of the rim, then those of the holes, bit for bit as given. Lengths in m;
-    a `frame_width` of 0 means no frame.
+    a `frame_width` of 0 means no frame. A fine frame has the elements of the rectangle, for one that will be curved.
     """
+    frame_size = element_size if fine_frame else max(element_size, frame_width / FRAME_EDGES)
     prescribed = np.concatenate([rim, holes.reshape(-1, 2)])
     with gmsh_model() as gmsh:
         tags = [gmsh.model.geo.addPoint(x, y, 0.0, element_size) for x, y in prescribed.tolist()]
         loops = _polygons(gmsh, tags, [len(rim)] + [holes.shape[1]] * len(holes))
         surfaces = [gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(loop) for loop in loops])]
         if frame_width > 0:
-            surfaces += _frame(gmsh, rim, tags, loops[0], element_size, frame_width)
+            surfaces += _frame(gmsh, rim, tags, loops[0], frame_size, frame_width)
         gmsh.model.geo.synchronize()
         for line in (line for loop in loops for line in loop):
             gmsh.model.mesh.setTransfiniteCurve(line, 2)  # one edge: the prescribed nodes and no others
-        gmsh.option.setNumber("Mesh.MeshSizeMax", max(element_size, frame_width / FRAME_EDGES))
+        gmsh.option.setNumber("Mesh.MeshSizeMax", frame_size)
         _grade(gmsh, surfaces[0], tags[len(rim) :], holes, element_size)
         gmsh.model.mesh.generate(2)
         node_tags, points, _ = gmsh.model.mesh.getNodes()
@@ -94,13 +97,12 @@ def _frame(
     rim: np.ndarray,
     tags: list[int],
     rim_lines: list[int],
-    element_size: float,
+    outer_size: float,
     width: float,
 ) -> list[int]:
     """Four trapezoids round the rim that meet in the corners' diagonals: surface tags."""
     corner = np.flatnonzero((np.abs(rim) == rim.max(axis=0)).all(axis=1)).tolist()  # in the rim's order
     outside = rim[corner] + np.sign(rim[corner]) * width
-    outer_size = max(element_size, width / FRAME_EDGES)
     outer = [gmsh.model.geo.addPoint(x, y, 0.0, outer_size) for x, y in outside.tolist()]
     spokes = [gmsh.model.geo.addLine(tags[c], o) for c, o in zip(corner, outer, strict=True)]
     surfaces = []

@@ -34,9 +34,31 @@ class _Bumps:
     row: np.ndarray
 
 
-def skirt_width(height_above_floor: float, skirt_slope: float) -> float:
-    """Width (m) of the ramp round a sample that stands `height_above_floor` (m) high; slope in rad."""
-    return (1 + SKIRT_DEPTH) * height_above_floor / math.tan(skirt_slope)
+def skirt_width(height_above_floor: float, skirt_slope: float, skirt_radius: float = 0.0) -> float:
+    """Width (m) of the ramp round a sample `height_above_floor` (m) high; arguments as in `sliding_sample`."""
+    drop, steepest = (1 + SKIRT_DEPTH) * height_above_floor, math.tan(skirt_slope)
+    if skirt_radius * steepest**2 >= drop:
+        return 2.0 * math.sqrt(drop * skirt_radius)
+    return drop / steepest + skirt_radius * steepest
+
+
+def skirt_fall(
+    beyond_rim: np.ndarray, height_above_floor: float, skirt_slope: float, skirt_radius: float
+) -> np.ndarray:
+    """How far (m) below the sample's top the ramp is at distances (m) beyond the rim; arguments as in `sliding_sample`.
+
+    Parabolas of curvature 1 / radius at top and foot, tangential to both planes, and the slope between them where
+    they do not meet before. Without a radius the slope alone.
+    """
+    steepest = math.tan(skirt_slope)
+    if skirt_radius == 0.0:
+        return steepest * beyond_rim
+    drop, width = (1 + SKIRT_DEPTH) * height_above_floor, skirt_width(height_above_floor, skirt_slope, skirt_radius)
+    curved = min(skirt_radius * steepest, 0.5 * width)  # width of each of the two curves
+    top = np.minimum(beyond_rim, curved) ** 2 / (2.0 * skirt_radius)
+    between = curved / skirt_radius * (np.clip(beyond_rim, curved, width - curved) - curved)
+    foot = (curved**2 - np.clip(width - beyond_rim, 0.0, curved) ** 2) / (2.0 * skirt_radius)
+    return np.minimum(top + between + foot, drop)
 
 
 def sample_top(width: float, length: float, element_size: float, pattern: ConvexPattern | None) -> SurfaceMesh:
@@ -55,34 +77,45 @@ def sliding_sample(
     pattern: ConvexPattern | None,
     height_above_floor: float,
     skirt_slope: float,
+    skirt_radius: float = 0.0,
 ) -> SurfaceMesh:
     """A sample with its top at z = `height_above_floor` (m) above the floor z = 0, and a ramp down all round.
 
-    The skirt falls at `skirt_slope` (rad) from the rim to 0.2 heights below the floor; its `part` is -1.
-    Other arguments, data and errors as in `sample_top`; the height must be > 0, the slope in (0, pi/4].
+    The skirt falls at `skirt_slope` (rad) from the rim to 0.2 heights below the floor; its `part` is -1. With a
+    `skirt_radius` (m) it begins and ends level, curved by that radius, and is nowhere steeper than the slope.
+    Other arguments, data and errors as in `sample_top`; the height must be > 0, the slope in (0, pi/4], the radius
+    not below 0.
     """
     if not height_above_floor > 0:
         raise ValueError(f"height_above_floor must be greater than 0 m, found {height_above_floor}")
     if not 0 < skirt_slope <= LARGEST_SKIRT_SLOPE:
         raise ValueError(f"skirt_slope must be in (0, {LARGEST_SKIRT_SLOPE:.4f}] rad, found {skirt_slope}")
-    flat = _flat_sample(width, length, element_size, pattern, skirt_width(height_above_floor, skirt_slope))
+    if not skirt_radius >= 0:
+        raise ValueError(f"skirt_radius must not be below 0 m, found {skirt_radius}")
+    ramp = (height_above_floor, skirt_slope, skirt_radius)
+    flat = _flat_sample(width, length, element_size, pattern, skirt_width(*ramp), fine_frame=skirt_radius > 0.0)
     beyond_rim = np.max(np.abs(flat.points[:, :2]) - (width / 2, length / 2), axis=1)
     points = flat.points.copy()
-    points[:, 2] += height_above_floor - math.tan(skirt_slope) * np.maximum(beyond_rim, 0.0)
+    points[:, 2] += height_above_floor - skirt_fall(np.maximum(beyond_rim, 0.0), *ramp)
     return _checked(SurfaceMesh(points, flat.triangles, flat.cell_data), element_size)
 
 
 def _flat_sample(
-    width: float, length: float, element_size: float, pattern: ConvexPattern | None, frame_width: float
+    width: float,
+    length: float,
+    element_size: float,
+    pattern: ConvexPattern | None,
+    frame_width: float,
+    fine_frame: bool = False,
 ) -> SurfaceMesh:
-    """Plane and bumps, top at z = 0, with a frame of `frame_width` (m, 0 for none) in the same plane."""
+    """Plane and bumps, top at z = 0, with a frame of `frame_width` (m, 0 for none), coarse or fine, in that plane."""
     for name, value in (("width", width), ("length", length), ("element_size", element_size)):
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"{name} of a sample must be greater than 0 m, found {value}")
     bumps = _place_bumps(pattern, width, length, element_size)
     holes = bumps.centres[:, None] + bumps.shell[None, : bumps.feet, :2]
     rim = rectangle_rim(width, length, _rim_element_size(width, length, element_size, holes))
-    return _join(mesh_plane(rim, holes, element_size, frame_width), len(rim), bumps)
+    return _join(mesh_plane(rim, holes, element_size, frame_width, fine_frame), len(rim), bumps)
 
 
 def _rim_element_size(width: float, length: float, element_size: float, holes: np.ndarray) -> float:

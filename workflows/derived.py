@@ -13,6 +13,7 @@ from postproc.wear.patch import physical_radius
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
 WALLS, PERIODIC = "walls", "periodic"  # values of bed.ends: two walls that push the bed along, or none
+RAMP = ("height_above_floor_m", "skirt_slope_rad", "skirt_radius_m")  # what the sample's skirt depends on
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
 
@@ -45,6 +46,12 @@ def ramp_hop(velocity: float, slope: float) -> float:
     velocity in m/s along the floor, slope in rad. The sample is hardly loaded over this length.
     """
     return 2.0 * velocity**2 * math.tan(slope) / GRAVITY
+
+
+def last_slope(sample: Mapping[str, Any]) -> float:
+    """Return the slope (rad) at which the ramp reaches the sample; of a curved one that of its last element."""
+    radius, slope = sample["skirt_radius_m"], sample["skirt_slope_rad"]
+    return min(slope, math.atan(sample["element_size_m"] / (2.0 * radius))) if radius else slope
 
 
 def rolling_coefficient_for_solver(coefficient: float, rolling_radius: str, contact: str) -> float:
@@ -170,8 +177,8 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
         for fraction, diameter in zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
     )
     return {
-        "ramp_hop_m": ramp_hop(sliding["velocity_m_per_s"], sample["skirt_slope_rad"]),
-        "skirt_width_m": skirt_width(sample["height_above_floor_m"], sample["skirt_slope_rad"]),
+        "ramp_hop_m": ramp_hop(sliding["velocity_m_per_s"], last_slope(sample)),
+        "skirt_width_m": skirt_width(*(sample[key] for key in RAMP)),
         "bed_length_m": length,
         "bed_start_m": sample["length_m"] / 2.0 + bed["behind_m"] - length,
         "bed_travel_m": travel,

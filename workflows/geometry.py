@@ -34,4 +34,5 @@ def sample_surface(sample: Mapping[str, Any], pattern: Mapping[str, Any] | None)
         convex_pattern(pattern),
         sample["height_above_floor_m"],
         sample["skirt_slope_rad"],
+        sample["skirt_radius_m"],
     )

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from meshes.pattern import pattern_faults
+from postproc.wear.caps import GRAVITY
 from workflows.config_files import ConfigError, Layer
 from workflows.derived import ADAPTIVE, THIN_BED_LAYERS, WALLS
 from workflows.geometry import convex_pattern
@@ -97,6 +98,20 @@ def skirt_in_bed(run: CheckedRun) -> Fault | None:
         if run.parameters["bed"][f"{key}_m"] < skirt:
             return f"bed.{key}_mm", f"at least {millimetres(skirt)}, the width of the sample's skirt"
     return None
+
+
+def ramp_holds_bed(run: CheckedRun) -> Fault | None:
+    """A curved ramp up to the sample is curved so gently that particles follow it: its radius is at least v^2/g."""
+    radius, least = (
+        run.parameters["sample"]["skirt_radius_m"],
+        run.parameters["sliding"]["velocity_m_per_s"] ** 2 / GRAVITY,
+    )
+    if radius == 0.0 or radius >= least:
+        return None
+    return (
+        "sample.skirt_radius_mm",
+        f"at least {millimetres(least)}, velocity squared over gravity, or 0 for a straight ramp",
+    )
 
 
 def floor_drives_bed(run: CheckedRun) -> Fault | None:
@@ -257,6 +272,7 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     no_particle_between,
     sample_in_bed,
     skirt_in_bed,
+    ramp_holds_bed,
     floor_drives_bed,
     element_resolves_sample,
     element_resolves_bump,

@@ -9,7 +9,7 @@ import pytest
 
 from meshes.bump import foot_nodes
 from meshes.pattern import ConvexPattern, bump_centres
-from meshes.sample import SKIRT_DEPTH, sample_top, sliding_sample
+from meshes.sample import SKIRT_DEPTH, sample_top, skirt_fall, skirt_width, sliding_sample
 from postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
 
 HEIGHT, SLOPE = 0.3e-3, math.radians(3)  # m, rad: the defaults of the sliding study
@@ -140,6 +140,37 @@ def test_skirt_is_a_ramp_to_below_the_floor():
     outer = np.unique(boundary_edges(mesh.triangles))
     assert mesh.points[outer, 2] == pytest.approx(-SKIRT_DEPTH * HEIGHT, rel=1e-9)
     assert np.abs(mesh.points[outer, :2]).max() == pytest.approx(0.025 + 1.2 * HEIGHT / math.tan(SLOPE), rel=1e-9)
+
+
+def test_a_curved_skirt_begins_and_ends_level():
+    """Two parabolas z = -x^2/2R down from the rim and up to the foot: no kink at either end."""
+    radius, height = 0.41, 0.05 * MM
+    mesh = sliding_sample(50 * MM, 40 * MM, MM, None, height, math.radians(1.0), radius)
+    beyond = np.max(np.abs(mesh.points[:, :2]) - (0.025, 0.02), axis=1)
+    drop, width = 1.2 * height, 2.0 * math.sqrt(1.2 * height * radius)
+    upper = (beyond >= 0.0) & (beyond <= width / 2.0)
+    lower = beyond > width / 2.0
+    assert min(upper.sum(), lower.sum()) > 100
+    assert beyond.max() == pytest.approx(width, rel=1e-9)
+    assert mesh.points[upper, 2] == pytest.approx(height - beyond[upper] ** 2 / (2.0 * radius), abs=ROUNDING * MM)
+    foot = height - drop + (width - beyond[lower]) ** 2 / (2.0 * radius)
+    assert mesh.points[lower, 2] == pytest.approx(foot, abs=ROUNDING * MM)
+    edges = mesh.points[:, :2][mesh.triangles[mesh.cell_data["part"] == -1]]
+    assert np.linalg.norm(np.diff(edges, axis=1), axis=2).max() < 2.0 * MM  # fine enough to be curved
+
+
+def test_a_steep_curved_skirt_is_straight_between_its_curves():
+    """Where the curves reach the slope before half the fall, the slope goes on between them; the fall is the same."""
+    slope, radius, height = math.radians(3.0), 0.02, MM
+    width = skirt_width(height, slope, radius)
+    assert width == pytest.approx(1.2 * height / math.tan(slope) + radius * math.tan(slope))
+    beyond = np.linspace(0.0, width, 20_001)
+    fall = skirt_fall(beyond, height, slope, radius)
+    gradient = np.diff(fall) / np.diff(beyond)
+    assert (gradient >= 0.0).all() and gradient.max() == pytest.approx(math.tan(slope))
+    assert np.abs(np.diff(gradient)).max() <= (beyond[1] / radius) * 1.001  # curvature is bounded: no kink anywhere
+    assert (fall[0], fall[-1]) == (0.0, pytest.approx(1.2 * height))
+    assert skirt_fall(beyond, height, slope, 0.0) == pytest.approx(math.tan(slope) * beyond)
 
 
 def test_labels():

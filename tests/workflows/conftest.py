@@ -74,6 +74,7 @@ sample:
   element_size_mm: 1.0
   height_above_floor_mm: 0.3
   skirt_slope_deg: 3.0
+  skirt_radius_mm: 0
   material: steel
 pattern: {major_axis: along_travel, row_spacing_mm: 40, row_offset_fraction: 0.5}
 bed:

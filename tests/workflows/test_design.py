@@ -522,8 +522,20 @@ def test_exactly_three_layers_are_enough(config):
 def test_the_hop_off_the_ramp_is_ballistic_and_told(config):
     """A particle leaving a slope with v tan(slope) upwards is back after 2 v tan(slope) / g; long hops are remarked."""
     assert ramp_hop(2.0, math.atan(0.01)) == pytest.approx(2.0 * (2.0 * 2.0 * 0.01 / 9.81))
-    remarks = figure_remarks(load_study("screening"))
-    assert any(remark.startswith("particles hop off the ramp, up to 14 mm") for remark in remarks)
+    straight = load_study("screening", overrides={"sample": {"skirt_radius_mm": 0}})
+    told = [remark for remark in figure_remarks(straight) if remark.startswith("particles hop off the ramp")]
+    assert told == ["particles hop off the ramp, up to 14 mm at the highest velocity"]
+
+
+def test_a_ramp_curved_by_v_squared_over_g_ends_the_hop():
+    """A particle follows a curve of radius v^2/g in free fall; what is left is the last element's angle. A tighter
+    curve than that of the fastest row is refused."""
+    study = load_study("screening")
+    hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
+    assert hop == pytest.approx(2.0 * 2.0**2 * (0.0015 / 2.0 / 0.41) / 9.81, rel=1e-3)
+    assert not any(remark.startswith("particles hop") for remark in figure_remarks(study))
+    with pytest.raises(ConfigError, match=r"skirt_radius_mm is 400 for row R3, allowed is at least 407.747 mm"):
+        load_study("screening", overrides={"sample": {"skirt_radius_mm": 400}})
     assert not any("hop" in remark for remark in figure_remarks(load_study("demo")))
 
 

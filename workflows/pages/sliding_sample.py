@@ -90,7 +90,7 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         *_sampling(study),
         (
             "Skirt not counted",
-            f"A ramp of {settings['sample']['skirt_slope_deg']:g}° leads from the floor on to the sample. It is not "
+            f"{_ramp(settings['sample'])} leads from the floor on to the sample. It is not "
             "worn and its wear is not counted, but it carries part of the bed: forces include it, wear does not.",
         ),
         (
@@ -105,6 +105,14 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
 def further_cap(settings: Mapping[str, Any]) -> str:
     """Return how far a node may move in one update, besides what its edges allow."""
     return f"as far as particles fall in {settings['wear']['gap_closing_fraction']:g} of the cycle's duration"
+
+
+def _ramp(sample: Mapping[str, Any]) -> str:
+    """Return what the ramp up to a sample is like."""
+    slope, radius = (f"{sample[key]:g}" for key in ("skirt_slope_deg", "skirt_radius_mm"))
+    if not sample["skirt_radius_mm"]:
+        return f"A ramp of {slope}°"
+    return f"A ramp of at most {slope}°, curved by a radius of {radius} mm at top and foot,"
 
 
 def _sampling(study: Mapping[str, Any]) -> list[tuple[str, str]]:
