@@ -22,10 +22,11 @@ def sample_triangles(
     pattern: ConvexPattern | None,
     height_above_floor: float,
     skirt_slope: float,
+    skirt_radius: float = 0.0,
 ) -> float:
     """About how many triangles `meshes.sample.sliding_sample` makes; same arguments."""
-    frame = skirt_width(height_above_floor, skirt_slope)
-    outer = max(element_size, frame / plane.FRAME_EDGES)
+    frame = skirt_width(height_above_floor, skirt_slope, skirt_radius)
+    outer = element_size if skirt_radius > 0.0 else max(element_size, frame / plane.FRAME_EDGES)
     rim = 2.0 * (width + length) + 4.0 * frame  # half way across the frame
     count = width * length / element_size**2 + rim * frame / (element_size * outer)
     if pattern is not None:

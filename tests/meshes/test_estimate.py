@@ -12,7 +12,7 @@ from meshes.sample import sliding_sample
 SAMPLE = 0.1  # relative; of the twenty-six samples of the screening within 7 %
 DISC = 0.05  # relative; of the studies' discs within 1 %
 STRETCH = 0.1  # relative; triangles count that only just reach in
-SKIRT = (1e-4, math.radians(1.0))
+SKIRTS = {"straight": (1e-4, math.radians(1.0), 0.0), "curved": (5e-5, math.radians(1.0), 0.41)}
 PATTERNS = {
     "plain": None,
     "long bumps": ConvexPattern(8e-3, 2e-3, 6e-3, 40e-3, 20e-3),
@@ -22,10 +22,10 @@ PATTERNS = {
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
-@pytest.mark.parametrize("element_size", [1.5e-3, 2e-3])
-def test_samples(pattern, element_size):
-    """Areas over the area of a triangle of the target edge, bumps and their finer elements included."""
-    given = (80e-3, 80e-3, element_size, PATTERNS[pattern], *SKIRT)
+@pytest.mark.parametrize(("element_size", "skirt"), [(1.5e-3, "straight"), (2e-3, "straight"), (1.5e-3, "curved")])
+def test_samples(pattern, element_size, skirt):
+    """Areas over the area of a triangle of the target edge; bumps, their finer elements and the skirt included."""
+    given = (80e-3, 80e-3, element_size, PATTERNS[pattern], *SKIRTS[skirt])
     made = len(sliding_sample(*given).triangles)
     assert sample_triangles(*given) == pytest.approx(made, rel=SAMPLE)
 

@@ -9,7 +9,7 @@ from typing import Any
 from meshes.estimate import sample_triangles
 from postproc.wear.caps import GRAVITY
 from workflows import deck
-from workflows.derived import ADAPTIVE
+from workflows.derived import ADAPTIVE, RAMP
 from workflows.geometry import convex_pattern
 from workflows.work import (
     CYCLE_BYTES,
@@ -37,8 +37,7 @@ def surface_triangles(run: Parameters) -> float:
     """Return about how many triangles a run's sample has."""
     sample = run["sample"]
     lengths = (sample["width_m"], sample["length_m"], sample["element_size_m"])
-    slope = sample["height_above_floor_m"], sample["skirt_slope_rad"]
-    return sample_triangles(*lengths, convex_pattern(run["pattern"]), *slope)
+    return sample_triangles(*lengths, convex_pattern(run["pattern"]), *(sample[key] for key in RAMP))
 
 
 def settled_particles(run: Parameters) -> float:
