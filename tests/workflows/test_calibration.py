@@ -77,7 +77,7 @@ def test_every_fidelity_loads(fidelity):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        ({"draw_down": {"length_mm": 20}}, r"draw_down\.length_mm is 20.*allowed is at least 79.5"),
+        ({"draw_down": {"length_mm": 20}}, r"draw_down\.length_mm is 20.*allowed is at least 106"),
         ({"draw_down": {"opening_mm": 300}}, r"draw_down\.opening_mm is 300.*allowed is from"),
         (
             {"calibration": {"compared_pair": "nobody"}},
