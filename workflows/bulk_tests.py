@@ -94,7 +94,7 @@ def simulated_width(box: Mapping[str, Any], particle: Mapping[str, Any]) -> floa
 
 
 def rest_energy(test: Mapping[str, Any]) -> float:
-    """Return the mean kinetic energy (J) of a particle below which all counts as being at rest.
+    """Return the mean kinetic energy (J) of a particle, that of its centre, below which all counts as being at rest.
 
     It is a fraction of m g d, what the median particle gains when it falls by its own diameter.
     """
