@@ -30,6 +30,7 @@ from postproc.plots.style import (
 OURS, OTHERS = COLOURS["convex"], COLOURS["plain"]
 PARTICLE_COLOUR, PARTICLE_EDGE = "#d8dee4", "#8a949e"
 BAND_COLOUR = "#000000"
+HALF_LABEL_POINTS = 36.0  # half the width of an angle's words
 FAMILY_COLOURS = ListedColormap(["#0072B2", "#9ecbe6"])
 RESPONSE_NAMES = {
     "shear_angle_deg": "Shear angle, shear box (°)",
@@ -73,6 +74,7 @@ def heaps(pictures: Sequence[Mapping[str, Any]], remarks: Sequence[str]) -> Figu
             each.plot(*(1e3 * np.array([start, end]).T), color="black", linewidth=1.4, solid_capstyle="butt")
         for slope in picture["slopes"]:
             _draw_slope(each, slope)
+        _set_limits(each, picture)
         each.set(aspect="equal", xlabel="Along the box (mm)", ylabel="Height (mm)")
         each.set_title(picture["title"], loc="left", fontsize=SMALLEST_FONT)
         each.grid(False)
@@ -102,9 +104,16 @@ def _draw_particles(axes: Axes, particles: pd.DataFrame) -> None:
             rasterized=True,
         )
     )
-    margin = 0.02e3 * float(np.ptp(front["y_m"]))
-    axes.set_xlim(1e3 * front["y_m"].min() - margin, 1e3 * front["y_m"].max() + margin)
-    axes.set_ylim(1e3 * front["z_m"].min() - margin, 1e3 * front["z_m"].max() + 6.0 * margin)
+
+
+def _set_limits(axes: Axes, picture: Mapping[str, Any]) -> None:
+    """Show every particle and wall of a heap whole."""
+    particles, walls = picture["particles"], np.array(picture["walls"]).reshape(-1, 2)
+    margin = 1e3 * float(particles["radius_m"].max())
+    for name, values, limits in (("y_m", walls[:, 0], axes.set_xlim), ("z_m", walls[:, 1], axes.set_ylim)):
+        low = min([(particles[name] - particles["radius_m"]).min(), *values])
+        high = max([(particles[name] + particles["radius_m"]).max(), *values])
+        limits(1e3 * low - margin, 1e3 * high + margin)
 
 
 def _draw_slope(axes: Axes, slope: Any) -> None:
@@ -114,11 +123,10 @@ def _draw_slope(axes: Axes, slope: Any) -> None:
     axes.annotate(
         f"{np.degrees(slope.angle_rad):.1f} ± {np.degrees(slope.uncertainty_rad):.1f}°",
         (1e3 * y.mean(), 1e3 * z.mean()),
-        xytext=(0, -26),
+        xytext=(0, 5.0 + HALF_LABEL_POINTS * abs(slope.gradient)),  # in the air, clear of the slope
         textcoords="offset points",
         ha="center",
         fontsize=SMALLEST_FONT,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
     )
 
 
