@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from postproc.calibration.loop import packing_seed
 from postproc.calibration.posterior import densest, interval
 from workflows.bulk_simulations import simulate_all
 from workflows.calibration import compared_pairs, read_posterior, run_calibration
@@ -14,7 +15,7 @@ from workflows.design import load_study
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 
 HIDDEN = {"particle.contact.sliding_friction": 0.3, "particle.contact.rolling_friction": 0.35}
-SEEDS = range(31_000, 31_004)  # of the packings that stand for the laboratory's
+SEEDS = [packing_seed(31_000, number) for number in range(4)]  # of the packings that stand for the laboratory's
 MOST_SIMULATIONS = 20  # what a closed loop may cost, repeats included
 STATED_SHARE = 0.95  # of the posterior, in the region and in the intervals that must hold the hidden pair
 WORKERS = 2
