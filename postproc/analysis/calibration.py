@@ -175,6 +175,18 @@ def repeat_table(repeats: pd.DataFrame, responses: Sequence[str]) -> pd.DataFram
     return pd.DataFrame(rows)
 
 
+def with_bands(repeats: pd.DataFrame, measured: Mapping[str, Measured]) -> pd.DataFrame:
+    """Return a table as from `repeat_table` with measured, measured_deviation, deviations and inside, as in
+    `statement_table`; only the responses that were measured."""
+    table = repeats[repeats["response"].isin(measured)].reset_index(drop=True)
+    aims = [measured[name] for name in table["response"]]
+    table["measured"], table["measured_deviation"] = [aim.value for aim in aims], [aim.deviation for aim in aims]
+    table["deviations"] = (table["mean"] - table["measured"]) / table["measured_deviation"]
+    each = zip(table["mean"], table["uncertainty"], aims, strict=True)
+    table["inside"] = [_inside(mean, uncertainty, aim) for mean, uncertainty, aim in each]
+    return table
+
+
 def information_table(problem: Problem, known: Posterior) -> pd.DataFrame:
     """Return one row per measured response: the bits that measuring it once more is expected to tell about the
     parameters, and its spread over the family, in the response's unit and in standard deviations of its measurement."""

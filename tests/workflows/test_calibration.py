@@ -1,11 +1,15 @@
 """A calibration study: what it asks for, what is refused, and that other studies can use what it found."""
 
+import json
+import re
+import shutil
 from pathlib import Path
 
 import pandas as pd
 import pytest
 import yaml
 
+from postproc.analysis.bulk_test import RESPONSES
 from postproc.analysis.calibration import RECOMMENDED
 from postproc.calibration.loop import packing_seed
 from workflows import calibration
@@ -19,9 +23,11 @@ from workflows.calibration import (
     run_box_sizes,
     run_calibration,
 )
+from workflows.calibration_findings import write_findings
 from workflows.calibration_page import page_context, page_parameters
 from workflows.calibration_tables import calibrated_materials, draw_all, read_calibrated
 from workflows.cases.calibration import PUBLISHED
+from workflows.checked_pairs import check_pair
 from workflows.deck import primes
 from workflows.design import REPOSITORY, ConfigError, load_study
 from workflows.figures import OF_CALIBRATIONS
@@ -43,7 +49,8 @@ def answers(tests, root, parallel, say):
     for test in tests:
         contact = test["particle"]["contact"]
         angle = 24.0 + 30.0 * contact["sliding_friction"] + 12.0 * contact["rolling_friction"]
-        found.append(Measurement({"shear_angle_deg": angle}, {"shear_angle_deg": 0.2}, {"shear_angle_deg": []}))
+        names = RESPONSES[test["kind"]]
+        found.append(Measurement(dict.fromkeys(names, angle), dict.fromkeys(names, 0.2), {name: [] for name in names}))
     return found
 
 
@@ -167,24 +174,59 @@ def test_another_study_uses_the_calibrated_materials(done, tmp_path):
     assert "calibrated" not in demo.runs[0].parameters["particle"]
 
 
-def test_page_tells_every_response(done, monkeypatch):
-    """Figures and page are made of the tables alone; what was measured but not simulated is said to be so."""
-    asked, folder = study(), done.folder
+@pytest.fixture(scope="module")
+def drawn(done):
+    """The same with its figures, sizes of boxes, materials and the state of one simulation beside its tables."""
+    folder = done.folder
     (folder / "figures").mkdir()
-    monkeypatch.setattr("workflows.calibration_tables.heap_pictures", lambda done: ([], pd.DataFrame({"response": []})))
-    monkeypatch.setattr("postproc.plots.calibration.heaps", lambda pictures, remarks: _empty_figure())
-    sizes = run_box_sizes({run.name: run.parameters for run in asked.runs}, PAIRS, folder, 1)
-    looks = pd.read_csv(folder / "looks.csv")
-    draw_all(done, looks, sizes, pd.read_csv(PUBLISHED / "shear_box_sizes.csv"), ["a remark"])
-    assert all((folder / "figures" / f"{name}.{kind}").is_file() for name in OF_CALIBRATIONS for kind in ("png", "csv"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("workflows.calibration_tables.heap_pictures", lambda done: ([], pd.DataFrame({"response": []})))
+        patch.setattr("postproc.plots.calibration.heaps", lambda pictures, remarks: _empty_figure())
+        sizes = run_box_sizes({run.name: run.parameters for run in study().runs}, PAIRS, folder, 1)
+        sizes.to_csv(folder / "box_sizes.csv", index=False)
+        looks = pd.read_csv(folder / "looks.csv")
+        draw_all(done, looks, sizes, pd.read_csv(PUBLISHED / "shear_box_sizes.csv"), ["a remark"])
     (folder / "materials.yaml").write_text("particles: {}\n")
-    monkeypatch.setattr("workflows.calibration_page.cost_table", lambda folder: pd.DataFrame())
-    monkeypatch.setattr("workflows.calibration_page.solver_said", lambda folder: "none")
     pd.DataFrame({"solver_s": [3.0, 4.0], "by": "rates of a test"}).to_csv(folder / "forecast.csv", index=False)
-    shown = page_context(done, page_parameters(asked, ["a remark"]))
+    cost = {"steps": 1000, "solver_s": 2.0, "particles": 30}
+    made = {"test": {"kind": "shear_box"}, "cost": cost, "solver": "Version LIGGGHTS-PUBLIC 3.8.0, compiled once"}
+    state_file = folder / calibration.SIMULATIONS / "shear_box_0" / "cycle_000" / "state.json"
+    state_file.parent.mkdir(parents=True)
+    state_file.write_text(json.dumps(made))
+    return done
+
+
+def test_page_tells_every_response(drawn):
+    """Figures and page are made of the tables alone; what was measured but not simulated is said to be so."""
+    figures = drawn.folder / "figures"
+    assert all((figures / f"{name}.{kind}").is_file() for name in OF_CALIBRATIONS for kind in ("png", "csv"))
+    shown = page_context(drawn, page_parameters(study(), ["a remark"]))
     assert shown["forecast"] == {"solver_s": 7.0, "by": "rates of a test"}
     assert any("Angle of repose" in sentence and "not simulated" in sentence for sentence in shown["said"])
     assert len(shown["figures"]) == len(OF_CALIBRATIONS) and len(shown["statements"]) == 2
+
+
+def test_findings_are_written_from_the_tables(drawn, tmp_path):
+    """The page in docs names date, version and scale, and holds pictures and simulations beside it."""
+    write_findings(drawn.folder, tmp_path, study())
+    page = (tmp_path / "calibration_results.md").read_text()
+    assert "LIGGGHTS-PUBLIC 3.8.0, page" in page and "particles at scale 5" in page
+    assert all(
+        (tmp_path / found).is_file() for found in re.findall(r"\]\((calibration_(?!results)\w+\.(?:png|csv))\)", page)
+    )
+    assert len(pd.read_csv(tmp_path / "calibration_simulations.csv")) == len(drawn.simulations)
+
+
+def test_a_found_pair_is_checked_in_another_test(done, formula, tmp_path):
+    """A pair is simulated in a test that the calibration left out; asked again, no row stands twice."""
+    run = study(calibration={"tests": ["draw_down"], "repeats": 2}, fidelity="standard").runs[0].parameters
+    shutil.copy(done.folder / "repeats.csv", tmp_path)
+    check_pair(run, RECOMMENDED, tmp_path, 1)
+    table = check_pair(run, RECOMMENDED, tmp_path, 1)
+    assert len(table) == 2 and (table["particle_scale"] == 4.0).all()
+    assert table[SLIDING].iloc[0] == pytest.approx(done.pairs[RECOMMENDED][SLIDING])
+    with pytest.raises(ValueError, match="no pair 'nobody', there are recommended, calibrated"):
+        check_pair(run, "nobody", tmp_path, 1)
 
 
 def _empty_figure():
