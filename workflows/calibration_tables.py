@@ -24,6 +24,7 @@ from postproc.analysis.calibration import (
 from postproc.calibration.loop import Posterior
 from postproc.calibration.problem import Problem
 from postproc.plots import calibration as plots
+from postproc.plots.heaps import heaps
 from postproc.plots.style import save
 from workflows.bulk_simulations import measured, simulated
 from workflows.bulk_tests import slot_length
@@ -84,7 +85,7 @@ def draw_all(
     other = done.published[done.published["row"] == done.compared].iloc[0]
     pictures, slopes = heap_pictures(done)
     drawn = {
-        "heaps": (plots.heaps(pictures, remarks), slopes),
+        "heaps": (heaps(pictures, remarks), slopes),
         "response_maps": (
             plots.response_maps(
                 grid, done.simulations, done.problem.measured, done.published, done.problem.names, remarks
@@ -106,7 +107,7 @@ def draw_all(
 
 
 def heap_pictures(done: Calibrated) -> tuple[list[dict[str, Any]], pd.DataFrame]:
-    """Return the heaps of the recommended pair, one per test, as `plots.heaps` wants them, and a table of slopes."""
+    """Return the heaps of the recommended pair, one per test, as `heaps` wants them, and a table of slopes."""
     pictures, tables = [], []
     values = done.pairs[RECOMMENDED]
     for experiment in done.problem.tests:

@@ -181,7 +181,7 @@ def drawn(done):
     (folder / "figures").mkdir()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("workflows.calibration_tables.heap_pictures", lambda done: ([], pd.DataFrame({"response": []})))
-        patch.setattr("postproc.plots.calibration.heaps", lambda pictures, remarks: _empty_figure())
+        patch.setattr("workflows.calibration_tables.heaps", lambda pictures, remarks: _empty_figure())
         sizes = run_box_sizes({run.name: run.parameters for run in study().runs}, PAIRS, folder, 1)
         sizes.to_csv(folder / "box_sizes.csv", index=False)
         looks = pd.read_csv(folder / "looks.csv")

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from postproc.analysis.calibration import RECOMMENDED
-from postproc.analysis.free_surface import Slope
 from postproc.calibration.problem import Measured
 from postproc.plots import calibration as plots
 from postproc.plots.style import remarks_of
@@ -38,18 +37,6 @@ def test_response_maps_name_axes_and_units():
     )
     assert {"Shear angle, shear box (°)", "Discharge time (s)", "Sliding friction, particles (-)"} <= set(texts(figure))
     assert remarks_of(figure) == REMARKS[0]
-
-
-def test_heaps_draw_the_stretch_that_was_fitted():
-    """The line of a slope runs over its stretch, in mm, at its angle."""
-    slope = Slope(np.arctan(0.7), 0.01, 0.03, 0.17, 0.12, -0.7, 0.0, 40)
-    particles = pd.DataFrame({"x_m": [0.0, 0.01], "y_m": [0.0, 0.2], "z_m": [0.0, 0.14], "radius_m": [0.006, 0.007]})
-    picture = {"title": "Shear box", "particles": particles, "slopes": [slope], "walls": [((0.0, 0.0), (0.2, 0.0))]}
-    figure = plots.heaps([picture], REMARKS)
-    drawn = figure.axes[0].lines[-1]
-    np.testing.assert_allclose(drawn.get_xdata(), [30.0, 170.0])
-    np.testing.assert_allclose(drawn.get_ydata(), [120.0, 120.0 - 0.7 * 140.0])
-    assert any("35.0 ± 0.6°" in text.get_text() for text in figure.axes[0].texts)
 
 
 def test_pairs_stand_beside_the_measured_band():
