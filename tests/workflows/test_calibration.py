@@ -30,7 +30,7 @@ from workflows.cases.calibration import PUBLISHED
 from workflows.checked_pairs import check_pair
 from workflows.deck import primes
 from workflows.design import REPOSITORY, ConfigError, load_study
-from workflows.figures import OF_CALIBRATIONS
+from workflows.figures import OF_CALIBRATIONS, page_templates
 
 MEASURED, PAIRS = PUBLISHED / "gravel_tests.csv", PUBLISHED / "gravel_pairs.csv"
 TABLES = ("simulations", "looks", "repeats")
@@ -200,6 +200,7 @@ def test_page_tells_every_response(drawn):
     """Figures and page are made of the tables alone; what was measured but not simulated is said to be so."""
     figures = drawn.folder / "figures"
     assert all((figures / f"{name}.{kind}").is_file() for name in OF_CALIBRATIONS for kind in ("png", "csv"))
+    assert all(Path(template).is_file() for template in page_templates(study()))
     shown = page_context(drawn, page_parameters(study(), ["a remark"]))
     assert shown["forecast"] == {"solver_s": 7.0, "by": "rates of a test"}
     assert any("Angle of repose" in sentence and "not simulated" in sentence for sentence in shown["said"])

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from workflows.design import Study
 
 KEY_NUMBERS = "calibration.html.j2"  # the whole page; it has nothing of a page about wear
+FURTHER_TEMPLATES = ()  # that it includes
 
 
 def remarks(study: Study) -> list[str]:
