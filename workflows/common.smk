@@ -8,7 +8,7 @@ from snakemake.utils import min_version
 
 from workflows.cases import CASES
 from workflows.deck import template_sources
-from workflows.design import TARGETS, ConfigError, list_studies, load_study
+from workflows.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
 from workflows.job import let_jobs_import
 from workflows.rates import rates_file
 from workflows.solver import CYCLE_EXECUTABLES, missing_program
@@ -33,10 +33,16 @@ def is_requested(study):
     return any(word in targets or word.startswith(f"results/{study}/") for word in sys.argv[1:])
 
 
+def confirming_studies():
+    """Names of the studies of best designs that have been found, or are asked for."""
+    names = [(name, f"{name}{CONFIRMATION}") for name in list_studies(ROOT)]
+    return [other for name, other in names if (ROOT / confirmation_design(name)).is_file() or is_requested(other)]
+
+
 def checked_studies():
     """All studies by name. A fault in one that is asked for ends here, in one sentence, before a job starts."""
     studies = {}
-    for name in list_studies(ROOT):
+    for name in [*list_studies(ROOT), *confirming_studies()]:
         try:
             studies[name] = load_study(name, ROOT, dict(config))
         except ConfigError as fault:

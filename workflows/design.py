@@ -34,13 +34,14 @@ from workflows.validation import (
     without_required,
 )
 
-__all__ = ["ConfigError", "Run", "Study", "list_studies", "load_study", "to_si"]
+__all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study", "to_si"]
 
 SECONDS_PER_HOUR = 3600.0
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
 FEWEST_RUNS = 4  # of a regression, see postproc/analysis/screening.py, which is slow to import
 DESIGN = "design"  # key of a study, and of its fidelity blocks
+CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
 RULE_NAMES = frozenset(
     found[1]
@@ -69,6 +70,7 @@ class Study:
     """A checked study. `settings` are merged, in the units that their keys spell; so are `design_rows`.
 
     factors: {short name: column of the design} of the regression of its results; empty without one
+    confirms: the study whose best designs this one simulates, "" for all others
     """
 
     name: str
@@ -82,6 +84,7 @@ class Study:
     factors: dict[str, str]
     paper_settings: dict[str, Any]
     materials: dict[str, Any]
+    confirms: str = ""
 
     def run(self, name: str) -> Run:
         """Return the run of that name. Raises ConfigError naming the runs there are."""
@@ -136,6 +139,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     """Return a checked study with all its runs.
 
     `overrides` are nested settings, as from the command line: {"fidelity": "standard", "particle_scale": 2}.
+    <name>_confirmation is the study with everything of <name> but its design, which is that of its best designs.
     Raises ConfigError: one sentence with file, line, key or row, the value found and what is allowed.
     """
     root = Path(root)
@@ -144,9 +148,11 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
             f"config/studies/{name}.yaml: a study cannot be called {name}, allowed are small letters, digits and"
             f" underscores, not ending in {' or '.join(TARGETS)}, and none of {', '.join(sorted(RULE_NAMES))}."
         )
-    if name not in list_studies(root):
-        raise ConfigError(unknown_name("config/studies", "study", name, list_studies(root)))
-    sources = _read_sources(name, root, overrides)
+    written = list_studies(root)
+    confirms = name.removesuffix(CONFIRMATION) if name not in written and name.endswith(CONFIRMATION) else ""
+    if (confirms or name) not in written:
+        raise ConfigError(unknown_name("config/studies", "study", confirms or name, written))
+    sources = _read_sources(confirms or name, root, overrides)
     fidelity = _fidelity(sources)
     layers = sources.stack(fidelity)
     settings = sources.merged(layers)
@@ -154,7 +160,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     check_material_names(layers, settings, materials, CASES[sources.case].material_keys)
     check_calibrated_for(layers, settings, materials, CASES[sources.case].material_keys)
     head = sources.study.values
-    rows = _design_rows(sources, fidelity, root)
+    rows = _rows_to_confirm(sources, confirms, root) if confirms else _design_rows(sources, fidelity, root)
     runs = tuple(
         _checked_run(sources, layers, settings, materials, row_layer, surface)
         for row_layer in rows
@@ -163,16 +169,35 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     return Study(
         name=name,
         case=sources.case,
-        title=head["title"],
-        question=head["question"],
+        title=f"{head['title']}: the best designs simulated" if confirms else head["title"],
+        question="Does one run of each best design wear what was predicted?" if confirms else head["question"],
         fidelity=fidelity,
         settings=settings,
         runs=runs,
         design_rows=tuple(row_layer.values for row_layer in rows),
-        factors=_factors(sources, rows),
+        factors={} if confirms else _factors(sources, rows),
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
         materials=materials,
+        confirms=confirms,
     )
+
+
+def confirmation_design(study: str) -> str:
+    """Return the path, from the repository, of the design table of a study's best designs."""
+    return f"results/{study}/confirmation/design.csv"
+
+
+def _rows_to_confirm(sources: _Sources, study: str, root: Path) -> list[Layer]:
+    """Return the checked rows of a study's best designs. Raises ConfigError where there are none (yet)."""
+    if not sources.study.values.get(FACTORS):
+        raise ConfigError(
+            f"{sources.study.source}: {study} has nothing to confirm, allowed is a study with factors, whose regression"
+            " finds a best design."
+        )
+    path = root / confirmation_design(study)
+    if not path.is_file():
+        raise ConfigError(f"{display_name(path, root)}: there is no such file yet, `snakemake {study}` writes it.")
+    return read_design(path, root, load_schema(f"cases/{sources.case}/design"))
 
 
 def _materials_file(settings: dict[str, Any], root: Path) -> Path:

@@ -18,6 +18,7 @@ from workflows.remarks import figure_remarks
 
 REPORT_FOLDER = Path(__file__).resolve().parent / "report"
 PUBLISHED_DESIGN = REPOSITORY / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
+CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")  # columns that are no property of the pattern
 PATTERN = (  # columns that make two rows the same
     "major_radius_mm",
     "minor_radius_mm",
@@ -61,17 +62,20 @@ OF_PINS = (  # of every study of pins on discs: what answers its question first,
 )
 OF_SERIES = {"mesh": ("mesh_series", "mesh_contours"), "size": ("size_invariance",)}  # of them, where the design has it
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
-FLOW = (  # of studies that name factors, and:
+SECOND_ROW = "flow_views_second"
+FLOW = (  # of studies that name factors or confirm one that does
     "relative_velocity",
     "wear_gradient",
     "wear_by_regime",
     "normal_force_by_regime",
     "velocity_profiles",
     "angular_velocity_profiles",
-    "flow_views_second",
+    "flow_views",
+    SECOND_ROW,
 )
+CONFIRMING = ("confirmation",)  # of studies that simulate another one's best designs
 PROFILES = ("velocity_profiles", "angular_velocity_profiles")  # of them, drawn by one job
-REGRESSION = (
+REGRESSION = (  # of studies that name factors
     "regression_coefficients",
     "regression_residuals",
     "regression_half_normal",
@@ -96,13 +100,16 @@ def figures_of(study: Study) -> list[str]:
 
 def _figures_of_samples(study: Study) -> list[str]:
     several = len(study.design_rows) > 1 and any(run.surface == "plain" for run in study.runs)
-    return [
+    several_shown = FLOW if len(study.design_rows) > 1 else [name for name in FLOW if name != SECOND_ROW]
+    names = [
+        *(CONFIRMING if study.confirms else ()),
         *(COMPARING_ROWS if several else ()),
-        *(FLOW if study.factors else ()),
+        *(several_shown if has_flow(study) else ()),
         *(REGRESSION if study.factors else ()),
         *OF_SAMPLES,
         *(OF_WEAR_UPDATES if is_deformed(study) else ()),
     ]
+    return list(dict.fromkeys(names))
 
 
 def _figures_of_pins(study: Study) -> list[str]:
@@ -138,15 +145,21 @@ def page_templates(study: Study) -> list[str]:
     return [str(REPORT_FOLDER / name) for name in (TEMPLATE, STYLE, page.KEY_NUMBERS, *page.FURTHER_TEMPLATES)]
 
 
+def has_flow(study: Study) -> bool:
+    """Return whether the flow regimes of a study's runs are found."""
+    return bool(study.factors or study.confirms)
+
+
 def has_findings(study: Study) -> bool:
     """Return whether a study can be held against the source's findings: it has some of its rows, and a regression."""
     return study.case == "sliding_sample" and bool(study.factors and published_rows(study))
 
 
 def finding_tables(study: Study) -> list[str]:
-    """Return the paths of the tables of findings that the page of a study shows."""
-    names = ("findings", "runs") if has_findings(study) else ()
-    return [f"results/{study.name}/findings/{name}.csv" for name in names]
+    """Return the paths of the tables of findings and best designs that the page of a study shows."""
+    names = ["findings/findings", "findings/runs"] if has_findings(study) else []
+    names += ["confirmation/prediction", "confirmation/design"] if study.factors else []
+    return [f"results/{study.name}/{name}.csv" for name in names]
 
 
 def is_deformed(study: Study) -> bool:
@@ -163,6 +176,7 @@ def job_names(study: Study) -> list[str]:
         *(f"{rule}_{run.name}" for run in study.runs for rule in RUN_RULES[study.case]),
         *dict.fromkeys(job_of_figure(name) for name in figures_of(study)),
         *(("findings",) if has_findings(study) else ()),
+        *(("best_designs",) if study.factors else ()),
     ]
 
 

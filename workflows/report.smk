@@ -6,6 +6,7 @@ from workflows.figures import (
     factor_labels,
     figure_files,
     finding_tables,
+    has_flow,
     flow_runs,
     is_deformed,
     page_parameters,
@@ -20,7 +21,7 @@ WEAR_TABLES = of_every_run("results/{study}/{run}/wear.csv")
 
 def regimes_of_study(wildcards):
     """The table of flow regimes of a study that has one."""
-    return [f"results/{wildcards.study}/flow/regimes.csv"] if study_of(wildcards).factors else []
+    return [f"results/{wildcards.study}/flow/regimes.csv"] if has_flow(study_of(wildcards)) else []
 
 
 rule worn_surface:
@@ -299,6 +300,7 @@ rule regression:
     input:
         summary="results/{study}/summary.csv",
         published="config/published/screening_coefficients.csv",
+        published_contours="config/published/screening_contours.csv",
     output:
         figure_coefficients=report(
             "results/{study}/figures/regression_coefficients.png",

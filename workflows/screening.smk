@@ -1,13 +1,15 @@
 """Figures of screening studies: their runs by flow regime, and the motion of the bed over them layer by layer."""
 
-from workflows.figures import flow_velocities
+from workflows.figures import CONDITIONS, PATTERN, flow_velocities
 
 REGIMES = "results/{study}/flow/regimes.csv"
 
 
 rule wear_gradient:
     input:
-        history="results/{study}/figures/wear_against_travel.csv",
+        design="results/{study}/design.csv",
+        # the stretches of travel within cycles lie beside these
+        wear=WEAR_TABLES,
         regimes=REGIMES,
         published="config/published/screening_results.csv",
     output:
@@ -169,3 +171,51 @@ rule findings:
         "Findings of the source beside those of {wildcards.study}"
     script:
         "scripts/findings.py"
+
+
+rule best_designs:
+    input:
+        summary="results/{study}/summary.csv",
+        regimes=REGIMES,
+    output:
+        design="results/{study}/confirmation/design.csv",
+        prediction="results/{study}/confirmation/prediction.csv",
+    log:
+        "results/{study}/logs/best_designs.log",
+    benchmark:
+        "results/{study}/logs/best_designs.benchmark.tsv"
+    params:
+        factors=lambda wildcards: study_of(wildcards).factors,
+        conditions=CONDITIONS,
+        columns=PATTERN,
+        fidelity=lambda wildcards: study_of(wildcards).fidelity,
+    message:
+        "Best designs of {wildcards.study}, to be simulated by {wildcards.study}_confirmation"
+    script:
+        "scripts/best_designs.py"
+
+
+rule confirmation:
+    input:
+        summary="results/{study}/summary.csv",
+        regimes=REGIMES,
+        prediction=lambda wildcards: f"results/{study_of(wildcards).confirms}/confirmation/prediction.csv",
+    output:
+        figure=report(
+            "results/{study}/figures/confirmation.png",
+            caption="report/confirmation.rst",
+            category="Regression",
+            labels={"figure": "Best designs, predicted and simulated"},
+        ),
+        table="results/{study}/figures/confirmation.csv",
+    log:
+        "results/{study}/logs/confirmation.log",
+    benchmark:
+        "results/{study}/logs/confirmation.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        fidelity=lambda wildcards: study_of(wildcards).fidelity,
+    message:
+        "Predicted and simulated wear of {wildcards.study}"
+    script:
+        "scripts/confirmation.py"

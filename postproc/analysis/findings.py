@@ -15,8 +15,7 @@ import pandas as pd
 from postproc.analysis.comparison import PLAIN
 from postproc.analysis.display import MILLIMETRES
 from postproc.analysis.evaluation import CONTINUOUS
-from postproc.analysis.factors import factor_of
-from postproc.analysis.model_terms import parse_term, term_columns
+from postproc.analysis.published_model import has_factors
 from postproc.analysis.regression import CONSTANT
 from postproc.analysis.replicates import relative_wear_intervals
 from postproc.analysis.screening import Screening
@@ -73,7 +72,7 @@ def gather(
     """
     summary, theirs = tables["summary"], tables["published_results"]
     terms = frozenset(tables["published_coefficients"]["term"]) - {CONSTANT}
-    same_factors = {name for term in terms for name in term.split("*")} <= set(study.names)
+    same_factors = has_factors(tables["published_coefficients"], study.names)
     found = tables["models"][tables["models"]["heredity"] == "none"]
     named = [tables[name].assign(row=tables[name]["row"].map(published_rows)) for name in ("gradients", "profiles")]
     return Evidence(
@@ -195,23 +194,6 @@ def unsteady(evidence: Evidence, rows: pd.DataFrame) -> str:
     start, end = evidence.published["relative_velocity_steady", "all", "from"], evidence.travel_end
     where = f"; the travel ends after {end:g} mm, the source's flow is steady from {start:g} mm on"
     return f"the flow over {count} of {len(rows)} is not shown to be steady{where if end < start else ''}"
-
-
-def published_model(design: pd.DataFrame, coefficients: pd.DataFrame, columns: Mapping[str, str]) -> dict[str, float]:
-    """Return the normalised wear (-) by row of a design by the published regression; {} without its factors.
-
-    coefficients: term and coefficient of ln(normalised wear) in coded units; columns: {short name: column}
-    """
-    names = list(columns)
-    terms = coefficients[coefficients["term"] != CONSTANT]
-    if not {name for term in terms["term"] for name in term.split("*")} <= set(names):
-        return {}
-    levels = {name: design[column].to_numpy(dtype=float) for name, column in columns.items()}
-    coded = np.column_stack([factor_of(name, values).coded(values) for name, values in levels.items()])
-    constant = float(coefficients.loc[coefficients["term"] == CONSTANT, "coefficient"].iloc[0])
-    parsed = [parse_term(term, names) for term in terms["term"]]
-    predicted = constant + term_columns(parsed, coded) @ terms["coefficient"].to_numpy(dtype=float)
-    return dict(zip(design["row"].astype(str), np.exp(predicted), strict=True))
 
 
 def runs_beside_source(evidence: Evidence, regimes: pd.DataFrame, published_model: Mapping[str, float]) -> pd.DataFrame:

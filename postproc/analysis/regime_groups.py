@@ -12,10 +12,11 @@ import pandas as pd
 
 from postproc.analysis.comparison import PLAIN, rows_to_show
 from postproc.analysis.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED, gradient_history, relative_to_largest
+from postproc.readers.cycle_folders import cycle_files
 
 PUBLISHED_IN_DETAIL = ("R5", "R2")  # of least wear in continuous and in discontinuous flow (Yan 2022, Fig 3.14 on)
 ORDER = (CONTINUOUS, DISCONTINUOUS, UNDECIDED)
-FEWEST_CYCLES = 3  # of a run that has a deviation along its travel
+FEWEST_STRETCHES = 3  # of travel, of a run that has a deviation along it
 
 
 def groups_of_rows(regimes: pd.DataFrame) -> pd.Series:
@@ -57,16 +58,21 @@ def wear_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
     return table[["run", "row", "surface", "regime"]].assign(relative_wear=relative, **parts).reset_index(drop=True)
 
 
-def force_by_group(summary: pd.DataFrame, wear_files: Sequence[str | Path], regimes: pd.DataFrame) -> pd.DataFrame:
+def force_by_group(summary: pd.DataFrame, run_folders: Sequence[str | Path], regimes: pd.DataFrame) -> pd.DataFrame:
     """Return the normal force on every run by group (Yan 2022, Fig 3.16).
 
-    Columns run, row, surface, regime, mean_normal_force_N and its deviation_N between wear cycles, NaN with fewer than
-    FEWEST_CYCLES. wear_files: wear.csv of the runs, in the order of the summary.
+    Columns run, row, surface, regime, mean_normal_force_N and its deviation_N between stretches of travel, NaN with
+    fewer than FEWEST_STRETCHES. run_folders: with cycle_*/wear_history.csv, in the order of the summary.
     """
-    forces = [pd.read_csv(path)["mean_normal_force_N"] for path in wear_files]
-    deviation = [one.std(ddof=1) if len(one) >= FEWEST_CYCLES else float("nan") for one in forces]
+    forces = [_stretch_forces(Path(folder)) for folder in run_folders]
+    deviation = [one.std(ddof=1) if len(one) >= FEWEST_STRETCHES else float("nan") for one in forces]
     table = summary[["run", "row", "surface", "mean_normal_force_N"]].assign(deviation_N=deviation)
     return by_group(table, regimes)[["run", "row", "surface", "regime", "mean_normal_force_N", "deviation_N"]]
+
+
+def _stretch_forces(folder: Path) -> pd.Series:
+    files = cycle_files(folder, "wear_history.csv")
+    return pd.concat([pd.read_csv(path)["mean_normal_force_N"] for path in files]) if files else pd.Series(dtype=float)
 
 
 def rows_in_detail(
@@ -107,7 +113,7 @@ def force_remarks(table: pd.DataFrame) -> list[str]:
     if not lacking.any():
         return []
     which = "no run has" if lacking.all() else f"{lacking.sum()} of {len(table)} runs do not have"
-    return [f"{which} the {FEWEST_CYCLES} wear cycles that a deviation needs"]
+    return [f"{which} the {FEWEST_STRETCHES} stretches of travel that a deviation needs"]
 
 
 def published_rows_in_detail(rows: Mapping[str, str]) -> list[str]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
 import pandas as pd
 
 from postproc.analysis.comparison import PLAIN
 from postproc.analysis.factors import Factor, factor_of
 from postproc.analysis.model_terms import aliasing, candidate_terms
+from postproc.analysis.published_model import has_factors, published_wear
 from postproc.analysis.screening import (
     Screening,
     best_design_table,
@@ -24,6 +26,7 @@ from postproc.analysis.screening import (
 from postproc.analysis.screening_warnings import confounded, screening_warnings
 
 WEAR = "archard_volume_per_metre_m3_per_m"  # runs of different travel compare by it
+MOST_PAIRS = 6  # of factors in the figure of contours
 NUISANCES = {"particle_scale": "particle scale"}  # columns that should be the same in all runs
 
 
@@ -71,9 +74,31 @@ def best_designs(study: Screening) -> pd.DataFrame:
     return table.rename(columns={name: f"{name}_over_largest" for name in ("predicted", "run_low", "run_high")})
 
 
-def regression_tables(study: Screening) -> dict[str, pd.DataFrame]:
+def contour_table(study: Screening, coefficients: pd.DataFrame, pairs: pd.DataFrame) -> pd.DataFrame:
+    """Return the response over pairs of factors, see `screening.response_surface`, with published_wear beside it.
+
+    coefficients: of the published regression; pairs: x_factor and y_factor of its contours
+    The study's own pairs follow the published ones, MOST_PAIRS in all. Of a study without the published factors there
+    are its own pairs alone, and published_wear is NaN.
+    """
+    known = has_factors(coefficients, study.names)
+    positions = {name: k for k, name in enumerate(study.names)}
+    names = pairs[["x_factor", "y_factor"]].to_numpy() if known else ()
+    theirs = [(positions[x], positions[y]) for x, y in names if {x, y} <= set(positions)]
+    ours = [pair for pair in pairs_to_show(study) if set(pair) not in [set(one) for one in theirs]]
+    table = response_surface(study, [*theirs, *ours][:MOST_PAIRS])
+    if not known:
+        return table.assign(published_wear=float("nan"))
+    places = np.zeros((len(table), len(study.names)))
+    for axis in ("x", "y"):
+        for name, part in table.groupby(f"{axis}_factor"):
+            places[part.index, positions[name]] = study.factors[positions[name]].coded(part[axis].to_numpy())
+    return table.assign(published_wear=published_wear(coefficients, study.names, places))
+
+
+def regression_tables(study: Screening, coefficients: pd.DataFrame, pairs: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """Return all tables by name: coefficients, models (with the p value by permutation of the best), residuals,
-    effects, surface, aliasing, best_designs and warnings.
+    effects, surface, aliasing, best_designs and warnings. coefficients, pairs: published, as for `contour_table`.
     """
     chance = chance_test(study)
     models = model_table(study).assign(p_value_permutation=float("nan"))
@@ -84,7 +109,7 @@ def regression_tables(study: Screening) -> dict[str, pd.DataFrame]:
         "models": models,
         "residuals": residuals(study),
         "effects": effects(study),
-        "surface": response_surface(study, pairs_to_show(study)),
+        "surface": contour_table(study, coefficients, pairs),
         "aliasing": aliasing(terms, study.coded, study.names).rename_axis("term").reset_index(),
         "best_designs": best_designs(study),
         "warnings": pd.DataFrame({"warning": screening_warnings(study)}, dtype=str),

@@ -73,6 +73,7 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
                 va="bottom",
                 fontsize=SMALLEST_FONT,
                 rotation=upright,
+                bbox={"color": "white", "pad": 0.5},
             )
     axes.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
     axes.set_ylim(0.0, HEADROOM * np.nanmax([1.0, *total]))

@@ -8,11 +8,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
+from postproc.analysis.published_model import has_factors
 from postproc.analysis.regression import CONSTANT
 from postproc.analysis.screening import Screening
-from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, facet_columns, new_figure
 
 OURS, PUBLISHED = "#0072B2", "#D55E00"
 NAMED_RESIDUALS = 3  # runs with the largest residuals, which are named
@@ -20,7 +22,9 @@ NOTED = 1.5  # -, pseudo errors from which on a contrast is named
 SMALLEST_PROBABILITY = 0.001  # that three digits show
 ROOM = 0.12  # -, of an axis, for names beside points
 CONTOURS = 9
-SHIFT = 0.16  # of a line of the coefficient figure, between ours and published
+PUBLISHED_LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5)  # of dashed lines
+LINE = 0.42  # inches, of a term of the coefficient figure
+SHIFT = 0.2  # of a line of the coefficient figure, between ours and published
 DRAWN = {  # figure -> the table that it draws
     "coefficients": "coefficients",
     "residuals": "residuals",
@@ -35,7 +39,7 @@ def coefficients(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence
     table: as from `analysis.screening.chosen_coefficients`; published: term, coefficient, p_value, source.
     """
     terms = list(dict.fromkeys([*table["term"], *published["term"]]))
-    figure = new_figure(remarks, min(LARGEST_HEIGHT, 1.9 + 0.34 * len(terms)))
+    figure = new_figure(remarks, min(LARGEST_HEIGHT, 1.9 + LINE * len(terms)))
     axes = figure.subplots()
     line = {term: -k for k, term in enumerate(terms)}
     ours = np.array([line[term] for term in table["term"]]) + SHIFT
@@ -119,14 +123,15 @@ def half_normal(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def response_contours(
     surface: pd.DataFrame, labels: Mapping[str, str], log_factors: Sequence[str], remarks: Sequence[str]
 ) -> Figure:
-    """Draw contours of the predicted normalised wear over pairs of factors, others at their middle level.
+    """Draw contours of the predicted normalised wear over pairs of factors, others at their middle level; those of the
+    published regression, if known, as dashed lines at the same levels.
 
-    surface: as from `analysis.screening.response_surface`; labels: {short name: name and unit for the axis}
+    surface: as from `analysis.screening_tables.contour_table`; labels: {short name: name and unit for the axis}
     log_factors: short names of factors whose levels double; their axes are logarithmic
     """
     pairs = list(surface.groupby(["x_factor", "y_factor"], sort=False))
     figure = new_figure(remarks, LARGEST_HEIGHT)
-    columns = 1 if len(pairs) == 1 else 2
+    columns = facet_columns(len(pairs)) if len(pairs) != 4 else 2
     rows = -(-len(pairs) // columns)
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     low, high = surface["normalised_wear"].min(), surface["normalised_wear"].max()
@@ -137,6 +142,10 @@ def response_contours(
         drawn = axes.contourf(x, y, np.clip(wear, levels[0], levels[-1]), levels, cmap=MAP)
         lines = axes.contour(x, y, wear, levels[1:-1], colors="white", linewidths=0.7)
         axes.clabel(lines, fmt="%.2g", fontsize=SMALLEST_FONT, colors="white")
+        theirs = table["published_wear"].to_numpy().reshape(shape)
+        if np.isfinite(theirs).all():
+            dashed = axes.contour(x, y, theirs, PUBLISHED_LEVELS, colors=PUBLISHED, linewidths=1.2, linestyles="--")
+            axes.clabel(dashed, fmt="%.2g", fontsize=SMALLEST_FONT, colors=PUBLISHED)
         _factor_axis(axes, "x", labels[first], x[0], first in log_factors)
         _factor_axis(axes, "y", labels[second], y[:, 0], second in log_factors)
         axes.grid(False)
@@ -144,6 +153,9 @@ def response_contours(
         spare.remove()
     bar = figure.colorbar(drawn, ax=list(grid[: len(pairs)]), format="%.2g")
     bar.set_label("Predicted wear / largest wear (-)")
+    if surface["published_wear"].notna().all():
+        handles = [Line2D([], [], color=PUBLISHED, linestyle="--", label="by the published regression (Yan 2022)")]
+        figure.legend(handles=handles, loc="outside upper center")
     return figure
 
 
@@ -184,8 +196,7 @@ def regression_figures(
     tables: as from `analysis.screening_tables.regression_tables`; published: coefficients to show beside, left out
     unless the study has all their factors; labels: {short name: name and unit for an axis}
     """
-    factors = {name for term in published["term"] if term != CONSTANT for name in term.removesuffix("^2").split("*")}
-    beside = published if factors <= set(study.names) else published[:0]
+    beside = published if has_factors(published, study.names) else published[:0]
     doubling = [factor.name for factor in study.factors if factor.spacing == "log"]
     return {
         "coefficients": coefficients(tables["coefficients"], beside, remarks),

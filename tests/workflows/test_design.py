@@ -589,3 +589,37 @@ def test_rows_with_seeds_are_replicates(config):
     assert seeds == [20220317, 20221317]
     assert all(isinstance(seed, int) for seed in seeds)
     assert len(study.beds) == 2
+
+
+BEST = "row,major_radius_mm,minor_radius_mm,column_spacing_mm,height_mm,velocity_m_per_s,bed_thickness_mm\n"
+FACTORS = "surfaces: [convex, plain]\nfactors: {a: major_radius_mm, t: bed_thickness_mm}"
+
+
+def test_best_designs_are_a_study_of_their_own(config):
+    """<study>_confirmation has the settings of its study and the rows of its regression, each convex and plain."""
+    config.edit("studies/small.yaml", "surfaces: [convex, plain]", FACTORS)
+    path = config.path("designs/small.csv")
+    path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\n")
+    with pytest.raises(
+        ConfigError, match=r"small/confirmation/design\.csv: there is no such file yet, `snakemake small`"
+    ):
+        load_study("small_confirmation", config.root)
+    folder = config.root / "results/small/confirmation"
+    folder.mkdir(parents=True)
+    (folder / "design.csv").write_text(BEST + "continuous,2,4,40,3,0.5,30\n")
+    study, base = (load_study(name, config.root) for name in ("small_confirmation", "small"))
+    assert [run.name for run in study.runs] == ["continuous_convex", "continuous_plain"]
+    assert (study.confirms, study.factors, base.confirms) == ("small", {}, "")
+    assert study.settings == base.settings
+    assert study.title == "A small study: the best designs simulated"
+    (folder / "design.csv").write_text(BEST + "continuous,2,4,40,3,0.5,thick\n")
+    with pytest.raises(ConfigError, match=r"results/small/confirmation/design\.csv, line 2"):
+        load_study("small_confirmation", config.root)
+
+
+def test_a_study_without_factors_has_nothing_to_confirm(config):
+    """Without a regression there is no best design; of a study that is not there neither."""
+    with pytest.raises(ConfigError, match="small has nothing to confirm, allowed is a study with factors"):
+        load_study("small_confirmation", config.root)
+    with pytest.raises(ConfigError, match="other"):
+        load_study("other_confirmation", config.root)

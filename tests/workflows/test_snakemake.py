@@ -155,3 +155,20 @@ def test_paper_fidelity_dry_runs(tmp_path):
     shutil.copy(REPOSITORY / "config/studies/screening.yaml", folder / "config/studies")
     output = finish(snakemake(folder, "screening", "--dry-run", "--config", "fidelity=paper"))
     assert "worn_run" in output and "26" in output
+
+
+def test_best_designs_are_planned_once_they_are_found(tmp_path):
+    """Before the regression has written them the target is a sentence; then both runs and their figure are planned."""
+    folder = workspace(tmp_path)
+    shutil.copy(REPOSITORY / "config/studies/screening.yaml", folder / "config/studies")
+    output, _ = (process := snakemake(folder, "screening_confirmation", "--dry-run")).communicate(timeout=TIMEOUT)
+    assert process.returncode != 0
+    assert "results/screening/confirmation/design.csv: there is no such file yet, `snakemake screening`" in output
+    design = (folder / "config/designs/screening.csv").read_text().splitlines()
+    found = folder / "results/screening/confirmation"
+    found.mkdir(parents=True)
+    (found / "design.csv").write_text(f"{design[0]}\n{design[9].replace('R9', 'continuous')}\n")
+    (found / "prediction.csv").write_text("row,fidelity\ncontinuous,quick\n")
+    output = finish(snakemake(folder, "screening_confirmation", "--dry-run"))
+    assert output.count("Wear cycles of continuous_") == 2
+    assert "Predicted and simulated wear of screening_confirmation" in output

@@ -16,7 +16,7 @@ from postproc.analysis.history import wear_history
 from postproc.analysis.screening_tables import regression_tables, screen_summary
 from postproc.analysis.summary import summary_table
 from postproc.plots.regression import DRAWN
-from workflows.design import load_study
+from workflows.design import REPOSITORY, load_study
 from workflows.figures import (
     FIGURES,
     OF_SERIES,
@@ -29,6 +29,7 @@ from workflows.figures import (
 from workflows.page_text import UNDEFINED, name_and_unit, number, setting_rows
 from workflows.study_report import TABLE_OF, caption, commit, write_page
 
+PUBLISHED = REPOSITORY / "config" / "published"
 CYCLES = 2
 RUN_WALL, RUN_SOLVER, BED_WALL, BED_SOLVER, OTHER_WALL = 100.0, 90.0, 50.0, 48.0, 2.0  # s, of each job
 RELATIVE = 1e-9  # numbers pass through CSV text
@@ -353,6 +354,14 @@ def test_the_page_of_a_pin_needs_no_bed_and_no_sample(tmp_path):
     assert "Damping assumed" in page and "Skirt not counted" not in page and "Layers:" not in page
 
 
+def write_prediction(folder):
+    """The prediction of one best design."""
+    folder.mkdir()
+    row = {"row": "continuous", "major_radius_mm": 2.0, "minor_radius_mm": 4.0, "not_in_model": "a"}
+    volumes = dict.fromkeys(("predicted_m3_per_m", "run_low_m3_per_m", "run_high_m3_per_m"), 1e-9)
+    pd.DataFrame([row | volumes]).to_csv(folder / "prediction.csv", index=False)
+
+
 def write_findings(folder):
     """The two tables of findings, a line each."""
     folder.mkdir()
@@ -391,11 +400,14 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
     assert names == [f"regression_{name}" for name in DRAWN]
     assert [job for job in page_parameters(study)["jobs"] if "regression" in job] == ["regression"]
     write_results(tmp_path / "small", study)
-    tables = regression_tables(screen_summary(read_summary(tmp_path / "small" / "summary.csv"), study.factors))
+    published = [pd.read_csv(PUBLISHED / f"screening_{name}.csv") for name in ("coefficients", "contours")]
+    screening = screen_summary(read_summary(tmp_path / "small" / "summary.csv"), study.factors)
+    tables = regression_tables(screening, *published)
     (tmp_path / "small" / "regression").mkdir()
     for name, table in tables.items():
         table.to_csv(tmp_path / "small" / "regression" / f"{name}.csv", index=False)
     write_findings(tmp_path / "small" / "findings")
+    write_prediction(tmp_path / "small" / "confirmation")
     write_page(tmp_path / "small" / "report.html", page_parameters(study))
     text = html.unescape((tmp_path / "small" / "report.html").read_text(encoding="utf-8"))
     assert "<td>R12 wears more</td>" in text.replace(' <small class="note">Yan 2022</small>', "")
@@ -404,6 +416,7 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
     assert len(embedded(text, "small_findings_runs.csv")) == 1
     assert "findings" in page_parameters(study)["jobs"]
     assert "Regression of the wear" in text
+    assert "<code>snakemake small_confirmation</code>" in text and "<td>continuous</td>" in text
     assert tables["models"]["model"][0] in text
     for warning in tables["warnings"]["warning"]:
         assert f"Mind: {warning}." in text

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from postproc.analysis.replicates import relative_wear_intervals
 from workflows.page_text import data_uri, number
 from workflows.pages.sliding_sample import ROWS_IN_DETAIL
 
-TEXTS = dict.fromkeys(("model", "given", "not_in_model", "warning"), str)  # columns that may be empty
+TEXTS = ("model", "given", "not_in_model", "warning")  # columns of words, which may be empty
 REGRESSION_TABLES = ("models", "best_designs", "warnings")
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 
@@ -34,25 +34,32 @@ def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -
         "repeated": bool(results["interval_low"].notna().any()),
         "compared": len(study["design_rows"]) > 1,
         "accelerated": acceleration != 1.0,
+        "deformed": bool(study["settings"]["wear"]["deform"]),
         "cards": cards(results, acceleration),
         "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
-        "regression": regression(folder / "regression") if study["factors"] else None,
+        "regression": regression(folder) | {"factors": list(study["factors"])} if study["factors"] else None,
         "findings": findings(folder / "findings") if study["findings"] else None,
     }
 
 
 def regression(folder: Path) -> dict[str, Any]:
-    """Return the models, the best designs and the warnings of a study's regression, as lists of rows."""
-    tables = {name: pd.read_csv(folder / f"{name}.csv", converters=TEXTS) for name in REGRESSION_TABLES}
-    shown = {name: table.to_dict("records") for name, table in tables.items()}
-    return shown | {"factors": list(tables["best_designs"].columns[1:-4])}
+    """Return models, best designs, those by regime and warnings of a study's regression, as lists of rows."""
+    tables = {name: read_with_texts(folder / "regression" / f"{name}.csv", TEXTS) for name in REGRESSION_TABLES}
+    by_regime = in_display_units(read_with_texts(folder / "confirmation" / "prediction.csv", TEXTS))
+    return {name: table.to_dict("records") for name, table in (tables | {"by_regime": by_regime}).items()}
+
+
+def read_with_texts(path: Path, texts: Sequence[str]) -> pd.DataFrame:
+    """Return a table in which empty cells of some columns are empty words, not missing numbers."""
+    table = pd.read_csv(path, dtype=dict.fromkeys(texts, object))
+    return table.assign(**{name: table[name].fillna("") for name in texts if name in table})
 
 
 def findings(folder: Path) -> dict[str, Any]:
     """Return the verdicts on the source's findings, their counts and its runs, as lists of rows and for download."""
     files = {name: folder / f"{name}.csv" for name in ("findings", "runs")}
     verdicts = pd.read_csv(files["findings"], keep_default_na=False)
-    runs = pd.read_csv(files["runs"], converters=dict.fromkeys(("published_regime", "published_wear_over_plain"), str))
+    runs = read_with_texts(files["runs"], ("published_regime", "published_wear_over_plain"))
     return {
         "verdicts": verdicts.to_dict("records"),
         "counts": verdicts["verdict"].value_counts().to_dict(),

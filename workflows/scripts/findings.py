@@ -4,7 +4,8 @@ import pandas as pd
 
 from postproc.analysis.comparison import read_summary
 from postproc.analysis.finding_tests import findings_table
-from postproc.analysis.findings import gather, published_model, runs_beside_source
+from postproc.analysis.findings import gather, runs_beside_source
+from postproc.analysis.published_model import published_wear_by_row
 from postproc.analysis.screening_tables import screen_summary
 from workflows.job import job_log
 
@@ -18,5 +19,5 @@ with job_log(snakemake.log[0]):
     told = tables["published_regimes"]
     found = findings_table(evidence, tables["published_findings"], told)
     found.to_csv(snakemake.output.findings, index=False)
-    model = published_model(tables["published_design"], tables["published_coefficients"], given.factors)
+    model = published_wear_by_row(tables["published_design"], tables["published_coefficients"], given.factors)
     runs_beside_source(evidence, told, model).to_csv(snakemake.output.runs, index=False)

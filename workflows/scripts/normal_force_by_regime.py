@@ -1,5 +1,7 @@
 """Draw the normal force on all samples by regime."""
 
+from pathlib import Path
+
 from postproc.analysis.comparison import read_summary
 from postproc.analysis.regime_groups import force_by_group, force_remarks, regime_remarks
 from postproc.analysis.replicates import mean_of_replicates
@@ -10,7 +12,7 @@ from workflows.job import job_log
 with job_log(snakemake.log[0]):
     files = snakemake.input
     regimes = read_summary(files.regimes)
-    runs = force_by_group(read_summary(files.summary), files.wear, regimes)
+    runs = force_by_group(read_summary(files.summary), [Path(path).parent for path in files.wear], regimes)
     table = mean_of_replicates(runs, snakemake.params.settings)
     table.to_csv(snakemake.output.table, index=False)
     remarks = [*snakemake.params.remarks, *regime_remarks(regimes), *force_remarks(table)]

@@ -13,11 +13,11 @@ from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     study = screen_summary(read_summary(snakemake.input.summary), snakemake.params.factors)
-    tables = regression_tables(study)
+    published = pd.read_csv(snakemake.input.published)
+    tables = regression_tables(study, published, pd.read_csv(snakemake.input.published_contours))
     for name, table in tables.items():
         table.to_csv(snakemake.output[name], index=False)
     remarks = [*snakemake.params.remarks, *warnings_for_figures(study)]
-    published = pd.read_csv(snakemake.input.published)
     figures = regression_figures(study, tables, published, snakemake.params.labels, remarks)
     for name, figure in figures.items():
         save(figure, snakemake.output[f"figure_{name}"])

@@ -1,9 +1,12 @@
 """Draw the relative wear gradient along the travel by regime."""
 
+from pathlib import Path
+
 import pandas as pd
 
-from postproc.analysis.comparison import read_history, read_summary
+from postproc.analysis.comparison import read_summary
 from postproc.analysis.flow_history import published_window
+from postproc.analysis.history import wear_within_cycles
 from postproc.analysis.regime_groups import gradients_by_group, regime_remarks
 from postproc.plots.flow import along_travel
 from postproc.plots.style import save
@@ -11,7 +14,8 @@ from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     regimes = read_summary(snakemake.input.regimes)
-    table = gradients_by_group(read_history(snakemake.input.history), regimes)
+    folders = [Path(path).parent for path in snakemake.input.wear]
+    table = gradients_by_group(wear_within_cycles(snakemake.input.design, folders), regimes)
     table.to_csv(snakemake.output.table, index=False)
     window = published_window(pd.read_csv(snakemake.input.published), snakemake.params.run_in)
     label = "Wear gradient over the largest of all runs (-)"

@@ -13,10 +13,10 @@ from postproc.analysis.findings import (
     REFUTED,
     UNSAID,
     gather,
-    published_model,
     runs_beside_source,
     side_of_one,
 )
+from postproc.analysis.published_model import published_wear_by_row
 from postproc.analysis.screening_tables import regression_tables, screen_summary
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -44,7 +44,7 @@ def read(name):
 def tables():
     """A study that wears by the published model and flows, turns and presses as the source tells."""
     design = pd.read_csv(ROOT / "config/designs/screening.csv")
-    wear = design["row"].map(published_model(design, read("coefficients"), FACTORS)).to_numpy()
+    wear = design["row"].map(published_wear_by_row(design, read("coefficients"), FACTORS)).to_numpy()
     wear = 1e-9 * wear * np.exp(np.random.default_rng(3).normal(0.0, 0.02, 13))
     ratio = design["row"].map(RATIOS).fillna(0.8).to_numpy()
     base = np.where(design["row"] == "R12", 0.2, 0.7)
@@ -65,7 +65,7 @@ def tables():
     )
     gradients = regimes.assign(travel_mm=1.0, relative_gradient=np.where(flows, 0.6, 0.1))
     study = screen_summary(summary, FACTORS)
-    found = regression_tables(study)
+    found = regression_tables(study, read("coefficients"), read("contours"))
     return {
         "summary": summary,
         "regimes": regimes,
@@ -191,10 +191,10 @@ def test_a_ratio_near_one_needs_replicates():
 def test_published_model_at_its_own_runs():
     """At the middle of all factors it gives exp(-1.859), at R5 (v, t, b and d high) the sum of Table 3.10."""
     design = pd.read_csv(ROOT / "config/designs/screening.csv")
-    found = published_model(design, read("coefficients"), FACTORS)
+    found = published_wear_by_row(design, read("coefficients"), FACTORS)
     assert found["R6"] == pytest.approx(np.exp(-1.859), rel=DIGITS)
     assert found["R5"] == pytest.approx(np.exp(-1.859 + 0.650 + 1.426 - 0.633), rel=DIGITS)
-    assert published_model(design, read("coefficients"), {"a": "major_radius_mm"}) == {}
+    assert published_wear_by_row(design, read("coefficients"), {"a": "major_radius_mm"}) == {}
 
 
 def test_runs_stand_beside_the_source(tables):

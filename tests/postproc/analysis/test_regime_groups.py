@@ -87,17 +87,18 @@ def test_gradients_have_the_group_of_their_row(regimes):
     assert table.groupby("row")["regime"].first().to_dict() == {"R1": CONTINUOUS, "R2": DISCONTINUOUS, "R3": CONTINUOUS}
 
 
-def test_deviation_needs_three_cycles(regimes, summary, tmp_path):
-    """Forces of 4, 5 and 6 N in three cycles deviate by 1 N; two cycles have no deviation, which is said."""
-    files = []
-    for k, run in enumerate(summary["run"]):
-        files.append(tmp_path / f"{run}.csv")
-        forces = [4.0, 5.0, 6.0] if k == 0 else [4.0, 6.0]
-        pd.DataFrame({"mean_normal_force_N": forces}).to_csv(files[-1], index=False)
-    table = force_by_group(summary, files, regimes)
+def test_deviation_needs_three_stretches(regimes, summary, tmp_path):
+    """Forces of 4, 5 and 6 N over stretches of two cycles deviate by 1 N; two stretches have no deviation."""
+    folders = [tmp_path / run for run in summary["run"]]
+    for k, folder in enumerate(folders):
+        for cycle, forces in ((1, [4.0, 5.0] if k == 0 else [4.0]), (2, [6.0])):
+            (folder / f"cycle_{cycle:03d}").mkdir(parents=True)
+            table = pd.DataFrame({"mean_normal_force_N": forces})
+            table.to_csv(folder / f"cycle_{cycle:03d}" / "wear_history.csv", index=False)
+    table = force_by_group(summary, folders, regimes)
     assert table.set_index("run").loc["R1_convex", "deviation_N"] == pytest.approx(1.0)
     assert table["deviation_N"].isna().sum() == 5
-    assert force_remarks(table) == ["5 of 6 runs do not have the 3 wear cycles that a deviation needs"]
+    assert force_remarks(table) == ["5 of 6 runs do not have the 3 stretches of travel that a deviation needs"]
     assert force_remarks(table.assign(deviation_N=1.0)) == []
     assert force_remarks(table.assign(deviation_N=np.nan))[0].startswith("no run has")
 

@@ -6,7 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.analysis.screening_tables import best_designs, regression_tables, screen_summary, strongest_factor
+from postproc.analysis.screening_tables import (
+    best_designs,
+    contour_table,
+    regression_tables,
+    screen_summary,
+    strongest_factor,
+)
 from postproc.plots.regression import DRAWN, regression_figures
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -19,6 +25,10 @@ FACTORS = {
     "t": "bed_thickness_mm",
 }
 WEAR = 1e-9  # m3/m
+
+
+def read(name):
+    return pd.read_csv(ROOT / f"config/published/screening_{name}.csv")
 
 
 @pytest.fixture
@@ -61,13 +71,30 @@ def test_nothing_is_claimed_about_an_aliased_factor(summary):
     assert table["t"].tolist() == pytest.approx([20.0])
 
 
+def test_contours_have_the_published_pairs_and_their_values(summary):
+    """The four pairs of the source come first, with its regression's wear; other factors have their own pairs alone."""
+    study = screen_summary(summary, FACTORS)
+    published, pairs = (
+        pd.read_csv(ROOT / f"config/published/screening_{name}.csv") for name in ("coefficients", "contours")
+    )
+    table = contour_table(study, published, pairs)
+    drawn = list(dict.fromkeys(zip(table["x_factor"], table["y_factor"], strict=True)))
+    assert drawn[:4] == [("a", "t"), ("a", "v"), ("v", "t"), ("b", "d")]
+    corner = table[(table["x_factor"] == "v") & (table["x"] == 2.0) & (table["y"] == 40.0)].iloc[0]
+    assert corner["published_wear"] == pytest.approx(np.exp(-1.859 + 0.650 + 1.426))
+    few = screen_summary(summary, {name: FACTORS[name] for name in "vt"})
+    assert contour_table(few, published, pairs)["published_wear"].isna().all()
+
+
 def test_all_tables_and_figures_are_made(summary):
     """Every figure has its table; published coefficients stand beside those of a study of the same factors only."""
     study = screen_summary(summary, FACTORS)
-    tables = regression_tables(study)
+    published, pairs = (
+        pd.read_csv(ROOT / f"config/published/screening_{name}.csv") for name in ("coefficients", "contours")
+    )
+    tables = regression_tables(study, published, pairs)
     assert tables["models"]["p_value_permutation"].notna().tolist() == [True] + [False] * (len(tables["models"]) - 1)
     assert tables["aliasing"].shape == (27, 28)
-    published = pd.read_csv(ROOT / "config/published/screening_coefficients.csv")
     labels = {name: f"{name} (mm)" for name in FACTORS}
     figures = regression_figures(study, tables, published, labels, ["a remark"])
     assert set(figures) == set(DRAWN)
@@ -76,6 +103,6 @@ def test_all_tables_and_figures_are_made(summary):
     assert "Yan 2022, Table 3.10" in names
     few = {name: FACTORS[name] for name in "vt"}
     other = screen_summary(summary, few)
-    figures = regression_figures(other, regression_tables(other), published, labels, ["a remark"])
+    figures = regression_figures(other, regression_tables(other, published, pairs), published, labels, ["a remark"])
     names = [text.get_text() for text in figures["coefficients"].legends[0].get_texts()]
     assert "Yan 2022, Table 3.10" not in names

@@ -96,7 +96,7 @@ def test_half_normal_plot_names_the_largest(study):
 
 def test_contours_have_real_units(study):
     """One panel per pair with the factors' levels as ticks, doubling ones on a logarithmic axis, and a labelled bar."""
-    surface = response_surface(study, pairs_to_show(study), 11)
+    surface = response_surface(study, pairs_to_show(study), 11).assign(published_wear=np.nan)
     figure = regression.response_contours(surface, LABELS, ["a", "b", "v", "t"], REMARKS)
     *panels, bar = figure.axes
     assert [(axes.get_xlabel(), axes.get_ylabel()) for axes in panels] == [
@@ -119,13 +119,13 @@ def test_a_surface_that_is_flat_is_drawn():
     factors = {"x": Factor("a", 1.0, 4.0), "z": Factor("b", 1.0, 4.0)}
     study = screen(design, factors, rng.uniform(1.0, 2.0, 4))
     assert study.model.terms == ()
-    surface = response_surface(study, pairs_to_show(study), 5)
+    surface = response_surface(study, pairs_to_show(study), 5).assign(published_wear=np.nan)
     figure = regression.response_contours(surface, LABELS, [], REMARKS)
     assert len(figure.axes) == 2
 
 
 def test_surface_is_the_models_prediction(study):
     """At the middle of every factor the surface has e to the constant."""
-    surface = response_surface(study, [(1, 2)], 3)
+    surface = response_surface(study, [(1, 2)], 3).assign(published_wear=np.nan)
     middle = surface[(surface["x"] == 4.0) & (surface["y"] == 40.0)]["normalised_wear"].item()
     assert middle == pytest.approx(np.exp(study.model.coefficients[0]))
