@@ -19,7 +19,17 @@ VARIES = 1e-9  # -, relative range of a nuisance that counts as a difference
 
 def screening_warnings(study: Screening) -> list[str]:
     """Return what is lost, aliased, or too little in a screening study's regression; empty when nothing is."""
-    parts = (_lost_runs, _lost_mirrors, _lost_terms, _nuisances, _few_runs, _equals, _neighbours, _heredity)
+    parts = (
+        _lost_runs,
+        _lost_mirrors,
+        _lost_terms,
+        _nuisances,
+        _few_runs,
+        _equals,
+        _neighbours,
+        _heredity,
+        _no_replicates,
+    )
     return [sentence for part in parts for sentence in part(study)]
 
 
@@ -131,3 +141,8 @@ def _heredity(study: Screening) -> Iterator[str]:
     positions = np.arange(len(study.model.terms))[None]
     if not obeys(positions, study.model.terms, "strong")[0]:
         yield "the model is not hierarchical: it holds for coded units only, other levels would need other terms"
+
+
+def _no_replicates(study: Screening) -> Iterator[str]:
+    if len(np.unique(study.coded, axis=0)) == len(study.coded):
+        yield "no row is repeated with another packing: the error of the model is scatter and misfit together"

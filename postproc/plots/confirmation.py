@@ -12,6 +12,8 @@ from postproc.analysis.comparison import PLAIN
 from postproc.analysis.confirmation import interval_reach
 from postproc.plots.style import MARKERS, OTHER_COLOUR, SMALLEST_FONT, colour, new_figure, scaled
 
+ROOM = 1.05  # -, of the largest value on the axis
+
 
 def confirmation(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw the predicted wear per metre (mm3/m) of each best design with its interval, and what the runs wear.
@@ -32,7 +34,7 @@ def confirmation(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         axes.text(1.0, place + 0.18, words, transform=axes.get_yaxis_transform(), ha="right", fontsize=SMALLEST_FONT)
     largest = float(table.filter(like="mm3_per_m").max(axis=None))
     unit, ticks = scaled("mm³/m", largest)
-    axes.set_xscale("log")
+    axes.set_xlim(0.0, ROOM * largest)
     axes.xaxis.set_major_formatter(ticks)
     axes.set_xlabel(f"Wear per length of travel ({unit})")
     axes.set_yticks(lines, table["row"])

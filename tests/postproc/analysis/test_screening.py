@@ -175,3 +175,11 @@ def test_a_model_without_parents_is_called_not_hierarchical(study):
     assert any(sentence.startswith("the model is not hierarchical") for sentence in sentences)
     assert any(sentence.startswith("b*d looks much like") for sentence in sentences)
     assert any("27 candidate terms compete for 13 runs" in sentence for sentence in sentences)
+
+
+def test_runs_without_replicates_are_said(study, design, factors, wear):
+    """Without a repeated row scatter and misfit are one; a design of which a row is repeated does not say so."""
+    words = "no row is repeated with another packing"
+    assert any(sentence.startswith(words) for sentence in screening_warnings(study))
+    repeated = screen(pd.concat([design, design[:1]], ignore_index=True), factors, np.append(wear, 1.01 * wear[0]))
+    assert not any(sentence.startswith(words) for sentence in screening_warnings(repeated))
