@@ -1,10 +1,14 @@
 """Calibrations: bulk tests simulated where a rule says, and what they tell about contact parameters."""
 
-from workflows.calibration_page import page_parameters as calibration_parameters
 from workflows.figures import OF_CALIBRATIONS
+from workflows.pages.calibration import page_parameters as calibration_parameters
 
 CALIBRATIONS = "|".join(name for name in STUDIES if STUDIES[name].case == "calibration") or "no_calibration"
 SIZES_BEFORE = f"{PUBLISHED_TABLES}/shear_box_sizes.csv"
+
+
+localrules:
+    bulk_test_deck,
 
 
 # summary.csv and report.html of a calibration are made of other files than those of a wear study

@@ -27,25 +27,11 @@ PACKAGES = ("numpy", "scipy", "pandas", "scikit-learn", "matplotlib", "snakemake
 
 
 def write_page(path: Path, study: Mapping[str, Any], measured: Path, pairs: Path) -> None:
-    """Write the page of a calibration beside its tables; study as in `page_parameters`."""
+    """Write the page of a calibration beside its tables; study as in `pages.calibration.page_parameters`."""
     done = read_calibrated(study["run"], measured, pairs, path.parent)
     part = path.with_suffix(".html.part")
     part.write_text(environment().get_template(KEY_NUMBERS).render(page_context(done, study)), encoding="utf-8")
     os.replace(part, path)
-
-
-def page_parameters(study: Any, remarks: list[str]) -> dict[str, Any]:
-    """Return what the page says about a study's configuration, JSON-able."""
-    return {
-        "name": study.name,
-        "title": study.title,
-        "question": study.question,
-        "fidelity": study.fidelity,
-        "settings": study.settings,
-        "paper_settings": study.paper_settings,
-        "remarks": remarks,
-        "run": study.runs[0].parameters,
-    }
 
 
 def page_context(done: Calibrated, study: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,6 @@ from typing import Any
 import jinja2
 import jinja2.meta
 
-from postproc.readers.contacts import CONTACT_COLUMNS
 from postproc.wear.caps import GRAVITY
 from postproc.wear.laws import law_kernels
 from workflows.derived import WALLS
@@ -213,6 +212,8 @@ def _exact_ledger_of_sample(run: Mapping[str, Any], span: Span) -> dict[str, Any
 
 def _sampled_contacts(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
     """Return what a deck needs to write sampled contacts."""
+    from postproc.readers.contacts import CONTACT_COLUMNS  # slow to import, and every job reads its study first
+
     columns = range(1, CONTACT_COLUMNS + 1)
     return {
         "sampling_interval_steps": run["solver"]["sampling_interval_steps"],

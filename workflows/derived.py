@@ -8,7 +8,6 @@ from typing import Any
 
 from meshes.sample import skirt_width
 from postproc.wear.caps import GRAVITY
-from postproc.wear.patch import physical_radius
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
@@ -130,6 +129,8 @@ def physical_patch_factor(parameters: dict[str, Any]) -> float:
     modulus = parameters["wear"].get("physical_shear_modulus_pa")
     if modulus is None:
         return 1.0
+    from postproc.wear.patch import physical_radius  # slow to import, and every job reads its study first
+
     particle, wall = parameters["particle"], parameters["sample_material"]
     pair = [(particle["shear_modulus_pa"], modulus), (wall["shear_modulus_pa"],) * 2]
     compliances = [

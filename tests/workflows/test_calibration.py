@@ -24,13 +24,14 @@ from workflows.calibration import (
     run_calibration,
 )
 from workflows.calibration_findings import write_findings
-from workflows.calibration_page import page_context, page_parameters
+from workflows.calibration_page import page_context
 from workflows.calibration_tables import calibrated_materials, draw_all, read_calibrated
 from workflows.cases.calibration import PUBLISHED
 from workflows.checked_pairs import check_pair
 from workflows.deck import primes
 from workflows.design import REPOSITORY, ConfigError, load_study
 from workflows.figures import OF_CALIBRATIONS, page_templates
+from workflows.pages.calibration import page_parameters
 
 MEASURED, PAIRS = PUBLISHED / "gravel_tests.csv", PUBLISHED / "gravel_pairs.csv"
 TABLES = ("simulations", "looks", "repeats")

@@ -14,6 +14,20 @@ KEY_NUMBERS = "calibration.html.j2"  # the whole page; it has nothing of a page 
 FURTHER_TEMPLATES = ()  # that it includes
 
 
+def page_parameters(study: Study, remarks: list[str]) -> dict[str, Any]:
+    """Return what the page says about a study's configuration, JSON-able."""
+    return {
+        "name": study.name,
+        "title": study.title,
+        "question": study.question,
+        "fidelity": study.fidelity,
+        "settings": study.settings,
+        "paper_settings": study.paper_settings,
+        "remarks": remarks,
+        "run": study.runs[0].parameters,
+    }
+
+
 def remarks(study: Study) -> list[str]:
     """Return what figures must say about model, convention and width."""
     run = study.runs[0].parameters
