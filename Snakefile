@@ -3,10 +3,9 @@
 
     snakemake                       the demo
     snakemake screening --config fidelity=standard
-    snakemake demo_decks
     snakemake screening_forecast --config fidelity=paper
 
-Snakemake finds the choices for one machine by itself: profiles/default, which links into workflows/.
+Snakemake finds profiles/default by itself, the choices for one machine; docs/cluster.md has those for a cluster.
 """
 
 
@@ -19,6 +18,7 @@ include: "workflows/report.smk"
 include: "workflows/screening.smk"
 include: "workflows/pin_on_disc.smk"
 include: "workflows/calibration.smk"
+include: "workflows/submissions.smk"
 
 
 for STUDY in STUDIES:
@@ -48,6 +48,7 @@ for STUDY in STUDIES:
             rates=used_rates,
         log:
             f"results/{STUDY}/logs/forecast.log",
+        localrule: True
         params:
             work=solver_work(STUDY),
             study=STUDY,

@@ -29,6 +29,9 @@ rule calibrated_parameters:
     benchmark:
         "results/{study}/logs/calibrated_parameters.benchmark.tsv"
     threads: calibration_threads
+    resources:
+        runtime=asked("calibrated_parameters", 0),
+        mem_mb=asked("calibrated_parameters", 1),
     params:
         run=first_run,
         templates=[template_sources("shear_box"), template_sources("draw_down")],
@@ -48,6 +51,9 @@ rule box_sizes:
     benchmark:
         "results/{study}/logs/box_sizes.benchmark.tsv"
     threads: calibration_threads
+    resources:
+        runtime=asked("box_sizes", 0),
+        mem_mb=asked("box_sizes", 1),
     params:
         runs=lambda wildcards: {run.name: run.parameters for run in study_of(wildcards).runs},
         templates=template_sources("shear_box"),

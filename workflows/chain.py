@@ -12,7 +12,7 @@ from postproc.mesh import SurfaceMesh, read_surface, write_stl
 from workflows import deck, state
 from workflows.cases import CASES
 from workflows.schedule import Span, cycle_title, first_span, known_spans, next_span
-from workflows.solver import DECK
+from workflows.solver import DECK, LAUNCHER
 
 MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
 SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
@@ -23,8 +23,8 @@ class Chain:
     """A run as the driver sees it.
 
     `case`: name in `CASES`; `parameters` and `bed` as the case makes them (SI), no bed where the case has none; paths,
-    the MPI ranks that the solver gets, which change nothing but the time it takes, and the folder of a finished run
-    with the same parameters, whose cycles this one shares.
+    the MPI ranks that the solver gets and what starts them, which change nothing but the time it takes, and the folder
+    of a finished run with the same parameters, whose cycles this one shares.
     """
 
     name: str
@@ -35,6 +35,7 @@ class Chain:
     bed: Mapping[str, Any] | None = None
     bed_restart: Path | None = None
     ranks: int = 1
+    launcher: str = LAUNCHER
     same_as: Path | None = None
 
 

@@ -1,6 +1,7 @@
 """Studies, checked before anything runs, and the input functions of all stages."""
 
 import sys
+from functools import cache
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
@@ -11,7 +12,7 @@ from workflows.deck import template_sources
 from workflows.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
 from workflows.job import let_jobs_import
 from workflows.rates import rates_file
-from workflows.solver import CYCLE_EXECUTABLES, missing_program
+from workflows.solver import CYCLE_EXECUTABLES, LAUNCHER, missing_program
 
 min_version("9.0")
 
@@ -19,6 +20,8 @@ ROOT = Path(workflow.basedir)
 PUBLISHED_TABLES = ROOT / "config" / "published"
 SOLVER_RULES = ("settled_bed", "worn_run", "calibrated_parameters", "box_sizes")
 CORES = workflow.cores or 1  # on a cluster nobody says
+# What comes before the tables of a study: on a cluster all that is not named here is one submission.
+BEFORE_TABLES = ("surface_mesh", "cost_rates", *SOLVER_RULES)
 let_jobs_import(ROOT)
 
 
@@ -180,3 +183,29 @@ def solver_work(study):
         return work_of(STUDIES[study])
 
     return work
+
+
+def ranks_of(wildcards):
+    return study_of(wildcards).settings["solver"]["ranks"]
+
+
+def launcher_of(wildcards):
+    """The program that starts the ranks of a solver; none for one rank."""
+    return LAUNCHER if ranks_of(wildcards) > 1 else None
+
+
+@cache
+def demands_of(study):
+    from workflows.resources import demands  # slow to import, and few jobs ask for it
+
+    return demands(STUDIES[study], ROOT)
+
+
+def asked(rule, measure):
+    """A resource function: what jobs of a rule ask a cluster for, more at every attempt; measure 0 is min, 1 is MB."""
+
+    def amount(wildcards, attempt):
+        words = dict(wildcards.items())
+        return attempt * demands_of(words.pop("study"))["_".join([rule, *words.values()])][measure]
+
+    return amount

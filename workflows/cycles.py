@@ -39,6 +39,7 @@ from workflows.schedule import Span, first_span
 from workflows.solver import (
     CYCLE_EXECUTABLES,
     EXECUTABLE,
+    LAUNCHER,
     LOG,
     SCREEN,
     SolverError,
@@ -138,6 +139,7 @@ def simulate(chain: Chain, span: Span | None, folder: Path, triangles: int, prog
         lambda step: progress.update(before + step // substeps, title(chain, cycle)),
         triangles={f"sample_{cycle}": triangles},
         executable=cycle_executable(chain, span),
+        launcher=chain.launcher,
     )
 
 
@@ -179,7 +181,7 @@ def write_products(chain: Chain, finished: int) -> None:
     write_surface(chain.folder / WORN_SURFACE, worn_surface(chain, Span(**states[-1]["span"])))
 
 
-def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1) -> None:
+def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1, launcher: str = LAUNCHER) -> None:
     """Fill and settle a bed; leaves bed.restart and cost.csv in the folder. Raises SolverError."""
     parameters = deck.settled_bed(bed)
     total = parameters["settling_steps"] + parameters["relaxing_steps"]
@@ -187,7 +189,7 @@ def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1) ->
     with state.only_driver(folder, progress.say):
         write_bed(bed, folder)
         before = processor_seconds()
-        seconds = run_deck(folder, ranks, lambda step: progress.update(step, "filling and settling"))
+        seconds = run_deck(folder, ranks, lambda step: progress.update(step, "filling and settling"), launcher=launcher)
     particles = int(thermo_table(folder / LOG)["Atoms"][-1])
     processor = round(processor_seconds() - before, 3)
     row = {"solver_s": round(seconds, 3), "processor_s": processor, "steps": total, "particles": particles}

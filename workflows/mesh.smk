@@ -8,6 +8,8 @@ rule surface_mesh:
         "results/{study}/logs/surface_mesh_{run}.log",
     benchmark:
         "results/{study}/logs/surface_mesh_{run}.benchmark.tsv"
+    group:
+        "meshes"
     params:
         case=case_of,
         geometry=run_geometry,

@@ -1,6 +1,12 @@
 """Beds and runs: everything that calls the solver, and the same decks without calling it."""
 
 
+# A deck is rendered in a second: on a cluster, where snakemake was called.
+localrules:
+    bed_deck,
+    run_decks,
+
+
 rule settled_bed:
     output:
         restart="results/{study}/beds/{bed}/bed.restart",
@@ -9,7 +15,13 @@ rule settled_bed:
         "results/{study}/logs/settled_bed_{bed}.log",
     benchmark:
         "results/{study}/logs/settled_bed_{bed}.benchmark.tsv"
-    threads: lambda wildcards: study_of(wildcards).settings["solver"]["ranks"]
+    threads: ranks_of
+    resources:
+        runtime=asked("settled_bed", 0),
+        mem_mb=asked("settled_bed", 1),
+        tasks=ranks_of,
+        cpus_per_task=1,
+        mpi=launcher_of,
     params:
         bed=bed_parameters,
         templates=template_sources("settled_bed"),
@@ -32,7 +44,13 @@ rule worn_run:
         "results/{study}/logs/worn_run_{run}.log",
     benchmark:
         "results/{study}/logs/worn_run_{run}.benchmark.tsv"
-    threads: lambda wildcards: study_of(wildcards).settings["solver"]["ranks"]
+    threads: ranks_of
+    resources:
+        runtime=asked("worn_run", 0),
+        mem_mb=asked("worn_run", 1),
+        tasks=ranks_of,
+        cpus_per_task=1,
+        mpi=launcher_of,
     params:
         case=case_of,
         run=run_parameters,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import resource
+import shlex
 import shutil
 import signal
 import subprocess
@@ -18,8 +19,10 @@ from postproc.readers.solver_log import SolverLogError, failure, last_step, repo
 
 DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
 EXECUTABLE = "liggghts"
+LAUNCHER = "mpirun --bind-to none"  # starts the ranks of a solver; a cluster's profile may name another
 LEDGER_EXECUTABLE = str(Path(__file__).resolve().parents[1] / "solver" / "build" / "liggghts-ledger")
 CYCLE_EXECUTABLES = {"solver": LEDGER_EXECUTABLE, "dumps": EXECUTABLE}  # of wear cycles, by the ledger's producer
+OF_SLURM = ("SLURM_", "PMI_", "PMIX_")  # environment variables of a job
 POLL_SECONDS = 0.25  # between two looks at the log
 LAST_LINES = 12  # of the solver's output, shown when it fails
 _PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
@@ -41,16 +44,21 @@ def missing_program(executable: str) -> str | None:
     return f"{executable} is not on the PATH; `make setup` installs it and `make doctor` checks it."
 
 
-def solver_command(ranks: int, executable: str = EXECUTABLE) -> list[str]:
+def solver_command(ranks: int, executable: str = EXECUTABLE, launcher: str = LAUNCHER) -> list[str]:
     """Return the command that runs a deck; output is line-buffered, or fatal messages would vanish in a pipe."""
     deck = ["stdbuf", "-oL", executable, "-in", DECK, "-log", LOG]
-    return deck if ranks == 1 else ["mpirun", "--bind-to", "none", "-n", str(ranks), *deck]
+    return deck if ranks == 1 else [*shlex.split(launcher), "-n", str(ranks), *deck]
 
 
-def solver_environment() -> dict[str, str]:
-    """Return the environment of the solver; Open MPI refuses to run as root unless told twice."""
+def solver_environment(by_slurm: bool = False) -> dict[str, str]:
+    """Return the environment of the solver; Open MPI refuses to run as root unless told twice.
+
+    by_slurm: Slurm itself starts the ranks (srun). Otherwise they must not know of it: Open MPI would look for an
+    allocation that jobs of Snakemake do not hand on, or for a Slurm that speaks its protocol.
+    """
     allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-    return {**os.environ, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
+    kept = {key: value for key, value in os.environ.items() if by_slurm or not key.startswith(OF_SLURM)}
+    return {**kept, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
 
 
 def processor_seconds() -> float:
@@ -65,12 +73,14 @@ def run_deck(
     on_step: Callable[[int], None] = lambda step: None,
     triangles: Mapping[str, int] | None = None,
     executable: str = EXECUTABLE,
+    launcher: str = LAUNCHER,
 ) -> float:
     """Run `deck.in` of a folder to its end and return the wall time in s.
 
     on_step: called with the last time step reported, several times a second
     triangles: {mesh fix id: number of triangles written for it}; the run is stopped when the solver reports fewer
     executable: name on the PATH, or path, of the LIGGGHTS that runs it
+    launcher: command, with options, that starts several ranks of it
 
     Raises SolverError.
     """
@@ -79,9 +89,9 @@ def run_deck(
     started, unchecked = time.monotonic(), dict(triangles or {})
     with open(folder / SCREEN, "wb") as screen:
         process = subprocess.Popen(
-            solver_command(ranks, executable),
+            solver_command(ranks, executable, launcher),
             cwd=folder,
-            env=solver_environment(),
+            env=solver_environment(by_slurm=ranks > 1 and shlex.split(launcher)[0] == "srun"),
             stdin=subprocess.DEVNULL,
             stdout=screen,
             stderr=subprocess.STDOUT,

@@ -1,6 +1,7 @@
 """Snakemake on a tiny study in a copy of the repository: from design row to summary, killed, started again, refused."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -10,6 +11,8 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+
+from workflows.design import load_study
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
@@ -149,12 +152,27 @@ def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):
     assert not (folder / "results").exists()
 
 
-def test_paper_fidelity_dry_runs(tmp_path):
-    """Sizes for a cluster are configured and planned: all jobs of the study, no solver."""
+def planned_jobs(output: str) -> dict[str, int]:
+    """Jobs by rule from the table that a dry run prints."""
+    table = output.partition("Job stats:")[2].partition("total")[0]
+    return {rule: int(count) for rule, count in re.findall(r"^(\w+) +(\d+)$", table, flags=re.MULTILINE)}
+
+
+def test_paper_fidelity_of_every_study_is_planned_alike_under_both_profiles(tmp_path):
+    """Sizes for a cluster are planned without a solver: the same jobs on one machine and on a cluster."""
     folder = workspace(tmp_path)
-    shutil.copy(REPOSITORY / "config/studies/screening.yaml", folder / "config/studies")
-    output = finish(snakemake(folder, "screening", "--dry-run", "--config", "fidelity=paper"))
-    assert "worn_run" in output and "26" in output
+    for study in (REPOSITORY / "config/studies").iterdir():
+        shutil.copy(study, folder / "config/studies")
+    studies = [path.stem for path in (REPOSITORY / "config/studies").iterdir()]
+    planned = {}
+    for profile in ("default", "slurm"):
+        arguments = ("--dry-run", "--workflow-profile", f"profiles/{profile}", "--config", "fidelity=paper")
+        planned[profile] = planned_jobs(finish(snakemake(folder, *studies, *arguments)))
+    assert planned["default"] == planned["slurm"]
+    runs = sum(len(load_study(name, overrides={"fidelity": "paper"}).runs) for name in studies)
+    calibrations = len(load_study("calibration", overrides={"fidelity": "paper"}).runs)
+    assert planned["slurm"]["worn_run"] == runs - calibrations
+    assert planned["slurm"]["report"] + planned["slurm"]["calibration_page"] == len(studies)
 
 
 def test_best_designs_are_planned_once_they_are_found(tmp_path):
