@@ -1,0 +1,168 @@
+"""A study on a real Slurm: the profile of clusters through Snakemake's executor, killed by Slurm in the middle."""
+
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from slurm import Slurm, missing_programs
+from test_snakemake import REPOSITORY, TINY, workspace
+from tiny import tiny_chain
+
+from workflows import cycles
+from workflows.design import load_study
+from workflows.environment.doctor import MPI_PROBE_DECK
+from workflows.solver import DECK
+
+ABSENT = missing_programs()
+pytestmark = [
+    pytest.mark.solver,
+    pytest.mark.skipif(bool(ABSENT), reason=f"no Slurm on this machine: {', '.join(ABSENT)} (apt-packages.txt)"),
+]
+
+TIMEOUT = 600.0  # s, for a study that takes about a minute on an idle machine
+POLL = 0.2  # s
+# Polling of jobs that take seconds; the cluster of the tests has no accounting and no network file system.
+OF_TEST = "--slurm-status-command squeue --slurm-init-seconds-before-status-checks 3 --latency-wait 5"
+RUN = "R9_plain"
+PLAIN = TINY.replace("surfaces: [convex, plain]", "surfaces: [plain]")
+# Half the particles' size and eight times their number: a run of more than a minute.
+LONGER = TINY.replace("particle_scale: 4", "particle_scale: 2").replace("cycles: 2", "cycles: 6")
+# What Slurm keeps of a job's environment for it hides an allocation from Open MPI, or promises one that is not there.
+START_RANKS = """
+from workflows.solver import SCREEN, run_deck
+folder = Path(__file__).parent
+try:
+    run_deck(folder, ranks=2)
+finally:
+    print((folder / SCREEN).read_text())
+"""
+MOST_ATTEMPTS = 20  # of both runs
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    with Slurm() as running:
+        yield running
+
+
+def snakemake(folder: Path, cluster: Slurm, *arguments: str) -> subprocess.Popen:
+    """Start Snakemake with the profile of clusters."""
+    profile = ["--workflow-profile", "profiles/slurm", *OF_TEST.split()]
+    return subprocess.Popen(
+        [sys.executable, "-m", "snakemake", *arguments, *profile],
+        cwd=folder,
+        env=cluster.environment,
+        stdout=open(folder / "snakemake.txt", "wb"),
+        stderr=subprocess.STDOUT,
+    )
+
+
+def study(folder: Path, text: str) -> Path:
+    workspace(folder)
+    (folder / "config/studies/tiny.yaml").write_text(text)
+    return folder
+
+
+def finish(process: subprocess.Popen, folder: Path) -> None:
+    try:
+        code = process.wait(TIMEOUT)
+    finally:
+        process.kill()
+    assert code == 0, (folder / "snakemake.txt").read_text()
+
+
+def wait_for(moment, process: subprocess.Popen, folder: Path) -> None:
+    deadline = time.monotonic() + TIMEOUT
+    while not moment():
+        assert process.poll() is None, (folder / "snakemake.txt").read_text()
+        assert time.monotonic() < deadline, "the moment never came"
+        time.sleep(POLL)
+
+
+def of_rule(cluster: Slurm, rule: str) -> list[dict[str, str]]:
+    return [job for job in cluster.jobs() if job["comment"].startswith(f"rule_{rule}")]
+
+
+def wear_without_slurm(folder: Path, elsewhere: Path) -> bytes:
+    """Return wear.csv of the same run by the driver alone, from the same surface and bed."""
+    (elsewhere / RUN).mkdir(parents=True)
+    chain = tiny_chain(load_study("tiny", folder), folder / "results/tiny", RUN)
+    cycles.run_chain(replace(chain, folder=elsewhere / RUN))
+    return (elsewhere / RUN / "wear.csv").read_bytes()
+
+
+def test_a_study_runs_on_slurm_and_resumes_after_scancel(cluster, tmp_path):
+    """Meshes, bed and run are a submission each. The run is cancelled in its second wear cycle, submitted again,
+    resumes after the first, and ends in the table of an undisturbed one."""
+    folder, before = study(tmp_path / "study", PLAIN), len(cluster.jobs())
+    process = snakemake(folder, cluster, f"results/tiny/{RUN}/wear.csv")
+    try:
+        wait_for((folder / f"results/tiny/{RUN}/cycle_002.part/screen.txt").exists, process, folder)
+        (running,) = of_rule(cluster, "worn_run")
+        cluster.ask("scancel", running["id"])
+    finally:
+        finish(process, folder)
+    assert [job["state"] for job in of_rule(cluster, "worn_run")] == ["CANCELLED", "COMPLETED"]
+    assert len(cluster.jobs()) - before == 4, cluster.jobs()
+    assert f"{RUN}: resumes after cycle 1 of 2" in (folder / f"results/tiny/logs/worn_run_{RUN}.log").read_text()
+    found = (folder / f"results/tiny/{RUN}/wear.csv").read_bytes()
+    assert found == wear_without_slurm(folder, tmp_path / "elsewhere")
+
+
+def test_ranks_are_tasks(cluster, tmp_path):
+    """A study's ranks are the tasks that its beds ask for. The queue is stopped: nothing runs."""
+    folder, before = study(tmp_path, PLAIN + "solver: {ranks: 2}\n"), len(cluster.jobs())
+    cluster.ask("scontrol", "update", "PartitionName=main", "State=DOWN")
+    process = snakemake(folder, cluster, f"results/tiny/{RUN}/wear.csv")
+    try:
+        wait_for(lambda: len(cluster.jobs()) == before + 2, process, folder)
+        asked = {job["comment"]: (job["cpus"], job["limit"]) for job in cluster.jobs()[before:]}
+    finally:
+        process.kill()
+        process.wait()
+        cluster.cancel_all()
+        cluster.ask("scontrol", "update", "PartitionName=main", "State=UP")
+    assert asked == {
+        "rule_meshes_surface_mesh": ("1", "20:00"),
+        "rule_settled_bed_wildcards_tiny_bed_1": ("2", "11:00"),
+    }
+    assert {job["state"] for job in cluster.jobs()[before:]} == {"CANCELLED"}
+
+
+@pytest.mark.parametrize("within", ["", "srun --ntasks=1 --cpus-per-task=2 "])
+def test_ranks_start_inside_a_job(cluster, tmp_path, within):
+    """Two ranks share one box, in a job and in a step of it, whatever Snakemake hands on of the job's environment."""
+    (tmp_path / DECK).write_text(MPI_PROBE_DECK)
+    (tmp_path / "ranks.py").write_text(f"from pathlib import Path\n{START_RANKS}")
+    kept = "env -u SLURM_NODELIST -u SLURM_JOB_NODELIST -u SLURM_TASKS_PER_NODE -u SLURM_NTASKS"
+    cluster.run(2, f"{kept} PYTHONPATH={REPOSITORY} {within}{sys.executable} {tmp_path}/ranks.py", tmp_path)
+    assert "1 by 1 by 2 MPI processor grid" in (tmp_path / "job.txt").read_text()
+
+
+def files_of(folder: Path) -> set[str]:
+    """What a study leaves besides logs and locks."""
+    results = folder / "results/tiny"
+    found = (path.relative_to(results) for path in results.rglob("*") if path.is_file())
+    return {str(path) for path in found if path.parts[0] != "logs" and path.name != ".lock"}
+
+
+@pytest.mark.verify
+def test_time_limits_shorter_than_a_run_change_nothing(cluster, tmp_path):
+    """A whole study to its report, its runs killed by their time limit of a minute and resumed: the same files and the
+    same summary as under the profile of one machine; all tables and figures are one submission."""
+    here, there = study(tmp_path / "here", LONGER), study(tmp_path / "there", LONGER)
+    before = len(cluster.jobs())
+    process = snakemake(there, cluster, "tiny", "--set-resources", "worn_run:runtime=attempt")
+    finish(process, there)
+    ended = [job["state"] for job in of_rule(cluster, "worn_run")[-MOST_ATTEMPTS:]]
+    assert "TIMEOUT" in ended, ended
+    assert sum(job["comment"].startswith("rule_tables_and_figures") for job in cluster.jobs()[before:]) == 1
+    logs = [path.read_text() for path in (there / "results/tiny/logs").glob("worn_run_*.log")]
+    assert any("resumes after" in log for log in logs)
+    subprocess.run([sys.executable, "-m", "snakemake", "tiny"], cwd=here, check=True, capture_output=True)
+    assert files_of(there) == files_of(here)
+    for name in ("summary.csv", "design.csv"):
+        assert (there / "results/tiny" / name).read_bytes() == (here / "results/tiny" / name).read_bytes()
