@@ -66,7 +66,7 @@ GROUPS = {  # kind of measurement -> the rates that those of its kind tell, give
     "mesh": ("meshed_triangles",),
     "job": ("jobs",),
 }
-LEAST_SECONDS = 0.1  # of a `run` command by the solver's clock; shorter ones tell more about the clock
+LEAST_SECONDS = 0.2  # processor time of a `run` command; shorter ones tell more about the clock
 Say = Callable[[str], None]
 
 
@@ -169,7 +169,7 @@ def _loops(
     times, share = times[times["steps"] > 1], cost["processor_s"] / cost["solver_s"]
     found = []
     for number, (run, slides) in enumerate(zip(times.itertuples(), moving, strict=True), start=1):
-        if run.loop_s < LEAST_SECONDS:
+        if share * run.loop_s < LEAST_SECONDS:
             continue
         stage = Stage(0, run.steps, run.particles, triangles, run.builds, slides)
         terms = {term: stage.terms()[term] for term in GROUPS["steps"]}

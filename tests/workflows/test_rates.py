@@ -6,10 +6,23 @@ from dataclasses import replace
 import pytest
 
 from postproc.analysis.cost_model import TERMS
-from workflows.rate_benchmark import GROUPS, Measurement, rates_from
+from workflows.design import load_study
+from workflows.rate_benchmark import (
+    BED_STUDY,
+    DISCS,
+    GROUPS,
+    PIN_RUN,
+    PIN_STUDY,
+    SAMPLES,
+    SHRUNK,
+    Measurement,
+    measured_rates,
+    rates_from,
+)
 from workflows.rates import DEFAULT, MachineRates, RatesError, machine_facts, rates_file, read_rates, write_rates
 from workflows.work import Stage
 
+MET = 0.5  # relative; of single `run` commands on a machine that does other things too. Seen: 0.24
 FIT = 1e-6  # relative; of a least-squares solution whose columns differ by orders of magnitude
 KNOWN = {
     **{"decks": 0.2, "triangles_read": 5e-5, "steps": 1e-5, "particle_steps": 2e-7, "moving_particle_steps": 1e-7},
@@ -51,6 +64,14 @@ def test_known_rates_are_found_from_their_times():
     assert set(found.rates) == set(TERMS)
     assert found.rates == pytest.approx(KNOWN, rel=FIT)
     assert list(found.fit.values()) == pytest.approx([1.0] * len(found.fit), rel=FIT)
+
+
+def test_the_benchmark_fills_one_bed_for_both_samples(repository):
+    """Both samples start from the same bed, and the discs differ in their elements alone."""
+    beds = [load_study(BED_STUDY, repository, SHRUNK | settings).beds for settings in SAMPLES.values()]
+    assert beds[0] == beds[1] and len(beds[0]) == 1
+    discs = [load_study(PIN_STUDY, repository, settings).run(PIN_RUN).parameters["disc"] for settings in DISCS.values()]
+    assert {key for key in discs[0] if discs[0][key] != discs[1][key]} == {"element_size_m"}
 
 
 def rates(**changes):
@@ -99,3 +120,15 @@ def test_the_default_rates_say_how_well_they_fit(repository):
     """The file holds machine, date and what the model makes of each measurement."""
     found = json.loads((repository / DEFAULT).read_text())
     assert set(found) == {"rates", "machine", "date", "fit"} and found["fit"]
+
+
+@pytest.mark.verify
+@pytest.mark.solver
+def test_rates_of_this_machine(tmp_path):
+    """The benchmark runs, what is large in a study costs something, and the model meets the steps it is made of."""
+    said = []
+    found = measured_rates(tmp_path, said.append)
+    assert all(found.rates[term] > 0.0 for term in ("particle_steps", "particle_builds", "triangle_steps", "cycles"))
+    steps = {what: ratio for what, ratio in found.fit.items() if what.startswith("steps, ")}
+    assert steps == pytest.approx(dict.fromkeys(steps, 1.0), rel=MET)
+    assert len(said) == len(SAMPLES) + len(DISCS)
