@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import ModuleType
@@ -56,7 +57,7 @@ def number(value: Any, digits: int = 4) -> str:
     """Return a number as people read it: few digits, no exponent between 0.001 and 1e6; words stay words."""
     if isinstance(value, str):
         return value.replace("_", " ")
-    if value is None or value != value:
+    if value is None or not math.isfinite(value):
         return UNDEFINED
     if isinstance(value, bool):
         return "yes" if value else "no"

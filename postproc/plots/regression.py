@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullLocator
 
 from postproc.analysis.published_model import has_factors
@@ -16,6 +17,7 @@ from postproc.analysis.regression import CONSTANT
 from postproc.analysis.screening import Screening
 from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, facet_columns, new_figure
 
+BRIGHT = "#ffb000"  # of lines on the colour map
 OURS, PUBLISHED = "#0072B2", "#D55E00"
 NAMED_RESIDUALS = 3  # runs with the largest residuals, which are named
 NOTED = 1.5  # -, pseudo errors from which on a contrast is named
@@ -141,11 +143,13 @@ def response_contours(
         x, y, wear = (table[name].to_numpy().reshape(shape) for name in ("x", "y", "normalised_wear"))
         drawn = axes.contourf(x, y, np.clip(wear, levels[0], levels[-1]), levels, cmap=MAP)
         lines = axes.contour(x, y, wear, levels[1:-1], colors="white", linewidths=0.7)
-        axes.clabel(lines, fmt="%.2g", fontsize=SMALLEST_FONT, colors="white")
         theirs = table["published_wear"].to_numpy().reshape(shape)
-        if np.isfinite(theirs).all():
-            dashed = axes.contour(x, y, theirs, PUBLISHED_LEVELS, colors=PUBLISHED, linewidths=1.2, linestyles="--")
-            axes.clabel(dashed, fmt="%.2g", fontsize=SMALLEST_FONT, colors=PUBLISHED)
+        if np.isfinite(theirs).all():  # whose labels need the room; the bar tells the others
+            dashed = axes.contour(x, y, theirs, PUBLISHED_LEVELS, colors=BRIGHT, linewidths=1.4, linestyles="--")
+            for label in axes.clabel(dashed, fmt="%.2g", fontsize=SMALLEST_FONT, colors=BRIGHT):
+                label.set_path_effects([withStroke(linewidth=2.0, foreground="black")])
+        else:
+            axes.clabel(lines, fmt="%.2g", fontsize=SMALLEST_FONT, colors="white")
         _factor_axis(axes, "x", labels[first], x[0], first in log_factors)
         _factor_axis(axes, "y", labels[second], y[:, 0], second in log_factors)
         axes.grid(False)
@@ -154,7 +158,7 @@ def response_contours(
     bar = figure.colorbar(drawn, ax=list(grid[: len(pairs)]), format="%.2g")
     bar.set_label("Predicted wear / largest wear (-)")
     if surface["published_wear"].notna().all():
-        handles = [Line2D([], [], color=PUBLISHED, linestyle="--", label="by the published regression (Yan 2022)")]
+        handles = [Line2D([], [], color=BRIGHT, linestyle="--", label="by the published regression (Yan 2022)")]
         figure.legend(handles=handles, loc="outside upper center")
     return figure
 

@@ -282,6 +282,7 @@ def test_captions_have_titles(tmp_path):
         (True, "yes"),
         (None, UNDEFINED),
         (float("nan"), UNDEFINED),
+        (float("inf"), UNDEFINED),
         ("along_travel", "along travel"),
     ],
 )
