@@ -225,6 +225,21 @@ def flow_velocities(study: Study) -> dict[str, float]:
     return {run.name: run.parameters["sliding"]["velocity_m_per_s"] for run in study.runs}
 
 
+def passing_beds(study: Study) -> dict[str, dict[str, float]]:
+    """Return by run what the mass that passes its sample depends on, see `postproc.analysis.evaluation.wear_rate`."""
+    return {run.name: _passing_bed(run.parameters) for run in study.runs}
+
+
+def _passing_bed(parameters: dict[str, Any]) -> dict[str, float]:
+    particle, bed = parameters["particle"], parameters["bed"]
+    return {
+        "velocity": parameters["sliding"]["velocity_m_per_s"],
+        "thickness": bed["thickness_m"],
+        "width": bed["width_m"],
+        "bulk_density": particle["density_kg_per_m3"] * particle["bulk_solid_fraction"],
+    }
+
+
 def published_rows(study: Study) -> dict[str, str]:
     """Return {row: row of Yan 2022, Table 3.8} of the rows, and settings of replicates, that have its factors."""
     with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:

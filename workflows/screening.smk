@@ -1,6 +1,6 @@
 """Figures of screening studies: their runs by flow regime, and the motion of the bed over them layer by layer."""
 
-from workflows.figures import CONDITIONS, PATTERN, flow_velocities
+from workflows.figures import CONDITIONS, PATTERN, flow_velocities, passing_beds
 
 REGIMES = "results/{study}/flow/regimes.csv"
 
@@ -52,6 +52,7 @@ rule wear_by_regime:
     params:
         remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
         settings=lambda wildcards: replicate_settings(study_of(wildcards)),
+        beds=lambda wildcards: passing_beds(study_of(wildcards)),
     message:
         "Figure of the relative wear by regime of {wildcards.study}"
     script:

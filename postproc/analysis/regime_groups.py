@@ -11,7 +11,15 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.analysis.comparison import PLAIN, rows_to_show
-from postproc.analysis.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED, gradient_history, relative_to_largest
+from postproc.analysis.display import CUBIC_MILLIMETRES
+from postproc.analysis.evaluation import (
+    CONTINUOUS,
+    DISCONTINUOUS,
+    UNDECIDED,
+    gradient_history,
+    relative_to_largest,
+    wear_rate,
+)
 from postproc.readers.cycle_folders import cycle_files
 
 PUBLISHED_IN_DETAIL = ("R5", "R2")  # of least wear in continuous and in discontinuous flow (Yan 2022, Fig 3.14 on)
@@ -56,6 +64,17 @@ def wear_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
         for part in ("base", "bump")
     }
     return table[["run", "row", "surface", "regime"]].assign(relative_wear=relative, **parts).reset_index(drop=True)
+
+
+def with_wear_rates(
+    table: pd.DataFrame, summary: pd.DataFrame, beds: Mapping[str, Mapping[str, float]]
+) -> pd.DataFrame:
+    """Return a table of runs with wear_rate_mm3_s_per_kg, wear of the whole travel over the flow of mass (Yan 2022,
+    Eq 3.11); beds: arguments of `evaluation.wear_rate` besides the volume, by run.
+    """
+    volume = CUBIC_MILLIMETRES * table["run"].map(summary.set_index("run")["archard_volume_m3"])
+    passing = pd.DataFrame([beds[run] for run in table["run"]], index=table.index)
+    return table.assign(wear_rate_mm3_s_per_kg=wear_rate(volume, **passing))
 
 
 def force_by_group(summary: pd.DataFrame, run_folders: Sequence[str | Path], regimes: pd.DataFrame) -> pd.DataFrame:

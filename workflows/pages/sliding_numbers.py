@@ -11,6 +11,7 @@ import pandas as pd
 from postproc.analysis.comparison import cycle_ratios, read_history, rows_to_show
 from postproc.analysis.depth import depth_summary
 from postproc.analysis.display import in_display_units
+from postproc.analysis.findings import UNSURE
 from postproc.analysis.replicates import relative_wear_intervals
 from workflows.page_text import data_uri, number
 from workflows.pages.sliding_sample import ROWS_IN_DETAIL
@@ -104,8 +105,10 @@ def cards(results: pd.DataFrame, acceleration: float) -> list[dict[str, str]]:
         (number(plain[rate], 3), f"{unit}, {plain['run'].replace('_', ' ')}"),
     ]
     if several:
-        less = int((convex["wear_over_plain"] < 1.0).sum())
-        found.append((f"{less} of {len(convex)}", "patterns wear less than their plain twin"))
+        ratio = convex["wear_over_plain"]
+        near = int(((ratio < 1.0) & (ratio > 1.0 / (1.0 + UNSURE))).sum())
+        little = f", {near} of them by less than {100.0 * UNSURE:.0f} %" if near else ""
+        found.append((f"{(ratio < 1.0).sum()} of {len(convex)}", f"patterns wear less than their plain twin{little}"))
     else:
         found.append((f"{best['bump_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
     return [{"value": value, "label": label} for value, label in found]

@@ -1,7 +1,7 @@
 """Draw the relative wear of all runs by regime."""
 
 from postproc.analysis.comparison import read_summary
-from postproc.analysis.regime_groups import regime_remarks, wear_by_group
+from postproc.analysis.regime_groups import regime_remarks, wear_by_group, with_wear_rates
 from postproc.analysis.replicates import replicate_remark, with_intervals
 from postproc.plots.regimes import wear_by_regime
 from postproc.plots.style import save
@@ -9,7 +9,8 @@ from workflows.job import job_log
 
 with job_log(snakemake.log[0]):
     regimes = read_summary(snakemake.input.regimes)
-    runs = wear_by_group(read_summary(snakemake.input.summary), regimes)
+    summary = read_summary(snakemake.input.summary)
+    runs = with_wear_rates(wear_by_group(summary, regimes), summary, snakemake.params.beds)
     table = with_intervals(runs, snakemake.params.settings)
     table.to_csv(snakemake.output.table, index=False)
     remarks = [*snakemake.params.remarks, *regime_remarks(regimes), replicate_remark(table)]

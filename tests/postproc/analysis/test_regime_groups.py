@@ -15,6 +15,7 @@ from postproc.analysis.regime_groups import (
     regime_remarks,
     rows_in_detail,
     wear_by_group,
+    with_wear_rates,
 )
 
 ROUNDING = 1e-12
@@ -74,6 +75,15 @@ def test_relative_wear_is_per_length_within_the_group(regimes, summary):
         table["base_relative_wear"] + table["bump_relative_wear"], table["relative_wear"], rtol=ROUNDING
     )
     assert table.loc["R2_convex", "bump_relative_wear"] == pytest.approx(0.125, rel=ROUNDING)
+
+
+def test_wear_rates_are_per_mass_flow(regimes, summary):
+    """1e-9 m3 worn while 2 kg/s pass are 0.5 mm3 s/kg, whatever the order of the runs (Eq 3.11)."""
+    bed = {"velocity": 0.5, "thickness": 0.02, "width": 0.1, "bulk_density": 2000.0}
+    beds = dict.fromkeys(summary["run"], bed)
+    table = with_wear_rates(wear_by_group(summary, regimes), summary, beds).set_index("run")
+    assert table.loc["R1_convex", "wear_rate_mm3_s_per_kg"] == pytest.approx(0.5, rel=ROUNDING)
+    assert table.loc["R2_plain", "wear_rate_mm3_s_per_kg"] == pytest.approx(2.0, rel=ROUNDING)
 
 
 def test_gradients_have_the_group_of_their_row(regimes):
