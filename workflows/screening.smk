@@ -11,6 +11,7 @@ rule wear_gradient:
         # the stretches of travel within cycles lie beside these
         wear=WEAR_TABLES,
         regimes=REGIMES,
+        along="results/{study}/figures/relative_velocity.csv",
         published="config/published/screening_results.csv",
     output:
         figure=report(
@@ -20,6 +21,7 @@ rule wear_gradient:
             labels={"figure": "Relative wear gradient"},
         ),
         table="results/{study}/figures/wear_gradient.csv",
+        steady="results/{study}/flow/steady.csv",
     log:
         "results/{study}/logs/wear_gradient.log",
     benchmark:
@@ -149,6 +151,7 @@ rule findings:
         regimes=REGIMES,
         profiles="results/{study}/flow/profiles.csv",
         gradients="results/{study}/figures/wear_gradient.csv",
+        steady="results/{study}/flow/steady.csv",
         coefficients="results/{study}/regression/coefficients.csv",
         models="results/{study}/regression/models.csv",
         published_findings="config/published/screening_findings.csv",

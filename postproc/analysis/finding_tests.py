@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 
 from postproc.analysis.comparison import PLAIN
@@ -25,6 +26,7 @@ from postproc.analysis.findings import (
     side_of_one,
     unsteady,
 )
+from postproc.analysis.steady_table import MEASURES
 
 EXCEPTION, BEST, BEST_DISCONTINUOUS = "R12", "R5", "R2"
 NEAR = 10.0  # %, of the plain twin's wear, within which a relative wear counts as the published one
@@ -102,6 +104,19 @@ def _discontinuous_range(evidence: Evidence) -> Verdict:
         return _none_of(DISCONTINUOUS)
     share = rows["relative_velocity"]
     return _verdict(percent(share), bool((share >= RIDES_ALONG).all()), unsteady(evidence, rows))
+
+
+def _steady(evidence: Evidence) -> Verdict:
+    start, end = evidence.published["relative_velocity_steady", "all", "from"], evidence.travel_end
+    both = evidence.steady.groupby("run")["steady"].all()
+    flow = evidence.steady[evidence.steady["measure"] == MEASURES[0]]
+    share = PERCENT * (flow["deviation"] / flow["mean"]).max()
+    found = (
+        f"flow and wear steady in {both.sum()} of {len(both)} runs; relative velocity scatters by up to {share:.0f} %"
+    )
+    short = f"the travel ends after {end:g} mm, the source tells from {start:g} mm on" if end <= start else ""
+    within = share < evidence.published["relative_velocity_fluctuation", "all", "below"]
+    return _verdict(found if np.isfinite(share) else "", bool(both.all() and within), short)
 
 
 def _gradient(evidence: Evidence) -> Verdict:
@@ -285,6 +300,7 @@ def _no_effect(evidence: Evidence) -> Verdict:
 
 
 TESTS: Mapping[str, Test] = {
+    "steady_flow": _steady,
     "continuous_range": _continuous_range,
     "discontinuous_range": _discontinuous_range,
     "gradient_by_regime": _gradient,

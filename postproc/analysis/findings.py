@@ -33,6 +33,7 @@ class Evidence:
 
     rows: index row; see `rows_of_study`. gradients: row, surface, regime and relative_gradient along the travel
     profiles: row, surface, zone, layer, velocity_m_per_s and angular_speed_deg_per_s
+    steady: run, row, surface, measure, mean, deviation and steady of every window, see `steady_table`
     terms: coefficients of the best model, columns term, coefficient, p_value_permutation; None without a regression
     models: models as good, each a set of terms; model_p: p value of the best by permutation
     aliased: {factor: what it cannot be told from}
@@ -44,6 +45,7 @@ class Evidence:
     rows: pd.DataFrame
     gradients: pd.DataFrame
     profiles: pd.DataFrame
+    steady: pd.DataFrame
     terms: pd.DataFrame | None
     models: tuple[frozenset[str], ...]
     model_p: float
@@ -67,18 +69,20 @@ def gather(
 ) -> Evidence:
     """Return what a study found.
 
-    tables: summary, regimes, profiles, gradients, coefficients and models of the study; published_results and
+    tables: summary, regimes, profiles, gradients, steady, coefficients and models of the study; published_results and
     published_coefficients. run_in: mm; settings: {row: setting}; published_rows: {row: row of the source}
     """
     summary, theirs = tables["summary"], tables["published_results"]
     terms = frozenset(tables["published_coefficients"]["term"]) - {CONSTANT}
     same_factors = has_factors(tables["published_coefficients"], study.names)
     found = tables["models"][tables["models"]["heredity"] == "none"]
-    named = [tables[name].assign(row=tables[name]["row"].map(published_rows)) for name in ("gradients", "profiles")]
+    of_runs = [tables[name] for name in ("gradients", "profiles", "steady")]
+    named = [table.assign(row=table["row"].map(published_rows)).dropna(subset=["row"]) for table in of_runs]
     return Evidence(
         rows=rows_of_study(summary, tables["regimes"], tables["profiles"], settings, published_rows),
-        gradients=named[0].dropna(subset=["row"]),
-        profiles=named[1].dropna(subset=["row"]),
+        gradients=named[0],
+        profiles=named[1],
+        steady=named[2],
         terms=tables["coefficients"] if same_factors else None,
         models=tuple(frozenset(model.split(" + ")) - {CONSTANT} for model in found["model"]),
         model_p=float(found["p_value_permutation"].iloc[0]),

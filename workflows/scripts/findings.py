@@ -9,7 +9,7 @@ from postproc.analysis.published_model import published_wear_by_row
 from postproc.analysis.screening_tables import screen_summary
 from workflows.job import job_log
 
-OF_RUNS = ("summary", "regimes", "profiles", "gradients")  # tables whose names are text
+OF_RUNS = ("summary", "regimes", "profiles", "gradients", "steady")  # tables whose names are text
 
 with job_log(snakemake.log[0]):
     given, files = snakemake.params, snakemake.input

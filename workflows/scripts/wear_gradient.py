@@ -8,6 +8,7 @@ from postproc.analysis.comparison import read_summary
 from postproc.analysis.flow_history import published_window
 from postproc.analysis.history import wear_within_cycles
 from postproc.analysis.regime_groups import gradients_by_group, regime_remarks
+from postproc.analysis.steady_table import steady_table
 from postproc.plots.flow import along_travel
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -18,6 +19,7 @@ with job_log(snakemake.log[0]):
     table = gradients_by_group(wear_within_cycles(snakemake.input.design, folders), regimes)
     table.to_csv(snakemake.output.table, index=False)
     window = published_window(pd.read_csv(snakemake.input.published), snakemake.params.run_in)
+    steady_table(read_summary(snakemake.input.along), table, window).to_csv(snakemake.output.steady, index=False)
     label = "Wear gradient over the largest of all runs (-)"
     remarks = [*snakemake.params.remarks, *regime_remarks(regimes)]
     save(along_travel(table, "relative_gradient", label, window, remarks), snakemake.output.figure)

@@ -18,6 +18,7 @@ from postproc.analysis.findings import (
 )
 from postproc.analysis.published_model import published_wear_by_row
 from postproc.analysis.screening_tables import regression_tables, screen_summary
+from postproc.analysis.steady_table import MEASURES
 
 ROOT = Path(__file__).resolve().parents[3]
 PUBLISHED = ROOT / "config" / "published"
@@ -71,11 +72,18 @@ def tables():
         "regimes": regimes,
         "profiles": profiles_of(summary),
         "gradients": gradients,
+        "steady": steady_of(regimes),
         "coefficients": found["coefficients"],
         "models": found["models"],
         "published_results": read("results"),
         "published_coefficients": read("coefficients"),
     }
+
+
+def steady_of(regimes):
+    """Both measures of every run steady, within 3 % of their mean."""
+    line = regimes[["run", "row", "surface"]].assign(mean=1.0, deviation=0.03, steady=True)
+    return pd.concat([line.assign(measure=measure) for measure in MEASURES], ignore_index=True)
 
 
 def profiles_of(summary):
@@ -139,6 +147,15 @@ def test_an_unsteady_flow_decides_no_regime(tables):
     ]
 
 
+def test_steadiness_is_of_flow_and_wear(tables):
+    """A run whose wear is not steady, or a scatter of 10 %, refute it; a short travel tells nothing."""
+    unsteady = tables["steady"]["steady"] & (tables["steady"]["run"] != "R4_convex")
+    for changed in ({"steady": unsteady}, {"deviation": 0.1}):
+        table = verdicts({**tables, "steady": tables["steady"].assign(**changed)})
+        assert table.loc["steady_flow", "verdict"] == REFUTED
+    assert verdicts(tables, run_in=40.0).loc["steady_flow", "verdict"] == UNSAID
+
+
 def test_an_aliased_scale_leaves_the_thickness_open(tables):
     """Where the particle scale follows the thickness, neither its effect nor the terms can be said."""
     scale = np.where(tables["summary"]["bed_thickness_mm"] > 10.0, 2.0, 1.26)
@@ -150,7 +167,7 @@ def test_an_aliased_scale_leaves_the_thickness_open(tables):
 
 def test_rows_that_were_not_run_are_named(tables):
     """Without R5, R2 and R12 what is told of them cannot be said; the rest is."""
-    names = ("summary", "regimes", "profiles", "gradients")
+    names = ("summary", "regimes", "profiles", "gradients", "steady")
     left = {name: tables[name][~tables[name]["row"].isin(["R5", "R2", "R12"])] for name in names}
     table = verdicts({**tables, **left})
     for key in (
