@@ -84,11 +84,18 @@ def _name_ends(axes: Axes, table: pd.DataFrame, column: str) -> None:
     ends = table.groupby("row", sort=False)[["travel_mm", column]].last().dropna().sort_values(column)
     low, high = axes.get_ylim()
     away = LEADER * float(np.ptp(axes.get_xlim()))
-    place = -np.inf
-    for row, (travel, value) in ends.iterrows():
-        place = max(value, place + LEAST_STEP * (high - low))
-        axes.plot([travel, travel + away], [value, place], color="#888888", linewidth=0.5, label="_leader")
+    places = _apart(ends[column].to_numpy(), LEAST_STEP * (high - low), high)
+    for (row, (travel, value)), place in zip(ends.iterrows(), places, strict=True):
+        line = {"color": "#888888", "linewidth": 0.5, "label": "_leader", "clip_on": False}
+        axes.plot([travel, travel + away], [value, place], **line)
         axes.text(travel + away, place, f" {row}", fontsize=SMALLEST_FONT, va="center", clip_on=False)
+
+
+def _apart(values: np.ndarray, step: float, highest: float) -> np.ndarray:
+    """Return places for names of rising values, at least a step apart and none above the highest, near their values."""
+    count = np.arange(len(values))
+    places = step * count + np.maximum.accumulate(values - step * count)  # up, until each is a step above the last
+    return np.minimum(places, highest - step * count[::-1])
 
 
 def velocity_profiles(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:

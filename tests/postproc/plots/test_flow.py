@@ -67,6 +67,16 @@ def test_regimes_have_panels(velocities):
     assert remarks_of(figure) == "; ".join(REMARKS)
 
 
+def test_names_stay_below_the_top(velocities):
+    """Five rows that end together at the top have names apart from each other, none above the axes."""
+    top = pd.concat([velocities[:3].assign(row=f"R{k}", run=f"R{k}_convex", eta=98.0) for k in range(5)])
+    (axes,) = flow.along_travel(top, "eta", "Relative velocity (%)", None, REMARKS).axes
+    places = sorted(text.get_position()[1] for text in axes.texts)
+    assert len(places) == 5
+    assert np.diff(places).min() >= flow.LEAST_STEP * np.ptp(axes.get_ylim()) * (1.0 - 1e-9)
+    assert places[-1] <= axes.get_ylim()[1]
+
+
 def test_a_window_beyond_the_travel_is_left_out(velocities):
     """A steady window that the travel does not reach is not drawn."""
     figure = flow.along_travel(velocities, "eta", "Relative velocity (%)", (1000.0, 1700.0), REMARKS)
