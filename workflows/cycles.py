@@ -7,7 +7,7 @@ together.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,7 @@ from workflows.chain import (
     write_shared_files,
 )
 from workflows.ledgers import producer
+from workflows.pieces import Piece, finished_pieces, simulate_in_pieces
 from workflows.progress import Progress
 from workflows.schedule import Span, first_span
 from workflows.solver import (
@@ -96,18 +97,16 @@ def inputs_digest(chain: Chain) -> str:
 
 def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:
     """Simulate, account, wear and displace one cycle; cycle 0 (None) brings the run to its start, without wear."""
-    started, cycle, before = time.monotonic(), span.cycle if span else 0, processor_seconds()
-    with state.working_folder(chain.folder, cycle) as folder:
+    started, cycle = time.monotonic(), span.cycle if span else 0
+    origin = origin_digest(chain, cycle, inputs)
+    with state.working_folder(chain.folder, cycle, lambda part: bool(finished_pieces(part, origin))) as folder:
         surface = read_surface(surface_before(chain, cycle))
+        started -= sum(piece.wall_s for piece in finished_pieces(folder, origin))
         write_shared_files(chain)
         triangles = write_cycle(chain, span, folder, surface)
-        solver_seconds = simulate(chain, span, folder, triangles, progress)
-        processor = processor_seconds() - before
+        pieces = simulate(chain, span, folder, triangles, progress, origin)
         record = account_and_wear(chain, span, folder, surface) if span else {"cost": {}}
-        record["cost"] = (
-            cost(chain, span, folder, triangles, (solver_seconds, processor), time.monotonic() - started)
-            | record["cost"]
-        )
+        record["cost"] = cost(chain, span, folder, triangles, pieces, time.monotonic() - started) | record["cost"]
         record |= {
             "span": asdict(span) if span else None,
             **CASES[chain.case].record(chain.parameters, chain.bed, span),
@@ -129,18 +128,37 @@ def drop_files(chain: Chain, cycle: int) -> None:
     state.drop_files(folder, CASES[chain.case].files_to_drop(chain.parameters, Span(**span) if span else None))
 
 
-def simulate(chain: Chain, span: Span | None, folder: Path, triangles: int, progress: Progress) -> float:
-    """Run the solver on a cycle's deck and return its wall time in s. Raises SolverError."""
+def origin_digest(chain: Chain, cycle: int, inputs: str) -> str:
+    """Return the hash of what a cycle starts from: the run's inputs and the state of the cycle before."""
+    before = state.cycle_folder(chain.folder, cycle - 1) / state.STATE
+    return state.digest(inputs, state.file_digest(before)) if cycle else inputs
+
+
+def simulate(
+    chain: Chain, span: Span | None, folder: Path, triangles: int, progress: Progress, origin: str = ""
+) -> list[Piece]:
+    """Run the solver on a cycle's deck, or on the pieces of it that are missing; return all pieces.
+
+    origin: hash of what the cycle starts from. Raises SolverError.
+    """
     cycle, before = span.cycle if span else 0, steps_before(chain, span)
     substeps = span.substeps if span else 1
-    return run_deck(
-        folder,
-        chain.ranks,
-        lambda step: progress.update(before + step // substeps, title(chain, cycle)),
-        triangles={f"sample_{cycle}": triangles},
-        executable=cycle_executable(chain, span),
-        launcher=chain.launcher,
-    )
+
+    def run(variables: Mapping[str, str]) -> float:
+        if "begin" in variables:
+            progress.say(f"{title(chain, cycle)} goes on after step {variables['begin_step']}")
+        return run_deck(
+            folder,
+            chain.ranks,
+            lambda step: progress.update(before + step // substeps, title(chain, cycle)),
+            triangles={f"sample_{cycle}": triangles},
+            executable=cycle_executable(chain, span),
+            launcher=chain.launcher,
+            variables=variables,
+        )
+
+    ends = CASES[chain.case].piece_ends(chain.parameters, chain.bed, span)
+    return simulate_in_pieces(folder, origin, ends, run)
 
 
 def cycle_executable(chain: Chain, span: Span | None) -> str:
@@ -149,18 +167,18 @@ def cycle_executable(chain: Chain, span: Span | None) -> str:
 
 
 def cost(
-    chain: Chain, span: Span | None, folder: Path, triangles: int, solver: tuple[float, float], all_seconds: float
+    chain: Chain, span: Span | None, folder: Path, triangles: int, pieces: Sequence[Piece], all_seconds: float
 ) -> dict[str, float]:
     """Return what a cycle cost: times in s and the sizes that they depend on.
 
-    solver: its wall time and its processor time, of all ranks; all_seconds: wall time of the cycle
+    pieces: of its simulation; all_seconds: wall time of the cycle
     """
     thermo = thermo_table(folder / LOG)
-    solver_seconds, processor = solver
+    solver_seconds = sum(piece.wall_s for piece in pieces)
     return {
         "cycle": span.cycle if span else 0,
         "solver_s": round(solver_seconds, 3),
-        "processor_s": round(processor, 3),
+        "processor_s": round(sum(piece.processor_s for piece in pieces), 3),
         "other_s": round(all_seconds - solver_seconds, 3),
         "steps": span.solver_steps if span else run_in_steps(chain),
         "particles": int(thermo["Atoms"][-1]),

@@ -171,9 +171,9 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
     return {
         **integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
         **_sliding(run, bed, cycle=0, steps_before=0),
-        "bed_restart": bed_restart,
+        "begin": bed_restart,
         "lowering_steps": lowering,
-        "run_in_steps": derived["run_in_steps"],
+        "end_step": lowering + derived["run_in_steps"],
     }
 
 
@@ -183,8 +183,8 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
     return {
         **integration(run["solver"], derived["time_step_s"], run["particle"], span.steps),
         **_sliding(run, bed, span.cycle, derived["run_in_steps"] + span.first_step),
-        "run_restart": run_restart,
-        "cycle_steps": span.steps,
+        "begin": run_restart,
+        "end_step": span.steps,
         "picture_steps": min(derived["picture_interval_steps"], span.steps),
         "ledger": run["ledger"],
         **LEDGERS[run["ledger"]](run, span),

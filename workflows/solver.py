@@ -14,6 +14,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
 
@@ -74,6 +75,7 @@ def run_deck(
     triangles: Mapping[str, int] | None = None,
     executable: str = EXECUTABLE,
     launcher: str = LAUNCHER,
+    variables: Mapping[str, str] = MappingProxyType({}),
 ) -> float:
     """Run `deck.in` of a folder to its end and return the wall time in s.
 
@@ -81,15 +83,17 @@ def run_deck(
     triangles: {mesh fix id: number of triangles written for it}; the run is stopped when the solver reports fewer
     executable: name on the PATH, or path, of the LIGGGHTS that runs it
     launcher: command, with options, that starts several ranks of it
+    variables: of style index, whose values in the deck these replace
 
     Raises SolverError.
     """
     if missing := missing_program(executable):
         raise SolverError(missing)
     started, unchecked = time.monotonic(), dict(triangles or {})
+    given = [word for name, value in variables.items() for word in ("-var", name, value)]
     with open(folder / SCREEN, "wb") as screen:
         process = subprocess.Popen(
-            solver_command(ranks, executable, launcher),
+            [*solver_command(ranks, executable, launcher), *given],
             cwd=folder,
             env=solver_environment(by_slurm=ranks > 1 and shlex.split(launcher)[0] == "srun"),
             stdin=subprocess.DEVNULL,

@@ -49,12 +49,16 @@ def cycle_folder(run_folder: Path, cycle: int) -> Path:
 
 
 @contextlib.contextmanager
-def working_folder(run_folder: Path, cycle: int) -> Iterator[Path]:
-    """Give an empty folder to work on a cycle in; it gets the cycle's final name when the block ends well."""
+def working_folder(run_folder: Path, cycle: int, begun: Callable[[Path], bool] = lambda part: False) -> Iterator[Path]:
+    """Give a folder to work on a cycle in; it gets the cycle's final name when the block ends well.
+
+    It is empty, unless `begun` says that what an interrupted driver left in it can be taken up.
+    """
     final = cycle_folder(run_folder, cycle)
     part = final.with_suffix(".part")
-    shutil.rmtree(part, ignore_errors=True)
-    part.mkdir(parents=True)
+    if not begun(part):
+        shutil.rmtree(part, ignore_errors=True)
+    part.mkdir(parents=True, exist_ok=True)
     yield part
     if final.exists():  # a damaged cycle, done again
         set_aside(final)

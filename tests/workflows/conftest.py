@@ -89,7 +89,7 @@ bed:
   seed: 20220317
 sliding: {run_in_mm: 300, travel_mm: 1000, cycles: 4, first_cycle_mm: 10}
 wear: {gap_closing_fraction: 0.01}
-solver: {picture_interval_mm: 20, wear_interval_mm: 10}
+solver: {picture_interval_mm: 20, wear_interval_mm: 10, checkpoint_interval_steps: 50000}
 """
 MATERIALS = """\
 particles:

@@ -1,5 +1,7 @@
 """A study on a real Slurm: the profile of clusters through Snakemake's executor, killed by Slurm in the middle."""
 
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -8,12 +10,14 @@ from pathlib import Path
 
 import pytest
 from slurm import Slurm, missing_programs
+from test_cycles import solver_processes
 from test_snakemake import REPOSITORY, TINY, workspace
 from tiny import tiny_chain
 
 from workflows import cycles
 from workflows.design import load_study
 from workflows.environment.doctor import MPI_PROBE_DECK
+from workflows.pieces import PIECES
 from workflows.solver import DECK
 
 ABSENT = missing_programs()
@@ -22,14 +26,14 @@ pytestmark = [
     pytest.mark.skipif(bool(ABSENT), reason=f"no Slurm on this machine: {', '.join(ABSENT)} (apt-packages.txt)"),
 ]
 
-TIMEOUT = 600.0  # s, for a study that takes about a minute on an idle machine
+TIMEOUT = 1200.0  # s, for a study that takes about a minute on an idle machine
 POLL = 0.2  # s
 # Polling of jobs that take seconds; the cluster of the tests has no accounting and no network file system.
 OF_TEST = "--slurm-status-command squeue --slurm-init-seconds-before-status-checks 3 --latency-wait 5"
 RUN = "R9_plain"
 PLAIN = TINY.replace("surfaces: [convex, plain]", "surfaces: [plain]")
-# Half the particles' size and eight times their number: a run of more than a minute.
-LONGER = TINY.replace("particle_scale: 4", "particle_scale: 2").replace("cycles: 2", "cycles: 6")
+# Restart files within its cycles.
+IN_PIECES = PLAIN + "solver: {checkpoint_interval_steps: 200}\n"
 # What Slurm keeps of a job's environment for it hides an allocation from Open MPI, or promises one that is not there.
 START_RANKS = """
 from workflows.solver import SCREEN, run_deck
@@ -39,7 +43,6 @@ try:
 finally:
     print((folder / SCREEN).read_text())
 """
-MOST_ATTEMPTS = 20  # of both runs
 
 
 @pytest.fixture(scope="module")
@@ -149,19 +152,32 @@ def files_of(folder: Path) -> set[str]:
     return {str(path) for path in found if path.parts[0] != "logs" and path.name != ".lock"}
 
 
+def hang(folder: Path) -> bool:
+    """Stop the solvers that work in a folder for good; False if there were none."""
+    solvers = solver_processes(folder)
+    for solver in solvers:
+        os.kill(solver, signal.SIGSTOP)
+    return bool(solvers)
+
+
 @pytest.mark.verify
-def test_time_limits_shorter_than_a_run_change_nothing(cluster, tmp_path):
-    """A whole study to its report, its runs killed by their time limit of a minute and resumed: the same files and the
-    same summary as under the profile of one machine; all tables and figures are one submission."""
-    here, there = study(tmp_path / "here", LONGER), study(tmp_path / "there", LONGER)
-    before = len(cluster.jobs())
+def test_a_time_limit_within_a_cycle_changes_nothing(cluster, tmp_path):
+    """A whole study to its report, whose run hangs within a wear cycle until its time limit of a minute ends it.
+
+    It goes on within that cycle, with the files and the summary that the profile of one machine leaves. All tables and
+    figures are one submission.
+    """
+    here, there = study(tmp_path / "here", IN_PIECES), study(tmp_path / "there", IN_PIECES)
+    before, part = len(cluster.jobs()), there / f"results/tiny/{RUN}/cycle_002.part"
     process = snakemake(there, cluster, "tiny", "--set-resources", "worn_run:runtime=attempt")
-    finish(process, there)
-    ended = [job["state"] for job in of_rule(cluster, "worn_run")[-MOST_ATTEMPTS:]]
-    assert "TIMEOUT" in ended, ended
-    assert sum(job["comment"].startswith("rule_tables_and_figures") for job in cluster.jobs()[before:]) == 1
-    logs = [path.read_text() for path in (there / "results/tiny/logs").glob("worn_run_*.log")]
-    assert any("resumes after" in log for log in logs)
+    try:
+        wait_for(lambda: (part / PIECES).exists() and hang(part), process, there)
+    finally:
+        finish(process, there)
+    jobs = cluster.jobs()[before:]
+    assert "TIMEOUT" in [job["state"] for job in jobs if job["comment"].startswith("rule_worn_run")], jobs
+    assert sum(job["comment"].startswith("rule_tables_and_figures") for job in jobs) == 1, jobs
+    assert "cycle 2 of 2 goes on after step" in (there / f"results/tiny/logs/worn_run_{RUN}.log").read_text()
     subprocess.run([sys.executable, "-m", "snakemake", "tiny"], cwd=here, check=True, capture_output=True)
     assert files_of(there) == files_of(here)
     for name in ("summary.csv", "design.csv"):

@@ -105,6 +105,10 @@ class Case:
         """
         raise NotImplementedError
 
+    def piece_ends(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> list[int]:
+        """Return the solver's steps in a cycle at which it ends and is started anew; the last one ends the cycle."""
+        return [span.solver_steps if span else self.run_in_steps(parameters, bed)]
+
     def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
         """Write what the decks of all cycles of a run read besides surface and restart file into the run's folder."""
 

@@ -17,6 +17,7 @@ from workflows.cases import sliding_work
 from workflows.cases.base import SETUP_LOADS, Case, Parameters
 from workflows.derived import ADAPTIVE, WALLS, derived_parameters, flow_measures
 from workflows.geometry import sample_surface
+from workflows.pieces import piece_ends
 from workflows.run_checks import SLIDING_CHECKS
 from workflows.schedule import Span
 from workflows.sections import particle_section, solver_section, wall_section, wear_section
@@ -124,6 +125,19 @@ class SlidingSample(Case):
         """Return what a run leaves on disk."""
         return sliding_work.run_bytes(parameters)
 
+    def piece_ends(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> list[int]:
+        """Return where the pieces of a cycle end, and of lowering and run-in, whose first one lowers the bed.
+
+        One after another they would overwrite sampled contacts, and a look at the wear that falls on their end.
+        """
+        interval, total = parameters["solver"]["checkpoint_interval_steps"], super().piece_ends(parameters, bed, span)
+        if span is None:
+            return piece_ends(total[0] - parameters["derived"]["run_in_steps"], total[0], interval)
+        if parameters["ledger"] != "solver":
+            return total
+        look = deck.wear_interval_steps(parameters, span)
+        return [end + (end < total[0] and end % look == 0) for end in piece_ends(0, total[0], interval)]
+
     def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
         """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0, if it has ends."""
         if bed["ends"] != WALLS:
@@ -139,19 +153,19 @@ class SlidingSample(Case):
         return {"bed_travelled_m": deck.travelled(parameters, steps), "seed": bed["seed"]}
 
     def forces(self, parameters: Parameters, span: Span, folder: Path) -> pd.DataFrame:
-        """Return the bed's force on the sample; the set-up row of a run holds no force and is left out."""
+        """Return the bed's force on the sample."""
         import pandas as pd
 
-        thermo = thermo_table(folder / LOG)
-        time_s = (thermo["Step"][1:] + span.first_step) * parameters["derived"]["time_step_s"]
+        thermo = _thermo(folder)
+        time_s = (thermo["Step"] + span.first_step) * parameters["derived"]["time_step_s"]
         table = {"time_s": time_s, "travel_m": time_s * parameters["sliding"]["velocity_m_per_s"]}
-        return pd.DataFrame(table | {f"force_{axis}_N": thermo[f"force_{axis}"][1:] for axis in "xyz"})
+        return pd.DataFrame(table | {f"force_{axis}_N": thermo[f"force_{axis}"] for axis in "xyz"})
 
     def own_columns(self, parameters: Parameters, span: Span, folder: Path) -> dict[str, float]:
         """Return the bed's mean velocity over that of its floor (-), where friction alone takes the bed along."""
         if parameters["bed"]["ends"] == WALLS:
             return {}
-        pace = thermo_table(folder / LOG)["bed_pace"][1:].mean()
+        pace = _thermo(folder)["bed_pace"].mean()
         return {"bed_over_floor_velocity": float(pace / parameters["sliding"]["velocity_m_per_s"])}
 
     def reduce(self, parameters: Parameters, span: Span, folder: Path) -> None:
@@ -177,6 +191,13 @@ class SlidingSample(Case):
         from postproc.analysis.summary import summary_table
 
         return summary_table(design, wear)
+
+
+def _thermo(folder: Path) -> dict[str, np.ndarray]:
+    """Return the thermo table of a cycle without the set-up rows of its pieces, which hold no force."""
+    thermo = thermo_table(folder / LOG)
+    told = np.diff(thermo["run"], prepend=-1) == 0
+    return {name: values[told] for name, values in thermo.items()}
 
 
 def row_particle_scale(settings: Mapping[str, Any], materials: Mapping[str, Any], thickness: float) -> float:
