@@ -10,6 +10,7 @@ from snakemake.utils import min_version
 from workflows.cases import CASES
 from workflows.deck import template_sources
 from workflows.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
+from workflows.figures import has_flow
 from workflows.job import let_jobs_import
 from workflows.rates import rates_file
 from workflows.solver import CYCLE_EXECUTABLES, LAUNCHER, missing_program
@@ -142,6 +143,11 @@ def of_every_run(pattern):
         return [pattern.format(study=wildcards.study, run=run.name) for run in study_of(wildcards).runs]
 
     return paths
+
+
+def regimes_of_study(wildcards):
+    """The table of flow regimes of a study that has one."""
+    return [f"results/{wildcards.study}/flow/regimes.csv"] if has_flow(study_of(wildcards)) else []
 
 
 def study_decks(study):

@@ -6,7 +6,6 @@ from workflows.figures import (
     factor_labels,
     figure_files,
     finding_tables,
-    has_flow,
     flow_runs,
     is_deformed,
     page_parameters,
@@ -17,11 +16,6 @@ from workflows.figures import (
 
 WORN_SURFACES = of_every_run("results/{study}/{run}/worn_surface.vtu")
 WEAR_TABLES = of_every_run("results/{study}/{run}/wear.csv")
-
-
-def regimes_of_study(wildcards):
-    """The table of flow regimes of a study that has one."""
-    return [f"results/{wildcards.study}/flow/regimes.csv"] if has_flow(study_of(wildcards)) else []
 
 
 rule worn_surface:
