@@ -11,6 +11,7 @@ import textwrap
 from datetime import UTC, datetime
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from postproc.analysis.calibration import (
@@ -75,6 +76,7 @@ def sections(done: Calibrated) -> list[str]:
         ("The family and the recommended pair", family_text, "family"),
         ("Against what was measured", statements_text, "pairs_against_bands"),
         ("Shear angle over both frictions", simulations_text, "response_maps"),
+        ("At the pairs that Yan 2022 simulated", published_text, ""),
         ("Scatter between packings", scatter_text, "calibration_progress"),
         ("Size and width of the box", sizes_text, "box_sizes"),
         ("Recommended pair in the draw-down test", checked_text, ""),
@@ -109,6 +111,19 @@ def simulations_text(done: Calibrated) -> str:
     counts = done.simulations.groupby(["test", "why"], sort=False).size()
     told = ", ".join(f"{number} {test.replace('_', ' ')} ({why})" for (test, why), number in counts.items())
     return _prose(f"Simulations: {told}; all of them in [{TABLE}]({TABLE}).")
+
+
+def published_text(done: Calibrated) -> str:
+    """Return what the surrogates say about the pairs that others simulated, where the parameters are the same."""
+    names = done.problem.names
+    if not set(names) <= set(done.published):
+        return "The published pairs have other parameters.\n"
+    table = done.published[["row", *names, *(name for name in done.known.surrogates if name in done.published)]].copy()
+    points = done.problem.to_unit(table[names].to_numpy(float))
+    for name, surrogate in done.known.surrogates.items():
+        mean, variance = surrogate.predict(points)
+        table[f"{name}_here"], table[f"{name}_doubt"] = mean, np.sqrt(variance)
+    return markdown(table)
 
 
 def scatter_text(done: Calibrated) -> str:

@@ -17,13 +17,20 @@ import pandas as pd
 from postproc.analysis.bulk_test import RESPONSES
 from postproc.analysis.calibration import RECOMMENDED
 from workflows import state
+from workflows.bulk_tests import simulated_width
 from workflows.calibration import SIMULATIONS, repeated
 from workflows.cases.base import Parameters
 from workflows.design import load_study
 from workflows.progress import Progress
 
 CHECKED = "checked_pairs.csv"
-MARKS = ["pair", "test", "seed", "particle_scale"]  # columns that tell one row from another, with the parameters
+MARKS = [
+    "pair",
+    "test",
+    "seed",
+    "particle_scale",
+    "width_mm",
+]  # columns that tell one row from another, with the parameters
 
 
 def pair_found(repeats: pd.DataFrame, pair: str, names: list[str]) -> dict[str, float]:
@@ -43,6 +50,8 @@ def check_pair(parameters: Parameters, pair: str, folder: Path, workers: int) ->
     with state.only_driver(folder / SIMULATIONS, say):
         rows = repeated(parameters, {pair: values}, folder, workers, say)
     rows.insert(3, "particle_scale", parameters["particle"]["scale"])
+    widths = {kind: 1e3 * simulated_width(parameters[kind], parameters["particle"]) for kind in set(rows["test"])}
+    rows.insert(4, "width_mm", rows["test"].map(widths))
     before = [pd.read_csv(folder / CHECKED)] if (folder / CHECKED).is_file() else []
     table = pd.concat([*before, rows]).drop_duplicates([*MARKS, *names], keep="last", ignore_index=True)
     table.to_csv(folder / CHECKED, index=False)
