@@ -172,7 +172,8 @@ def calibrated_materials(done: Calibrated, materials: Mapping[str, Any], study: 
 def _provenance(done: Calibrated, intervals: pd.DataFrame, study: str) -> dict[str, Any]:
     """Return what the materials file tells about the values calibrated: valid in this convention and model only."""
     solver = done.parameters["solver"]
-    aims = ", ".join(f"{name} {aim.value:g} +- {aim.deviation:g}" for name, aim in done.problem.measured.items())
+    used = {name: aim for name, aim in done.problem.measured.items() if name in done.known.predicted}
+    aims = ", ".join(f"{name} {aim.value:g} +- {aim.deviation:g}" for name, aim in used.items())
     return {
         "study": study,
         "rolling_radius": solver["rolling_radius"],

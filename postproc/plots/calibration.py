@@ -10,6 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -236,31 +237,27 @@ def pairs_against_bands(statements: pd.DataFrame, published: pd.Series, remarks:
         axes.set_xticks(range(len(part)), [pair.replace("_", " ") for pair in part["pair"]])
         axes.set_xlim(-0.6, len(part) - 0.4)
         axes.set_ylabel(response_name(name))
-    handles = [
-        Patch(color=OTHER_COLOUR, alpha=0.25, label="measured, ± one standard deviation"),
-        Line2D(
-            [],
-            [],
-            linestyle="",
-            marker="*",
-            color=OURS,
-            markeredgecolor="black",
-            markersize=8,
-            label="simulated here, mean of seeds",
-        ),
-        Line2D([], [], linestyle="", marker="_", color=OTHER_COLOUR, label="surrogate"),
-        Line2D(
-            [],
-            [],
-            linestyle="",
-            marker="D",
-            color="white",
-            markeredgecolor=OTHERS,
-            label="simulated in Yan 2022, Table 3.6",
-        ),
-    ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=2)
+    _explain_bands(figure)
     return figure
+
+
+def _explain_bands(figure: Figure) -> None:
+    """Add the legend of `pairs_against_bands`; both pairs' marks stand for what was simulated here."""
+    look = {"linestyle": "", "markersize": 8}
+    ours = tuple(
+        Line2D([], [], marker=marker, color=colour, markeredgecolor="black", **look)
+        for marker, colour in (("*", OURS), ("D", OTHERS))
+    )
+    handles = {
+        "measured, ± one standard deviation": Patch(color=OTHER_COLOUR, alpha=0.25),
+        "simulated here, mean of seeds": ours,
+        "surrogate": Line2D([], [], marker="_", color=OTHER_COLOUR, **look),
+        "simulated in Yan 2022, Table 3.6": Line2D([], [], marker="D", color="white", markeredgecolor=OTHERS, **look),
+    }
+    together = {tuple: HandlerTuple(ndivide=None, pad=0.6)}
+    figure.legend(
+        handles.values(), handles.keys(), loc="outside upper center", ncols=2, handler_map=together, handlelength=2.5
+    )
 
 
 # ---------------------------------------------------------------- box sizes, and what to simulate or measure next
@@ -323,7 +320,7 @@ def progress_and_information(
     left.set(xlabel="Simulations", ylabel="Surrogate's share of the variance (-)", ylim=(0.0, 1.0))
     left.legend()
     names = [response_name(name) for name in information["response"]][::-1]
-    right.barh(names, information["information_bits"][::-1], color=OURS)
-    right.set_xlabel("Information of another measurement (bit)")
+    right.barh(names, information["information_bits"][::-1], height=0.5, color=OURS)
+    right.set(xlabel="Expected information (bit)", ylim=(-1.0, len(names)))
     right.grid(axis="y", visible=False)
     return figure

@@ -16,7 +16,7 @@ from postproc.plots.style import COLOURS, LARGEST_HEIGHT, SMALLEST_FONT, new_fig
 
 SLOPE_COLOUR = COLOURS["plain"]
 PARTICLE_COLOUR, PARTICLE_EDGE = "#d8dee4", "#8a949e"
-HALF_LABEL_POINTS = 36.0  # half the width of an angle's words
+HALF_LABEL_POINTS = 44.0  # half the width of an angle's words
 
 
 def heaps(pictures: Sequence[Mapping[str, Any]], remarks: Sequence[str]) -> Figure:
@@ -82,7 +82,7 @@ def _draw_slope(axes: Axes, slope: Any) -> None:
     axes.annotate(
         f"{np.degrees(slope.angle_rad):.1f} ± {np.degrees(slope.uncertainty_rad):.1f}°",
         (1e3 * y.mean(), 1e3 * z.mean()),
-        xytext=(0, 5.0 + HALF_LABEL_POINTS * abs(slope.gradient)),  # in the air, clear of the slope
+        xytext=(0, 8.0 + HALF_LABEL_POINTS * abs(slope.gradient)),  # in the air, clear of the slope
         textcoords="offset points",
         ha="center",
         fontsize=SMALLEST_FONT,

@@ -39,8 +39,8 @@ def remarks(study: Study) -> list[str]:
     ]
     for section in run["calibration"]["tests"]:
         width, real = simulated_width(run[section], run["particle"]), run[section]["width_m"]
-        if width > real:
-            said.append(f"{section.replace('_', ' ')} {1e3 * width:.3g} mm wide instead of {1e3 * real:g} mm")
+        widened = f" instead of {1e3 * real:g} mm" if width > real else ""
+        said.append(f"{section.replace('_', ' ')} {1e3 * width:.3g} mm wide{widened}")
     if "draw_down" in run["calibration"]["tests"]:
         said.append(f"slot of {1e3 * run['draw_down']['opening_m']:g} mm assumed")
     return said
