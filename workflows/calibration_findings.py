@@ -52,7 +52,7 @@ def write_findings(folder: Path, docs: Path, study: Study) -> None:
     parts = [HEAD, provenance(done, study), *sections(done)]
     (docs / PAGE).write_text("\n".join(parts), encoding="utf-8")
     for name in PICTURES:
-        shutil.copyfile(folder / "figures" / f"{name}.png", docs / f"calibration_{name}.png")
+        shutil.copyfile(folder / "figures" / f"{name}.png", docs / _picture_file(name))
     done.simulations.to_csv(docs / TABLE, index=False, float_format="%.5g")
 
 
@@ -87,7 +87,11 @@ def sections(done: Calibrated) -> list[str]:
 
 
 def _picture(name: str) -> str:
-    return f"\n![{name.replace('_', ' ')}](calibration_{name}.png)\n" if name else ""
+    return f"\n![{name.replace('_', ' ')}]({_picture_file(name)})\n" if name else ""
+
+
+def _picture_file(name: str) -> str:
+    return f"calibration_{name.removeprefix('calibration_')}.png"
 
 
 def _prose(text: str) -> str:
@@ -167,7 +171,9 @@ def checked_text(done: Calibrated) -> str:
 
 def cost_text(done: Calibrated) -> str:
     """Return what the simulations took."""
-    return markdown(cost_table(done.folder), 4)
+    return (
+        f"Wall times of the solver, on whatever else the machine was doing.\n\n{markdown(cost_table(done.folder), 4)}"
+    )
 
 
 def main() -> None:

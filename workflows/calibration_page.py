@@ -71,7 +71,7 @@ def cards(done: Calibrated, statements: pd.DataFrame, intervals: pd.DataFrame) -
     ]
     found.append((str(len(done.simulations)), "simulations until the stopping rule or the limit"))
     where = "in" if share <= FAMILY_SHARE else "outside"
-    found.append((f"{100.0 * share:.0f} %", f"of the posterior fits better than ({other}): {where} the family"))
+    found.append((f"{100.0 * share:.3g} %", f"of the posterior fits better than ({other}): {where} the family"))
     return [{"value": value, "label": label} for value, label in found]
 
 
