@@ -193,10 +193,10 @@ def calibration(
             axes.axvline(test_revolutions / factor, color=OTHER_COLOUR, linewidth=0.8, linestyle=":")
             axes.text(
                 test_revolutions / factor,
-                0.97,
-                f"{words}: at most {factor:.1f}",
+                0.6,
+                f"{words}:\nat most {factor:.1f}",
                 rotation=90,
-                va="top",
+                va="center",
                 fontsize=SMALLEST_FONT,
                 transform=axes.get_xaxis_transform(),
             )
