@@ -65,12 +65,12 @@ def simulate_in_pieces(
 
 
 def finished_pieces(folder: Path, origin: str) -> list[Piece]:
-    """Return the finished pieces of a cycle; those that started from something else do not count."""
+    """Return the finished pieces of a cycle; those that started from something else, or a torn list, do not count."""
     try:
         found = json.loads((folder / PIECES).read_text())
-    except FileNotFoundError:
+        return [Piece(**piece) for piece in found["pieces"]] if found["origin"] == origin else []
+    except (OSError, ValueError, KeyError, TypeError):
         return []
-    return [Piece(**piece) for piece in found["pieces"]] if found["origin"] == origin else []
 
 
 def check_end(folder: Path, end: int) -> None:

@@ -116,9 +116,9 @@ def _holds(folder: Path, inputs: str) -> bool:
     try:
         state = json.loads((folder / STATE).read_text())
         found = {name: file_digest(folder / name) for name in state["files"]}
-    except (OSError, ValueError, KeyError):
+        return state["inputs"] == inputs and found == state["files"]
+    except (OSError, ValueError, KeyError, TypeError):
         return False
-    return state["inputs"] == inputs and found == state["files"]
 
 
 def share_cycles(run_folder: Path, other: Path, inputs: str) -> int:
@@ -170,7 +170,7 @@ def set_aside_others(run_folder: Path, inputs: str) -> str | None:
 def _inputs_of(folder: Path) -> str:
     try:
         return json.loads((folder / STATE).read_text())["inputs"]
-    except (OSError, ValueError, KeyError):
+    except (OSError, ValueError, KeyError, TypeError):
         return "damaged_state"
 
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workflows.pieces import CHECKPOINT, finished_pieces, piece_ends, simulate_in_pieces
+from workflows.pieces import CHECKPOINT, PIECES, finished_pieces, piece_ends, simulate_in_pieces
 from workflows.solver import LOG, SCREEN, SolverError
 
 ENDS = [100, 200, 300, 340]
@@ -62,6 +62,15 @@ def test_pieces_of_another_start_do_not_count(tmp_path):
         simulate_in_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, 300))
     assert [piece.end for piece in finished_pieces(tmp_path, "inputs")] == [100, 200]
     assert finished_pieces(tmp_path, "other inputs") == []
+
+
+@pytest.mark.parametrize(
+    "text", ["", '{"origin": "inp', "[]", '{"origin": "inputs"}', '{"origin": "inputs", "pieces": [{}]}']
+)
+def test_a_torn_list_of_pieces_is_none(tmp_path, text):
+    """A list that a full disk or a lost machine left unfinished counts no piece and stops no run."""
+    (tmp_path / PIECES).write_text(text)
+    assert finished_pieces(tmp_path, "inputs") == []
 
 
 def test_a_short_cycle_is_one_piece_that_is_told_nothing(tmp_path):

@@ -1,5 +1,7 @@
 """Cycles of other inputs are kept aside; the solver's part is in test_cycles.py."""
 
+import pytest
+
 from workflows import state
 
 FILES = ("surface.vtu",)
@@ -24,6 +26,16 @@ def test_unfinished_cycles_of_other_inputs_are_removed(tmp_path):
     assert "brought back" in state.set_aside_others(tmp_path, "old")
     assert state.finished_cycles(tmp_path, "old") == 2
     assert sorted(path.name for path in tmp_path.glob("cycle_*")) == ["cycle_000", "cycle_001"]
+
+
+@pytest.mark.parametrize(
+    "text", ["", '{"inputs": "sa', "null", "[]", '{"inputs": "same", "files": null}', '{"files": {}}']
+)
+def test_a_torn_state_is_no_cycle(tmp_path, text):
+    """A state that a full disk or a lost machine left unfinished is that of no finished cycle and stops no run."""
+    finished_cycle(tmp_path, 0, "same")
+    (tmp_path / "cycle_000" / state.STATE).write_text(text)
+    assert state.finished_cycles(tmp_path, "same") == 0
 
 
 def test_cycles_are_shared_only_where_inputs_are_the_same(tmp_path):
