@@ -125,9 +125,13 @@ def share_cycles(run_folder: Path, other: Path, inputs: str) -> int:
     """Give a run the finished cycles that it lacks of another one made from the same inputs; return how many.
 
     Files are linked where the file system can, and the state tells whose they are (`shared_with`). Cycles of other
-    inputs and damaged ones are not taken.
+    inputs and damaged ones are not taken. A run that has worn its sample itself gets none: several ranks sum in an
+    order of their own, and the other's next cycle would not go on from this run's last one.
     """
-    missing = range(finished_cycles(run_folder, inputs), finished_cycles(other, inputs))
+    finished = finished_cycles(run_folder, inputs)
+    if any("shared_with" not in read_state(run_folder, cycle) for cycle in range(1, finished)):
+        return 0
+    missing = range(finished, finished_cycles(other, inputs))
     for cycle in missing:
         source = cycle_folder(other, cycle)
         with working_folder(run_folder, cycle) as folder:

@@ -52,6 +52,19 @@ def test_cycles_are_shared_only_where_inputs_are_the_same(tmp_path):
     assert (other / "cycle_000" / state.STATE).read_text() == own
     assert [state.read_state(other, cycle).get("shared_with") for cycle in range(3)] == [None, "R1_plain", "R1_plain"]
     assert state.share_cycles(other, one, "same") == 0
+    finished_cycle(one, 3, "same")
+    assert state.share_cycles(other, one, "same") == 1
+
+
+def test_a_run_goes_on_from_its_own_cycles(tmp_path):
+    """A run with a wear cycle of its own takes none of another's: they do not go on from where it stands."""
+    one, other = tmp_path / "R1_plain", tmp_path / "R8_plain"
+    for cycle in range(4):
+        finished_cycle(one, cycle, "same")
+    for cycle in range(2):
+        finished_cycle(other, cycle, "same")
+    assert state.share_cycles(other, one, "same") == 0
+    assert state.finished_cycles(other, "same") == 2
 
 
 def test_what_one_run_drops_the_other_keeps(tmp_path):
