@@ -26,7 +26,7 @@ from workflows.calibration import SIMULATIONS
 from workflows.calibration_page import cost_table, sentences, solver_said
 from workflows.calibration_tables import Calibrated, read_calibrated
 from workflows.cases.calibration import PUBLISHED
-from workflows.checked_pairs import CHECKED
+from workflows.checked_pairs import CHECKED, MARKS
 from workflows.design import Study, load_study
 from workflows.pin_results import LINE, markdown
 from workflows.remarks import figure_remarks
@@ -65,7 +65,8 @@ def provenance(done: Calibrated, study: Study) -> str:
     solver = solver_said(done.folder).removeprefix("Version ").partition(",")[0]
     said = (
         f"Simulated {first:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M} UTC with {solver}, page written by {commit()}, "
-        f"fidelity {study.fidelity}: {'; '.join(figure_remarks(study))}."
+        f"fidelity {study.fidelity}: {'; '.join(figure_remarks(study))}. Checked pairs have the scale and width that "
+        "their rows name."
     )
     return textwrap.fill(said, LINE) + "\n"
 
@@ -165,8 +166,12 @@ def checked_text(done: Calibrated) -> str:
         return "Not simulated.\n"
     rows = pd.read_csv(done.folder / CHECKED)
     names = [name for name in done.problem.measured if name in rows]
-    table = with_bands(repeat_table(rows, names), done.problem.measured)
-    return f"{markdown(rows)}\n{markdown(table)}"
+    same = [*(name for name in MARKS if name not in ("pair", "seed")), *done.problem.names]
+    tables = [
+        with_bands(repeat_table(group, names), done.problem.measured).assign(**dict(zip(same, values, strict=True)))
+        for values, group in rows.groupby(same, sort=False)
+    ]
+    return f"{markdown(rows)}\n{markdown(pd.concat(tables, ignore_index=True))}"
 
 
 def cost_text(done: Calibrated) -> str:

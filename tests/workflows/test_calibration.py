@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
@@ -23,7 +24,7 @@ from workflows.calibration import (
     run_box_sizes,
     run_calibration,
 )
-from workflows.calibration_findings import write_findings
+from workflows.calibration_findings import checked_text, write_findings
 from workflows.calibration_page import page_context
 from workflows.calibration_tables import calibrated_materials, draw_all, read_calibrated
 from workflows.cases.calibration import PUBLISHED
@@ -229,6 +230,19 @@ def test_a_found_pair_is_checked_in_another_test(done, formula, tmp_path):
     assert table[SLIDING].iloc[0] == pytest.approx(done.pairs[RECOMMENDED][SLIDING])
     with pytest.raises(ValueError, match="no pair 'nobody', there are recommended, calibrated"):
         check_pair(run, "nobody", tmp_path, 1)
+
+
+def test_only_packings_of_one_pair_and_test_are_averaged(done, tmp_path):
+    """Rows of another value of the pair, or of another width, have means of their own: 35, 37 and 39."""
+    marks = {"pair": RECOMMENDED, "test": "draw_down", "particle_scale": 4.0}
+    rows = [(1, 43.0, 0.38, 35.0), (1, 60.0, 0.38, 37.0), (1, 60.0, 0.42, 39.0), (2, 60.0, 0.42, 39.0)]
+    table = pd.DataFrame(rows, columns=["seed", "width_mm", SLIDING, "shear_angle_deg"]).assign(**marks)
+    table.assign(**{ROLLING: 0.2, "shear_angle_deg_uncertainty": 1.0}).to_csv(
+        tmp_path / "checked_pairs.csv", index=False
+    )
+    lines = checked_text(SimpleNamespace(folder=tmp_path, problem=done.problem)).splitlines()
+    means = [line.split("|") for line in lines if line.startswith(f"| {RECOMMENDED} | shear angle deg")]
+    assert [[cell.strip() for cell in cells[3:5]] for cells in means] == [["1", "35"], ["1", "37"], ["2", "39"]]
 
 
 def _empty_figure():

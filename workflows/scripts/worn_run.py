@@ -5,7 +5,7 @@ from pathlib import Path
 from workflows.chain import Chain
 from workflows.cycles import run_chain
 from workflows.job import job_log
-from workflows.solver import LAUNCHER
+from workflows.solver import LAUNCHER, ranks_here
 
 with job_log(snakemake.log[0]):
     run_chain(
@@ -17,7 +17,7 @@ with job_log(snakemake.log[0]):
             surface=Path(snakemake.input.surface),
             bed=snakemake.params.bed,
             bed_restart=next(map(Path, snakemake.input.bed), None),
-            ranks=snakemake.resources.tasks,
+            ranks=ranks_here(snakemake.resources.tasks, snakemake.threads),
             launcher=snakemake.resources.get("mpi", LAUNCHER),
             same_as=next((Path(path).parent for path in snakemake.input.same), None),
         )
