@@ -20,10 +20,11 @@ from workflows.wear_step import law_volume, load_sums, on_whole_surface, wear
 LEDGER, FORCES, HISTORY = "ledger.parquet", "forces.csv", "wear_history.csv"
 
 
-def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> dict[str, Any]:
-    """Turn what the solver wrote in a cycle into its ledger and worn surface; return its record.
+def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> tuple[dict[str, Any], list[Path]]:
+    """Turn what the solver wrote in a cycle into its ledger, tables and worn surface.
 
-    What only the ledger was made from is removed. Raises CycleError for a cycle that the case does not accept.
+    Returns the cycle's record and the files that nobody needs once its state is written; until then all of them stay,
+    and it can be done again. Raises CycleError for a cycle that the case does not accept.
     """
     source, case = producer(chain.parameters), CASES[chain.case]
     ledger_bytes = source.written_bytes(folder)
@@ -34,10 +35,9 @@ def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
     if fault := case.cycle_fault(chain.parameters, own):
         raise CycleError(f"{chain.name}, cycle {span.cycle}: {fault}")
     row = wear(chain, span, folder, surface, ledger) | own
-    for path in (*source.written(folder), *(folder / name for name in case.leftovers)):
-        path.unlink()
-    case.reduce(chain.parameters, span, folder)
-    return {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}
+    spent = [*source.written(folder), *(folder / name for name in case.leftovers)]
+    spent += case.reduce(chain.parameters, span, folder)
+    return {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}, spent
 
 
 def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.DataFrame:

@@ -34,7 +34,7 @@ from workflows.chain import (
     write_shared_files,
 )
 from workflows.ledgers import producer
-from workflows.pieces import Piece, finished_pieces, simulate_in_pieces
+from workflows.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
 from workflows.progress import Progress
 from workflows.schedule import Span, first_span
 from workflows.solver import (
@@ -105,7 +105,7 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         write_shared_files(chain)
         triangles = write_cycle(chain, span, folder, surface)
         pieces = simulate(chain, span, folder, triangles, progress, origin)
-        record = account_and_wear(chain, span, folder, surface) if span else {"cost": {}}
+        record, spent = account_and_wear(chain, span, folder, surface) if span else ({"cost": {}}, [])
         record["cost"] = cost(chain, span, folder, triangles, pieces, time.monotonic() - started) | record["cost"]
         record |= {
             "span": asdict(span) if span else None,
@@ -119,6 +119,9 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         kept = (*producer(chain.parameters).kept, *CASES[chain.case].kept)
         files = (RESTART, SURFACE, LEDGER, HISTORY, *kept) if span else (RESTART,)
         state.write_state(folder, inputs, files, record)
+        forget_pieces(folder)  # before anything that a repeated accounting would miss
+        for path in spent:
+            path.unlink()
 
 
 def drop_files(chain: Chain, cycle: int) -> None:

@@ -2,8 +2,8 @@
 
 A piece is a start of the solver on the cycle's one deck, told where to begin and to stop; the last one ends the cycle.
 They are the same pieces whether a run is killed or not: a run that is taken up within a cycle is the undisturbed one.
-What is finished stands in `pieces.json`; it, the logs and the restart file of the newest piece stay in the cycle's
-working folder until all is simulated.
+What is finished stands in `pieces.json`. It, the logs of the pieces and the newest restart file stay until the
+cycle is accounted and its state written, so that a fault on the way there costs no simulation.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def simulate_in_pieces(
     run: starts the solver with these variables of its deck and returns its wall time in s
     origin: hash of all that the cycle starts from
 
-    The folder then holds one log and one screen of the cycle, and nothing of its pieces. Raises SolverError.
+    The folder then holds one log and one screen of the cycle; `forget_pieces` removes the rest. Raises SolverError.
     """
     done = finished_pieces(folder, origin)
     for forced in folder.glob(FORCED):
@@ -109,12 +109,17 @@ def _keep(folder: Path, origin: str, done: list[Piece]) -> None:
 
 
 def _join(folder: Path, pieces: int) -> None:
-    """Make one log and one screen of those of the pieces, and forget the pieces."""
-    (folder / PIECES).unlink()
+    """Make one log and one screen of those of the pieces, which stay: it can be done again."""
     for name in (LOG, SCREEN):
         parts = [_of_piece(folder, name, number) for number in range(1, pieces + 1)]
         (folder / name).write_bytes(b"".join(part.read_bytes() for part in parts))
-        for part in parts:
+
+
+def forget_pieces(folder: Path) -> None:
+    """Remove what is left of a cycle's pieces, their list first: without it none counts."""
+    (folder / PIECES).unlink(missing_ok=True)
+    for name in (LOG, SCREEN):
+        for part in folder.glob(f"piece_*_{name}"):
             part.unlink()
 
 

@@ -23,6 +23,7 @@ from postproc.analysis.moving_bins import (
 from postproc.analysis.steady import FEWEST_VALUES, steady_window
 from postproc.readers.cycle_folders import FLOW_TABLE, cycle_files
 
+FIRST_SNAPSHOT = "bed_0.dump"  # of a cycle, at its step 0
 INTERVAL = 0.01  # m of travel that is averaged (Yan 2022, section 3.4)
 LAYER_HEIGHT = 0.005  # m, of layers of real particles; coarse-grained ones have layers as much higher
 SIDE_SHARE = 0.25  # -, width of the side bins over the sample's: 50 mm beside 200 mm
@@ -56,20 +57,20 @@ class RunFlow:
         return {**asdict(self.bins), "interval": INTERVAL, "travel_per_step": self.velocity * self.time_step}
 
 
-def reduce_snapshots(cycle_folder: str | Path, run: RunFlow, start: float) -> None:
-    """Write the bins of a wear cycle from its snapshots, and remove all of them but the last.
+def reduce_snapshots(cycle_folder: str | Path, run: RunFlow, start: float) -> list[Path]:
+    """Write the bins of a wear cycle from its snapshots and return those of no use from then on, all but the last.
 
-    start: m, travel at step 0 of the cycle. Disk is then bounded by a snapshot and bins times intervals per cycle.
+    start: m, travel at step 0 of the cycle; the snapshot of that step is the last one of the cycle before, and left
+    out. Disk is then bounded by a snapshot and bins times intervals per cycle.
     Raises FileNotFoundError when there is no snapshot, and the errors of `moving_bins.bin_history`.
     """
-    dumps = snapshots(cycle_folder)
+    dumps = [path for path in snapshots(cycle_folder) if path.name != FIRST_SNAPSHOT]
     if not dumps:
         raise FileNotFoundError(f"{cycle_folder}: no bed_*.dump found, at least one is needed to know the flow.")
     bins = bin_history(((path, start) for path in dumps), run.bins, run.velocity * run.time_step, INTERVAL)
     bins.attrs = run.definition
     bins.to_parquet(Path(cycle_folder) / FLOW_TABLE, index=False)
-    for path in dumps[:-1]:
-        path.unlink()
+    return dumps[:-1]
 
 
 def run_bins(folder: str | Path, run: RunFlow) -> pd.DataFrame:

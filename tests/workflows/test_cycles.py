@@ -21,7 +21,7 @@ from postproc.analysis.summary import run_summary
 from postproc.mesh import areas, read_stl, read_surface
 from postproc.wear.update import BALANCE_TOLERANCE
 from workflows import cycles, state, wear_step
-from workflows.accounting import FORCES, HISTORY, LEDGER, account
+from workflows.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
 from workflows.chain import write_cycle, write_shared_files
 from workflows.ledgers import PRODUCERS
 from workflows.pieces import PIECES
@@ -403,6 +403,28 @@ def test_killed_within_a_cycle_it_goes_on_from_its_newest_piece(in_pieces, tmp_p
     left = {path.name for path in state.cycle_folder(chain.folder, 1).iterdir()}
     assert left == {path.name for path in state.cycle_folder(in_pieces.folder, 1).iterdir()}
     assert not [name for name in left if name.startswith(("piece", "checkpoint"))]
+
+
+def test_a_fault_while_a_cycle_is_accounted_costs_no_simulation(in_pieces, tmp_path, monkeypatch):
+    """What ends the driver between the last piece and the state of a cycle: the next start accounts the cycle again,
+    without the solver, and leaves what the undisturbed run left."""
+    chain = twin(in_pieces, tmp_path)
+
+    def ended(*given):
+        account_and_wear(*given)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as first, pytest.raises(KeyboardInterrupt):
+        first.setattr(cycles, "account_and_wear", ended)
+        cycles.run_chain(chain)
+    monkeypatch.setattr(cycles, "run_deck", lambda *given, **named: pytest.fail("the solver was started"))
+    cycles.run_chain(chain)
+    for name in ("wear.csv", *(f"cycle_001/{each}" for each in (LEDGER, FORCES, HISTORY, "run.restart"))):
+        assert (chain.folder / name).read_bytes() == (in_pieces.folder / name).read_bytes(), name
+    flows = [pd.read_parquet(run.folder / "cycle_001" / "flow.parquet") for run in (chain, in_pieces)]
+    pd.testing.assert_frame_equal(*flows, check_exact=True)
+    left, expected = ({path.name for path in (run.folder / "cycle_001").iterdir()} for run in (chain, in_pieces))
+    assert left == expected
 
 
 def test_a_simulation_in_pieces_is_the_simulation(looked_into, tmp_path):

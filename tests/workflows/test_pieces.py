@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workflows.pieces import CHECKPOINT, PIECES, finished_pieces, piece_ends, simulate_in_pieces
+from workflows.pieces import CHECKPOINT, PIECES, finished_pieces, forget_pieces, piece_ends, simulate_in_pieces
 from workflows.solver import LOG, SCREEN, SolverError
 
 ENDS = [100, 200, 300, 340]
@@ -43,7 +43,8 @@ class Solver:
 
 @pytest.mark.parametrize("fails_at", ENDS)
 def test_a_killed_simulation_goes_on_after_its_newest_piece(tmp_path, fails_at):
-    """Every piece is simulated once but the one that was killed, and the log is that of an undisturbed simulation."""
+    """Every piece is simulated once but the one that was killed, and the log is that of an undisturbed simulation; it
+    can be joined again until the pieces are forgotten."""
     with pytest.raises(SolverError):
         simulate_in_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, fails_at))
     (tmp_path / "checkpoint_0.restart").touch()  # killed before it was removed
@@ -52,6 +53,10 @@ def test_a_killed_simulation_goes_on_after_its_newest_piece(tmp_path, fails_at):
     assert [variables["stop"] for variables in solver.calls] == [str(end) for end in missing]
     assert [piece.end for piece in done] == ENDS
     assert sum(piece.wall_s for piece in done) == len(ENDS)
+    repeated = simulate_in_pieces(tmp_path, "inputs", ENDS, lambda variables: pytest.fail("the solver was started"))
+    assert repeated == done
+    forget_pieces(tmp_path)
+    assert finished_pieces(tmp_path, "inputs") == []
     lines = "".join(f"{begin} to\n{end} 1.0\n" for begin, end in zip([0, *ENDS], ENDS, strict=False))
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {LOG: lines, SCREEN: lines}
 

@@ -175,8 +175,9 @@ class Case:
         """Return the case's own columns of a cycle's row of wear.csv."""
         return {}
 
-    def reduce(self, parameters: Parameters, span: Span, folder: Path) -> None:
-        """Make tables of what a wear cycle wrote in bulk, and remove that; the leftovers are gone by then."""
+    def reduce(self, parameters: Parameters, span: Span, folder: Path) -> list[Path]:
+        """Make tables of what a wear cycle wrote in bulk; return the files, leftovers aside, of no use from then on."""
+        return []
 
     def cycle_fault(self, parameters: Parameters, own: Mapping[str, float]) -> str | None:
         """Return a phrase if a cycle went wrong unnoticed by the solver, from its own columns; else None."""

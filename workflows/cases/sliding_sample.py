@@ -168,11 +168,12 @@ class SlidingSample(Case):
         pace = _thermo(folder)["bed_pace"].mean()
         return {"bed_over_floor_velocity": float(pace / parameters["sliding"]["velocity_m_per_s"])}
 
-    def reduce(self, parameters: Parameters, span: Span, folder: Path) -> None:
+    def reduce(self, parameters: Parameters, span: Span, folder: Path) -> list[Path]:
         """Reduce the snapshots of the bed to the bins of its flow; the last one stays for pictures."""
         from postproc.analysis.flow_history import RunFlow, reduce_snapshots
 
-        reduce_snapshots(folder, RunFlow(**flow_measures(parameters)), deck.travelled(parameters, span.first_step))
+        start = deck.travelled(parameters, span.first_step)
+        return reduce_snapshots(folder, RunFlow(**flow_measures(parameters)), start)
 
     def closing_gap(self, parameters: Parameters, duration: float) -> float:
         """Return the gap (m) that particles fall through in the stated part of a cycle."""

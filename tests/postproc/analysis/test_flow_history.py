@@ -53,7 +53,10 @@ def write_run(folder, speeds):
         where.mkdir(parents=True)
         for step in (600, 1000):
             write_snapshot(where / f"bed_{step}.dump", step, speed)
-        reduce_snapshots(where, RUN, 0.02 * (cycle - 1))
+        write_snapshot(where / "bed_0.dump", 0, 9.0)  # the last one of the cycle before, counted there
+        for path in reduce_snapshots(where, RUN, 0.02 * (cycle - 1)):
+            path.unlink()
+        (where / "bed_0.dump").unlink()
     folder.mkdir(exist_ok=True)
     pd.DataFrame({"particles": [len(LATTICE)]}).to_csv(folder / "cost.csv", index=False)
     return folder
