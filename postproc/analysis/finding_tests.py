@@ -155,18 +155,19 @@ def _exception(evidence: Evidence) -> Verdict:
 def _best(evidence: Evidence) -> Verdict:
     if reason := _missing(evidence, BEST):
         return Verdict("", UNSAID, reason)
-    wear = evidence.continuous["wear_over_plain"]
-    ours = evidence.rows.loc[BEST, "wear_over_plain"]
-    lowest = wear.idxmin() if len(wear) else ""
+    wear = evidence.continuous["wear_over_plain"].dropna()
+    if BEST not in wear.index:
+        return Verdict("", UNSAID, "R5 is not found to flow continuously, or has no plain twin with a result")
+    ours, lowest = wear[BEST], wear.idxmin()
     found = f"R5 {PERCENT * (ours - 1.0):+.0f} %; lowest {lowest} {PERCENT * (wear.min() - 1.0):+.0f} %"
     away = abs(PERCENT * ours - evidence.published["wear_over_plain", BEST, "about"])
     return _verdict(found, lowest == BEST and away <= NEAR)
 
 
 def _best_discontinuous(evidence: Evidence) -> Verdict:
-    wear = evidence.rows.loc[evidence.rows["regime"] == DISCONTINUOUS, "wear_over_plain"]
+    wear = evidence.rows.loc[evidence.rows["regime"] == DISCONTINUOUS, "wear_over_plain"].dropna()
     if BEST_DISCONTINUOUS not in wear.index:
-        return Verdict("", UNSAID, "R2 is not found to flow discontinuously, or has no result")
+        return Verdict("", UNSAID, "R2 is not found to flow discontinuously, or has no result beside a plain twin")
     return _verdict(f"lowest {ratios(wear.nsmallest(1))}", wear.idxmin() == BEST_DISCONTINUOUS)
 
 
@@ -220,11 +221,13 @@ def _rolling_falls(evidence: Evidence) -> Verdict:
         return Verdict("", UNSAID, reason)
     profile = evidence.profiles
     shown = profile[(profile["row"] == BEST) & (profile["surface"] != PLAIN)]
-    spin = {zone: one.set_index("layer")["angular_speed_deg_per_s"] for zone, one in shown.groupby("zone")}
-    if CENTRAL not in spin or SIDE not in spin:
+    mean = shown.groupby(["zone", "layer"])["angular_speed_deg_per_s"].mean().dropna()  # replicates are one row
+    if not {CENTRAL, SIDE} <= set(mean.index.get_level_values("zone")):
         return Verdict("", UNSAID, "R5 has no profile")
-    over, beside = spin[CENTRAL].sort_index(), spin[SIDE].sort_index()
+    over, beside = mean[CENTRAL], mean[SIDE]
     both = over.index.intersection(beside.index)
+    if len(over) < 2 or both.empty:
+        return Verdict("", UNSAID, "R5 has too few layers to compare")
     falls = bool((over.diff().dropna() < 0.0).all())
     found = f"layers from below, over {_numbers(over)}, beside {_numbers(beside)} °/s"
     return _verdict(found, falls and bool((over[both] > beside[both]).all()))
@@ -234,6 +237,8 @@ def _rolling_discontinuous(evidence: Evidence) -> Verdict:
     if reason := _missing(evidence, BEST_DISCONTINUOUS):
         return Verdict("", UNSAID, reason)
     row = evidence.rows.loc[BEST_DISCONTINUOUS]
+    if np.isnan(row["spin_over_plain"]):
+        return Verdict("", UNSAID, "too few particles next to R2 or its twin")
     found = f"bottom layer {row['spin_over_plain']:.1f} times the plain twin's"
     other = "" if row["regime"] == DISCONTINUOUS else "R2 is not found to flow discontinuously"
     return _verdict(found, 1.0 / ALIKE <= row["spin_over_plain"] <= ALIKE, other)
@@ -243,6 +248,8 @@ def _taken_along(evidence: Evidence) -> Verdict:
     if reason := _missing(evidence, BEST):
         return Verdict("", UNSAID, reason)
     convex, plain = evidence.rows.loc[BEST, ["velocity_share", "plain_velocity_share"]].astype(float)
+    if np.isnan(convex) or np.isnan(plain):
+        return Verdict("", UNSAID, "too few particles next to R5 or its twin")
     shares = f"{PERCENT * convex:.0f} % of the sample's velocity, over the plain twin {PERCENT * plain:.0f} %"
     found = f"bottom layer at {shares}"
     return _verdict(found, convex >= TAKEN_ALONG and plain <= LEFT_BEHIND)

@@ -1,5 +1,6 @@
 """Findings of the source put to the test, on evidence that is made to agree, to disagree and to be too little."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -189,6 +190,38 @@ def test_one_regime_alone_compares_nothing(tables):
     for key in ("discontinuous_range", "gradient_by_regime", "r2_lowest", "rolling_discontinuous"):
         assert table.loc[key, "verdict"] == UNSAID
     assert table.loc["discontinuous_runs", "verdict"] == REFUTED
+
+
+def test_what_was_not_measured_decides_nothing(tables):
+    """Without plain twins, with one layer, or without particles over a twin nothing is confirmed or refuted."""
+    convex = tables["summary"]["surface"] != "plain"
+    summary = tables["summary"].assign(wear_over_plain=tables["summary"]["wear_over_plain"].mask(convex))
+    table = verdicts({**tables, "summary": summary})
+    assert table.loc[["r5_lowest", "r2_lowest"], "verdict"].unique().tolist() == [UNSAID]
+    profiles = tables["profiles"]
+    assert verdicts({**tables, "profiles": profiles[profiles["layer"] == 1]}).loc["rolling_falls", "verdict"] == UNSAID
+    table = verdicts({**tables, "profiles": profiles[~profiles["run"].isin(["R2_plain", "R5_plain"])]})
+    keys = ["rolling_discontinuous", "bottom_layer_taken_along", "rolling_at_surface"]
+    assert table.loc[keys, "verdict"].unique().tolist() == [UNSAID]
+    assert not table["found"].str.contains("nan").any()
+
+
+def test_best_run_of_another_regime_is_not_compared(tables):
+    """R5 flowing discontinuously is no case of what the source tells of continuous runs."""
+    regimes = tables["regimes"].assign(
+        regime=tables["regimes"]["regime"].mask(tables["regimes"]["row"] == "R5", DISCONTINUOUS)
+    )
+    assert verdicts({**tables, "regimes": regimes}).loc["r5_lowest", "verdict"] == UNSAID
+
+
+def test_layers_of_replicates_are_averaged(tables):
+    """Two packings whose layers fall alike confirm that speeds fall, though one lies above the other everywhere."""
+    study = screen_summary(tables["summary"], FACTORS)
+    evidence = gather(tables, study, 1000.0, SELF, SELF)
+    other = evidence.profiles.assign(angular_speed_deg_per_s=1.02 * evidence.profiles["angular_speed_deg_per_s"])
+    evidence = replace(evidence, profiles=pd.concat([evidence.profiles, other], ignore_index=True))
+    table = findings_table(evidence, read("findings"), read("regimes")).set_index("key")
+    assert table.loc["rolling_falls", "verdict"] == CONFIRMED
 
 
 def test_a_ratio_near_one_needs_replicates():
