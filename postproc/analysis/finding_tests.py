@@ -172,8 +172,8 @@ def _best_discontinuous(evidence: Evidence) -> Verdict:
 
 
 def _base(evidence: Evidence) -> Verdict:
-    rows = evidence.continuous
-    if rows.empty or EXCEPTION not in rows.index:
+    rows = evidence.continuous.dropna(subset=["base_share", "bump_share"])
+    if EXCEPTION not in rows.index:
         return Verdict("", UNSAID, "R12 is not found to flow continuously, or has no result")
     more = rows["base_share"] > rows["bump_share"]
     others = more.drop(index=EXCEPTION)

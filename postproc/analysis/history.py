@@ -41,8 +41,21 @@ def _run_history(run: dict[str, str], wear: pd.DataFrame) -> pd.DataFrame:
             "carried_volume_m3": wear["carried_volume_m3"],
         }
     )
+    return _from_zero(run, table)
+
+
+def _from_zero(run: dict[str, str], table: pd.DataFrame) -> pd.DataFrame:
+    """The table with the start, where all is zero, as its first row and with the columns of the run in front."""
     start = pd.DataFrame({name: [0] if name == "cycle" else [0.0] for name in table})
     return pd.concat([start, table], ignore_index=True).assign(**run)[[*run, *table]]
+
+
+def _rows_of_cycles(folder: Path, name: str) -> pd.DataFrame:
+    """The rows of a table that every wear cycle of a run has left, one cycle after the other."""
+    files = cycle_files(folder, name)
+    if not files:
+        raise FileNotFoundError(f"{folder}: no cycle_*/{name} found, at least one wear cycle must have been run.")
+    return pd.concat([pd.read_csv(path) for path in files], ignore_index=True)
 
 
 def wear_within_cycles(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
@@ -59,16 +72,10 @@ def wear_within_cycles(design: str | Path, run_folders: Sequence[str | Path]) ->
 
 
 def _run_stretches(run: dict[str, str], folder: Path) -> pd.DataFrame:
-    files = cycle_files(folder, "wear_history.csv")
-    if not files:
-        raise FileNotFoundError(
-            f"{folder}: no cycle_*/wear_history.csv found, at least one wear cycle must have been run."
-        )
-    stretches = pd.concat([pd.read_csv(path) for path in files], ignore_index=True)
+    stretches = _rows_of_cycles(folder, "wear_history.csv")
     volumes = stretches[["archard_volume_m3", "base_archard_volume_m3", "bump_archard_volume_m3"]].cumsum()
     table = stretches[["cycle", "travel_m"]].join(volumes)
-    start = pd.DataFrame({name: [0] if name == "cycle" else [0.0] for name in table})
-    return pd.concat([start, table], ignore_index=True).assign(**run)[[*run, *table]]
+    return _from_zero(run, table)
 
 
 def force_history(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
@@ -85,10 +92,7 @@ def force_history(design: str | Path, run_folders: Sequence[str | Path]) -> pd.D
 
 
 def _run_forces(run: dict[str, str], folder: Path) -> pd.DataFrame:
-    files = cycle_files(folder, "forces.csv")
-    if not files:
-        raise FileNotFoundError(f"{folder}: no cycle_*/forces.csv found, at least one wear cycle must have been run.")
-    forces = pd.concat([pd.read_csv(path) for path in files], ignore_index=True)
+    forces = _rows_of_cycles(folder, "forces.csv")
     table = pd.DataFrame(
         {
             "travel_m": forces["travel_m"],

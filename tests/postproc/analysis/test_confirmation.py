@@ -1,7 +1,5 @@
 """Best designs by regime and their confirmation, on wear that follows a known model."""
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,16 +13,8 @@ from postproc.analysis.confirmation import (
 )
 from postproc.analysis.evaluation import CONTINUOUS, DISCONTINUOUS
 from postproc.analysis.screening_tables import screen_summary
+from tests.postproc.screening_study import FACTORS, ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
-FACTORS = {
-    "a": "major_radius_mm",
-    "b": "minor_radius_mm",
-    "d": "column_spacing_mm",
-    "h": "height_mm",
-    "v": "velocity_m_per_s",
-    "t": "bed_thickness_mm",
-}
 CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")
 NOISE = 0.02  # of ln(wear): small beside effects of 0.45 to 1.4 per coded unit
 

@@ -1,7 +1,6 @@
 """Findings of the source put to the test, on evidence that is made to agree, to disagree and to be too little."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -20,17 +19,9 @@ from postproc.analysis.findings import (
 from postproc.analysis.published_model import published_wear_by_row
 from postproc.analysis.screening_tables import regression_tables, screen_summary
 from postproc.analysis.steady_table import MEASURES
+from tests.postproc.screening_study import FACTORS, ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 PUBLISHED = ROOT / "config" / "published"
-FACTORS = {
-    "a": "major_radius_mm",
-    "b": "minor_radius_mm",
-    "d": "column_spacing_mm",
-    "h": "height_mm",
-    "v": "velocity_m_per_s",
-    "t": "bed_thickness_mm",
-}
 DIGITS = 0.01  # -, relative: coefficients of Table 3.10 have three digits
 LAYERS = 4
 CONTINUOUS_ROWS = ("R1", "R3", "R5", "R8", "R9", "R11", "R12", "R13")

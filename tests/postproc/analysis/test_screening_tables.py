@@ -1,7 +1,5 @@
 """All tables of a regression from a study's summary."""
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -14,16 +12,8 @@ from postproc.analysis.screening_tables import (
     strongest_factor,
 )
 from postproc.plots.regression import DRAWN, regression_figures
+from tests.postproc.screening_study import FACTORS, ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
-FACTORS = {
-    "a": "major_radius_mm",
-    "b": "minor_radius_mm",
-    "d": "column_spacing_mm",
-    "h": "height_mm",
-    "v": "velocity_m_per_s",
-    "t": "bed_thickness_mm",
-}
 WEAR = 1e-9  # m3/m
 
 
