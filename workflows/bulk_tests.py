@@ -148,7 +148,7 @@ def _filled_box(test: Mapping[str, Any]) -> dict[str, Any]:
     """Return what both decks need: materials, particles, filling, and when all is at rest."""
     particle, solver, box, rest = (test[key] for key in ("particle", "solver", "box", "rest"))
     step = time_step(test)
-    materials = {**derived_materials(_sections(test)), **solver}
+    materials = {**derived_materials(bulk_materials(test)), **solver}
     integration = deck.integration(solver, step, particle, 1)
     integration.pop("report_steps")  # the looks for rest are the lines of progress
     gap = max(particle["diameters_m"]) * deck.FILL_GAP_DIAMETERS
@@ -177,7 +177,7 @@ def _filled_box(test: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _sections(test: Mapping[str, Any]) -> dict[str, Any]:
+def bulk_materials(test: Mapping[str, Any]) -> dict[str, Any]:
     """Return the sections of a test under the names that the sliding sample's have."""
     names = {"particle": "particle", "sample_material": "wall_material", "floor_material": "floor_material"}
     return {**{name: test[key] for name, key in names.items()}, "solver": test["solver"]}
