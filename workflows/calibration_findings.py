@@ -6,9 +6,6 @@ python -m workflows.calibration_findings [results/calibration] [docs] [--fidelit
 from __future__ import annotations
 
 import argparse
-import shutil
-import textwrap
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -28,11 +25,11 @@ from workflows.calibration_tables import Calibrated, read_calibrated
 from workflows.cases.calibration import PUBLISHED
 from workflows.checked_pairs import CHECKED, MARKS
 from workflows.design import Study, load_study
-from workflows.pin_results import LINE, markdown
 from workflows.remarks import figure_remarks
+from workflows.results_page import bullet, copy_pictures, markdown, picture, prose, simulated_between
 from workflows.study_report import commit
 
-PAGE, TABLE = "calibration_results.md", "calibration_simulations.csv"
+STUDY, PAGE, TABLE = "calibration", "calibration_results.md", "calibration_simulations.csv"
 PICTURES = ("response_maps", "family", "pairs_against_bands", "heaps", "box_sizes", "calibration_progress")
 HEAD = """# Calibration: results
 
@@ -46,29 +43,25 @@ def write_findings(folder: Path, docs: Path, study: Study) -> None:
 
     Raises FileNotFoundError when the study is not finished.
     """
-    settings = study.runs[0].parameters["calibration"]
+    settings = study.all_runs[0].parameters["calibration"]
     measured, pairs = PUBLISHED / settings["measured"], PUBLISHED / settings["simulated_before"]
-    done = read_calibrated(study.runs[0].parameters, measured, pairs, folder)
+    done = read_calibrated(study.all_runs[0].parameters, measured, pairs, folder)
     parts = [HEAD, provenance(done, study), *sections(done)]
     (docs / PAGE).write_text("\n".join(parts), encoding="utf-8")
-    for name in PICTURES:
-        shutil.copyfile(folder / "figures" / f"{name}.png", docs / _picture_file(name))
+    copy_pictures(folder / "figures", docs, STUDY, PICTURES)
     done.simulations.to_csv(docs / TABLE, index=False, float_format="%.5g")
 
 
 def provenance(done: Calibrated, study: Study) -> str:
     """Return when, by which versions and at which scale the study was simulated."""
-    states = sorted(
-        (done.folder / SIMULATIONS).glob(f"*/cycle_000/{state.STATE}"), key=lambda path: path.stat().st_mtime
-    )
-    first, last = (datetime.fromtimestamp(path.stat().st_mtime, UTC) for path in (states[0], states[-1]))
+    states = (done.folder / SIMULATIONS).glob(f"*/cycle_000/{state.STATE}")
     solver = solver_said(done.folder).removeprefix("Version ").partition(",")[0]
     said = (
-        f"Simulated {first:%Y-%m-%d %H:%M} to {last:%Y-%m-%d %H:%M} UTC with {solver}, page written by {commit()}, "
+        f"Simulated {simulated_between(states)} with {solver}, page written by {commit()}, "
         f"fidelity {study.fidelity}: {'; '.join(figure_remarks(study))}. Checked pairs have the scale and width that "
         "their rows name."
     )
-    return textwrap.fill(said, LINE) + "\n"
+    return f"{prose(said)}\n"
 
 
 def sections(done: Calibrated) -> list[str]:
@@ -84,19 +77,7 @@ def sections(done: Calibrated) -> list[str]:
         ("The heap of the recommended pair", lambda done: "", "heaps"),
         ("Cost", cost_text, ""),
     ]
-    return [f"## {title}\n\n{text(done)}{_picture(name)}" for title, text, name in parts]
-
-
-def _picture(name: str) -> str:
-    return f"\n![{name.replace('_', ' ')}]({_picture_file(name)})\n" if name else ""
-
-
-def _picture_file(name: str) -> str:
-    return f"calibration_{name.removeprefix('calibration_')}.png"
-
-
-def _prose(text: str) -> str:
-    return textwrap.fill(text, LINE) + "\n"
+    return [f"## {title}\n\n{text(done)}{picture(STUDY, name) if name else ''}" for title, text, name in parts]
 
 
 def family_text(done: Calibrated) -> str:
@@ -107,7 +88,7 @@ def family_text(done: Calibrated) -> str:
 def statements_text(done: Calibrated) -> str:
     """Return both pairs beside the measured bands, as a table and in words."""
     table = done.statements.drop(columns=done.problem.names)
-    words = "\n".join(f"* {textwrap.fill(said, LINE - 2, subsequent_indent='  ')}" for said in sentences(done, table))
+    words = "\n".join(bullet(said) for said in sentences(done, table))
     return f"{markdown(table)}\n{words}\n"
 
 
@@ -115,7 +96,7 @@ def simulations_text(done: Calibrated) -> str:
     """Return how many simulations there were, and what they lie between."""
     counts = done.simulations.groupby(["test", "why"], sort=False).size()
     told = ", ".join(f"{number} {test.replace('_', ' ')} ({why})" for (test, why), number in counts.items())
-    return _prose(f"Simulations: {told}; all of them in [{TABLE}]({TABLE}).")
+    return prose(f"Simulations: {told}; all of them in [{TABLE}]({TABLE}).") + "\n"
 
 
 def published_text(done: Calibrated) -> str:
@@ -138,7 +119,7 @@ def scatter_text(done: Calibrated) -> str:
     found = [f"{response_name(name)} {each.seed_deviation:.2g}" for name, each in done.known.surrogates.items()]
     told = f"{'; '.join(stopped)}. Standard deviation between packings by the surrogate: {'; '.join(found)}."
     repeats = done.repeat_means[["pair", "response", "seeds", "mean", "deviation"]]
-    return f"{_prose(told)}\n{markdown(repeats)}\n{markdown(information_table(done.problem, done.known))}"
+    return f"{prose(told)}\n\n{markdown(repeats)}\n{markdown(information_table(done.problem, done.known))}"
 
 
 def _stop(test: str, look: pd.Series, most: float) -> str:

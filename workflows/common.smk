@@ -10,7 +10,6 @@ from snakemake.utils import min_version
 from workflows.cases import CASES
 from workflows.deck import template_sources
 from workflows.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
-from workflows.figures import has_flow
 from workflows.job import let_jobs_import
 from workflows.rates import rates_file
 from workflows.solver import CYCLE_EXECUTABLES, LAUNCHER, missing_program
@@ -147,7 +146,7 @@ def of_every_run(pattern):
 
 def regimes_of_study(wildcards):
     """The table of flow regimes of a study that has one."""
-    return [f"results/{wildcards.study}/flow/regimes.csv"] if has_flow(study_of(wildcards)) else []
+    return [f"results/{wildcards.study}/flow/regimes.csv"] if study_of(wildcards).finds_regimes else []
 
 
 def study_decks(study):
@@ -162,7 +161,7 @@ def study_decks(study):
 
 def first_run(wildcards):
     """The parameters of the first run, whose box is that of a calibration."""
-    return study_of(wildcards).runs[0].parameters
+    return study_of(wildcards).all_runs[0].parameters
 
 
 def published_table(key):

@@ -29,6 +29,7 @@ from workflows.validation import (
     joined,
     leaves,
     load_schema,
+    locate,
     read_design,
     unknown_name,
     without_required,
@@ -40,6 +41,7 @@ SECONDS_PER_HOUR = 3600.0
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
 FEWEST_RUNS = 4  # of a regression, see postproc/analysis/screening.py, which is slow to import
+ROWS = "rows"  # key of the settings
 DESIGN = "design"  # key of a study, and of its fidelity blocks
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -69,7 +71,9 @@ class Run:
 class Study:
     """A checked study. `settings` are merged, in the units that their keys spell; so are `design_rows`.
 
+    runs: those of its rows; all_runs: those of the whole design, where `rows` chooses some of it
     factors: {short name: column of the design} of the regression of its results; empty without one
+    finds_regimes: whether the flow regimes of its runs are found
     confirms: the study whose best designs this one simulates, "" for all others
     """
 
@@ -80,10 +84,12 @@ class Study:
     fidelity: str
     settings: dict[str, Any]
     runs: tuple[Run, ...]
+    all_runs: tuple[Run, ...]
     design_rows: tuple[dict[str, Any], ...]
     factors: dict[str, str]
     paper_settings: dict[str, Any]
     materials: dict[str, Any]
+    finds_regimes: bool = False
     confirms: str = ""
 
     def run(self, name: str) -> Run:
@@ -118,12 +124,17 @@ class Study:
 
     @cached_property
     def _beds(self) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
-        return CASES[self.case].beds(self.runs)
+        return CASES[self.case].beds(self.all_runs)
 
     @property
     def beds(self) -> dict[str, dict[str, Any]]:
-        """Return {bed id: parameters}; runs with equal parameters share a bed, and some cases have none."""
-        return self._beds[0]
+        """Return {bed id: parameters}; runs with equal parameters share a bed, and some cases have none.
+
+        A bed is that of the whole design, so that a run is the same whichever rows are chosen beside it.
+        """
+        beds, bed_of = self._beds
+        used = {bed_of[run.name] for run in self.runs if run.name in bed_of}
+        return {name: parameters for name, parameters in beds.items() if name in used}
 
     def bed_of(self, run_name: str) -> str | None:
         """Return the id of the bed that a run starts from, None without. Raises ConfigError for an unknown run."""
@@ -160,12 +171,15 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     check_material_names(layers, settings, materials, CASES[sources.case].material_keys)
     check_calibrated_for(layers, settings, materials, CASES[sources.case].material_keys)
     head = sources.study.values
-    rows = _rows_to_confirm(sources, confirms, root) if confirms else _design_rows(sources, fidelity, root)
-    runs = tuple(
+    designed = _rows_to_confirm(sources, confirms, root) if confirms else _design_rows(sources, fidelity, root)
+    rows = designed if confirms else _chosen_rows(layers, settings, designed)
+    names = {row_layer.values["row"] for row_layer in rows}
+    all_runs = tuple(
         _checked_run(sources, layers, settings, materials, row_layer, surface)
-        for row_layer in rows
+        for row_layer in designed
         for surface in CASES[sources.case].surfaces(head)
     )
+    factors = {} if confirms else _factors(sources, designed)
     return Study(
         name=name,
         case=sources.case,
@@ -173,11 +187,13 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         question="Does one run of each best design wear what was predicted?" if confirms else head["question"],
         fidelity=fidelity,
         settings=settings,
-        runs=runs,
+        runs=tuple(run for run in all_runs if run.row in names),
+        all_runs=all_runs,
         design_rows=tuple(row_layer.values for row_layer in rows),
-        factors={} if confirms else _factors(sources, rows),
+        factors=factors if _can_tell(factors, rows) else {},
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
         materials=materials,
+        finds_regimes=bool(factors or confirms),
         confirms=confirms,
     )
 
@@ -291,6 +307,21 @@ def _design_rows(sources: _Sources, fidelity: str, root: Path) -> list[Layer]:
     if fault := CASES[sources.case].design_fault([row.values for row in rows]):
         raise ConfigError(f"{display_name(folder / name, root)}: {fault}.")
     return rows
+
+
+def _chosen_rows(layers: tuple[Layer, ...], settings: dict[str, Any], rows: list[Layer]) -> list[Layer]:
+    """Return the rows of a design that the settings choose, all where they choose none. Raises ConfigError."""
+    known = [row.values["row"] for row in rows]
+    chosen = settings.get(ROWS, known)
+    for name in chosen:
+        if name not in known:
+            raise ConfigError(unknown_name(locate(layers, (ROWS,)), "row", name, known))
+    return [row for row in rows if row.values["row"] in chosen]
+
+
+def _can_tell(factors: dict[str, str], rows: list[Layer]) -> bool:
+    """Return whether the chosen rows are enough for a regression on the factors."""
+    return len(rows) >= FEWEST_RUNS and all(len({row.values[name] for row in rows}) > 1 for name in factors.values())
 
 
 def _factors(sources: _Sources, rows: list[Layer]) -> dict[str, str]:

@@ -104,7 +104,7 @@ def _figures_of_samples(study: Study) -> list[str]:
     names = [
         *(CONFIRMING if study.confirms else ()),
         *(COMPARING_ROWS if several else ()),
-        *(several_shown if has_flow(study) else ()),
+        *(several_shown if study.finds_regimes else ()),
         *(REGRESSION if study.factors else ()),
         *OF_SAMPLES,
         *(OF_WEAR_UPDATES if is_deformed(study) else ()),
@@ -143,11 +143,6 @@ def page_templates(study: Study) -> list[str]:
     """Return the paths of the templates of a study's page."""
     page = PAGES[study.case]
     return [str(REPORT_FOLDER / name) for name in (TEMPLATE, STYLE, page.KEY_NUMBERS, *page.FURTHER_TEMPLATES)]
-
-
-def has_flow(study: Study) -> bool:
-    """Return whether the flow regimes of a study's runs are found."""
-    return bool(study.factors or study.confirms)
 
 
 def has_findings(study: Study) -> bool:

@@ -57,6 +57,8 @@ def number(value: Any, digits: int = 4) -> str:
     """Return a number as people read it: few digits, no exponent between 0.001 and 1e6; words stay words."""
     if isinstance(value, str):
         return value.replace("_", " ")
+    if isinstance(value, list):
+        return ", ".join(number(item, digits) for item in value)
     if value is None or not math.isfinite(value):
         return UNDEFINED
     if isinstance(value, bool):

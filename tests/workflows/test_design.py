@@ -623,3 +623,34 @@ def test_a_study_without_factors_has_nothing_to_confirm(config):
         load_study("small_confirmation", config.root)
     with pytest.raises(ConfigError, match="other"):
         load_study("other_confirmation", config.root)
+
+
+# ---------------------------------------------------------------- chosen rows
+
+
+def test_a_run_is_the_same_whichever_rows_are_chosen():
+    """Chosen rows keep their parameters and their bed, whose height follows the highest sample of the whole design."""
+    whole, chosen = load_study("screening"), load_study("screening", overrides={"rows": ["R9", "R2"]})
+    assert [run.name for run in chosen.runs] == ["R2_convex", "R2_plain", "R9_convex", "R9_plain"]
+    for run in chosen.runs:
+        assert run == whole.run(run.name)
+        assert chosen.beds[chosen.bed_of(run.name)] == whole.beds[whole.bed_of(run.name)]
+    assert set(chosen.beds) == {chosen.bed_of(run.name) for run in chosen.runs}
+    assert len(chosen.design_table()) == len(chosen.runs)
+
+
+def test_few_rows_have_regimes_but_no_regression():
+    """A regression needs four rows and two levels of every factor; regimes need one row."""
+    few = load_study("screening", overrides={"rows": ["R5", "R9"]})
+    assert few.finds_regimes and not few.factors
+    enough = load_study("screening", overrides={"rows": ["R1", "R2", "R3", "R4", "R5"]})
+    assert set(enough.factors) == set("abdhvt")
+
+
+def test_a_row_that_is_not_in_the_design_is_refused():
+    with pytest.raises(
+        ConfigError, match=r"command line: row is 'R99', allowed is one of R1, R2.*\(the nearest is R9\)"
+    ):
+        load_study("screening", overrides={"rows": ["R9", "R99"]})
+    with pytest.raises(ConfigError, match="rows is 'R9', allowed is a list of rows of the design"):
+        load_study("screening", overrides={"rows": "R9"})

@@ -5,7 +5,8 @@ import pytest
 
 from tests.postproc import pin_study
 from workflows import pin_results
-from workflows.pin_results import PUBLISHED, markdown
+from workflows.pin_results import PUBLISHED
+from workflows.results_page import markdown
 
 PUBLISHED_VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 STABILITY = pd.DataFrame(

@@ -90,7 +90,7 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, materials, ledger, wear, remeshing, solver, sample, pattern, bed, sliding,"
+        " allowed are particle_scale, rows, materials, ledger, wear, remeshing, solver, sample, pattern, bed, sliding,"
         " design.",
     ),
     (
@@ -471,8 +471,8 @@ BAD_COMBINATIONS = [
     ),
     (
         {"title": "x"},
-        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, materials, ledger, wear,"
-        " remeshing, solver, sample, pattern, bed, sliding.",
+        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, rows, materials, ledger,"
+        " wear, remeshing, solver, sample, pattern, bed, sliding.",
     ),
 ]
 

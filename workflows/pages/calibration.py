@@ -24,13 +24,13 @@ def page_parameters(study: Study, remarks: list[str]) -> dict[str, Any]:
         "settings": study.settings,
         "paper_settings": study.paper_settings,
         "remarks": remarks,
-        "run": study.runs[0].parameters,
+        "run": study.all_runs[0].parameters,
     }
 
 
 def remarks(study: Study) -> list[str]:
     """Return what figures must say about model, convention and width."""
-    run = study.runs[0].parameters
+    run = study.all_runs[0].parameters
     solver = run["solver"]
     scale = run["particle"]["scale"]
     said = [

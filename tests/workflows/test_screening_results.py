@@ -1,0 +1,85 @@
+"""The page of a screening's results, on tables of a study of two rows."""
+
+import pandas as pd
+import pytest
+
+from workflows.design import load_study
+from workflows.figures import page_parameters
+from workflows.screening_results import durations, wear_text, write_results
+
+CONVEX, PLAIN = 1.5e-9, 2.0e-9  # m3 over 0.06 m of travel
+
+
+@pytest.fixture
+def study():
+    return load_study("screening", overrides={"rows": ["R5", "R9"]})
+
+
+@pytest.fixture
+def folder(study, tmp_path):
+    """A folder with what the page reads of two rows, all alike."""
+    rows = [
+        {
+            "run": run.name,
+            "row": run.row,
+            "surface": run.surface,
+            "travel_m": 0.06,
+            "archard_volume_m3": CONVEX if run.surface == "convex" else PLAIN,
+            "bump_archard_volume_m3": 0.5e-9 if run.surface == "convex" else 0.0,
+            "mean_normal_force_N": 30.0 if run.surface == "convex" else 20.0,
+            "archard_volume_per_metre_m3_per_m": (CONVEX if run.surface == "convex" else PLAIN) / 0.06,
+            "wear_over_plain": CONVEX / PLAIN if run.surface == "convex" else 1.0,
+        }
+        for run in study.runs
+    ]
+    pd.DataFrame(rows).to_csv(tmp_path / "summary.csv", index=False)
+    (tmp_path / "flow").mkdir()
+    pd.DataFrame([{"run": run.name, "regime": "continuous", "relative_velocity": 0.3} for run in study.runs]).to_csv(
+        tmp_path / "flow" / "regimes.csv", index=False
+    )
+    window = {
+        "measure": "relative_gradient",
+        "mean": 0.6,
+        "steady": True,
+        "published_mean": 0,
+        "published_deviation": 0,
+    }
+    pd.DataFrame([{"run": r["run"], "row": r["row"], "surface": r["surface"], **window} for r in rows]).to_csv(
+        tmp_path / "flow" / "steady.csv", index=False
+    )
+    jobs = [f"worn_run_{run.name}" for run in study.runs]
+    pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(tmp_path / "forecast.csv", index=False)
+    for run in study.runs:
+        cycle = tmp_path / run.name / "cycle_000"
+        cycle.mkdir(parents=True)
+        (cycle / "state.json").write_text("{}")
+        (cycle / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled)\n")
+        cost = {"cycle": [0], "particles": [1000], "steps": [6000], "solver_s": [120.0], "processor_s": [60.0]}
+        pd.DataFrame(cost | {"other_s": [30.0]}).to_csv(tmp_path / run.name / "cost.csv", index=False)
+    return tmp_path
+
+
+def test_a_row_stands_beside_its_plain_twin(study, folder):
+    """Ratios of the two surfaces, wear in mm3 per metre, and the regime over the convex one."""
+    lines = wear_text(folder, study).splitlines()
+    assert lines[0].startswith("| row | particle scale | regime |")
+    assert lines[2] == "| R5 | 1.25 | continuous | 30 | 0.75 | 25 | 33.3 | 33.3 | 1.5 |"
+    assert len(lines) == 4
+
+
+def test_durations_stand_beside_their_forecast(study, folder):
+    """Wall time is that of all starts, measured over forecast that of the processor."""
+    said = durations(folder, page_parameters(study))
+    assert "| worn run R5 convex | 1 000 | 6 000 | 2.5 | 1 | 0.833 | 1.2 |" in said.replace("\u202f", " ")
+    assert "took 10 minutes of wall time, 20.0 % of it outside the solver" in said
+
+
+def test_a_few_rows_make_a_page_without_a_regression(study, folder, tmp_path):
+    """The page names its fidelity and its rows; what needs all rows is left out."""
+    docs = tmp_path / "docs"
+    docs.mkdir()
+    write_results(folder, docs, study)
+    text = (docs / "screening_results_quick.md").read_text(encoding="utf-8")
+    assert text.startswith("# Screening at quick fidelity: results")
+    assert "4 runs of 2 rows" in text and "## Durations" in text
+    assert "## Regression" not in text and "![" not in text
