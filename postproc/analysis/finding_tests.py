@@ -28,6 +28,7 @@ from postproc.analysis.findings import (
 )
 from postproc.analysis.steady_table import MEASURES
 
+NO_TWIN = "no row has a plain twin with a result"
 EXCEPTION, BEST, BEST_DISCONTINUOUS = "R12", "R5", "R2"
 NEAR = 10.0  # %, of the plain twin's wear, within which a relative wear counts as the published one
 TWICE = 2.0
@@ -133,9 +134,12 @@ def _gradient(evidence: Evidence) -> Verdict:
 
 
 def _convex_wears_less(evidence: Evidence) -> Verdict:
-    rows = evidence.continuous.drop(index=EXCEPTION, errors="ignore")
-    if rows.empty:
+    flowing = evidence.continuous.drop(index=EXCEPTION, errors="ignore")
+    if flowing.empty:
         return _none_of(CONTINUOUS)
+    rows = flowing.dropna(subset=["wear_over_plain"])
+    if rows.empty:
+        return Verdict("", UNSAID, NO_TWIN)
     sides = rows.apply(side_of_one, axis=1)
     more, open_ = rows["wear_over_plain"][sides > 0], rows["wear_over_plain"][sides == 0]
     found = f"{(sides < 0).sum()} of {len(rows)} wear less; more: {ratios(more) or 'none'}"
@@ -147,6 +151,8 @@ def _exception(evidence: Evidence) -> Verdict:
     if reason := _missing(evidence, EXCEPTION):
         return Verdict("", UNSAID, reason)
     row = evidence.rows.loc[EXCEPTION]
+    if np.isnan(row["wear_over_plain"]):
+        return Verdict("", UNSAID, f"{EXCEPTION} has no plain twin with a result")
     side = side_of_one(row)
     near = "" if side else "too near to 1 to say with the replicates there are"
     return _verdict(f"wear over plain {row['wear_over_plain']:.2f}", side > 0, near)
@@ -185,7 +191,7 @@ def _base(evidence: Evidence) -> Verdict:
 def _force(evidence: Evidence) -> Verdict:
     force = evidence.rows["force_over_plain"].dropna()
     if force.empty:
-        return Verdict("", UNSAID, "no row has a plain twin with a result")
+        return Verdict("", UNSAID, NO_TWIN)
     found = f"higher in {(force > 1.0).sum()} of {len(force)}; convex over plain {force.min():.2f} to {force.max():.2f}"
     return _verdict(found, bool((force > 1.0).all()))
 
@@ -193,7 +199,7 @@ def _force(evidence: Evidence) -> Verdict:
 def _force_and_wear(evidence: Evidence) -> Verdict:
     rows = evidence.rows.dropna(subset=["force_over_plain", "wear_over_plain"]).drop(index=EXCEPTION, errors="ignore")
     if rows.empty:
-        return Verdict("", UNSAID, "no row has a plain twin with a result")
+        return Verdict("", UNSAID, NO_TWIN)
     less = rows.apply(side_of_one, axis=1)
     both = (rows["force_over_plain"] > 1.0) & (less < 0)
     against = (rows["force_over_plain"] <= 1.0) | (less > 0)

@@ -13,6 +13,7 @@ import pandas as pd
 from scipy import stats
 
 from postproc.analysis.comparison import PLAIN
+from postproc.analysis.evaluation import UNDECIDED
 
 NO_REPLICATES = "each row is one packing: the scatter between packings is not known"
 
@@ -62,8 +63,11 @@ def mean_of_replicates(table: pd.DataFrame, settings: Mapping[str, str]) -> pd.D
     """Return a table of runs with the mean of every number over the replicates of each setting and surface.
 
     table: with run, row, surface and regime; `row` is then the setting's name, other words are those of the first.
+    Replicates that flow in different regimes are UNDECIDED together.
     """
     named = table.assign(row=table["row"].map(settings))
+    regimes = named.groupby(["row", "surface"])["regime"]
+    named["regime"] = named["regime"].where(regimes.transform("nunique") < 2, UNDECIDED)
     means = dict.fromkeys(table.select_dtypes("number"), "mean")
     words = {name: "first" for name in table if name not in means and name not in ("row", "surface")}
     found = named.groupby(["row", "surface"], sort=False).agg(words | means).reset_index()

@@ -253,3 +253,13 @@ def test_runs_stand_beside_the_source(tables):
     assert table["normalised_wear"].max() == 1.0
     assert table.loc["R5", "published_model"] == 0.66
     assert np.isnan(table.loc["R6", "published_model"])
+
+
+def test_without_plain_twins_no_relative_wear_is_judged(tables):
+    """Rows that flow but have no plain twin say so, instead of being called too near to 1."""
+    alone = tables["summary"].assign(wear_over_plain=np.nan)
+    alone = alone[alone["surface"] != "plain"]
+    table = verdicts(tables | {"summary": alone})
+    keys = ["convex_wears_less", "r12_wears_more", "force_up_wear_down"]
+    assert table.loc[keys, "verdict"].unique().tolist() == [UNSAID]
+    assert table.loc[keys, "reason"].str.contains("plain twin with a result").all()

@@ -94,6 +94,11 @@ def test_means_are_surface_by_surface():
         ["R1", "convex", 0.5],
         ["R1", "plain", 1.0],
     ]
+    assert means["regime"].tolist() == ["continuous", "continuous"]
+    mixed = mean_of_replicates(
+        runs.assign(regime=["continuous", "continuous", "discontinuous", "continuous"]), settings
+    )
+    assert mixed["regime"].tolist() == ["undecided", "continuous"]
     table = with_intervals(runs, settings).set_index("surface")
     assert table.loc["plain", "interval_low"] == pytest.approx(1.0)
     assert table.loc["convex", "interval_low"] < 0.4
