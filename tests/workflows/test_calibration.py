@@ -24,8 +24,8 @@ from workflows.calibration import (
     run_box_sizes,
     run_calibration,
 )
-from workflows.calibration_findings import checked_text, write_findings
 from workflows.calibration_page import page_context
+from workflows.calibration_results import checked_text, write_results
 from workflows.calibration_tables import calibrated_materials, draw_all, read_calibrated
 from workflows.cases.calibration import PUBLISHED
 from workflows.checked_pairs import check_pair
@@ -211,7 +211,7 @@ def test_page_tells_every_response(drawn):
 
 def test_findings_are_written_from_the_tables(drawn, tmp_path):
     """The page in docs names date, version and scale, and holds pictures and simulations beside it."""
-    write_findings(drawn.folder, tmp_path, study())
+    write_results(drawn.folder, tmp_path, study())
     page = (tmp_path / "calibration_results.md").read_text()
     assert "LIGGGHTS-PUBLIC 3.8.0, page" in page and "particles at scale 5" in page
     assert all(
