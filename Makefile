@@ -6,6 +6,8 @@ CORES ?= $(shell nproc)
 STUDY ?= demo
 # The environment's programs come first, so that rules which call `python` get its interpreter.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
+# Without compiled modules every start of Python would compile those of the whole environment anew: half of its time.
+unexport PYTHONDONTWRITEBYTECODE
 # Pictures come from the software renderer everywhere: the same on every machine, and without X.
 export VTK_DEFAULT_OPENGL_WINDOW ?= vtkOSOpenGLRenderWindow
 

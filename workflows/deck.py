@@ -96,9 +96,10 @@ def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> None:
         branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
 
 
-def template_parts(template: str, folder: Path = TEMPLATES) -> list[str]:
+@cache  # a study asks for the same few templates once per run
+def template_parts(template: str, folder: Path = TEMPLATES) -> tuple[str, ...]:
     """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
-    return list(_trees(template, folder, {}))
+    return tuple(_trees(template, folder, {}))
 
 
 def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:

@@ -24,7 +24,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from scipy.optimize import nnls
 
 SOLVER_TERMS = (
     "decks",
@@ -57,6 +56,8 @@ def fitted_rates(work: pd.DataFrame, measured: Sequence[float], known: Rates | N
     a long one (Lawson and Hanson, Solving Least Squares Problems, 1974: non-negative least squares). Raises ValueError
     where the measurements are too few or too alike to tell the rates apart, or a time is not above 0.
     """
+    from scipy.optimize import nnls  # slow to import, and every study is forecast without it
+
     known, times = dict(known or {}), np.asarray(measured, float)
     if not (times > 0.0).all():
         raise ValueError(f"measured times must be above 0 s, found {times.min():g}")
