@@ -160,24 +160,32 @@ def hang(folder: Path) -> bool:
     return bool(solvers)
 
 
-@pytest.mark.verify
 def test_a_time_limit_within_a_cycle_changes_nothing(cluster, tmp_path):
-    """A whole study to its report, whose run hangs within a wear cycle until its time limit of a minute ends it.
-
-    It goes on within that cycle, with the files and the summary that the profile of one machine leaves. All tables and
-    figures are one submission.
-    """
-    here, there = study(tmp_path / "here", IN_PIECES), study(tmp_path / "there", IN_PIECES)
-    before, part = len(cluster.jobs()), there / f"results/tiny/{RUN}/cycle_002.part"
-    process = snakemake(there, cluster, "tiny", "--set-resources", "worn_run:runtime=attempt")
+    """The run hangs within its second wear cycle until its time limit of a minute ends it. Submitted again, with more
+    time, it goes on within that cycle, and ends in the table of an undisturbed one."""
+    folder, before = study(tmp_path / "study", IN_PIECES), len(cluster.jobs())
+    part = folder / f"results/tiny/{RUN}/cycle_002.part"
+    target = f"results/tiny/{RUN}/wear.csv"
+    process = snakemake(folder, cluster, target, "--set-resources", "worn_run:runtime=attempt")
     try:
-        wait_for(lambda: (part / PIECES).exists() and hang(part), process, there)
+        wait_for(lambda: (part / PIECES).exists() and hang(part), process, folder)
     finally:
-        finish(process, there)
+        finish(process, folder)
+    runs = [job for job in cluster.jobs()[before:] if job["comment"].startswith("rule_worn_run")]
+    assert [(job["state"], job["limit"]) for job in runs] == [("TIMEOUT", "1:00"), ("COMPLETED", "2:00")]
+    assert "cycle 2 of 2 goes on after step" in (folder / f"results/tiny/logs/worn_run_{RUN}.log").read_text()
+    assert (folder / target).read_bytes() == wear_without_slurm(folder, tmp_path / "elsewhere")
+
+
+@pytest.mark.verify
+def test_a_whole_study_leaves_what_one_machine_leaves(cluster, tmp_path):
+    """A study to its report, with the files and tables of the profile of one machine. All tables and figures are one
+    submission."""
+    here, there = study(tmp_path / "here", PLAIN), study(tmp_path / "there", PLAIN)
+    before = len(cluster.jobs())
+    finish(snakemake(there, cluster, "tiny"), there)
     jobs = cluster.jobs()[before:]
-    assert "TIMEOUT" in [job["state"] for job in jobs if job["comment"].startswith("rule_worn_run")], jobs
     assert sum(job["comment"].startswith("rule_tables_and_figures") for job in jobs) == 1, jobs
-    assert "cycle 2 of 2 goes on after step" in (there / f"results/tiny/logs/worn_run_{RUN}.log").read_text()
     subprocess.run([sys.executable, "-m", "snakemake", "tiny"], cwd=here, check=True, capture_output=True)
     assert files_of(there) == files_of(here)
     for name in ("summary.csv", "design.csv"):
