@@ -1,9 +1,11 @@
-"""Decks of the bulk tests that contact parameters are calibrated on: a shear box and a draw-down test.
+"""Decks of bulk tests: a shear box and a draw-down test, on which contact parameters are calibrated, and a container
+that is shaken, in which packings are compared.
 
 The parameters of a test, all SI:
 
-    kind       shear_box or draw_down
+    kind       shear_box, draw_down or packed_container
     box        length_m, width_m, fill_height_m; the draw-down test also opening_m, lower_height_m, front_and_back
+    shaking    of the container: amplitude_m, frequency_rad_per_s, duration_s, axis (x, y or z)
     rest       energy_fraction, check_interval_s, calm_checks, longest_s: when all counts as being at rest
     particle, wall_material, floor_material    as in Run.parameters; the draw-down test's floor_material is its front's
     solver     rayleigh_fraction, rolling_friction, rolling_radius
@@ -22,7 +24,7 @@ import numpy as np
 from postproc.mesh import write_stl
 from postproc.wear.caps import GRAVITY
 from workflows import deck
-from workflows.derived import WALLS, derived_materials, rayleigh_time
+from workflows.derived import PERIODIC, WALLS, derived_materials, rayleigh_time
 from workflows.solver import DECK
 
 MARGIN_DIAMETERS = 2.0  # -, room between the boxes and the domain, in largest diameters
@@ -32,7 +34,9 @@ EMPTY_ANNULUS = 1.4  # -, of a slot no particle's centre passes, in particle dia
 TYPE_NAMES = {
     "shear_box": ["particle", "side walls", "floor"],
     "draw_down": ["particle", "side walls and floors", "front and back walls"],
+    "packed_container": ["particle", "floor", "floor"],
 }
+AXES = {"x": "1. 0. 0.", "y": "0. 1. 0.", "z": "0. 0. 1."}
 WIDTH_PERIODIC = "periodic"  # value of front_and_back, and what a shear box always is
 LEAST_WIDTH_DIAMETERS = 4.0  # -, of a periodic slice
 MESH_CLEARANCE = 1e-6  # m, between a mesh and the domain's faces
@@ -68,8 +72,26 @@ def draw_down(test: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+def packed_container(test: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of the deck of a container that is filled and shaken."""
+    shaking, margin = test["shaking"], MARGIN_DIAMETERS * max(test["particle"]["diameters_m"])
+    return {
+        **_filled_box(test),
+        "ends": PERIODIC,
+        "outflow": "none",
+        "state_columns": f"{deck.STATE_COLUMNS} c_contacts",
+        "fill_gap_m": 0.0,
+        "domain_bottom_m": -margin,
+        "domain_top_m": _fill_top(test) + margin,
+        "shaking_amplitude_m": shaking["amplitude_m"],
+        "shaking_frequency_rad_per_s": shaking["frequency_rad_per_s"],
+        "shaking_steps": deck.steps(shaking["duration_s"], time_step(test)),
+        "shaking_direction": AXES[shaking["axis"]],
+    }
+
+
 # Kind of test -> what its deck is filled with.
-DECKS = {"shear_box": shear_box, "draw_down": draw_down}
+DECKS = {"shear_box": shear_box, "draw_down": draw_down, "packed_container": packed_container}
 
 
 def slot_length(test: Mapping[str, Any]) -> float:
@@ -117,6 +139,8 @@ def time_step(test: Mapping[str, Any]) -> float:
 
 def surfaces(test: Mapping[str, Any]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Return {mesh: (points (4, 3) in m, triangles (2, 3))} of the flat meshes that a test's deck reads."""
+    if test["kind"] == "packed_container":
+        return {}
     length = test["box"]["length_m"]
     domain = shear_box(test) if test["kind"] == "shear_box" else draw_down(test)
     whole = domain["domain_back_m"] + MESH_CLEARANCE, domain["domain_front_m"] - MESH_CLEARANCE
@@ -157,6 +181,8 @@ def _filled_box(test: Mapping[str, Any]) -> dict[str, Any]:
         **deck.material_tables(particle, test["wall_material"], test["floor_material"], materials),
         "type_names": TYPE_NAMES[test["kind"]],
         "ends": WALLS,
+        "outflow": "weighed",
+        "state_columns": deck.STATE_COLUMNS,
         "half_width_m": box["width_m"] / 2.0,
         "box_length_m": box["length_m"],
         "fill_bottom_m": gap,

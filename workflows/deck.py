@@ -34,6 +34,7 @@ END_WALL_CLEARANCE = 1e-6  # m, between the end walls' upper edge and the domain
 DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
 REPORTS_PER_RUN = 50  # lines of progress per run command
 SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
+STATE_COLUMNS = "id x y z vx vy vz omegax omegay omegaz radius"  # of a dump of particles at rest
 ID_COLUMNS = range(13, 16)  # of these, counted from 1: mesh, triangle, particle
 STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, before the solver's check stops the run
 
@@ -189,6 +190,20 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
         "picture_steps": min(derived["picture_interval_steps"], span.steps),
         "ledger": run["ledger"],
         **LEDGERS[run["ledger"]](run, span),
+    }
+
+
+def bed_contacts(run: Mapping[str, Any], restart: str) -> dict[str, Any]:
+    """Return the parameters of the deck that counts contacts in a restart file; arguments as for `lowered_bed`."""
+    step, convention = run["derived"]["time_step_s"], ("rolling_radius", "rolling_friction")
+    materials = {**run["derived"], **{key: run["solver"][key] for key in convention}}
+    needed = integration(run["solver"], step, run["particle"], 1)
+    return {
+        **{key: needed[key] for key in ("time_step_s", "rayleigh_fraction", "skin_m")},
+        **material_tables(run["particle"], run["sample_material"], run["floor_material"], materials),
+        "ends": run["bed"]["ends"],
+        "begin": restart,
+        "state_columns": f"{STATE_COLUMNS} c_contacts",
     }
 
 

@@ -33,7 +33,7 @@ def last_snapshot(run_folder: str | Path) -> Path:
 
 def read_snapshot(path: str | Path) -> pd.DataFrame:
     """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s (relative to the
-    sample), angular_speed_rad_per_s.
+    sample), angular_speed_rad_per_s, and contacts (of each with other particles) where the solver counted them.
 
     Raises ValueError when the file is no dump of one frame or is cut short.
     """
@@ -48,6 +48,7 @@ def read_snapshot(path: str | Path) -> pd.DataFrame:
     expected = int(header[3])
     if len(table) != expected or table.isna().to_numpy().any():
         raise ValueError(f"{path}: {expected} particles announced, found {len(table)} whole or broken rows")
+    counted = {"contacts": table["c_contacts"]} if "c_contacts" in table else {}
     return pd.DataFrame(
         {
             "id": table["id"],
@@ -55,6 +56,7 @@ def read_snapshot(path: str | Path) -> pd.DataFrame:
             "radius_m": table["radius"],
             "speed_m_per_s": np.linalg.norm(table[["vx", "vy", "vz"]], axis=1),
             "angular_speed_rad_per_s": np.linalg.norm(table[["omegax", "omegay", "omegaz"]], axis=1),
+            **counted,
         }
     )
 
