@@ -140,7 +140,7 @@ def warnings(source: Path | str) -> dict[str, int]:
     """Distinct warnings of a screen (or log) file and how often each was given; their numbers become #."""
     text = source.read_text("utf-8", "replace") if isinstance(source, Path) else source
     counts: dict[str, int] = {}
-    for said in re.findall(r"^WARNING(?: on proc \d+)?: (.*)$", text, re.MULTILINE):
+    for said in re.findall(r"^WARNING(?: on proc \d+)?:\s+(.*)$", text, re.MULTILINE):  # some start on the next line
         key = re.sub(r"(?<![\w/])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", "#", _SOURCE.sub("", said)).strip()
         counts[key] = counts.get(key, 0) + 1
     return counts

@@ -137,6 +137,8 @@ def test_warnings_are_counted_once_per_kind():
     text += "WARNING: time-step is 80.1 % of rayleigh time (./src/a.cpp:200)\n"
     assert warnings(text) == {"time-step is # % of rayleigh time": 4}
     assert warnings(SCREEN) == {"Particle insertion: Less insertions than requested": 1}
+    text = "WARNING: \n\tThe contact model you specified is not located in any whitelist.\n\tBecause of this"
+    assert warnings(text) == {"The contact model you specified is not located in any whitelist.": 1}
 
 
 def test_the_triangle_count_is_on_the_screen_not_in_the_log():
