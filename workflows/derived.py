@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from meshes.sample import skirt_width
+from postproc.reference.size_ratios import equivalent_size_ratio
 from postproc.wear.caps import GRAVITY
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
@@ -29,14 +30,6 @@ def rayleigh_time(radius: float, density: float, shear_modulus: float, poissons_
     Li, Xu and Thornton, Powder Technology 160 (2005) 219-228.
     """
     return math.pi * radius * math.sqrt(density / shear_modulus) / (0.1631 * poissons_ratio + 0.8766)
-
-
-def equivalent_size_ratio(median_diameter: float, major_radius: float, minor_radius: float, height: float) -> float:
-    """Return alpha_ER = R50 / cbrt(a b h / 2), lengths in m: particle over the sphere of the bump's volume.
-
-    The semi-ellipsoid's volume is 2/3 pi a b h. Below 1 the pattern helps (Yan 2022, Eq 4.18 and Fig 4.17).
-    """
-    return 0.5 * median_diameter / math.cbrt(0.5 * major_radius * minor_radius * height)
 
 
 def ramp_hop(velocity: float, slope: float) -> float:

@@ -12,7 +12,6 @@ import pytest
 from workflows.cases.sliding_sample import bed_parameters
 from workflows.config_files import ConfigError
 from workflows.derived import (
-    equivalent_size_ratio,
     ramp_hop,
     rayleigh_time,
     rolling_coefficient_for_solver,
@@ -279,11 +278,6 @@ def test_equivalent_size_ratio_of_r9_at_scale_2(config):
     assert ratio == pytest.approx(2.65 / 3.634241, rel=DIGITS_GIVEN)
 
 
-def test_a_bump_of_the_volume_of_a_hemisphere_has_its_radius():
-    """For a = b = h = R the bump is half a sphere, whose equivalent radius is R/cbrt(2)."""
-    assert equivalent_size_ratio(2.0, 1.0, 1.0, 1.0) == pytest.approx(2 ** (1 / 3), rel=ROUNDING)
-
-
 @pytest.mark.parametrize("diameter", [0.001, 0.004])
 def test_rolling_coefficients_keep_the_torque(diameter):
     """mu (solver) x reduced radius = mu (calibrated) x its radius: equal spheres R/2, a wall R."""
@@ -502,6 +496,23 @@ def test_a_full_study_has_nothing_to_say(config):
     """At full size, scale 1, with a gentle ramp and without acceleration there are no remarks."""
     gentle = {"fidelity": "standard", "sample": {"skirt_slope_deg": 0.5}}
     assert figure_remarks(load_study("small", config.root, gentle)) == []
+
+
+def test_particles_scaled_beyond_their_bumps_are_said_on_every_figure(config):
+    """R9's alpha_ER reaches 1 at scale 2.74 and R5's at 3.46: above, the rows are said with their scales."""
+    thin = {"bed": {"allow_thin_bed": True}}
+    fine, one, both = (load_study("small", config.root, {"particle_scale": scale, **thin}) for scale in (2.7, 3, 3.5))
+    words = "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17): "
+    assert not any(remark.startswith(words) for remark in figure_remarks(fine))
+    assert f"{words}R9 (at scale 3 of at most 2.7)" in figure_remarks(one)
+    assert f"{words}R9 (at scale 3.5 of at most 2.7), R5 (at scale 3.5 of at most 3.5)" in figure_remarks(both)
+
+
+def test_bumps_smaller_than_real_particles_are_no_matter_of_scale(config):
+    """Where already real particles are larger than the bumps, the study simulates what it means to."""
+    config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "R9,1.5,1.5,20,1.0,1.0,40")
+    study = load_study("small", config.root)
+    assert not any("beyond the size of the bumps" in remark for remark in figure_remarks(study))
 
 
 def test_a_thin_bed_is_said_on_every_figure(config):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from postproc.reference.size_ratios import LARGEST_RATIO
 from workflows.derived import PERIODIC
 from workflows.page_text import range_text
 
@@ -56,10 +57,23 @@ def remarks(study: Study) -> list[str]:
     if thin:
         rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
         said.append(f"fewer than three layers of particles in the bed: {rows}")
+    if larger := _beyond_bumps(study):
+        rows = ", ".join(f"{row} (at scale {scale:.3g} of at most {most:.2g})" for row, (scale, most) in larger.items())
+        said.append(f"particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17): {rows}")
     hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
     if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
         said.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")
     return said
+
+
+def _beyond_bumps(study: Study) -> dict[str, tuple[float, float]]:
+    """Return {row: (particle scale, largest scale)} of patterns whose bumps only scaled particles are larger than."""
+    found = {}
+    for run in study.runs:
+        ratio, scale = run.parameters["derived"]["equivalent_size_ratio"], run.parameters["particle"]["scale"]
+        if ratio is not None and ratio >= LARGEST_RATIO > ratio / scale:
+            found[run.row] = (scale, LARGEST_RATIO * scale / ratio)
+    return found
 
 
 def travel_words(sliding: Mapping[str, Any]) -> tuple[str, str]:
