@@ -110,8 +110,22 @@ def surface_oblique(
 
     limits: um, see `analysis.depth.face_depth`; bounds: (3, 2) mm, what the picture takes in.
     """
+    return depth_oblique(mesh, face_depth(mesh, deformed), limits, bounds, size)
+
+
+def depth_oblique(
+    mesh: SurfaceMesh,
+    depth: np.ndarray,
+    limits: tuple[float, float],
+    bounds: np.ndarray,
+    size: tuple[int, int] = (1300, 720),
+) -> np.ndarray:
+    """Return pixels (h, w, 3) of a surface seen obliquely, coloured by any depth (m,) m of its triangles.
+
+    limits: um; bounds: (3, 2) mm, what the picture takes in. Triangles without a depth (NaN) are grey.
+    """
     plotter = new_plotter(size)
-    add_sample(plotter, mesh, face_depth(mesh, deformed), limits)
+    add_sample(plotter, mesh, depth, limits)
     _look(plotter, OBLIQUE, bounds)
     return _pixels(plotter)
 
