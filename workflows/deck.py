@@ -18,8 +18,9 @@ import jinja2.meta
 
 from postproc.wear.caps import GRAVITY
 from postproc.wear.laws import law_kernels
-from workflows.derived import WALLS
+from workflows.derived import WALLS, neighbour_skin
 from workflows.schedule import Span
+from workflows.window import PACKING, window
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
@@ -27,7 +28,6 @@ FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds so
 FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
 RELAXING_TIME = 0.01  # s, after levelling
 LOWERING_FREE_FALLS = 2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
-SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
 FILL_GAP_DIAMETERS = 0.1  # -, between poured particles and the walls, in largest diameters
 PILE_UP = 3.0  # -, the bed's height where it piles up at a sample, over its thickness; room for it is left
 END_WALL_CLEARANCE = 1e-6  # m, between the end walls' upper edge and the domain: a mesh must lie inside it
@@ -176,12 +176,14 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
         "begin": bed_restart,
         "lowering_steps": lowering,
         "end_step": lowering + derived["run_in_steps"],
+        **window(run, bed, -lowering, lowering + derived["run_in_steps"], PACKING),
     }
 
 
 def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, run_restart: str) -> dict[str, Any]:
     """Return the parameters of the deck of one wear cycle; arguments as for `lowered_bed`."""
     derived = run["derived"]
+    look = wear_interval_steps(run, span) if run["ledger"] == "solver" else 0
     return {
         **integration(run["solver"], derived["time_step_s"], run["particle"], span.steps),
         **_sliding(run, bed, span.cycle, derived["run_in_steps"] + span.first_step),
@@ -190,6 +192,7 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
         "picture_steps": min(derived["picture_interval_steps"], span.steps),
         "ledger": run["ledger"],
         **LEDGERS[run["ledger"]](run, span),
+        **window(run, bed, derived["run_in_steps"] + span.first_step, span.steps, f"../cycle_000/{PACKING}", look),
     }
 
 
@@ -274,7 +277,7 @@ def integration(
         "time_step_s": time_step,
         "rayleigh_fraction": solver["rayleigh_fraction"],
         "largest_time_fraction": STEP_CHECK_MARGIN * solver["rayleigh_fraction"],
-        "skin_m": SKIN_OVER_RADIUS * min(particle["diameters_m"]) / 2.0,
+        "skin_m": neighbour_skin(particle),
         "gravity_m_per_s2": GRAVITY,
         "report_steps": max(longest_run // REPORTS_PER_RUN, 1),
     }

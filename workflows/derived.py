@@ -12,7 +12,10 @@ from postproc.wear.caps import GRAVITY
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
-WALLS, PERIODIC = "walls", "periodic"  # values of bed.ends: two walls that push the bed along, or none
+# Values of bed.ends: two walls that push the bed along, none, or a window that travels with the sample.
+WALLS, PERIODIC, WINDOW = "walls", "periodic", "window"
+STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
+SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
 RAMP = ("height_above_floor_m", "skirt_slope_rad", "skirt_radius_m")  # what the sample's skirt depends on
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
@@ -159,12 +162,14 @@ def derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
 def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
     """Return the skirt's width, and the bed's length, mass and particles.
 
-    A bed between end walls is as long as the whole travel and its ends; a periodic one comes round again.
+    A bed between end walls is as long as the whole travel and its ends; a periodic one comes round again; one in a
+    window has room for the fresh bed of an exchange, for the strip that holds it and for what keeps it off the wake.
     """
     sample, bed, sliding = parameters["sample"], parameters["bed"], parameters["sliding"]
     particle = parameters["particle"]
     travel = sliding["run_in_m"] + sliding["travel_m"] if bed["ends"] == WALLS else 0.0  # of the bed within its domain
-    length = math.fsum([bed["ahead_m"], bed["behind_m"], sample["length_m"], travel])
+    window = [bed["exchange_m"], *window_lengths(particle)] if bed["ends"] == WINDOW else []
+    length = math.fsum([bed["ahead_m"], bed["behind_m"], sample["length_m"], travel, *window])
     solid_volume = length * bed["width_m"] * bed["thickness_m"] * particle["bulk_solid_fraction"]
     per_volume = math.fsum(
         fraction / (math.pi / 6.0 * diameter**3)
@@ -182,6 +187,20 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
         "bed_mass_kg": solid_volume * particle["density_kg_per_m3"],
         "bed_particles": round(solid_volume * per_volume),
     }
+
+
+def neighbour_skin(particle: Mapping[str, Any]) -> float:
+    """Return the skin (m) of the neighbour lists."""
+    return SKIN_OVER_RADIUS * min(particle["diameters_m"]) / 2.0
+
+
+def window_lengths(particle: Mapping[str, Any]) -> tuple[float, float]:
+    """Return the length (m) of the strip that holds the fresh bed of a window, and how far other bed stays off it.
+
+    Centres of other bed are further off than a particle reaches, and than they move before their list is made anew.
+    """
+    largest = max(particle["diameters_m"])
+    return STRIP_DIAMETERS * largest, largest + neighbour_skin(particle)
 
 
 def _derived_times(parameters: dict[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from typing import Any
 from meshes.pattern import pattern_faults
 from postproc.wear.caps import GRAVITY
 from workflows.config_files import ConfigError, Layer
-from workflows.derived import ADAPTIVE, THIN_BED_LAYERS, WALLS
+from workflows.derived import ADAPTIVE, PERIODIC, THIN_BED_LAYERS, WINDOW, window_lengths
 from workflows.geometry import convex_pattern
 from workflows.schedule import LEAST_CYCLE_STEPS
 from workflows.validation import locate, show
@@ -120,7 +120,7 @@ def floor_drives_bed(run: CheckedRun) -> Fault | None:
     Each carries the weight of the bed above it: mu_floor (L W - A) >= mu_sample A, A the area of sample and skirt.
     """
     bed, sample, skirt = (run.parameters[name] for name in ("bed", "sample", "derived"))
-    if bed["ends"] == WALLS:
+    if bed["ends"] != PERIODIC:
         return None
     covered = math.prod(sample[side] + 2.0 * skirt["skirt_width_m"] for side in ("width_m", "length_m"))
     floor, own = (run.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "sample_material"))
@@ -131,6 +131,20 @@ def floor_drives_bed(run: CheckedRun) -> Fault | None:
         "bed.ahead_mm",
         f"at least {millimetres(bed['ahead_m'] + missing)} with bed.ends: periodic, so that the friction of the floor"
         " exceeds that of the sample and its skirt",
+    )
+
+
+def exchange_holds(run: CheckedRun) -> Fault | None:
+    """A window exchanges at least as much bed as the strip that holds the fresh bed is long."""
+    bed = run.parameters["bed"]
+    if bed["ends"] != WINDOW:
+        return None
+    least = window_lengths(run.parameters["particle"])[0]
+    if bed["exchange_m"] >= least:
+        return None
+    return (
+        "bed.exchange_mm",
+        f"at least {millimetres(least)} with bed.ends: window, the length of the strip that is held",
     )
 
 
@@ -274,6 +288,7 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     skirt_in_bed,
     ramp_holds_bed,
     floor_drives_bed,
+    exchange_holds,
     element_resolves_sample,
     element_resolves_bump,
     travel_within_reason,

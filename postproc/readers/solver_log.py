@@ -18,6 +18,7 @@ TAIL_BYTES = 65536
 _ERROR = re.compile(r"^ERROR(?: on proc \d+)?: (.*)$", re.MULTILINE)
 _SOURCE = re.compile(r"\s*\(\./src/[^)]*\)")
 _LOST = re.compile(r"^(?:ERROR|WARNING): (Lost atoms: .*)$", re.MULTILINE)
+_EXCHANGE = re.compile(r"^Exchange at step (\d+): (\d+) particles left, (\d+) entered, (\d+) are here\.$")
 _TRIANGLES = "Import and parallelization of mesh {} containing (\\d+) triangle"
 
 KNOWN_CAUSES = (
@@ -93,6 +94,17 @@ def thermo_table(path: Path | str) -> dict[str, np.ndarray]:
     names = dict.fromkeys(name for row in rows for name in row)
     table = {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
     return {**table, "run": np.array([row["run"] for row in rows], np.int64)}
+
+
+def exchanges(path: Path | str) -> dict[str, np.ndarray]:
+    """Exchanges of bed of a travelling window, as its deck tells them in a log file.
+
+    Returns (exchanges,) int64 arrays: `step`, particles that `left` and `entered`, and that are `here` afterwards.
+    """
+    with open(path, encoding="utf-8", errors="replace") as stream:
+        rows = [found.groups() for line in stream if (found := _EXCHANGE.match(line))]
+    columns = np.array(rows, np.int64).reshape(-1, 4).T
+    return dict(zip(("step", "left", "entered", "here"), columns, strict=True))
 
 
 def last_step(path: Path | str) -> int | None:

@@ -84,6 +84,7 @@ bed:
   ends: walls
   ahead_mm: 200
   behind_mm: 300
+  exchange_mm: 30
   least_layers: 0
   allow_thin_bed: false
   seed: 20220317

@@ -33,7 +33,10 @@ def test_every_variable_of_the_templates_is_in_their_readme():
 
 @pytest.mark.parametrize("name", SLIDING)
 @pytest.mark.parametrize("rolling_friction", ["cdt", "epsd2"])
-@pytest.mark.parametrize(("ledger", "ends"), [("solver", "walls"), ("dumps", "walls"), ("solver", "periodic")])
+@pytest.mark.parametrize(
+    ("ledger", "ends"),
+    [("solver", "walls"), ("dumps", "walls"), ("solver", "periodic"), ("solver", "window"), ("dumps", "window")],
+)
 def test_every_deck_of_every_sliding_study_renders(name, rolling_friction, ledger, ends):
     """No deck has an open word, a missing or an unused parameter, or a tab."""
     changes = {"solver": {"rolling_friction": rolling_friction}, "ledger": ledger, "bed": {"ends": ends}}

@@ -221,21 +221,21 @@ BAD_VALUES = [
         OWN_SETTINGS,
         "cycles: 4",
         "cycles: 4.0",
-        "config/cases/sliding_sample.yaml, line 20: sliding.cycles is 4.0,"
+        "config/cases/sliding_sample.yaml, line 21: sliding.cycles is 4.0,"
         " allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         OWN_SETTINGS,
         "cycles: 4",
         "cycles: 0",
-        "config/cases/sliding_sample.yaml, line 20: sliding.cycles is 0,"
+        "config/cases/sliding_sample.yaml, line 21: sliding.cycles is 0,"
         " allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         OWN_SETTINGS,
         "travel_mm: 1000",
         "travel_mm: 0",
-        "config/cases/sliding_sample.yaml, line 20: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
+        "config/cases/sliding_sample.yaml, line 21: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
     ),
     (
         SETTINGS,
@@ -428,6 +428,11 @@ BAD_COMBINATIONS = [
         " the friction of the floor exceeds that of the sample and its skirt.",
     ),
     (
+        {"bed": {"ends": "window", "exchange_mm": 12}},
+        "command line: bed.exchange_mm is 12 for row R9, allowed is at least 12.72 mm with bed.ends: window, the length"
+        " of the strip that is held.",
+    ),
+    (
         {"sample": {"element_size_mm": 2.5}},
         "command line: sample.element_size_mm is 2.5 for row R9, allowed is at most 2 mm,"
         " the smaller radius of a bump.",
@@ -541,12 +546,12 @@ def test_a_table_from_a_spreadsheet_is_read(config):
         ),
         (
             [(OWN_SETTINGS, " travel_mm: 1000,", "")],
-            "config/cases/sliding_sample.yaml, line 20: sliding.travel_mm and sliding.test_duration_h are both missing,"
+            "config/cases/sliding_sample.yaml, line 21: sliding.travel_mm and sliding.test_duration_h are both missing,"
             " allowed is one of them.",
         ),
         (
             [(OWN_SETTINGS, "travel_mm: 1000", "test_duration_min: 2")],
-            "config/cases/sliding_sample.yaml, line 20: unit min is not allowed for sliding.test_duration, write"
+            "config/cases/sliding_sample.yaml, line 21: unit min is not allowed for sliding.test_duration, write"
             " sliding.test_duration_h (found test_duration_min: 2).",
         ),
     ],
@@ -561,7 +566,7 @@ def test_either_a_travel_or_a_test_duration_is_given(config, changes, message):
 def test_broken_yaml_is_refused_with_its_line(config):
     """What is no YAML is refused with file and line."""
     config.edit(OWN_SETTINGS, "  seed: 20220317\n", "  seed: 20220317\n\tx: 1\n")
-    assert message_of(config).startswith("config/cases/sliding_sample.yaml, line 20: found character '\\t'")
+    assert message_of(config).startswith("config/cases/sliding_sample.yaml, line 21: found character '\\t'")
 
 
 def test_a_file_that_is_no_mapping_is_refused(config):

@@ -10,12 +10,12 @@ import numpy as np
 
 from postproc.mesh import SurfaceMesh, write_stl
 from postproc.readers.cycle_folders import FLOW_TABLE
-from postproc.readers.solver_log import thermo_table
+from postproc.readers.solver_log import exchanges, thermo_table
 from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows import deck
 from workflows.cases import sliding_work
 from workflows.cases.base import SETUP_LOADS, Case, Parameters
-from workflows.derived import ADAPTIVE, WALLS, derived_parameters, flow_measures
+from workflows.derived import ADAPTIVE, PERIODIC, WALLS, WINDOW, derived_parameters, flow_measures
 from workflows.geometry import sample_surface
 from workflows.pieces import piece_ends
 from workflows.run_checks import SLIDING_CHECKS
@@ -62,7 +62,7 @@ class SlidingSample(Case):
             "ledger": settings["ledger"],
             "sample": settings["sample"],
             "pattern": _pattern(settings["pattern"], factors) if surface == "convex" else None,
-            "bed": {**settings["bed"], "thickness_m": factors["bed_thickness_m"]},
+            "bed": {**_bed(settings["bed"]), "thickness_m": factors["bed_thickness_m"]},
             "sliding": _sliding(settings["sliding"], factors["velocity_m_per_s"], settings["wear"]["acceleration"]),
             "wear": wear_section(settings["wear"], materials["particles"][settings["bed"]["material"]]),
             "remeshing": settings["remeshing"],
@@ -162,11 +162,21 @@ class SlidingSample(Case):
         return pd.DataFrame(table | {f"force_{axis}_N": thermo[f"force_{axis}"] for axis in "xyz"})
 
     def own_columns(self, parameters: Parameters, span: Span, folder: Path) -> dict[str, float]:
-        """Return the bed's mean velocity over that of its floor (-), where friction alone takes the bed along."""
-        if parameters["bed"]["ends"] == WALLS:
+        """Return the bed's mean velocity over that of its floor (-) where friction alone takes the bed along.
+
+        In a travelling window the particles that left and entered instead, and how many of the others are missing.
+        """
+        if parameters["bed"]["ends"] == WINDOW:
+            return exchanged_particles(folder)
+        if parameters["bed"]["ends"] != PERIODIC:
             return {}
         pace = _thermo(folder)["bed_pace"].mean()
         return {"bed_over_floor_velocity": float(pace / parameters["sliding"]["velocity_m_per_s"])}
+
+    def cycle_fault(self, parameters: Parameters, own: Mapping[str, float]) -> str | None:
+        """Return a phrase if a window lost particles besides those that it exchanged."""
+        missing = own.get("missing_particles", 0)
+        return f"{missing} particles are missing besides those that left the window, allowed is 0" if missing else None
 
     def reduce(self, parameters: Parameters, span: Span, folder: Path) -> list[Path]:
         """Reduce the snapshots of the bed to the bins of its flow; the last one stays for pictures."""
@@ -194,6 +204,19 @@ class SlidingSample(Case):
         return summary_table(design, wear)
 
 
+def exchanged_particles(folder: Path) -> dict[str, int]:
+    """Return how many particles left and entered in a cycle, and how far any count is from what that leaves."""
+    counts, told = thermo_table(folder / LOG)["Atoms"], exchanges(folder / LOG)
+    expected = counts[0] + np.concatenate(([0], np.cumsum(told["entered"] - told["left"])))
+    missing = np.abs(expected[1:] - told["here"]).max(initial=0)
+    uncounted = np.abs(counts[:, None] - expected).min(axis=1).max()
+    return {
+        "left_particles": int(told["left"].sum()),
+        "entered_particles": int(told["entered"].sum()),
+        "missing_particles": int(max(missing, uncounted)),
+    }
+
+
 def _thermo(folder: Path) -> dict[str, np.ndarray]:
     """Return the thermo table of a cycle without the set-up rows of its pieces, which hold no force."""
     thermo = thermo_table(folder / LOG)
@@ -218,6 +241,11 @@ def _sliding(sliding: Mapping[str, Any], velocity: float, acceleration: float) -
     if duration is not None:
         kept["travel_m"] = velocity * duration / acceleration
     return {**kept, "velocity_m_per_s": velocity}
+
+
+def _bed(bed: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the section without the travel between exchanges where there are none: it then changes nothing."""
+    return {key: value for key, value in bed.items() if bed["ends"] == WINDOW or key != "exchange_m"}
 
 
 def _pattern(pattern: Mapping[str, Any], factors: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 from meshes.estimate import sample_triangles
 from postproc.wear.caps import GRAVITY
 from workflows import deck
-from workflows.derived import ADAPTIVE, RAMP
+from workflows.derived import ADAPTIVE, RAMP, WINDOW
 from workflows.geometry import convex_pattern
 from workflows.work import (
     CYCLE_BYTES,
@@ -61,7 +61,7 @@ def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
     derived, particles, triangles = run["derived"], settled_particles(run), surface_triangles(run)
     lowering = deck.lowered_bed(run, bed, "")["lowering_steps"]
     travel, run_in = derived["travel_steps"], derived["run_in_steps"]
-    often = builds_per_step(run)
+    often = builds_per_step(run) + exchanges_per_step(run)
     return (
         Stage(1, lowering, particles, triangles),
         Stage(0, run_in, particles, triangles, often * run_in, True),
@@ -74,6 +74,13 @@ def builds_per_step(run: Parameters) -> float:
     derived, particle = run["derived"], run["particle"]
     skin = deck.integration(run["solver"], derived["time_step_s"], particle, 1)["skin_m"]
     return 2.0 * run["sliding"]["velocity_m_per_s"] * derived["time_step_s"] / skin
+
+
+def exchanges_per_step(run: Parameters) -> float:
+    """Return the exchanges of bed per time step (-) in a window that travels; each makes the neighbour list anew."""
+    if run["bed"]["ends"] != WINDOW:
+        return 0.0
+    return deck.travelled(run, 1) / run["bed"]["exchange_m"]
 
 
 def cycles(run: Parameters) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from postproc.reference.size_ratios import LARGEST_RATIO
-from workflows.derived import PERIODIC
+from workflows.derived import PERIODIC, WINDOW
 from workflows.page_text import range_text
 
 if TYPE_CHECKING:
@@ -25,6 +25,10 @@ DECKS = (  # {bed} and {run} are those of the first run
 )
 ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
 TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
+ALONG = {  # bed.ends -> what it makes of the packing along the travel
+    PERIODIC: " and along it, so that it passes the sample again and again",
+    WINDOW: " and along it: the same packing comes again, undisturbed, after each length of the window",
+}
 REDUCED = (
     ("bed", "width_mm", "bed width"),
     ("bed", "ahead_mm", "bed ahead of the sample"),
@@ -53,6 +57,9 @@ def remarks(study: Study) -> list[str]:
     if now["bed"]["ends"] == PERIODIC:
         length = study.runs[0].parameters["derived"]["bed_length_m"]
         said.append(f"bed in a channel of {1000.0 * length:g} mm that closes on itself")
+    if now["bed"]["ends"] == WINDOW:
+        length = study.runs[0].parameters["derived"]["bed_length_m"]
+        said.append(f"bed in a window of {1000.0 * length:.0f} mm that travels with the sample")
     thin = {run.row: run.parameters["derived"]["layers"] for run in study.runs if run.parameters["derived"]["thin_bed"]}
     if thin:
         rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
@@ -110,7 +117,7 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "One packing",
             f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel"
-            f"{' and along it, so that it passes the sample again and again' * (settings['bed']['ends'] == PERIODIC)}. "
+            f"{ALONG.get(settings['bed']['ends'], '')}. "
             "Runs of equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
         ),
     ]
