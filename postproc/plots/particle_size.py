@@ -1,0 +1,157 @@
+"""Wear against particle scale and against ratios of size, and spider charts of motion (Yan 2022, section 4.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from postproc.analysis.lines import FEWEST_POINTS, Crossing, fitted_line
+from postproc.analysis.particle_size import RATIOS
+from postproc.plots.packing import MARKERS, scale_colours
+from postproc.plots.style import COLOURS, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
+
+CURVES = {  # colour, marker and name
+    "plain": (COLOURS["plain"], "s", "plain sample"),
+    "convex": (COLOURS["convex"], "o", "convex sample"),
+    "base": ("#009E73", "^", "its base"),
+    "bumps": ("#CC79A7", "v", "its bumps"),
+}
+RATIO_NAMES = {
+    "equivalent_radius": "equivalent radius",
+    "projected_area": "projected area",
+    "surface_area": "surface area",
+    "volume": "volume",
+}
+POINTS = 50  # of a drawn line
+ROOM = 0.08  # -, of the scales, beside them
+MOST_TICKS = 8  # round a spider chart
+
+
+def wear_against_scale(
+    wear: pd.DataFrame, published: pd.DataFrame, critical: Crossing | None, remarks: Sequence[str]
+) -> Figure:
+    """Draw relative wear (-) against particle scale with fitted lines, and the published lines beside them.
+
+    wear: as from `analysis.particle_size.wear_by_scale`; published: curve, intercept, slope, source
+    critical: where convex and plain meet, with its interval as a bar at the bottom; None where too few scales tell
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    axes = figure.subplots()
+    low, high = wear["particle_scale"].min(), wear["particle_scale"].max()
+    room = ROOM * max(high - low, 1.0)
+    places = np.linspace(low - room, high + room, POINTS)
+    for curve, (shade, marker, _) in CURVES.items():
+        one = wear[wear["curve"] == curve]
+        axes.plot(one["particle_scale"], one["relative_wear"], marker, color=shade, markersize=6, label=curve)
+        if len(one) >= FEWEST_POINTS and one["particle_scale"].nunique() > 1:
+            line = fitted_line(one["particle_scale"], one["relative_wear"])
+            axes.plot(places, line.at(places), color=shade, label=f"{curve} line")
+            error = line.error_at(places)
+            axes.fill_between(places, line.at(places) - error, line.at(places) + error, color=shade, alpha=0.15)
+        for _, line in published[published["curve"] == curve].iterrows():
+            drawn = {"color": shade, "linestyle": ":", "label": f"{curve} published"}
+            axes.plot(places, line["intercept"] + line["slope"] * places, **drawn)
+    _critical(axes, critical, (places[0], places[-1]))
+    axes.axhline(0.0, color="#888888", linewidth=0.6)
+    axes.set(xlabel="Particle scale (-)", ylabel="Wear over the plain sample's\nwith the smallest particles (-)")
+    axes.set_xlim(places[0], places[-1])
+    _scale_legend(figure, published, critical is not None and critical.bounded)
+    return figure
+
+
+def _critical(axes: Axes, critical: Crossing | None, ends: tuple[float, float]) -> None:
+    """Mark the critical scale and its interval, as far as the axis shows them."""
+    if critical is None or not critical.bounded:
+        return
+    axes.axvline(critical.value, color="black", linewidth=0.8, linestyle="--", label="critical")
+    axes.axvspan(max(critical.low, ends[0]), min(critical.high, ends[1]), color="#e5e5e5", zorder=0)
+
+
+def _scale_legend(figure: Figure, published: pd.DataFrame, critical: bool) -> None:
+    handles = [Line2D([], [], color=shade, marker=marker, label=name) for shade, marker, name in CURVES.values()]
+    if not published.empty:
+        source = published["source"].iloc[0].partition(",")[0]
+        handles.append(Line2D([], [], color="black", linestyle=":", label=source))
+    if critical:
+        handles.append(Line2D([], [], color="black", linestyle="--", linewidth=0.8, label="critical scale, 95 %"))
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+
+
+def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw convex over plain wear (-) against the four ratios of particle to bump, a panel each.
+
+    table, published: wear_over_plain and the four ratios; published ones are drawn as a line
+    """
+    figure = new_figure(remarks)
+    panels = figure.subplots(1, len(RATIOS), sharey=True)
+    for axes, ratio in zip(panels, RATIOS, strict=True):
+        axes.plot(published[ratio], published["wear_over_plain"], ":", color="black", label="published")
+        axes.plot(table[ratio], table["wear_over_plain"], "o", color=COLOURS["convex"], label="ours")
+        axes.axhline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
+        axes.axvline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
+        axes.set_xscale("log")
+        axes.minorticks_off()
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set_xlabel(f"Ratio of\n{RATIO_NAMES[ratio]} (-)")
+    panels[0].set_ylabel("Wear of the convex sample\nover the plain one's (-)")
+    handles = [
+        Line2D([], [], color=COLOURS["convex"], marker="o", linestyle="", label="simulated"),
+        Line2D([], [], color="black", linestyle=":", label="Yan 2022, Eq 4.14 and 4.15, pattern of run R5"),
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=2)
+    return figure
+
+
+def spider_charts(
+    table: pd.DataFrame, value: str, place: str, labels: tuple[str, str], remarks: Sequence[str]
+) -> Figure:
+    """Draw a quantity round a circle of places, a chart per surface, a curve per particle scale.
+
+    table: surface, particle_scale, `value` (the radius) and `place`, which begins at the top and runs clockwise; the
+    places of all scales share one circle, which ends short of its beginning
+    labels: of value and place, with their units
+    """
+    surfaces, scales = list(dict.fromkeys(table["surface"])), sorted(set(table["particle_scale"]))
+    colours = scale_colours(scales)
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    panels = figure.subplots(1, len(surfaces), subplot_kw={"projection": "polar"}, squeeze=False)[0]
+    whole = _circle(table, place, scales)
+    largest = table[value].max()
+    for axes, surface in zip(panels, surfaces, strict=True):
+        axes.set_theta_zero_location("N")
+        axes.set_theta_direction(-1)
+        for k, scale in enumerate(scales):
+            one = table[(table["surface"] == surface) & (table["particle_scale"] == scale)].sort_values(place)
+            angle = 2.0 * np.pi * one[place] / whole
+            drawn = {"color": colours[scale], "marker": MARKERS[k % len(MARKERS)], "markersize": 3, "linewidth": 1.0}
+            axes.plot(angle, one[value], label=f"scale {scale:g}", **drawn)
+        ticks = _ticks(whole)
+        axes.set_xticks(2.0 * np.pi * ticks / whole, [f"{tick:g}" for tick in ticks])
+        axes.set_rlim(0.0, 1.05 * largest)
+        axes.set_rlabel_position(-0.5 * 360.0 * (1.0 - ticks[-1] / whole))
+        axes.set_title(f"{surface} sample", loc="left", fontsize=SMALLEST_FONT)
+        axes.set_xlabel(f"round: {labels[1]}")
+    handles = panels[0].get_legend_handles_labels()[0]
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 8), title=f"radius: {labels[0]}")
+    return figure
+
+
+def _circle(table: pd.DataFrame, place: str, scales: Sequence[float]) -> float:
+    """Return the place that a whole circle stands for: the last one and the widest step between two of them."""
+    steps = [
+        np.diff(np.unique(table.loc[table["particle_scale"] == scale, place]), prepend=0.0).max() for scale in scales
+    ]
+    return float(table[place].max() + max(steps))
+
+
+def _ticks(whole: float) -> np.ndarray:
+    """Return round places for the circle's labels, fewer than eight or so."""
+    step = whole / MOST_TICKS
+    power = 10.0 ** np.floor(np.log10(step))
+    step = power * next(factor for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= step)
+    return np.arange(0.0, whole - 0.25 * step, step)

@@ -1,0 +1,85 @@
+"""Figures of wear against particle scale and of motion round a circle."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.analysis.lines import Crossing
+from postproc.analysis.particle_size import (
+    critical_scale,
+    published_by_size_ratio,
+    wear_by_scale,
+    wear_by_size_ratio,
+)
+from postproc.plots.particle_size import spider_charts, wear_against_scale, wear_against_size_ratios
+from postproc.plots.style import remarks_of
+from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
+from tests.postproc.analysis.test_particle_size import LINES, SCALES, TRUTH, summary
+
+
+def labels_of(axes):
+    return [line.get_label() for line in axes.lines]
+
+
+def test_wear_has_points_lines_and_published_lines_for_every_curve():
+    """Four curves, each with its points, its line and the published line; the critical scale is marked."""
+    wear = wear_by_scale(summary(noise=0.02))
+    figure = wear_against_scale(wear, LINES, critical_scale(wear), ["shrunk"])
+    axes = figure.axes[0]
+    for curve in ("plain", "convex", "base", "bumps"):
+        assert {curve, f"{curve} line", f"{curve} published"} <= set(labels_of(axes))
+    critical = next(line for line in axes.lines if line.get_label() == "critical")
+    assert critical.get_xdata()[0] == pytest.approx(TRUTH, rel=0.05)
+    assert "shrunk" in remarks_of(figure)
+
+
+def test_two_scales_show_points_only():
+    """No line and no critical scale is drawn through two points; the published lines stay."""
+    figure = wear_against_scale(wear_by_scale(summary([4.0, 8.0])), LINES, None, [])
+    names = labels_of(figure.axes[0])
+    assert "convex" in names and "convex line" not in names and "critical" not in names and "convex published" in names
+
+
+def test_an_interval_beyond_the_axis_is_cut():
+    """An interval that reaches further than the scales does not stretch the axis."""
+    wear = wear_by_scale(summary([4.0, 6.0, 8.0]))
+    figure = wear_against_scale(wear, LINES, Crossing(4.2, -30.0, 90.0, True), [])
+    assert figure.axes[0].get_xlim() == pytest.approx((3.68, 8.32))
+
+
+def test_wear_is_shown_against_four_ratios():
+    """A panel per ratio with our points on the published curve, where the study follows it."""
+    ratios = {f"S{scale:g}": size_ratios(scale * PUBLISHED_DIAMETER, *PUBLISHED_PATTERN) for scale in SCALES}
+    table = wear_by_size_ratio(wear_by_scale(summary()), ratios)
+    figure = wear_against_size_ratios(table, published_by_size_ratio(LINES, SCALES), [])
+    assert len(figure.axes) == 4
+    for axes in figure.axes:
+        published, ours = axes.lines[:2]
+        assert np.allclose(np.array(published.get_xydata()), np.array(ours.get_xydata()))
+
+
+def spins():
+    tables = []
+    for surface, level in (("convex", 300.0), ("plain", 120.0)):
+        for scale in (1.0, 4.0, 8.0):
+            count = round(200.0 / (5.0 * scale))
+            along = (np.arange(count) + 0.5) * 200.0 / count
+            table = {"surface": surface, "particle_scale": scale, "along_mm": along}
+            tables.append(pd.DataFrame({**table, "angular_speed_deg_per_s": level / np.sqrt(scale)}))
+    return pd.concat(tables, ignore_index=True)
+
+
+def test_spider_charts_share_circle_and_radius():
+    """A chart per surface, a curve per scale; the same place has the same angle at every scale, and no curve closes."""
+    labels = ("angular speed (°/s)", "distance behind the front edge (mm)")
+    figure = spider_charts(spins(), "angular_speed_deg_per_s", "along_mm", labels, ["a remark"])
+    assert len(figure.axes) == 2
+    assert [len(axes.lines) for axes in figure.axes] == [3, 3]
+    assert len({axes.get_rmax() for axes in figure.axes}) == 1
+    turn = {}
+    for line, scale in zip(figure.axes[0].lines, (1.0, 4.0, 8.0), strict=True):
+        angle = line.get_xdata()
+        assert (np.diff(angle) > 0.0).all() and angle[-1] < 2.0 * np.pi
+        along = spins().query("surface == 'convex' and particle_scale == @scale")["along_mm"].to_numpy()
+        turn[scale] = angle / along
+    assert np.ptp(np.concatenate(list(turn.values()))) < 1e-12
