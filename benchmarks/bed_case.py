@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from postproc.mesh import SurfaceMesh, read_surface, write_surface
+from postproc.readers.solver_log import thermo_table
 from workflows import state
 from workflows.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
 from workflows.cycles import fill_bed, inputs_digest, run_cycle
@@ -14,6 +13,7 @@ from workflows.design import load_study
 from workflows.geometry import sample_surface
 from workflows.progress import Progress
 from workflows.schedule import first_span
+from workflows.solver import LOG
 
 STUDY, RUN = "demo", "R9_convex"
 
@@ -43,3 +43,8 @@ def cycle_deck(chain: Chain, name: str) -> tuple[Path, SurfaceMesh, str]:
     write_shared_files(chain)
     write_cycle(chain, first_span(chain.parameters), folder, surface)
     return folder, surface, (folder / "deck.in").read_text()
+
+
+def particles_of(chain: Chain) -> int:
+    """Return the number of particles of a prepared chain."""
+    return int(thermo_table(state.cycle_folder(chain.folder, 0) / LOG)["Atoms"][-1])

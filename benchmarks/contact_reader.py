@@ -1,28 +1,27 @@
-"""Speed and memory of the contact reader and the load ledger on a synthetic dump.
+"""Speed of the contact reader and of the sampled load ledger on a synthetic dump, by one core.
 
-    python benchmarks/contact_reader.py --megabytes 500 --contacts 1000
-
-Prints MB of the contact dump per second of one core's time (the spin dump, a quarter more text, is read along
-with it) and the peak memory of the process that reads. A child process writes the dumps and keeps its memory.
+MB are those of the contact dump; the spin dump, a quarter more text, is read along with it. A child process writes both
+and keeps its memory.
 """
 
 from __future__ import annotations
 
-import argparse
 import resource
-import sys
 import tempfile
-import time
+from collections.abc import Callable
 from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from benchmarks.measure import Measure, in_turn, measured, processor_times
 from postproc.readers.contacts import CONTACT_COLUMNS, read_contact_batches, read_contacts
 from postproc.readers.dump_text import read_frames
 from postproc.wear.ledger import LedgerBuilder
 
+MEGABYTES, QUICK_MEGABYTES = 300.0, 10.0  # of the contact dump
+CONTACTS = 1000  # per frame
+REPEATS, QUICK_REPEATS = 3, 2
 TRIANGLES = 50_000
 PARTICLES = 400_000
 DISTINCT_FRAMES = 8
@@ -59,13 +58,6 @@ def write_dumps(folder: Path, megabytes: float, contacts: int) -> int:
     return step
 
 
-def _timed(label: str, megabytes: float, action) -> None:
-    start, cpu_start = time.perf_counter(), time.process_time()
-    action()
-    seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu_start
-    print(f"{label:<41} {seconds:6.2f} s wall {cpu_seconds:6.2f} s of core {megabytes / cpu_seconds:6.0f} MB/s")
-
-
 def _ledger(folder: Path, batched: bool) -> None:
     builder = LedgerBuilder(TRIANGLES, 0, 2e8, 2460.0)
     paths = folder / "contacts.dump", folder / "spins.dump"
@@ -74,30 +66,31 @@ def _ledger(folder: Path, batched: bool) -> None:
     builder.table()
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--megabytes", type=float, default=500.0, help="size of the contact dump")
-    parser.add_argument("--contacts", type=int, default=1000, help="contacts per frame")
-    arguments = parser.parse_args()
+def measures(folder: Path, quick: bool) -> list[Measure]:
+    """Return the rates (MB/s of processor time) of parsing, reading and accounting, and the peak memory."""
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
         with get_context("spawn").Pool(1) as pool:
-            frames = pool.apply(write_dumps, (folder, arguments.megabytes, arguments.contacts))
-        size = (folder / "contacts.dump").stat().st_size / 1e6
-        spin_size = (folder / "spins.dump").stat().st_size / 1e6
-        print(f"contact dump {size:.0f} MB, spin dump {spin_size:.0f} MB, {frames} frames")
-        paths = folder / "contacts.dump", folder / "spins.dump"
-        for contacts in read_contact_batches(*paths):  # compiles or loads the parser
-            del contacts
-            break
-        _timed("parse the contact dump alone", size, lambda: [None for _ in read_frames(paths[0], "ENTRIES")])
-        _timed("read both dumps, batches of frames", size, lambda: [None for _ in read_contact_batches(*paths)])
-        _timed("read both dumps, one frame at a time", size, lambda: [None for _ in read_contacts(*paths)])
-        _timed("read and ledger, batches (add_batch)", size, lambda: _ledger(folder, batched=True))
-        _timed("read and ledger, one frame at a time (add)", size, lambda: _ledger(folder, batched=False))
+            pool.apply(write_dumps, (Path(name), QUICK_MEGABYTES if quick else MEGABYTES, CONTACTS))
+        paths = Path(name) / "contacts.dump", Path(name) / "spins.dump"
+        size = paths[0].stat().st_size / 1e6
+        next(iter(read_contact_batches(*paths)))  # compiles or loads the parser
+
+        def rate(task: Callable[[], object]) -> Callable[[], float]:
+            return lambda: size / processor_times(task, 1)[0]
+
+        ways = {
+            "parse": rate(lambda: [None for _ in read_frames(paths[0], "ENTRIES")]),
+            "read": rate(lambda: [None for _ in read_contact_batches(*paths)]),
+            "frames": rate(lambda: [None for _ in read_contacts(*paths)]),
+            "ledger": rate(lambda: _ledger(Path(name), batched=True)),
+            "slow ledger": rate(lambda: _ledger(Path(name), batched=False)),
+        }
+        found = in_turn(ways, QUICK_REPEATS if quick else REPEATS)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"peak memory {peak:.0f} MB")
-
-
-if __name__ == "__main__":
-    main()
+    single = "one frame at a time"
+    return [
+        measured(f"parse a contact dump of {size:.0f} MB", "MB/s", found["parse"]),
+        measured("read contacts and spins, batches of frames", "MB/s", found["read"], single, found["frames"]),
+        measured("read and account, batches of frames", "MB/s", found["ledger"], single, found["slow ledger"]),
+        measured("most memory of this process so far", "MB", [peak]),
+    ]

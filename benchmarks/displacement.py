@@ -1,14 +1,13 @@
-"""Processor time of spreading and displacing on a bumpy sheet of 100,000 triangles (one core, best of five).
-
-Run in the root of the repository: python -m benchmarks.displacement
-"""
+"""Processor time of spreading and displacing on a bumpy sheet of 100,000 triangles, by one core."""
 
 from __future__ import annotations
 
-import time
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
+from benchmarks.measure import Measure, measured, processor_times
 from postproc.mesh import SurfaceMesh, edge_lengths_per_triangle
 from postproc.wear.caps import step_limit
 from postproc.wear.directions import rim_directions
@@ -17,10 +16,12 @@ from postproc.wear.patch import ContactPatch, spread
 from postproc.wear.update import wear_update, with_depths
 
 SEED = 20220317
-CELLS = 224  # per side; two triangles each: 100,352
+CELLS, QUICK_CELLS = 224, 40  # per side; two triangles each: 100,352
+REPEATS, QUICK_REPEATS = 5, 2
 SPACING = 1.0e-3  # m
-LOADED = 20_000  # triangles with contacts
-LARGEST_SECONDS = 0.5  # goal for patch and displacement together, patches of one edge
+LOADED = 0.2  # -, share of the triangles with contacts
+STEP = 1e-2  # -, mean step of the nodes over the edge
+RADII = (0.5, 1.0, 2.0, 5.0)  # -, of contact patches over the edge
 
 
 def bumpy_sheet(cells: int, spacing: float) -> tuple[np.ndarray, np.ndarray]:
@@ -33,66 +34,43 @@ def bumpy_sheet(cells: int, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     return points, np.concatenate((np.column_stack((a, b, c)), np.column_stack((a, c, d))))
 
 
-def best_time(function, repeats: int = 5) -> float:
-    """Shortest processor time of several calls, s (other work on the machine does not count)."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        function()
-        times.append(time.process_time() - start)
-    return min(times)
-
-
-def main() -> None:
-    points, triangles = bumpy_sheet(CELLS, SPACING)
-    random = np.random.default_rng(SEED)
-    rim = rim_directions(points, triangles)
-    limit = step_limit(points, triangles, 0.1, 0.01, 1.0)
-    print(f"{len(triangles)} triangles, {len(points)} nodes")
-    for step_over_edge in (1e-6, 1e-3, 1e-2, 1e-1):
-        volume = random.random(len(triangles)) * step_over_edge * SPACING**3
-        seconds = best_time(lambda volume=volume: displace(points, triangles, volume, None, limit, rim))
-        result = displace(points, triangles, volume, None, limit, rim)
-        print(
-            f"mean step {step_over_edge:g} of the edge: {seconds:.3f} s, "
-            f"carried {result.carried_volume.sum() / volume.sum():.2e} of the wear"
-        )
-    time_patches(points, triangles, rim, limit, random)
+def measures(folder: Path, quick: bool) -> list[Measure]:
+    """Return the triangles per second of displacing, of patches with it, of a whole wear update and of depths."""
+    points, triangles = bumpy_sheet(QUICK_CELLS if quick else CELLS, SPACING)
+    random, count = np.random.default_rng(SEED), len(triangles)
+    rim, limit = rim_directions(points, triangles), step_limit(points, triangles, 0.1, 0.01, 1.0)
+    volume = random.random(count) * STEP * SPACING**3
     mesh = SurfaceMesh(points, triangles)
-    seconds = best_time(lambda: wear_update(mesh, volume, limit), repeats=2)
     worn, _ = wear_update(mesh, volume, limit)
-    depths = best_time(lambda: with_depths(worn, mesh), repeats=2)
-    print(f"whole update: {seconds:.3f} s; depths of the last surface: {depths:.3f} s")
+    tasks: dict[str, Callable[[], object]] = {
+        "displace": lambda: displace(points, triangles, volume, None, limit, rim),
+        **patch_tasks(points, triangles, rim, limit, random),
+        "wear update": lambda: wear_update(mesh, volume, limit),
+        "depths": lambda: with_depths(worn, mesh),
+    }
+    told = []
+    for name, task in tasks.items():
+        task()  # compiles once
+        times = processor_times(task, QUICK_REPEATS if quick else REPEATS)
+        told.append(measured(f"{name}, {count} triangles", "triangles/s", [count / spent for spent in times]))
+    return told
 
 
-def time_patches(points, triangles, rim, limit, random) -> None:
-    """Spread and displace contacts on a part of the triangles, for several patch radii."""
-    loaded = random.random(len(triangles)) < LOADED / len(triangles)
-    volume = loaded * random.random(len(triangles)) * 1e-2 * SPACING**3
+def patch_tasks(points, triangles, rim, limit, random) -> dict[str, Callable[[], object]]:
+    """Return what spreads the wear of loaded triangles over patches and displaces them, by size of the patches."""
+    loaded = random.random(len(triangles)) < LOADED
+    volume = loaded * random.random(len(triangles)) * STEP * SPACING**3
     position = np.einsum("mc,mcx->mx", random.dirichlet((1.0, 1.0, 1.0), len(triangles)), points[triangles])
     edge = edge_lengths_per_triangle(points, triangles).mean()
-    for radius_over_edge in (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0):
+
+    def task(radius_over_edge: float) -> Callable[[], object]:
         patch = ContactPatch(position, np.full(len(triangles), radius_over_edge * edge))
+        label = np.zeros(len(triangles))
 
-        def update(patch=patch):
-            return displace(
-                points,
-                triangles,
-                spread(points, triangles, volume, patch),
-                None,
-                limit,
-                rim,
-                label=np.zeros(len(triangles)),
-            )
+        def spread_and_displace() -> object:
+            share = spread(points, triangles, volume, patch)
+            return displace(points, triangles, share, None, limit, rim, label=label)
 
-        update()  # compiles once
-        spreading = best_time(lambda patch=patch: spread(points, triangles, volume, patch), repeats=3)
-        seconds = best_time(update, repeats=3)
-        goal = "" if radius_over_edge > 1.0 else f" (goal {LARGEST_SECONDS} s)"
-        print(
-            f"{loaded.sum()} patches of {radius_over_edge:g} edges: {spreading:.3f} s, displaced {seconds:.3f} s{goal}"
-        )
+        return spread_and_displace
 
-
-if __name__ == "__main__":
-    main()
+    return {f"patches of {radius:g} edges, displaced": task(radius) for radius in RADII}

@@ -1,33 +1,33 @@
-"""What a load ledger costs: one bed of some 20,000 particles with the plain solver, the ledger, and dumps, in turn.
+"""What a deck and its load ledger cost: the same time steps of one bed by several decks, in turn.
 
-    python benchmarks/ledger_overhead.py --rounds 7
-
-Each round runs the same time steps three times: without any accounting, with every contact summed in the solver
-(`ledger: solver`), and with contacts dumped at intervals (`ledger: dumps`). Their order changes from round to
-round, so that a drift of the machine's speed favours nobody. Prints the time of the time steps ("Loop time") and the
-processor time of the solver, and the medians of their ratios to the plain solver of the same round.
+Bare is a deck with nothing but the physics: no ledger, no pictures, no restart file, no loads or wear per triangle, no
+checks. Each of these decks has the same bed, sample and time steps. What a deck writes once per cycle, and once per
+picture, is written once in so many steps; in a study cycles are longer, so its decks cost less than here.
 """
 
 from __future__ import annotations
 
-import argparse
 import re
 import resource
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-from bed_case import cycle_deck, prepared_chain
-
+from benchmarks.bed_case import cycle_deck, particles_of, prepared_chain
+from benchmarks.measure import Measure, in_turn, measured
 from workflows.chain import Chain, deck_text
 from workflows.schedule import first_span
 from workflows.solver import CYCLE_EXECUTABLES, SCREEN, run_deck
 
-PARTICLE_SCALE = 1.85  # makes some 20,000 particles of the demo's bed
+PARTICLE_SCALE, QUICK_PARTICLE_SCALE = 1.85, 4.0  # the former makes some 20,000 particles of the demo's bed
+STEPS, QUICK_STEPS = 1200, 200  # time steps per run
+ROUNDS, QUICK_ROUNDS = 5, 2
 SAMPLING_INTERVAL = 20  # steps, the default of studies with `ledger: dumps`
 LOOP_TIME = re.compile(r"^Loop time of ([\d.eE+-]+) on (\d+) procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
 OF_LEDGER = re.compile(r"^(fix\s+load_ledger|unfix\s+load_ledger).*\n", re.MULTILINE)
 OTHER_OUTPUT = re.compile(r"^(dump\s+(bed|loads)\s|write_restart\s).*\n", re.MULTILINE)
+CHECKS = re.compile(r"^(fix\s+step_check\s|variable\s+force_|compute\s+rotational_energy\s).*\n", re.MULTILINE)
+BARE = {" store_force yes": "", "mesh/surface/stress": "mesh/surface", " wear finnie": ""}
 
 
 @dataclass(frozen=True)
@@ -39,18 +39,32 @@ class Variant:
 
 
 def variants(chain: Chain, steps: int) -> dict[str, Variant]:
-    """Return the three ways to run the first wear cycle, `steps` long, without pictures and restart file."""
+    """Return the ways to run the first wear cycle, `steps` long; "plain" is that of "solver" without the ledger."""
     solver = {**chain.parameters["solver"], "sampling_interval_steps": SAMPLING_INTERVAL}
     derived = {**chain.parameters["derived"], "first_cycle_steps": steps}
-    texts = {}
-    for ledger in CYCLE_EXECUTABLES:
+    whole, ways = {}, {}
+    for ledger, program in CYCLE_EXECUTABLES.items():
         parameters = {**chain.parameters, "ledger": ledger, "solver": solver, "derived": derived}
-        texts[ledger] = OTHER_OUTPUT.sub("", deck_text(replace(chain, parameters=parameters), first_span(parameters)))
-    ways = {ledger: Variant(text, CYCLE_EXECUTABLES[ledger]) for ledger, text in texts.items()}
-    return {"plain": Variant(OF_LEDGER.sub("", texts["solver"]), CYCLE_EXECUTABLES["dumps"]), **ways}
+        whole[ledger] = deck_text(replace(chain, parameters=parameters), first_span(parameters))
+        ways[ledger] = Variant(OTHER_OUTPUT.sub("", whole[ledger]), program)
+    plain = OF_LEDGER.sub("", ways["solver"].deck)
+    return {
+        "bare": Variant(bare(plain), CYCLE_EXECUTABLES["dumps"]),
+        "plain": Variant(plain, CYCLE_EXECUTABLES["dumps"]),
+        **ways,
+        "whole": Variant(whole["solver"], CYCLE_EXECUTABLES["solver"]),
+    }
 
 
-def seconds(folder: Path, variant: Variant, ranks: int) -> tuple[float, float]:
+def bare(deck: str) -> str:
+    """Return a deck without ledger and output that does not ask for loads, wear and checks either."""
+    deck = re.sub(r"^(thermo_style\s+custom step atoms).*$", r"\1", CHECKS.sub("", deck), flags=re.MULTILINE)
+    for old, new in BARE.items():
+        deck = deck.replace(old, new)
+    return deck
+
+
+def seconds(folder: Path, variant: Variant, ranks: int = 1) -> tuple[float, float]:
     """Run a variant; return the wall time of its time steps and the processor time of the whole solver run, in s."""
     (folder / "deck.in").write_text(variant.deck)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -60,32 +74,23 @@ def seconds(folder: Path, variant: Variant, ranks: int) -> tuple[float, float]:
     return float(LOOP_TIME.findall((folder / SCREEN).read_text())[-1][0]), processor
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/ledger_overhead"))
-    parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--steps", type=int, default=1500, help="time steps per run")
-    parser.add_argument("--ranks", type=int, default=1)
-    given = parser.parse_args()
-    chain = prepared_chain(given.folder, PARTICLE_SCALE)
-    folder, surface, _ = cycle_deck(chain, "overhead")
-    ways = variants(chain, given.steps)
-    names, measured = list(ways), {name: [] for name in ways}
-    for number in range(given.rounds):
-        shift = number % len(names)
-        for name in names[shift:] + names[:shift]:
-            measured[name].append(seconds(folder, ways[name], given.ranks))
-        last = ", ".join(f"{name} {measured[name][-1][0]:.2f} s" for name in names)
-        print(f"round {number + 1}, time of the steps: {last}", flush=True)
-    atoms = LOOP_TIME.findall((folder / SCREEN).read_text())[-1][3]
-    print(f"{atoms} particles, {len(surface.triangles)} triangles, {given.steps} steps, {given.ranks} rank(s)")
-    plain = np.array(measured["plain"])
-    for name in names[1:]:
-        ratios = np.array(measured[name]) / plain
-        for column, what in enumerate(("time of the steps", "processor time")):
-            low, middle, high = np.quantile(ratios[:, column], (0.0, 0.5, 1.0))
-            print(f"{name} over plain, {what}: median {middle:.4f}, from {low:.4f} to {high:.4f}")
+def measures(folder: Path, quick: bool) -> list[Measure]:
+    """Return the processor time of a run by each deck, against the bare or the plain one."""
+    chain = prepared_chain(folder, QUICK_PARTICLE_SCALE if quick else PARTICLE_SCALE)
+    steps = QUICK_STEPS if quick else STEPS
+    cycle, surface, _ = cycle_deck(chain, "overhead")
 
+    def way(variant: Variant) -> Callable[[], float]:
+        return lambda: seconds(cycle, variant)[1]
 
-if __name__ == "__main__":
-    main()
+    ways = {name: way(variant) for name, variant in variants(chain, steps).items()}
+    found = in_turn(ways, QUICK_ROUNDS if quick else ROUNDS)
+    size = f"{particles_of(chain)} particles, {len(surface.triangles)} triangles, {steps} steps"
+    return [
+        measured(f"bare deck, {size}", "s", found["bare"]),
+        measured("deck of a study, all its output", "s", found["whole"], "bare deck", found["bare"]),
+        measured("deck with the load ledger", "s", found["solver"], "the same without", found["plain"]),
+        measured(
+            f"deck with dumps every {SAMPLING_INTERVAL} steps", "s", found["dumps"], "the same without", found["plain"]
+        ),
+    ]

@@ -1,6 +1,6 @@
 """How far a sampled load ledger is from the exact one: a bed's contacts at every step, accounted at several strides.
 
-    python benchmarks/sampling_error.py --output docs
+    python -m benchmarks.sampling_error --output docs        # in the root of the repository
 
 One run of the demo's bed writes every contact of every step into dumps and sums them in the solver as well, so that
 both see the same motion. The dumps are then accounted at strides of 1 to 100 steps. Writes sampling_error.csv and .png.
@@ -15,8 +15,8 @@ from datetime import date
 from pathlib import Path
 
 import numpy as np
-from bed_case import cycle_deck, prepared_chain
 
+from benchmarks.bed_case import cycle_deck, prepared_chain
 from postproc.analysis.sampling import sampling_errors
 from postproc.plots.curves import sampling_error
 from postproc.plots.style import save

@@ -1,0 +1,28 @@
+"""Speed of meshing the pristine surfaces of studies, by one core."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from benchmarks.measure import Measure, measured, processor_times
+from workflows.cases import CASES
+from workflows.design import load_study
+
+SURFACES = (("demo", "R9_convex"), ("demo", "R9_plain"), ("pin_on_disc", "c17-conserving"))
+REPEATS, QUICK_REPEATS = 3, 1
+
+
+def measures(folder: Path, quick: bool) -> list[Measure]:
+    """Return the triangles per second of processor time, of standard fidelity."""
+    told = []
+    for name, run in SURFACES:
+        study = load_study(name, overrides={"fidelity": "quick" if quick else "standard"})
+        parameters, count = study.run(run).parameters, []
+        times = processor_times(
+            lambda study=study, parameters=parameters, count=count: count.append(
+                len(CASES[study.case].surface_mesh(parameters).triangles)
+            ),
+            QUICK_REPEATS if quick else REPEATS,
+        )
+        told.append(measured(f"{name}, {run}, {count[0]} triangles", "triangles/s", [count[0] / t for t in times]))
+    return told

@@ -1,0 +1,69 @@
+"""The page of the benchmarks: every line of their table, the model of more ranks where two were measured."""
+
+import importlib
+import inspect
+from dataclasses import asdict
+
+import pandas as pd
+
+from benchmarks.__main__ import MODULES, lines_of, replaced, there
+from benchmarks.measure import measured
+from benchmarks.page import page, table_text
+from benchmarks.ranks import ACROSS
+from benchmarks.scaling import RANKS, measured_cost, scaling_table
+
+MACHINE = {"processor": "Abacus", "cores": 2, "memory_gb": 0.5, "system": "Wood"}
+
+
+def table(benchmark: str, *found) -> pd.DataFrame:
+    told = {"benchmark": benchmark, "date": "2026-11-21", "load_before": 0.1}
+    return pd.DataFrame([told | asdict(measure) for measure in found])
+
+
+def ranks(efficiency: float) -> pd.DataFrame:
+    return table("ranks", measured(ACROSS, "steps/s", [efficiency], "two times one rank", [1.0]))
+
+
+def test_every_benchmark_has_one_way_to_be_asked():
+    """All take a folder and whether it is a trial, and say in their first lines what they measure."""
+    for name in filter(there, MODULES):
+        module = importlib.import_module(f"benchmarks.{name}")
+        assert list(inspect.signature(module.measures).parameters) == ["folder", "quick"], name
+        assert inspect.getdoc(module).endswith("."), name
+
+
+def test_a_benchmark_becomes_lines(tmp_path):
+    """The quickest one, run: its rates are above zero, and named in the text for the terminal."""
+    lines = lines_of("meshing", tmp_path, quick=True)
+    assert set(lines["benchmark"]) == {"meshing"} and (lines["value"] > 0.0).all()
+    assert all(name in table_text(lines) for name in lines["name"])
+
+
+def test_the_page_has_every_line_and_the_model():
+    """Machine, values with units and ranges, ratios; efficiencies of more ranks only where two were measured."""
+    lines = table("meshing", measured("sample", "triangles/s", [1e4, 2e4, 4e4], "before", [1e4, 1e4, 1e4]))
+    text = page(lines, MACHINE)
+    assert "Abacus, 2 cores, 0.5 GB, Wood" in text
+    assert "| sample | 20,000 triangles/s (10,000 to 40,000) | before | 2.000 (1 to 4) | 3 |" in text
+    assert "More ranks" not in text
+    modelled = page(pd.concat([lines, ranks(0.8)]), MACHINE)
+    assert modelled.count("| screening |") == len(RANKS)
+
+
+def test_lines_are_replaced_by_benchmark():
+    """What was run now stands instead of what was, the rest stays, in the order of the command."""
+    before = pd.concat([ranks(0.5), table("meshing", measured("sample", "s", [1.0]))])
+    after = replaced(before, [ranks(0.9)])
+    assert after["benchmark"].tolist() == ["meshing", "ranks"]
+    assert after["ratio"].iloc[1] == 0.9
+    assert replaced(pd.DataFrame(), [ranks(0.9)])["ratio"].tolist() == [0.9]
+
+
+def test_more_ranks_lose_more_and_the_best_grid_least():
+    """Efficiencies fall with the ranks; the grid chosen is never worse than the split across alone."""
+    found = scaling_table(measured_cost(ranks(0.8)))
+    assert measured_cost(table("meshing", measured("sample", "s", [1.0]))) is None
+    for _, study in found.groupby("study"):
+        assert study["split_across"].is_monotonic_decreasing and (study["split_across"] < 1.0).all()
+        assert (study["best"] >= study["split_across"]).all()
+        assert study["bed_as_wide_again"].nunique() == 1
