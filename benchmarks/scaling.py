@@ -2,28 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from pathlib import Path
 
 import pandas as pd
 
 from benchmarks.bed_case import RUN, STUDY
 from benchmarks.ledger_overhead import PARTICLE_SCALE
 from benchmarks.ranks import ACROSS
+from postproc.analysis.cost_model import SOLVER_TERMS, seconds
 from postproc.analysis.scaling import Bed, best_grid, efficiency, ghost_cost
 from workflows.derived import neighbour_skin
-from workflows.design import load_study
+from workflows.design import Run, Study, load_study
+from workflows.forecast import work_of
+from workflows.rates import rates_file, read_rates
 
+ROOT = Path(__file__).resolve().parents[1]
 RANKS = (2, 4, 8, 16, 32, 64)
 FULL_SIZE = ("demo", "screening", "worn_bump")  # studies of which a bed at paper fidelity is modelled
+OF_TRIANGLES = ("triangle_steps", "loaded_triangle_steps")  # terms of the cost model
 
 
-def bed_of(parameters: Mapping[str, Any]) -> Bed:
-    """Return the bed of a run's parameters."""
-    derived, particle = parameters["derived"], parameters["particle"]
-    layer = max(particle["diameters_m"]) + neighbour_skin(particle)
-    return Bed(parameters["bed"]["width_m"], derived["bed_length_m"], derived["bed_travel_m"], layer)
+def bed_of(study: Study, run: Run) -> Bed:
+    """Return the bed of a run; what its triangles take of the time is told by its forecast."""
+    derived, particle = run.parameters["derived"], run.parameters["particle"]
+    return Bed(
+        width=run.parameters["bed"]["width_m"],
+        length=derived["bed_length_m"],
+        travel=derived["bed_travel_m"],
+        layer=max(particle["diameters_m"]) + neighbour_skin(particle),
+        sample_length=run.parameters["sample"]["length_m"],
+        triangle_share=triangle_share(study, run),
+    )
+
+
+def triangle_share(study: Study, run: Run) -> float:
+    """Return the share (-) of the solver's time that triangles take, by the forecast of a run."""
+    (job,) = [job for job in work_of(study) if (job.rule, job.wildcards) == ("worn_run", (run.name,))]
+    work = pd.DataFrame([stage.terms() for stage in job.stages])
+    rates = read_rates(rates_file(ROOT)).rates
+    triangles, whole = (seconds(work, rates, terms).sum() for terms in (OF_TRIANGLES, SOLVER_TERMS))
+    return float(triangles / whole)
 
 
 def measured_cost(table: pd.DataFrame) -> float | None:
@@ -31,28 +50,24 @@ def measured_cost(table: pd.DataFrame) -> float | None:
     lines = table[(table["benchmark"] == "ranks") & (table["name"] == ACROSS)]
     if lines.empty:
         return None
-    parameters = (
-        load_study(STUDY, overrides={"particle_scale": PARTICLE_SCALE, "fidelity": "quick"}).run(RUN).parameters
-    )
-    return ghost_cost(bed_of(parameters), float(lines["ratio"].iloc[0]))
+    study = load_study(STUDY, overrides={"particle_scale": PARTICLE_SCALE, "fidelity": "quick"})
+    return ghost_cost(bed_of(study, study.run(RUN)), float(lines["ratio"].iloc[0]))
 
 
 def scaling_table(cost: float) -> pd.DataFrame:
     """Return a row per study and number of ranks: efficiency across the travel, of the best grid, and weak scaling."""
     rows = []
     for name in FULL_SIZE:
-        parameters = max(
-            (run.parameters for run in load_study(name, overrides={"fidelity": "paper"}).runs),
-            key=lambda parameters: parameters["derived"]["bed_particles"],
-        )
-        bed = bed_of(parameters)
+        study = load_study(name, overrides={"fidelity": "paper"})
+        run = max(study.runs, key=lambda run: run.parameters["derived"]["bed_particles"])
+        bed = bed_of(study, run)
         for ranks in RANKS:
             across, along = best_grid(bed, cost, ranks)
             wider = replace(bed, width=bed.width * ranks / min(RANKS))
             rows.append(
                 {
                     "study": name,
-                    "particles": parameters["derived"]["bed_particles"],
+                    "particles": run.parameters["derived"]["bed_particles"],
                     "ranks": ranks,
                     "split_across": efficiency(bed, cost, ranks, 1),
                     "best_grid": f"{across} x {along}",

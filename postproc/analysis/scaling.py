@@ -3,9 +3,9 @@
 Every rank computes its share of the particles, and besides them the ghosts: copies of its neighbours' particles within
 the reach of a contact, in a layer along each face that it shares. What a ghost costs, over what a particle costs, is
 what two ranks across the travel were measured to lose. Assumed: a bed is shared evenly across; along the travel the
-ranks share the domain, through which a bed between end walls travels, so that some of them wait; a ghost costs the same
-in every layer; messages within and between nodes cost the same; triangles are shared evenly; nothing else grows with
-the ranks.
+ranks share the domain, through which a bed between end walls travels, so that some of them wait; triangles are where
+the sample is; a ghost costs the same in every layer; messages within and between nodes cost the same; nothing else
+grows with the ranks.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class Bed:
     """Width (m) across and length (m) along the travel of a bed, its travel (m) through the domain, none where it is
-    closed on itself, and the layer (m) in which ghosts stand: the largest particle with its neighbour skin.
+    closed on itself, the layer (m) in which ghosts stand: the largest particle with its neighbour skin, the sample's
+    length (m) along the travel, and the share (-) of a single rank's time that its triangles take.
     """
 
     width: float
     length: float
     travel: float
     layer: float
+    sample_length: float
+    triangle_share: float
 
 
 def ghost_share(bed: Bed, across: int, along: int) -> float:
@@ -36,8 +39,13 @@ def ghost_share(bed: Bed, across: int, along: int) -> float:
 
 
 def waiting(bed: Bed, along: int) -> float:
-    """Return the particles of the fullest rank over the mean (-) where so many share the domain along the travel."""
-    return min(float(along), (bed.length + bed.travel) / bed.length)
+    """Return the work of the busiest rank over the mean (-), ghosts left out, of so many along the travel.
+
+    It has a slab full of particles and of triangles.
+    """
+    domain = bed.length + bed.travel
+    particles, triangles = (min(float(along), domain / length) for length in (bed.length, bed.sample_length))
+    return (1.0 - bed.triangle_share) * particles + bed.triangle_share * triangles
 
 
 def ghost_cost(bed: Bed, measured: float) -> float:

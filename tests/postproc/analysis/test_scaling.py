@@ -7,7 +7,7 @@ import pytest
 from postproc.analysis.scaling import Bed, best_grid, efficiency, ghost_cost, ghost_share, waiting
 
 ROUNDING = 1e-12
-CHANNEL = Bed(width=0.1, length=0.4, travel=0.0, layer=0.005)
+CHANNEL = Bed(width=0.1, length=0.4, travel=0.0, layer=0.005, sample_length=0.1, triangle_share=0.0)
 PUSHED = replace(CHANNEL, travel=0.4)
 
 
@@ -29,6 +29,13 @@ def test_a_pushed_bed_fills_half_of_its_domain():
     """Half of many ranks along the travel wait, of two ranks one; in a channel none."""
     assert [waiting(PUSHED, along) for along in (1, 2, 8)] == [1.0, 2.0, 2.0]
     assert waiting(CHANNEL, 8) == 1.0
+
+
+def test_triangles_stay_with_the_ranks_at_the_sample():
+    """A quarter of the channel has them: eight ranks wait for those that have four times the mean of a tenth."""
+    loaded = replace(CHANNEL, triangle_share=0.1)
+    assert waiting(loaded, 8) == pytest.approx(0.9 + 0.1 * 4.0, rel=ROUNDING)
+    assert waiting(loaded, 2) == pytest.approx(0.9 + 0.1 * 2.0, rel=ROUNDING)
 
 
 def test_a_bed_as_wide_again_with_every_rank_scales_without_loss_after_two():
