@@ -3,7 +3,7 @@ question never gets an old answer.
 
 A simulation lives in `<folder>/<kind>_<digest of its inputs>/cycle_000`, written and checked as a wear cycle is
 (state.py): a folder under that name is whole, and a damaged one is set aside and done again. It is measured anew
-whenever it is asked for.
+whenever it is asked for. A packing in which an arch blocks the slot is kept too, and another one takes its place.
 """
 
 from __future__ import annotations
@@ -12,18 +12,23 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from postproc.analysis.bulk_test import HEAP, MEASUREMENTS, RESPONSES, Boxes, Measurement
 from postproc.analysis.free_surface import FreeSurfaceError
-from postproc.analysis.outflow import OutflowError
+from postproc.analysis.outflow import BlockedError, OutflowError
+from postproc.calibration.loop import packing_seed
 from postproc.readers.solver_log import failure, last_step, solver_version, thermo_table, warnings
 from workflows import state
 from workflows.bulk_tests import deck_text, slot_length, time_step, write_test
 from workflows.solver import LOG, SCREEN, SolverError, run_deck
 
 FILLED = "filled.dump"
+PACKINGS = 3  # of a test, before it is given up because arches block all of them
+NEXT_PACKING = 1000  # numbers on, where no calibration has a packing of its own
+BLOCKED = "blocked_packings"  # column of a table of simulations
 
 
 def simulation_folder(test: Mapping[str, Any], root: Path) -> Path:
@@ -90,38 +95,60 @@ def boxes_of(test: Mapping[str, Any]) -> Boxes:
 
 
 def measured(test: Mapping[str, Any], folder: Path) -> Measurement:
-    """Return the measurement on a finished simulation. Raises SolverError naming the folder where there is no slope."""
+    """Return the measurement on a finished simulation.
+
+    Raises BlockedError where an arch stands over the slot, SolverError naming the folder where there is no slope.
+    """
     try:
         return MEASUREMENTS[test["kind"]](folder, boxes_of(test), time_step(test))
+    except BlockedError:
+        raise
     except (FreeSurfaceError, OutflowError) as fault:
         raise SolverError(f"{folder}: {fault}") from fault
+
+
+def flowing(test: Mapping[str, Any], root: Path, say: Callable[[str], None]) -> tuple[Measurement, Path]:
+    """Return the measurement of a test, simulated unless it was before, and its folder.
+
+    Where an arch blocks the slot those of the next packing, as in a laboratory, where the test is done again. Raises
+    SolverError when arches block PACKINGS of them.
+    """
+    for number in range(PACKINGS):
+        packing = {**test, "seed": packing_seed(test["seed"], number * NEXT_PACKING)}
+        folder = simulated(packing, root)
+        try:
+            return replace(measured(packing, folder), blocked=number), folder
+        except BlockedError as blocked:
+            fault = blocked
+            say(f"{test['kind']}: an arch blocks the slot in the packing of seed {packing['seed']}, it is kept as such")
+    raise SolverError(f"{PACKINGS} packings of one test are blocked, the last one: {fault}")
 
 
 def simulate_all(
     tests: Sequence[Mapping[str, Any]], root: Path, parallel: int, say: Callable[[str], None]
 ) -> list[Measurement]:
-    """Return the measurements of tests, up to `parallel` of them simulated at the same time."""
+    """Return the measurements of tests, up to `parallel` of them simulated at the same time. Raises SolverError."""
     root.mkdir(parents=True, exist_ok=True)
     started, done, lock = time.monotonic(), [], threading.Lock()
-    missing = [test for test in tests if state.finished_cycles(simulation_folder(test, root), inputs_digest(test)) == 0]
+    known = [state.finished_cycles(simulation_folder(test, root), inputs_digest(test)) > 0 for test in tests]
 
-    def one(test: Mapping[str, Any]) -> None:
-        simulated(test, root)
+    def one(test: Mapping[str, Any], was_known: bool) -> Measurement:
+        found, _ = flowing(test, root, say)
         with lock:
-            done.append(test)
-            passed = time.monotonic() - started
-            say(f"{test['kind']} {len(done)} of {len(missing)} simulated, {passed:.0f} s so far")
+            if not was_known:
+                done.append(test)
+                passed = time.monotonic() - started
+                say(f"{test['kind']} {len(done)} of {known.count(False)} simulated, {passed:.0f} s so far")
+        return found
 
     with ThreadPoolExecutor(max_workers=parallel) as pool:
-        list(pool.map(one, missing))
-    return [measured(test, state.cycle_folder(simulation_folder(test, root), 0)) for test in tests]
+        return list(pool.map(one, tests, known))
 
 
 def answer(measurement: Measurement) -> dict[str, float]:
-    """Return the responses of a measurement as a row: value and uncertainty of each."""
-    return dict(measurement.responses) | {
-        f"{name}_uncertainty": value for name, value in measurement.uncertainties.items()
-    }
+    """Return a measurement as a row: value and uncertainty of each response, and the packings that were blocked."""
+    uncertainties = {f"{name}_uncertainty": value for name, value in measurement.uncertainties.items()}
+    return dict(measurement.responses) | uncertainties | {BLOCKED: measurement.blocked}
 
 
 def responses_of(kinds: Sequence[str]) -> list[str]:

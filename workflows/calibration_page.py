@@ -16,6 +16,7 @@ from postproc.analysis.calibration import RECOMMENDED, information_table, interv
 from postproc.calibration.posterior import FAMILY_SHARE
 from postproc.plots.calibration import parameter_name, response_name
 from workflows import state
+from workflows.bulk_simulations import BLOCKED
 from workflows.calibration import SIMULATIONS
 from workflows.calibration_tables import Calibrated, read_calibrated
 from workflows.figures import OF_CALIBRATIONS
@@ -88,6 +89,13 @@ def sentences(done: Calibrated, statements: pd.DataFrame) -> list[str]:
         )
         said.append(f"The {pair.replace('_', ' ')} pair ({values}) gives: {told}.")
     said.append(_seed_sentence(done))
+    blocked = int(sum(table[BLOCKED].sum() for table in (done.simulations, done.repeats) if BLOCKED in table))
+    if blocked:
+        flowed = len(done.simulations) + len(done.repeats)
+        said.append(
+            f"An arch blocked the slot in {blocked} packing(s), whose test was done again with another packing;"
+            f" {flowed} tests gave an answer."
+        )
     unknown = [name for name in done.problem.measured if name not in done.known.predicted]
     if unknown:
         names = ", ".join(response_name(name) for name in unknown)

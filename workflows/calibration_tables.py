@@ -26,7 +26,7 @@ from postproc.calibration.problem import Problem
 from postproc.plots import calibration as plots
 from postproc.plots.heaps import heaps
 from postproc.plots.style import save
-from workflows.bulk_simulations import measured, simulated
+from workflows.bulk_simulations import flowing
 from workflows.bulk_tests import slot_length
 from workflows.calibration import SIMULATIONS, compared_pairs, read_posterior, repeat_seeds, test_of
 from workflows.cases.base import Parameters
@@ -112,8 +112,7 @@ def heap_pictures(done: Calibrated) -> tuple[list[dict[str, Any]], pd.DataFrame]
     values = done.pairs[RECOMMENDED]
     for experiment in done.problem.tests:
         test = test_of(done.parameters, experiment.name, values, repeat_seeds(done.parameters)[0])
-        folder = simulated(test, done.folder / SIMULATIONS)
-        found = measured(test, folder)
+        found, folder = flowing(test, done.folder / SIMULATIONS, print)
         pair = ", ".join(f"{value:.2f}" for value in values.values())
         pictures.append(
             {

@@ -36,11 +36,15 @@ class Boxes:
 
 @dataclass(frozen=True)
 class Measurement:
-    """Responses of a test, their uncertainties in the same units, and by response the slopes behind an angle."""
+    """Responses of a test, their uncertainties in the same units, and by response the slopes behind an angle.
+
+    blocked: packings of this test that an arch blocked before one flowed
+    """
 
     responses: Mapping[str, float]
     uncertainties: Mapping[str, float]
     slopes: Mapping[str, Sequence[Slope]]
+    blocked: int = 0
 
 
 def measured_shear_box(folder: Path, boxes: Boxes, time_step: float) -> Measurement:

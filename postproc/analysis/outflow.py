@@ -18,6 +18,10 @@ class OutflowError(ValueError):
     """An outflow that cannot be trusted; the message names the log and what is wrong."""
 
 
+class BlockedError(OutflowError):
+    """An arch stands over the slot: this packing tells nothing, another one may flow."""
+
+
 def outflow_curve(log: str | Path, time_step: float) -> pd.DataFrame:
     """Return time_s since the opening, mass_kg and count that have flowed out by then, and the particles still there.
 
@@ -47,10 +51,10 @@ def check_count(curve: pd.DataFrame, removed: bool, log: str | Path) -> None:
 
 
 def check_not_blocked(curve: pd.DataFrame, log: str | Path) -> None:
-    """Raise OutflowError when less than a fifth of the particles flowed out: an arch stands over the slot."""
+    """Raise BlockedError when less than a fifth of the particles flowed out: an arch stands over the slot."""
     share = curve["count"].iloc[-1] / curve["particles"].iloc[0]
     if share < LEAST_OUTFLOW:
-        raise OutflowError(
+        raise BlockedError(
             f"{log}: {share:.0%} of the particles flowed out, allowed is {LEAST_OUTFLOW:.0%} or more; an arch blocks"
             " the slot, a wider one or smaller particles let it flow."
         )

@@ -6,10 +6,17 @@ import math
 import numpy as np
 import pytest
 
-from postproc.analysis.bulk_test import HEAP
+from postproc.analysis.bulk_test import HEAP, Measurement
+from postproc.analysis.outflow import BlockedError
+from postproc.calibration.loop import packing_seed
 from postproc.wear.caps import GRAVITY
-from workflows import state
+from workflows import bulk_simulations, state
 from workflows.bulk_simulations import (
+    BLOCKED,
+    NEXT_PACKING,
+    PACKINGS,
+    answer,
+    flowing,
     inputs_digest,
     measured,
     simulate_all,
@@ -173,3 +180,39 @@ def test_a_box_without_rest_is_refused(tmp_path):
     with pytest.raises(SolverError, match=r"the filled box did not come to rest in 0.1 s \(rest.longest_s\)"):
         simulated(test, tmp_path)
     assert not state.cycle_folder(simulation_folder(test, tmp_path), 0).exists()
+
+
+@pytest.fixture
+def arches(monkeypatch, tmp_path):
+    """A solver in whose first packings an arch blocks the slot: {seed: blocked}, filled by the test."""
+    blocked = {}
+
+    def measure(test, folder):
+        if blocked.get(test["seed"], False):
+            raise BlockedError(f"{folder}: an arch blocks the slot")
+        return Measurement({"discharge_time_s": float(test["seed"])}, {}, {})
+
+    monkeypatch.setattr(bulk_simulations, "simulated", lambda test, root: root / str(test["seed"]))
+    monkeypatch.setattr(bulk_simulations, "measured", measure)
+    return blocked
+
+
+def test_a_blocked_packing_is_done_again_with_another(arches, tmp_path):
+    """As in a laboratory: the answer is that of the next packing that flows, and how many were blocked is told."""
+    test, said = asked("draw_down"), []
+    arches[test["seed"]] = True
+    found, folder = flowing(test, tmp_path, said.append)
+    used = found.responses["discharge_time_s"]
+    assert used != test["seed"] and folder.name == f"{used:.0f}"
+    assert answer(found)[BLOCKED] == 1 and "an arch blocks the slot" in said[0]
+    assert answer(simulate_all([test], tmp_path, 1, said.append)[0]) == answer(found)
+    arches.clear()
+    assert answer(flowing(test, tmp_path, said.append)[0]) == {"discharge_time_s": test["seed"], BLOCKED: 0}
+
+
+def test_a_test_whose_packings_are_all_blocked_is_refused(arches, tmp_path):
+    """A slot that arches again and again is too narrow for these particles."""
+    test = asked("draw_down")
+    arches.update({packing_seed(test["seed"], number * NEXT_PACKING): True for number in range(PACKINGS)})
+    with pytest.raises(SolverError, match=f"{PACKINGS} packings of one test are blocked"):
+        flowing(test, tmp_path, print)
