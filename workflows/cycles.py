@@ -205,7 +205,7 @@ def write_products(chain: Chain, finished: int) -> None:
 def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1, launcher: str = LAUNCHER) -> None:
     """Fill and settle a bed; leaves bed.restart and cost.csv in the folder. Raises SolverError."""
     parameters = deck.settled_bed(bed)
-    total = parameters["settling_steps"] + parameters["relaxing_steps"]
+    total = sum(parameters.get(name, 0) for name in ("settling_steps", "relaxing_steps", "packing_steps"))
     progress = Progress(name, total)
     with state.only_driver(folder, progress.say):
         write_bed(bed, folder)

@@ -16,17 +16,19 @@ from typing import Any
 import jinja2
 import jinja2.meta
 
+from postproc.readers.cycle_folders import PACKING
 from postproc.wear.caps import GRAVITY
 from postproc.wear.laws import law_kernels
-from workflows.derived import WALLS, neighbour_skin
+from workflows.derived import WALLS, WINDOW, neighbour_skin
 from workflows.schedule import Span
-from workflows.window import PACKING, window
+from workflows.window import window
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
 FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere
 FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
 RELAXING_TIME = 0.01  # s, after levelling
+PACKING_FREE_FALLS = 7.5  # -, the same for a bed that nothing moves afterwards: after 6 the last grain had tumbled down
 LOWERING_FREE_FALLS = 2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
 FILL_GAP_DIAMETERS = 0.1  # -, between poured particles and the walls, in largest diameters
 PILE_UP = 3.0  # -, the bed's height where it piles up at a sample, over its thickness; room for it is left
@@ -159,6 +161,7 @@ def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
         "seeds": primes(bed["seed"], len(particle["diameters_m"]) + 2),
         "settling_steps": settling,
         "relaxing_steps": steps(RELAXING_TIME, step),
+        **({"packing_steps": falling_steps(bed, step, PACKING_FREE_FALLS)} if bed["ends"] == WINDOW else {}),
     }
 
 
@@ -169,7 +172,8 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
     """
     derived = run["derived"]
     step = derived["time_step_s"]
-    lowering = steps(LOWERING_FREE_FALLS * math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY), step)
+    lowering = falling_steps(bed, step, LOWERING_FREE_FALLS)
+    packing = {"bed_packing_file": str(Path(bed_restart).parent / PACKING)} if bed["ends"] == WINDOW else {}
     return {
         **integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
         **_sliding(run, bed, cycle=0, steps_before=0),
@@ -177,7 +181,13 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
         "lowering_steps": lowering,
         "end_step": lowering + derived["run_in_steps"],
         **window(run, bed, -lowering, lowering + derived["run_in_steps"], PACKING),
+        **packing,
     }
+
+
+def falling_steps(bed: Mapping[str, Any], time_step: float, free_falls: float) -> int:
+    """Return the time steps (of s) in which a bed could fall so many times from its temporary floor to the true one."""
+    return steps(free_falls * math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY), time_step)
 
 
 def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, run_restart: str) -> dict[str, Any]:

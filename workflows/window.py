@@ -7,8 +7,6 @@ from typing import Any
 
 from workflows.derived import ROUNDING, WINDOW, window_lengths
 
-PACKING = "packing.dump"  # the settled bed, out of which a window takes fresh bed
-
 
 def window(
     run: Mapping[str, Any], bed: Mapping[str, Any], steps_before: int, steps: int, packing: str, look: int = 0
@@ -28,7 +26,6 @@ def window(
         "strip_length_m": strip,
         "clearance_m": clearance,
         "period_m": bed["length_m"],
-        "packing_floor_m": bed["temporary_floor_m"],
         "packing_file": packing,
         "travel_per_step_m": per_step,
         "steps_before": steps_before,

@@ -32,8 +32,8 @@ def last_snapshot(run_folder: str | Path) -> Path:
 
 
 def read_snapshot(path: str | Path) -> pd.DataFrame:
-    """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s (relative to the
-    sample), angular_speed_rad_per_s, and contacts (of each with other particles) where the solver counted them.
+    """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s and velocity_y_m_per_s (relative
+    to the sample), angular_speed_rad_per_s, and contacts (of each with other particles) where the solver counted them.
 
     Raises ValueError when the file is no dump of one frame or is cut short.
     """
@@ -55,10 +55,20 @@ def read_snapshot(path: str | Path) -> pd.DataFrame:
             **{f"{axis}_m": table[axis] for axis in "xyz"},
             "radius_m": table["radius"],
             "speed_m_per_s": np.linalg.norm(table[["vx", "vy", "vz"]], axis=1),
+            "velocity_y_m_per_s": table["vy"],
             "angular_speed_rad_per_s": np.linalg.norm(table[["omegax", "omegay", "omegaz"]], axis=1),
             **counted,
         }
     )
+
+
+def lag(particles: pd.DataFrame, start: float, end: float, velocity: float) -> float:
+    """Return how far the bed between two places along the travel (m) lags behind its floor, over the floor's velocity.
+
+    particles: as from `read_snapshot`; velocity: m/s. NaN where there are no particles.
+    """
+    there = particles["y_m"].between(start, end)
+    return float(1.0 - particles.loc[there, "velocity_y_m_per_s"].mean() / velocity)
 
 
 def behind_cut(particles: pd.DataFrame, stretch: float, most: int) -> pd.DataFrame:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -21,9 +22,10 @@ from postproc.analysis.moving_bins import (
     velocity_profile,
 )
 from postproc.analysis.steady import FEWEST_VALUES, steady_window
-from postproc.readers.cycle_folders import FLOW_TABLE, cycle_files
+from postproc.readers.cycle_folders import FLOW_TABLE, PACKING, cycle_files
 
 FIRST_SNAPSHOT = "bed_0.dump"  # of a cycle, at its step 0
+COUNT_LINE = 4  # of a dump, with the number of its particles
 INTERVAL = 0.01  # m of travel that is averaged (Yan 2022, section 3.4)
 LAYER_HEIGHT = 0.005  # m, of layers of real particles; coarse-grained ones have layers as much higher
 SIDE_SHARE = 0.25  # -, width of the side bins over the sample's: 50 mm beside 200 mm
@@ -148,6 +150,15 @@ def study_regimes(histories: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     return regime_table(velocity, surcharge).assign(steady=[values[0][1] for values in found.values()])
 
 
+def undisturbed_particles(folder: Path) -> int:
+    """Return the number of particles of a run's whole bed at rest; in a travelling window that of its packing."""
+    packing = next(iter(cycle_files(folder, PACKING)), None)
+    if packing is None:
+        return int(pd.read_csv(folder / "cost.csv")["particles"].max())
+    with open(packing, encoding="utf-8") as stream:
+        return int(next(islice(stream, COUNT_LINE - 1, None)))
+
+
 def flow_tables(
     folders: Mapping[str, Path], runs: Mapping[str, RunFlow], names: pd.DataFrame
 ) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
@@ -158,8 +169,7 @@ def flow_tables(
     bins = {run: run_bins(folder, runs[run]) for run, folder in folders.items()}
     histories = {}
     for run, folder in folders.items():
-        particles = int(pd.read_csv(folder / "cost.csv")["particles"].max())
-        histories[run] = along_travel(bins[run], runs[run], particles)
+        histories[run] = along_travel(bins[run], runs[run], undisturbed_particles(folder))
     regimes = names.merge(study_regimes(histories), on="run")
     along = pd.concat([table.assign(run=run) for run, table in histories.items()], ignore_index=True)
     along = regimes[["run", "row", "surface", "regime"]].merge(along, on="run")

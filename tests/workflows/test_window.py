@@ -12,16 +12,18 @@ from scipy.spatial import cKDTree
 from tiny import tiny_chain, tiny_study
 
 from postproc.mesh import read_surface
+from postproc.readers.cycle_folders import PACKING
 from postproc.readers.solver_log import exchanges, thermo_table
 from workflows import cycles, deck
-from workflows.cases.sliding_sample import SlidingSample, exchanged_particles
+from workflows.cases.sliding_sample import SlidingSample, exchanged_particles, front_lag
+from workflows.cases.sliding_work import builds_per_step, run_stages
 from workflows.chain import write_cycle
 from workflows.derived import window_lengths
 from workflows.ledgers import summed_by_solver
 from workflows.progress import Progress
 from workflows.schedule import first_span, known_spans
 from workflows.solver import run_deck
-from workflows.window import PACKING, exchange_steps
+from workflows.window import exchange_steps
 
 WINDOW = {
     "particle_scale": 6,
@@ -32,8 +34,10 @@ WINDOW = {
 EXCHANGE = 0.04  # m
 PICTURE_STEPS = 50  # between two snapshots of a cycle by hand
 ROUNDING = 1e-12  # m, of places that awk prints with 15 digits
+FRONT_LAG = 0.1  # -, 160 mm ahead of a small sample in a bed of two layers; seen 0.02
 PRINTED = 2e-6  # m, of places that the solver prints with six digits
-UNDISTURBED = 0.02  # m/s, of fresh bed against its floor; seen 0.002, and 6 where it enters 1 mm too low
+UNDISTURBED = 0.02  # m/s, of nine tenths of fresh bed against its floor; seen 0.005
+LOOSE = 0.5  # m/s, of the rest, a grain on top that tumbles down; seen 0.1, and 6 where the bed enters 1 mm too low
 UNDISTURBED_STEPS = 500  # since an exchange, in which the sample has not come near
 
 
@@ -102,6 +106,19 @@ def test_the_window_is_as_long_whatever_the_travel():
     assert face - studies[0].beds["bed_1"]["start_m"] == pytest.approx(clearance)
 
 
+def test_the_forecast_of_a_window_grows_with_the_travel_only():
+    """Ten times the travel: the same particles in ten times the steps. Each exchange makes a neighbour list anew."""
+    stages = []
+    for travel in (120, 1200):
+        study = window_study(sliding={"run_in_mm": 60, "travel_mm": travel, "cycles": 2})
+        parameters, bed = study.run("R9_convex").parameters, study.beds[study.bed_of("R9_convex")]
+        stages.append(run_stages(parameters, bed)[-1])
+        often = stages[-1].builds - builds_per_step(parameters) * stages[-1].steps
+        assert often == pytest.approx(travel / 1000.0 / EXCHANGE)
+    assert stages[0].particles == stages[1].particles
+    assert stages[1].steps == pytest.approx(10 * stages[0].steps, rel=1e-3)
+
+
 def test_decks_of_a_window_keep_ids_and_the_strip():
     """Contacts are found by ids, which deleting must not renumber; the strip is held after gravity acts."""
     for name, parameters in zip(("lowered_bed", "sliding_sample"), decks(window_study())[0], strict=False):
@@ -125,7 +142,7 @@ def test_other_beds_do_not_know_of_exchanges():
 class Window:
     """The deck's own selection of fresh bed, outside the solver."""
 
-    def __init__(self, folder, packing, period, floor=0.03):
+    def __init__(self, folder, packing, period):
         self.folder, self.face, self.period = folder, -0.13, period
         lines = [f"{k + 1} 1 0.01 2460 {x:.17g} {y:.17g} {z:.17g}" for k, (x, y, z) in enumerate(packing)]
         (folder / "packing.dump").write_text("\n".join([*["ITEM"] * 9, *lines]) + "\n")
@@ -135,7 +152,6 @@ class Window:
             "cycle": 1,
             "exchange_steps": [1],
             "period_m": period,
-            "packing_floor_m": floor,
             "packing_file": "packing.dump",
         }
         text = deck._environment(deck.TEMPLATES).get_template("_shared/fresh_bed.in.j2").render(words)
@@ -164,13 +180,13 @@ class Window:
 @pytest.mark.parametrize("seed", range(3))
 def test_fresh_bed_continues_the_packing_over_periods_of_travel(tmp_path, seed):
     """Exchanges at irregular travels, over two and a half periods: together they bring each particle of the packing as
-    often as it passes the face, at packing + travel less whole periods, on the floor, with new ids; nothing overlaps
+    often as it passes the face, at packing + travel less whole periods, with new ids; nothing overlaps
     that does not in the packing."""
     random = np.random.default_rng(seed)
-    period, spacing, floor = 0.3, 0.01, 0.03
+    period, spacing = 0.3, 0.01
     cells = np.stack(np.meshgrid(np.arange(3), np.arange(30), np.arange(2), indexing="ij"), axis=-1).reshape(-1, 3)
-    packing = spacing * (cells + 0.5 + random.uniform(-0.2, 0.2, cells.shape)) + (0.0, -0.15, floor)
-    window = Window(tmp_path, packing, period, floor)
+    packing = spacing * (cells + 0.5 + random.uniform(-0.2, 0.2, cells.shape)) + (0.0, -0.15, 0.0)
+    window = Window(tmp_path, packing, period)
     bed, strip_start, travel, newest = np.empty((0, 3)), window.face + 0.02, 0.0, 1000
     while travel < 2.5 * period:
         ids, fresh = window.fresh(travel, strip_start, newest)
@@ -183,7 +199,7 @@ def test_fresh_bed_continues_the_packing_over_periods_of_travel(tmp_path, seed):
     expected = np.sort(covered[(covered > unwrapped.min() - ROUNDING) & (covered < unwrapped.max() + ROUNDING)])
     np.testing.assert_allclose(np.sort(unwrapped), expected, rtol=0.0, atol=ROUNDING * 1e2)
     assert unwrapped.max() - unwrapped.min() > 2.4 * period
-    images = np.concatenate([packing + np.array([0.0, k * period, -floor]) for k in (-1, 0, 1)])
+    images = np.concatenate([packing + np.array([0.0, k * period, 0.0]) for k in (-1, 0, 1)])
     closest = cKDTree(images).query(images, k=2)[0][:, 1].min()
     assert cKDTree(bed).query(bed, k=2)[0][:, 1].min() == pytest.approx(closest, abs=ROUNDING * 1e2)
 
@@ -266,7 +282,7 @@ def test_the_held_strip_is_packing_that_travels_with_the_floor(run):
         held = (places[:, 1] > start - PRINTED) & (places[:, 1] < start + first["strip_length_m"] - PRINTED)
         np.testing.assert_array_equal(motion[held], np.tile([0.0, 1.0, 0.0, 0.0, 0.0, 0.0], (held.sum(), 1)))
         travel = (second["steps_before"] + step) * first["travel_per_step_m"]
-        expected = packing - (0.0, 0.0, first["packing_floor_m"])
+        expected = packing.copy()
         expected[:, 1] = first["face_m"] + np.mod(expected[:, 1] + travel - first["face_m"], first["period_m"])
         assert cKDTree(expected).query(places[held])[0].max() < PRINTED
         seen += held.sum()
@@ -282,9 +298,11 @@ def test_undisturbed_fresh_bed_rests_on_the_floor(run):
     for _, since, places, motion, start in snapshots(run):
         free = (places[:, 1] > start + strip) & (places[:, 1] < start + strip + EXCHANGE)
         if since < UNDISTURBED_STEPS:
-            fastest.append(np.linalg.norm(motion[free, :3] - (0.0, 1.0, 0.0), axis=1).max())
+            speeds = np.linalg.norm(motion[free, :3] - (0.0, 1.0, 0.0), axis=1)
+            fastest.append((np.quantile(speeds, 0.9), speeds.max()))
     assert len(fastest) >= 5
-    assert max(fastest) < UNDISTURBED
+    assert (np.array(fastest) < (UNDISTURBED, LOOSE)).all()
+    assert abs(front_lag(run[0].parameters, run[1])) < FRONT_LAG
 
 
 @pytest.mark.solver

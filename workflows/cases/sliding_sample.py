@@ -15,7 +15,7 @@ from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows import deck
 from workflows.cases import sliding_work
 from workflows.cases.base import SETUP_LOADS, Case, Parameters
-from workflows.derived import ADAPTIVE, PERIODIC, WALLS, WINDOW, derived_parameters, flow_measures
+from workflows.derived import ADAPTIVE, PERIODIC, WALLS, WINDOW, derived_parameters, flow_measures, window_lengths
 from workflows.geometry import sample_surface
 from workflows.pieces import piece_ends
 from workflows.run_checks import SLIDING_CHECKS
@@ -164,10 +164,11 @@ class SlidingSample(Case):
     def own_columns(self, parameters: Parameters, span: Span, folder: Path) -> dict[str, float]:
         """Return the bed's mean velocity over that of its floor (-) where friction alone takes the bed along.
 
-        In a travelling window the particles that left and entered instead, and how many of the others are missing.
+        In a travelling window the particles that left and entered instead, how many of the others are missing, and how
+        far its front lags behind the floor.
         """
         if parameters["bed"]["ends"] == WINDOW:
-            return exchanged_particles(folder)
+            return exchanged_particles(folder) | {"front_lag": front_lag(parameters, folder)}
         if parameters["bed"]["ends"] != PERIODIC:
             return {}
         pace = _thermo(folder)["bed_pace"].mean()
@@ -202,6 +203,19 @@ class SlidingSample(Case):
         from postproc.analysis.summary import summary_table
 
         return summary_table(design, wear)
+
+
+def front_lag(parameters: Parameters, folder: Path) -> float:
+    """Return how far the bed at a window's front lags behind its floor when a cycle ends, over the floor's velocity.
+
+    It is looked at just downstream of where the strip is before an exchange. Near 0 nothing there knows of the sample.
+    """
+    from postproc.analysis.bed import lag, read_snapshot, snapshots
+
+    strip, clearance = window_lengths(parameters["particle"])
+    start = parameters["derived"]["bed_start_m"] + clearance + parameters["bed"]["exchange_m"] + strip
+    bed = read_snapshot(snapshots(folder)[-1])
+    return lag(bed, start, start + strip, parameters["sliding"]["velocity_m_per_s"])
 
 
 def exchanged_particles(folder: Path) -> dict[str, int]:

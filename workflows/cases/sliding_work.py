@@ -47,13 +47,14 @@ def settled_particles(run: Parameters) -> float:
 
 
 def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
-    """Return the stages of filling a bed, of which `run` is one that starts from it: settling, then levelled."""
+    """Return the stages of filling a bed, of which `run` is one that starts from it: settling, then levelled.
+
+    In a window that travels it falls to the true floor once more.
+    """
     parameters = deck.settled_bed(bed)
     poured = run["derived"]["bed_particles"] * deck.FILL_EXCESS
-    return (
-        Stage(1, parameters["settling_steps"], poured),
-        Stage(0, parameters["relaxing_steps"], settled_particles(run)),
-    )
+    levelled = parameters["relaxing_steps"] + parameters.get("packing_steps", 0)
+    return (Stage(1, parameters["settling_steps"], poured), Stage(0, levelled, settled_particles(run)))
 
 
 def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:

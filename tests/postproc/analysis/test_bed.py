@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.analysis.bed import behind_cut, last_snapshot, read_snapshot
+from postproc.analysis.bed import behind_cut, lag, last_snapshot, read_snapshot
 
 HEADER = """ITEM: TIMESTEP
 7
@@ -34,6 +34,13 @@ def test_snapshot_is_read_in_si(tmp_path):
     assert table["angular_speed_rad_per_s"][0] == 3.0
     assert table["radius_m"].tolist() == [0.001, 0.002]
     assert table["x_m"].tolist() == [0.1, -0.1]
+
+
+def test_bed_that_lags_is_told_by_place(tmp_path):
+    """The mean of the velocity along the travel of what is between two places, over that of the floor."""
+    table = read_snapshot(write_dump(tmp_path / "bed_0.dump"))
+    assert lag(table, 0.1, 0.3, 4.0) == pytest.approx(1.0 - (0.0 + 2.0) / 2.0 / 4.0)
+    assert np.isnan(lag(table, 0.3, 0.4, 4.0))
 
 
 @pytest.mark.parametrize("rows", [ROWS[:-40], ROWS + "3 0.1 0.2\n"])

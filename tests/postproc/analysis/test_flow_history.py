@@ -17,6 +17,7 @@ from postproc.analysis.flow_history import (
     run_bins,
     settled_value,
     study_regimes,
+    undisturbed_particles,
 )
 from postproc.analysis.moving_bins import bin_history
 
@@ -125,6 +126,16 @@ def test_tables_of_a_study(tmp_path):
     np.testing.assert_allclose(plain["angular_speed_deg_per_s"], np.degrees(3.0), rtol=SIX_DIGITS)  # of (1, 2, 2) rad/s
     assert plain["height_mm"].tolist() == [2.5, 7.5]
     assert plain["window_end_mm"].unique().tolist() == pytest.approx([160.0])
+
+
+def test_the_undisturbed_bed_of_a_window_is_its_packing(tmp_path):
+    """Particles come and go in a window; how many lie on a piece of undisturbed bed follows from its packing."""
+    folder = write_run(tmp_path / "run", [1.0])
+    pd.DataFrame({"particles": [2 * len(LATTICE)]}).to_csv(folder / "cost.csv", index=False)
+    assert undisturbed_particles(folder) == 2 * len(LATTICE)
+    (folder / "cycle_000").mkdir()
+    write_snapshot(folder / "cycle_000" / "packing.dump", 0, 0.0)
+    assert undisturbed_particles(folder) == len(LATTICE)
 
 
 def test_few_values_are_not_called_steady():
