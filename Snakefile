@@ -1,5 +1,4 @@
-"""Contents page: a study's name makes its report, <study>_decks renders its decks without running the solver,
-<study>_forecast tells what it will cost.
+"""Contents page: <study> makes a study's report, <study>_decks its decks without the solver, <study>_forecast its cost.
 
     snakemake                       the demo
     snakemake screening --config fidelity=standard
@@ -16,6 +15,7 @@ include: "workflows/solve.smk"
 include: "workflows/analyse.smk"
 include: "workflows/report.smk"
 include: "workflows/screening.smk"
+include: "workflows/particle_size.smk"
 include: "workflows/pin_on_disc.smk"
 include: "workflows/calibration.smk"
 include: "workflows/submissions.smk"

@@ -41,6 +41,7 @@ SECONDS_PER_HOUR = 3600.0
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
 FEWEST_RUNS = 4  # of a regression, see postproc/analysis/screening.py, which is slow to import
+PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
 ROWS = "rows"  # key of the settings
 DESIGN = "design"  # key of a study, and of its fidelity blocks
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
@@ -193,7 +194,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         factors=factors if _can_tell(factors, rows) else {},
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
         materials=materials,
-        finds_regimes=bool(factors or confirms),
+        finds_regimes=bool(factors or confirms or any(PARTICLE_SCALE in row.values for row in rows)),
         confirms=confirms,
     )
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from workflows.derived import flow_measures
-from workflows.design import REPOSITORY, Study
+from workflows.design import PARTICLE_SCALE, REPOSITORY, Study
 from workflows.page_text import name_and_unit
 from workflows.pages import PAGES
 from workflows.remarks import figure_remarks
@@ -73,6 +73,13 @@ FLOW = (  # of studies that name factors or confirm one that does
     "flow_views",
     SECOND_ROW,
 )
+PARTICLE_SIZE = (  # of studies whose rows differ in their particle scale
+    "wear_against_scale",
+    "wear_against_size_ratios",
+    "collisions",
+    "packing_profiles",
+    "bed_packing",
+)
 CONFIRMING = ("confirmation",)  # of studies that simulate another one's best designs
 PROFILES = ("velocity_profiles", "angular_velocity_profiles")  # of them, drawn by one job
 REGRESSION = (  # of studies that name factors
@@ -103,6 +110,7 @@ def _figures_of_samples(study: Study) -> list[str]:
     several_shown = FLOW if len(study.design_rows) > 1 else [name for name in FLOW if name != SECOND_ROW]
     names = [
         *(CONFIRMING if study.confirms else ()),
+        *(PARTICLE_SIZE if varies_scale(study) else ()),
         *(COMPARING_ROWS if several else ()),
         *(several_shown if study.finds_regimes else ()),
         *(REGRESSION if study.factors else ()),
@@ -155,6 +163,11 @@ def finding_tables(study: Study) -> list[str]:
     names = ["findings/findings", "findings/runs"] if has_findings(study) else []
     names += ["confirmation/prediction", "confirmation/design"] if study.factors else []
     return [f"results/{study.name}/{name}.csv" for name in names]
+
+
+def varies_scale(study: Study) -> bool:
+    """Return whether a study is one of particle size: its rows give their particle scale."""
+    return any(PARTICLE_SCALE in row for row in study.design_rows)
 
 
 def is_deformed(study: Study) -> bool:
@@ -260,6 +273,26 @@ def replicate_settings(study: Study) -> dict[str, str]:
         for stem, rows in zip(stems, groups.values(), strict=True)
     ]
     return {row: name for name, rows in zip(names, groups.values(), strict=True) for row in rows}
+
+
+def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
+    """Return by row pattern, real particles and scale of its convex run, see `postproc.analysis.guidance`."""
+    return {run.row: _bumps_and_particles(run.parameters) for run in study.runs if run.parameters["pattern"]}
+
+
+def _bumps_and_particles(parameters: dict[str, Any]) -> dict[str, Any]:
+    pattern, particle = parameters["pattern"], parameters["particle"]
+    lengths = ("major_radius", "minor_radius", "height", "column_spacing", "row_spacing")
+    return {
+        "pattern": {name: pattern[f"{name}_m"] for name in lengths}
+        | {"across": pattern["major_axis"] == "across_travel"},
+        "particles": {
+            "median_diameter": particle["median_diameter_m"] / particle["scale"],
+            "diameters": [diameter / particle["scale"] for diameter in particle["diameters_m"]],
+            "mass_fractions": particle["mass_fractions"],
+        },
+        "scale": particle["scale"],
+    }
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:

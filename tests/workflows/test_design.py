@@ -19,6 +19,7 @@ from workflows.derived import (
     youngs_modulus,
 )
 from workflows.design import list_studies, load_study, to_si
+from workflows.pages.sliding_sample import BEYOND_BUMPS
 from workflows.remarks import figure_remarks
 
 ROUNDING = 1e-12  # relative; a few floating-point operations
@@ -502,17 +503,16 @@ def test_particles_scaled_beyond_their_bumps_are_said_on_every_figure(config):
     """R9's alpha_ER reaches 1 at scale 2.74 and R5's at 3.46: above, the rows are said with their scales."""
     thin = {"bed": {"allow_thin_bed": True}}
     fine, one, both = (load_study("small", config.root, {"particle_scale": scale, **thin}) for scale in (2.7, 3, 3.5))
-    words = "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17): "
-    assert not any(remark.startswith(words) for remark in figure_remarks(fine))
-    assert f"{words}R9 (at scale 3 of at most 2.7)" in figure_remarks(one)
-    assert f"{words}R9 (at scale 3.5 of at most 2.7), R5 (at scale 3.5 of at most 3.5)" in figure_remarks(both)
+    assert not any(remark.startswith(BEYOND_BUMPS) for remark in figure_remarks(fine))
+    assert f"{BEYOND_BUMPS}: R9 (3, 2.7)" in figure_remarks(one)
+    assert f"{BEYOND_BUMPS}: R9 (3.5, 2.7), R5 (3.5, 3.5)" in figure_remarks(both)
 
 
 def test_bumps_smaller_than_real_particles_are_no_matter_of_scale(config):
     """Where already real particles are larger than the bumps, the study simulates what it means to."""
     config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "R9,1.5,1.5,20,1.0,1.0,40")
     study = load_study("small", config.root)
-    assert not any("beyond the size of the bumps" in remark for remark in figure_remarks(study))
+    assert not any(remark.startswith(BEYOND_BUMPS) for remark in figure_remarks(study))
 
 
 def test_a_thin_bed_is_said_on_every_figure(config):

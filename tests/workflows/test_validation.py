@@ -91,7 +91,7 @@ BAD_KEYS = [
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
         " allowed are particle_scale, rows, materials, ledger, wear, remeshing, solver, sample, pattern, bed, sliding,"
-        " design.",
+        " packing, design.",
     ),
     (
         OWN_SETTINGS,
@@ -477,7 +477,7 @@ BAD_COMBINATIONS = [
     (
         {"title": "x"},
         "command line: title ('x') is no known key, allowed are fidelity, particle_scale, rows, materials, ledger,"
-        " wear, remeshing, solver, sample, pattern, bed, sliding.",
+        " wear, remeshing, solver, sample, pattern, bed, sliding, packing.",
     ),
 ]
 

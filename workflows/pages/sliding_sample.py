@@ -29,6 +29,9 @@ ALONG = {  # bed.ends -> what it makes of the packing along the travel
     PERIODIC: " and along it, so that it passes the sample again and again",
     WINDOW: " and along it: the same packing comes again, undisturbed, after each length of the window",
 }
+BEYOND_BUMPS = (
+    "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17), row with scale and limit"
+)
 REDUCED = (
     ("bed", "width_mm", "bed width"),
     ("bed", "ahead_mm", "bed ahead of the sample"),
@@ -65,8 +68,8 @@ def remarks(study: Study) -> list[str]:
         rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
         said.append(f"fewer than three layers of particles in the bed: {rows}")
     if larger := _beyond_bumps(study):
-        rows = ", ".join(f"{row} (at scale {scale:.3g} of at most {most:.2g})" for row, (scale, most) in larger.items())
-        said.append(f"particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17): {rows}")
+        rows = ", ".join(f"{row} ({scale:.3g}, {most:.2g})" for row, (scale, most) in larger.items())
+        said.append(f"{BEYOND_BUMPS}: {rows}")
     hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
     if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
         said.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")

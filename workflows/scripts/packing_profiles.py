@@ -1,0 +1,19 @@
+"""Fill and shake a container per particle scale, and draw how its particles are packed."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from postproc.plots.packing import packing_profiles
+from postproc.plots.style import save
+from workflows.job import job_log
+from workflows.packings import packing_table
+
+with job_log(snakemake.log[0]):
+    packing = snakemake.params.packing
+    table = packing_table(snakemake.params.runs, packing, Path(snakemake.output.table).parents[1] / "packings")
+    published = pd.read_csv(snakemake.input.published).query("case == 'container'")
+    sides = f"container of {packing['width_diameters']:g} median diameters to a side"
+    remarks = [sides, f"shaken along {packing['axis']} for {packing['shaking_s']:g} s"]
+    save(packing_profiles(table, published, remarks), snakemake.output.figure)
+    table.to_csv(snakemake.output.table, index=False)
