@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,7 +32,7 @@ from postproc.analysis.scan_comparison import (
 from postproc.mesh import SurfaceMesh, read_surface
 from postproc.plots import scan as plots
 from postproc.plots.style import save
-from postproc.readers.point_cloud import METRES, point_blocks, random_points
+from postproc.readers.point_cloud import METRES, inside_box, point_blocks, random_points
 from workflows.progress import Progress
 
 REGISTERED_POINTS = 200_000  # of the scan, at random, that are laid on the surface
@@ -77,6 +77,12 @@ def labelled_surface(path: Path) -> SurfaceMesh:
     return mesh
 
 
+def scanned(given: argparse.Namespace) -> Iterator[np.ndarray]:
+    """Yield the points of the scan, in m, those in the box where one is given."""
+    blocks = point_blocks(given.scan, given.unit)
+    return blocks if given.box is None else inside_box(blocks, METRES[given.unit] * np.reshape(given.box, (3, 2)))
+
+
 def compare(given: argparse.Namespace, pristine: SurfaceMesh, worn: dict[str, SurfaceMesh]) -> Compared:
     """Lay the scan on the pristine surface and compare it with all surfaces."""
     metres = METRES[given.unit]
@@ -84,12 +90,11 @@ def compare(given: argparse.Namespace, pristine: SurfaceMesh, worn: dict[str, Su
     accuracy = given.accuracy / MILLIMETRES
     say = Progress("scan", 1).say
     say(f"reading {given.scan}")
-    points, total = random_points(point_blocks(given.scan, given.unit), REGISTERED_POINTS)
+    points, total = random_points(scanned(given), REGISTERED_POINTS)
     registration = register(points, pristine, accuracy, given.decided_by, edge, say)
     progress = Progress("scan", total)
     motion, crop = registration.motion, given.crop / MILLIMETRES
-    blocks = point_blocks(given.scan, given.unit)
-    scan = thinned_scan(blocks, motion, pristine, crop, lambda done: progress.update(done, "measuring"))
+    scan = thinned_scan(scanned(given), motion, pristine, crop, lambda done: progress.update(done, "measuring"))
     say(f"{scan.on_sample} of {scan.total} points are the sample's, {len(scan.points)} of them are compared")
     cells = depth_cells(scan.points, pristine, worn)
     sections = bump_sections(scan.points, pristine, worn, accuracy)
@@ -169,6 +174,13 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
         metavar=("X", "Y", "Z"),
         help="a scanned point, in the scan's axes and unit, near the middle of the edge that meets the bed first; "
         "needed where the pristine sample looks the same after a turn",
+    )
+    add(
+        "--box",
+        nargs=6,
+        type=float,
+        metavar=("XMIN", "XMAX", "YMIN", "YMAX", "ZMIN", "ZMAX"),
+        help="only what lies in this box, in the scan's axes and unit; where more is beside the sample than on it",
     )
     add(
         "--crop",

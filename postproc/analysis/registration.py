@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from postproc.analysis.rigid_motion import IDENTITY, RigidMotion, largest_distance, turned_about
-from postproc.analysis.scan_start import plane_equations, plane_step, rough_positions
+from postproc.analysis.scan_start import plane_equations, plane_step, rough_positions, truncated_misfit
 from postproc.mesh import SurfaceMesh, unit_normals
 from postproc.wear.remesh_patch import OldSurface
 from postproc.wear.update import worn_faces
@@ -26,9 +26,10 @@ GATE_SPREADS = 6.0  # -, spreads of the distances that the gate is wide
 TUKEY = 4.685  # -, spreads from which on a point weighs nothing: 95 % efficient for normal noise
 MEDIAN_TO_SPREAD = 1.4826  # -, of the median distance, for normal noise
 LARGEST_STEPS = 60
-STILL = 1e-8  # m, that a step moves the sample at most at the end
+STILL = 1e-7  # m, that a step moves the sample at most at the end
 ROUGH_POINTS, ROUGH_STEPS, ROUGHLY_STILL = 2000, 20, 1e-6  # -, -, m
-TRIED = 4  # rough positions that are looked at closely
+TRIED = 6  # rough positions that are looked at closely
+CLEAR = 1e-3  # m, how much a point that does not fit counts in choosing between rough positions
 WORST_SPREAD = 1.5e-3  # m, of the distances of all points, beyond which the scan is of something else
 SYMMETRIC, MOST = 0.1e-3, 0.95  # m, distance from itself of that share of a surface after a symmetry: meshes differ
 CELL = 5e-3  # m, within which a scanner's errors are taken as one error, so that more points do not help
@@ -74,7 +75,7 @@ def register(
     tell("looking for the sample in the scan")
     some = scan[:: max(len(scan) // ROUGH_POINTS, 1)]
     fits = [_rough_fit(some, surface, motion) for motion in rough_positions(scan, mesh)[:TRIED]]
-    spread, motion = min(fits, key=lambda each: each[0])
+    _, spread, motion = min(fits, key=lambda each: each[0])
     if spread > WORST_SPREAD:
         raise ValueError(
             f"the scan does not fit the surface: half of its points stay {1e3 * spread / MEDIAN_TO_SPREAD:.2g} mm or "
@@ -120,8 +121,8 @@ def _weights(distance: np.ndarray, spread: float) -> np.ndarray:
     return (1.0 - share**2) ** 2
 
 
-def _rough_fit(scan: np.ndarray, surface: OldSurface, motion: RigidMotion) -> tuple[float, RigidMotion]:
-    """Move a position closer by all faces; return the spread (m) of the distances of all points, and it."""
+def _rough_fit(scan: np.ndarray, surface: OldSurface, motion: RigidMotion) -> tuple[float, float, RigidMotion]:
+    """Move a position closer by all faces; return misfit (m2) and spread (m) of the distances of all points, and it."""
     normals = unit_normals(surface.points, surface.triangles)
     for _ in range(ROUGH_STEPS):
         placed = motion(scan)
@@ -131,7 +132,7 @@ def _rough_fit(scan: np.ndarray, surface: OldSurface, motion: RigidMotion) -> tu
         motion = step.after(motion)
         if largest_distance(step, IDENTITY, placed[weight > 0.0]) < ROUGHLY_STILL:
             break
-    return _spread(distance), motion
+    return truncated_misfit(distance, CLEAR), _spread(distance), motion
 
 
 def symmetries(mesh: SurfaceMesh, surface: OldSurface) -> list[RigidMotion]:

@@ -2,7 +2,7 @@
 
 A worn sample is flat and wide: the plane that most points lie near gives its normal up to the sign. All angles about
 it, both signs and shifts within the plane are tried on a few points, the best ones are moved closer, and those that end
-at different places are returned, best first. Outliers and holes are trimmed: only the nearer part of the points counts.
+at different places are returned, best first. Outliers and holes are trimmed: the nearer part of the points moves it.
 """
 
 from __future__ import annotations
@@ -20,12 +20,13 @@ PLANE_POINTS = 1500  # by which they are judged
 TRIAL_POINTS = 200  # of the scan, by which positions are judged before they are moved
 STEP_POINTS = 500  # of the scan, by which positions are moved
 ANGLES = 36  # about the normal, 10 degrees apart
-SHIFTS = 5  # along each axis of the plane
+SHIFTS = 7  # along each axis of the plane
 SHIFT = 0.075  # -, of the surface's extent, between two shifts: less than half a bump's spacing on small samples
-MOVED = 40  # positions that are moved closer
+MOVED = 60  # positions that are moved closer
 FEWEST = 6  # points that a step takes, as many as it has unknowns
 STEPS = 30  # of moving closer, at most
 STILL = 0.05  # -, of the misfit: a smaller gain in five steps ends the moving
+CLEAR = 0.02  # -, of the extent: how much a point that does not fit counts in judging a position
 FAR = 0.1  # -, of the extent: points farther away are all alike, and quickly told
 NEARER = 0.75  # -, of the points count: up to a quarter may be outliers
 APART = np.radians(4.0)  # positions that differ by less and by less than SHIFT are one
@@ -127,7 +128,7 @@ def _nearest(tree: cKDTree, placed: np.ndarray, far: float) -> tuple[np.ndarray,
 def _closer(
     motion: RigidMotion, scan: np.ndarray, tree: cKDTree, normals: np.ndarray, far: float
 ) -> tuple[float, RigidMotion]:
-    """Move a position closer, point to plane, by the nearer part of the points; return its misfit (m) and it."""
+    """Move a position closer, point to plane, by the nearer part of the points; return its misfit (m2) and it."""
     misfits = []
     for _ in range(STEPS):
         placed = motion(scan)
@@ -140,7 +141,15 @@ def _closer(
             break
         step = plane_step(placed[used], tree.data[nearest[used]], normals[nearest[used]], np.ones(used.sum()))
         motion = step.after(motion)
-    return misfits[-1], motion
+    return truncated_misfit(distance, CLEAR / FAR * far), motion
+
+
+def truncated_misfit(distance: np.ndarray, clear: float) -> float:
+    """Return the mean square (m2) of distances (k,) m that count as `clear` (m) at most.
+
+    It tells a position one row of bumps beside the right one, where the median of the distances is as small.
+    """
+    return float(np.mean(np.minimum(np.abs(distance), clear) ** 2))
 
 
 def plane_step(placed: np.ndarray, nearest: np.ndarray, normal: np.ndarray, weight: np.ndarray) -> RigidMotion:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
 
@@ -60,7 +60,23 @@ def point_blocks(path: str | os.PathLike, unit: str = "mm") -> Iterator[np.ndarr
         raise ValueError(f"{path}: the scan has no points, allowed is one or more")
 
 
-def random_points(blocks: Iterator[np.ndarray], count: int, seed: int = 0) -> tuple[np.ndarray, int]:
+def inside_box(blocks: Iterable[np.ndarray], box: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield of blocks (k, 3) m the points within a box (3, 2) m, from and to along each axis of the scan.
+
+    Raises ValueError when a side of the box has no length, and at the end when there was no point within.
+    """
+    if not (box[:, 0] < box[:, 1]).all():
+        raise ValueError(f"the box round the sample must have from < to on each axis, found {box.tolist()} m")
+    found = False
+    for block in blocks:
+        kept = block[((block >= box[:, 0]) & (block <= box[:, 1])).all(axis=1)]
+        found = found or len(kept) > 0
+        yield kept
+    if not found:
+        raise ValueError("no scanned point lies in the box round the sample, allowed is one or more")
+
+
+def random_points(blocks: Iterable[np.ndarray], count: int, seed: int = 0) -> tuple[np.ndarray, int]:
     """Return up to `count` points (k, 3) m of a scan, every one with the same chance, and how many there are."""
     generator = np.random.default_rng(seed)
     points, keys, total = np.empty((0, 3)), np.empty(0), 0

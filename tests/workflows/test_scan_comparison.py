@@ -12,6 +12,7 @@ from tests.postproc import scanned_sample as sample
 from workflows.scan_comparison import main, named_surfaces
 
 POSITION = 20e-6  # m
+BOX = ["--box", "-2000", "2000", "-2000", "2000", "-2000", "2000"]  # mm, all of the scan
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +39,7 @@ def test_from_file_to_figures(files, tmp_path, capsys):
         "--output",
         tmp_path / "out",
     ]
-    assert main([str(word) for word in words] + ["--bumps", "C11", "C22", "--leading-edge", *edge]) == 0
+    assert main([str(word) for word in words] + ["--bumps", "C11", "C22", "--leading-edge", *edge, *BOX]) == 0
     found = json.loads((tmp_path / "out" / "registration.json").read_text())
     motion = RigidMotion(np.array(found["rotation"]), np.array(found["translation_m"]))
     assert largest_distance(motion.after(sample.any_motion(4)), IDENTITY, sample.pristine_sample().points) < POSITION
@@ -63,6 +64,7 @@ def test_from_file_to_figures(files, tmp_path, capsys):
         ("scan.xyz", "bare.vtu", [], "has no label part"),
         ("scan.xyz", "pristine.vtu", ["worn.vtu", "worn.vtu"], "a name that is taken"),
         ("scan.xyz", "pristine.vtu", ["--unit", "m"], "check the unit"),
+        ("scan.xyz", "pristine.vtu", ["--box", "0", "1", "0", "1", "1", "0"], "from < to"),
     ],
 )
 def test_faults_are_one_sentence(files, tmp_path, capsys, scan, pristine, more, words):

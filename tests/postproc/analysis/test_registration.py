@@ -26,12 +26,12 @@ def corners(mesh):
     )
 
 
-@pytest.mark.parametrize(("seed", "pattern"), [(1, sample.PATTERN), (2, sample.PATTERN), (3, None)])
+@pytest.mark.parametrize(("seed", "pattern"), [(1, sample.PATTERN), (3, None)])
 def test_known_motion_is_recovered(seed, pattern):
     """Worn by up to 0.3 mm, with noise, a hole and outliers, turned anyhow: found to 0.02 mm, the right way round."""
     mesh = sample.pristine_sample(pattern)
     motion = sample.any_motion(seed)
-    scan = sample.scan_of(sample.worn_sample(mesh), motion, seed=seed)
+    scan = sample.scan_of(sample.worn_sample(mesh), motion, 30_000, seed=seed)
     found = register(scan, mesh, sample.NOISE, leading_edge=sample.leading_edge(motion))
     assert largest_distance(found.motion.after(motion), IDENTITY, corners(mesh)) < POSITION
     assert found.uncertainty < POSITION
@@ -39,9 +39,19 @@ def test_known_motion_is_recovered(seed, pattern):
     assert found.symmetric == (2 if pattern else 4)
 
 
+def test_half_a_sample_is_enough(pristine):
+    """One half is missing, bumps and holder: no row of bumps beside, and within the stated uncertainty."""
+    motion = sample.any_motion(6)
+    scan = sample.scan_of(sample.worn_sample(pristine), IDENTITY, 20_000, seed=6)
+    scan = motion(scan[scan[:, 0] < 0.0])
+    found = register(scan, pristine, sample.NOISE, leading_edge=sample.leading_edge(motion))
+    assert largest_distance(found.motion.after(motion), IDENTITY, corners(pristine)) < found.uncertainty
+    assert found.uncertainty > 2.0 * POSITION
+
+
 def test_without_a_leading_edge_a_symmetric_sample_is_refused(pristine):
     """Half a turn looks the same: nothing is guessed."""
-    scan = sample.scan_of(sample.worn_sample(pristine), sample.any_motion(1))
+    scan = sample.scan_of(sample.worn_sample(pristine), sample.any_motion(1), 5000)
     with pytest.raises(ValueError, match="looks the same in 2 positions"):
         register(scan, pristine, sample.NOISE)
 
@@ -67,7 +77,7 @@ def test_a_surface_without_holder_is_refused(pristine):
 
 def test_a_scan_in_a_wrong_unit_is_refused(pristine):
     """Read in inches it fits nowhere: said, not forced."""
-    scan = sample.scan_of(pristine, sample.any_motion(1)) * 25.4
+    scan = sample.scan_of(pristine, sample.any_motion(1), 5000) * 25.4
     with pytest.raises(ValueError, match="check the unit"):
         register(scan, pristine, sample.NOISE, leading_edge=scan[0])
 

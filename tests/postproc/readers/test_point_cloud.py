@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from postproc.readers import point_cloud
-from postproc.readers.point_cloud import point_blocks, random_points
+from postproc.readers.point_cloud import inside_box, point_blocks, random_points
 
 POINTS = np.array([[1.5, -2.0, 3.25], [0.0, 4.0, -1.0], [7.0, 8.0, 9.0], [-1.0, 0.5, 0.25]])  # mm, exact in float32
 
@@ -124,3 +124,13 @@ def test_random_points_are_a_fair_choice():
     counts = np.histogram(chosen[:, 0], 10, (0.0, 30_000.0))[0]
     assert np.abs(counts - 300).max() < 5 * np.sqrt(300)
     assert len(random_points(iter([points]), 50_000)[0]) == 30_000
+
+
+def test_a_box_cuts_out_the_sample():
+    box = np.array([[0.0, 2.0], [-3.0, 5.0], [-2.0, 4.0]])
+    kept = np.concatenate(list(inside_box(iter([POINTS[:2], POINTS[2:]]), box)))
+    assert kept.tolist() == POINTS[:2].tolist()
+    with pytest.raises(ValueError, match="no scanned point"):
+        list(inside_box(iter([POINTS]), box + 100.0))
+    with pytest.raises(ValueError, match="from < to"):
+        list(inside_box(iter([POINTS]), box[:, ::-1]))
