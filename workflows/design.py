@@ -3,12 +3,11 @@
     default.yaml <- case <- study <- fidelity block <- command line   settings, in the units that their keys spell
     settings x design row x surface -> Run.parameters                 SI, JSON-able
 
-This is the only module that converts units. Configuration faults raise ConfigError, one sentence each.
+Configuration faults raise ConfigError, one sentence each.
 """
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +17,7 @@ from typing import Any
 from workflows.cases import CASES, DEFAULT_CASE
 from workflows.config_files import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
 from workflows.run_checks import CheckedRun, check_run
+from workflows.units import to_si
 from workflows.validation import (
     case_schema,
     check_alternatives,
@@ -35,9 +35,8 @@ from workflows.validation import (
     without_required,
 )
 
-__all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study", "to_si"]
+__all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 
-SECONDS_PER_HOUR = 3600.0
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
 FEWEST_RUNS = 4  # of a regression, see postproc/analysis/screening.py, which is slow to import
@@ -389,28 +388,3 @@ def with_row(settings: dict[str, Any], row: Layer, columns: dict[str, str]) -> d
             value = {key: value}
         settings = merge(settings, value)
     return settings
-
-
-# ---------------------------------------------------------------- units
-
-
-def to_si(values: Any) -> Any:
-    """Return values in SI, with keys that say so: width_mm -> width_m, skirt_slope_deg -> skirt_slope_rad.
-
-    Every other unit of the schemas (N, Pa, 1/Pa, kg/m3, m/s, steps) is SI already.
-    """
-    if not isinstance(values, dict):
-        return values
-    converted = {}
-    for key, value in values.items():
-        if key.endswith("_mm"):
-            converted[f"{key.removesuffix('_mm')}_m"] = value / 1000.0
-        elif key.endswith("_deg"):
-            converted[f"{key.removesuffix('_deg')}_rad"] = math.radians(value)
-        elif key.endswith("_h"):
-            converted[f"{key.removesuffix('_h')}_s"] = value * SECONDS_PER_HOUR
-        elif key.endswith("_deg_per_s"):
-            converted[f"{key.removesuffix('_deg_per_s')}_rad_per_s"] = math.radians(value)
-        else:
-            converted[key] = to_si(value)
-    return converted

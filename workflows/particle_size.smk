@@ -1,6 +1,6 @@
 """Figures of studies of particle size: wear against scale, packings, and single contacts at every scale."""
 
-from workflows.design import to_si
+from workflows.units import to_si
 from workflows.figures import bumps_and_particles
 
 PUBLISHED_LINES = f"{PUBLISHED_TABLES}/particle_size_lines.csv"

@@ -18,9 +18,10 @@ from workflows.derived import (
     whole_steps,
     youngs_modulus,
 )
-from workflows.design import list_studies, load_study, to_si
+from workflows.design import list_studies, load_study
 from workflows.pages.sliding_sample import BEYOND_BUMPS
 from workflows.remarks import figure_remarks
+from workflows.units import to_si
 
 ROUNDING = 1e-12  # relative; a few floating-point operations
 DIGITS_GIVEN = 1e-6  # relative; numbers worked out by hand to seven digits

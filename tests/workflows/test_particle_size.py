@@ -6,7 +6,7 @@ import pytest
 from postproc.analysis.guidance import Particles, Pattern, guidance
 from workflows.bulk_tests import deck_text
 from workflows.collision_tests import collision
-from workflows.design import ConfigError, load_study, to_si
+from workflows.design import ConfigError, load_study
 from workflows.figures import PARTICLE_SIZE, bumps_and_particles, figures_of, page_parameters
 from workflows.packings import (
     AT_REST_BEHIND,
@@ -19,6 +19,7 @@ from workflows.packings import (
     pieces,
 )
 from workflows.page_text import number, setting_rows
+from workflows.units import to_si
 
 ROUNDING = 1e-9  # relative
 ROWS = {"quick": [4, 6, 8], "standard": [2, 3, 4, 6, 8], "paper": [1, 2, 3, 4, 5, 6, 7, 8]}
