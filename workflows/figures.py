@@ -76,6 +76,7 @@ FLOW = (  # of studies that name factors or confirm one that does
 PARTICLE_SIZE = (  # of studies whose rows differ in their particle scale
     "wear_against_scale",
     "wear_against_size_ratios",
+    "velocity_by_layer",
     "collisions",
     "packing_profiles",
     "bed_packing",

@@ -69,6 +69,30 @@ rule wear_against_size_ratios:
         "scripts/wear_against_size_ratios.py"
 
 
+rule velocity_by_layer:
+    input:
+        summary="results/{study}/summary.csv",
+        profiles="results/{study}/flow/profiles.csv",
+    output:
+        figure=report(
+            "results/{study}/figures/velocity_by_layer.png",
+            caption="report/velocity_by_layer.rst",
+            category="Particle size",
+            labels={"figure": "Velocity by layer and particle scale"},
+        ),
+        table="results/{study}/figures/velocity_by_layer.csv",
+    log:
+        "results/{study}/logs/velocity_by_layer.log",
+    benchmark:
+        "results/{study}/logs/velocity_by_layer.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Velocity by layer and particle scale of {wildcards.study}"
+    script:
+        "scripts/velocity_by_layer.py"
+
+
 rule collisions:
     output:
         figure=report(
