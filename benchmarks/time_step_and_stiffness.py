@@ -30,6 +30,7 @@ from workflows.chain import Chain
 from workflows.cycles import fill_bed, run_chain
 from workflows.derived import derived_parameters
 from workflows.design import Run, load_study
+from workflows.results_page import bullet, prose
 from workflows.screening_design import FIRST_SEED, SEED_STEP
 from workflows.solver import SolverError
 
@@ -63,6 +64,7 @@ FRACTIONS = (
 MODULI = {**dict.fromkeys((2.5e6, 7.0e6, 2.0e7, 7.0e7, 2.8e8), FRACTION), 2.8e9: 0.4, 3.1e10: 0.4}
 MINUTES = 60.0  # of processor time
 MOST_PACKINGS = 12
+PERCENT = 100.0
 LIMIT = 0.02  # -, change of wear that matters
 SOURCE_STEP = 5e-6  # s (Yan 2022, section 3.4)
 
@@ -135,7 +137,7 @@ def row_of(variant: Variant, folder: Path) -> dict[str, float]:
         "rayleigh_fraction": variant.fraction,
         "shear_modulus_pa": variant.modulus,
         "time_step_s": derived["time_step_s"],
-        "particles": derived["bed_particles"],
+        "particles": pd.read_csv(chain.bed_restart.with_name("cost.csv"))["particles"].iloc[0],
         "travel_m": chain.parameters["sliding"]["travel_m"],
     }
     if failed.exists():
@@ -190,7 +192,7 @@ def setting(table: pd.DataFrame) -> str:
     """Return in one phrase what was simulated."""
     bed, sample, first = CASE["bed"], CASE["sample"], table.iloc[0]
     return (
-        f"{first['particles']:.0f} particles of {CASE['particle_scale']:g} times the real size, four layers, in a"
+        f"some {first['particles']:.0f} particles of {CASE['particle_scale']:g} times the real size, four layers, in a"
         f" channel {bed['width_mm']} mm wide that is closed on itself; plain sample of {sample['width_mm']} mm by"
         f" {sample['length_mm']} mm, {first['travel_m']:g} m of travel at {VELOCITY:g} m/s per run,"
         f" {table['seed'].nunique()} packings"
@@ -208,7 +210,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
     remarks = [
         f"reduced scale: {setting(table)}",
         "bars: 95 % intervals from the scatter of packings, of the ratio to the smallest time step and to the stiffest"
-        f" particle; grey: {LIMIT:.0%}",
+        f" particle; grey: up to {PERCENT * LIMIT:g} %",
         f"made by benchmarks/time_step_and_stiffness.py, {date.today():%Y-%m-%d}",
     ]
     save(deviation_figure(panels, "sliding work", LIMIT, remarks), path)
@@ -218,34 +220,26 @@ def page(table: pd.DataFrame) -> str:
     """Return the page of the answers (Markdown)."""
     found = answers(table)
     steps, moduli = found["rayleigh_fraction"], found["shear_modulus_pa"]
-    step = steps.set_index("value")["time_step_s"][FRACTION]
-    scatter = max(steps["scatter"].max(), moduli["scatter"].max())
+    rolling, phrase = load_study(STUDY, overrides=CASE).settings["solver"]["rolling_friction"], setting(table)
     columns = "packings | sliding work (J/m) | change (%) | 95 % interval | verdict | processor time of a run (s) |"
     return "\n".join(
         [
             "# Time step and softness of the particles",
             "",
-            "Written by `python -m benchmarks.time_step_and_stiffness`; runs in"
-            " [time_step_and_stiffness.csv](time_step_and_stiffness.csv).",
+            prose(
+                "Written by `python -m benchmarks.time_step_and_stiffness`, every run in"
+                " [time_step_and_stiffness.csv](time_step_and_stiffness.csv)."
+            ),
             "",
-            f"How far can each go before wear changes by {LIMIT:.0%}? By chance alone a run is"
-            f" {scatter:.1%} (standard deviation) off what its packing, its"
-            " time step and its modulus let expect.",
-            "",
-            f"* Time step: against {steps['value'][0]:g} of the Rayleigh time of the smallest particle, wear is within"
-            f" {LIMIT:.0%}, its 95 % interval included, up to {within(steps):g}; {beyond(steps)}. Default:"
-            f" `solver.rayleigh_fraction: {FRACTION:g}`, which is {step:.2g} s here; the source's {SOURCE_STEP:g} s are"
-            f" {source_fraction():.2g} at its particle size.",
-            f"* Shear modulus: against {moduli['value'][0]:.2g} Pa, wear is within {LIMIT:.0%} down to"
-            f" {within(moduli):.2g} Pa; {beyond(moduli)}. Default: {MODULUS:.2g} Pa, that of the source, whose wear is"
-            f" {moduli.set_index('value')['change'][MODULUS]:+.1%} off.",
+            *conclusions(steps, moduli),
             "",
             "![Change of the sliding work with the time step and with the modulus](time_step_and_stiffness.png)",
             "",
-            f"{setting(table)[:1].upper()}{setting(table)[1:]}. Rolling friction is"
-            f" `{load_study(STUDY, overrides=CASE).settings['solver']['rolling_friction']}`. All runs of a"
-            " packing start from one bed, which was filled with time step and modulus of the studies. What is compared"
-            " is the sliding work on the sample, to which Archard's wear is proportional.",
+            prose(
+                f"{phrase[:1].upper()}{phrase[1:]}. Rolling friction is `{rolling}`. All runs of a packing start from"
+                " one bed, which was filled with time step and modulus of the studies. What is compared is the sliding"
+                " work on the sample, to which Archard's wear is proportional."
+            ),
             "",
             f"| time step over Rayleigh time (-) | time step (s) | {columns}",
             "|---|---|---|---|---|---|---|---|",
@@ -259,10 +253,35 @@ def page(table: pd.DataFrame) -> str:
     )
 
 
+def conclusions(steps: pd.DataFrame, moduli: pd.DataFrame) -> list[str]:
+    """Return how far each choice can go, and the defaults beside it."""
+    scatter, limit = max(steps["scatter"].max(), moduli["scatter"].max()), f"{PERCENT * LIMIT:g} %"
+    step = steps.set_index("value")["time_step_s"][FRACTION]
+    softened = PERCENT * moduli.set_index("value")["change"][MODULUS]
+    off = "" if moduli["value"][0] == MODULUS else f", whose wear is {softened:+.1f} % off"
+    return [
+        prose(
+            f"How far can each go before wear changes by {limit}? By chance alone a run is {PERCENT * scatter:.1f} %"
+            " (standard deviation) off what its packing, its time step and its modulus let expect."
+        ),
+        "",
+        bullet(
+            f"Time step: against {steps['value'][0]:g} of the Rayleigh time of the smallest particle, wear is within"
+            f" {limit}, its 95 % interval included, up to {within(steps):g}; {beyond(steps)}. Default:"
+            f" `solver.rayleigh_fraction: {FRACTION:g}`, here {step:.2g} s; the source's {SOURCE_STEP:g} s are"
+            f" {source_fraction():.2g} of that time at its particle size."
+        ),
+        bullet(
+            f"Shear modulus: against {moduli['value'][0]:.2g} Pa, wear is within {limit} down to"
+            f" {within(moduli):.2g} Pa; {beyond(moduli)}. Default: {MODULUS:.2g} Pa, that of the source{off}."
+        ),
+    ]
+
+
 def cells(row: NamedTuple) -> str:
     """Return what both tables of the page say of a value."""
-    interval = f"{100 * row.change_low:+.1f} to {100 * row.change_high:+.1f}"
-    return f"{row.runs} | {row.mean:.4g} | {100 * row.change:+.1f} | {interval} | {row.verdict} | {row.processor_s:.0f}"
+    change, low, high = (f"{PERCENT * value:+.1f}" for value in (row.change, row.change_low, row.change_high))
+    return f"{row.runs} | {row.mean:.4g} | {change} | {low} to {high} | {row.verdict} | {row.processor_s:.0f}"
 
 
 def within(found: pd.DataFrame) -> float:
