@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -191,8 +192,13 @@ def _size_row(name: str, parameters: Parameters, angles: Sequence[float]) -> dic
 
 
 def read_posterior(
-    parameters: Parameters, measured: Path, simulations: Path
+    parameters: Parameters, measured: Path, simulations: Path, repeats: Path
 ) -> tuple[Problem, pd.DataFrame, Posterior]:
-    """Return the calibration, its simulations and the posterior that they lead to, from a finished table."""
+    """Return the calibration, its simulations and the posterior of all of them, from finished tables.
+
+    The recommended pair is the one that the calibration found and repeated; its repeats then tell as much as any other
+    simulation, above all how far packings scatter.
+    """
     problem, table = problem_of(parameters, measured), pd.read_csv(simulations)
-    return problem, table, posterior(problem, table)
+    everything = pd.concat([table, pd.read_csv(repeats)], ignore_index=True)
+    return problem, table, replace(posterior(problem, everything), chosen=posterior(problem, table).recommended)

@@ -66,7 +66,9 @@ class Calibrated:
 
 def read_calibrated(parameters: Parameters, measured_file: Path, pairs_file: Path, folder: Path) -> Calibrated:
     """Return a finished calibration from simulations.csv and repeats.csv in the study's folder."""
-    problem, table, known = read_posterior(parameters, measured_file, folder / "simulations.csv")
+    problem, table, known = read_posterior(
+        parameters, measured_file, folder / "simulations.csv", folder / "repeats.csv"
+    )
     published = pd.read_csv(pairs_file)
     pairs = compared_pairs(problem, known, parameters, published)
     repeats = pd.read_csv(folder / "repeats.csv")

@@ -46,17 +46,21 @@ Simulate = Callable[[Sequence[Request]], Sequence[Mapping[str, float]]]  # {resp
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """Points of the unit cube (n, p), their weights (n,), and the predictions of every response there."""
+    """Points of the unit cube (n, p), their weights (n,), and the predictions of every response there.
+
+    chosen: the point that was recommended before more simulations came in, None: what this posterior recommends
+    """
 
     points: np.ndarray
     weights: np.ndarray
     predicted: Mapping[str, tuple[np.ndarray, np.ndarray]]
     surrogates: Mapping[str, Surrogate]
+    chosen: int | None = None
 
     @property
     def recommended(self) -> int:
         """Which of the points is recommended."""
-        return recommended(self.points, self.weights)
+        return recommended(self.points, self.weights) if self.chosen is None else self.chosen
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,7 +39,9 @@ def test_hidden_friction_is_found_by_the_solver(tmp_path):
     simulations, _, repeats = run_calibration(run, tmp_path / "measured.csv", pairs, tmp_path, WORKERS)
     assert len(simulations) + len(repeats) <= MOST_SIMULATIONS
     simulations.to_csv(tmp_path / "simulations.csv", index=False)
-    problem, _, known = read_posterior(run, tmp_path / "measured.csv", tmp_path / "simulations.csv")
+    problem, _, known = read_posterior(
+        run, tmp_path / "measured.csv", tmp_path / "simulations.csv", tmp_path / "repeats.csv"
+    )
     values = problem.from_unit(known.points)
     nearest = int(np.argmin(np.linalg.norm(values - np.array(list(HIDDEN.values())), axis=1)))
     assert densest(known.weights, STATED_SHARE)[nearest]

@@ -12,7 +12,7 @@ import yaml
 
 from postproc.analysis.bulk_test import RESPONSES
 from postproc.analysis.calibration import RECOMMENDED
-from postproc.calibration.loop import packing_seed
+from postproc.calibration.loop import packing_seed, posterior
 from workflows import calibration
 from workflows.bulk_simulations import Measurement
 from workflows.calibration import (
@@ -137,11 +137,16 @@ def test_the_recommended_pair_gives_what_was_measured(done):
 
 def test_a_finished_calibration_reads_back_the_same(done):
     """The posterior of the table on disk is that of the run: pairs repeated are those recommended after reading."""
-    problem, _, known = read_posterior(study().runs[0].parameters, MEASURED, done.folder / "simulations.csv")
+    files = (done.folder / "simulations.csv", done.folder / "repeats.csv")
+    problem, table, known = read_posterior(study().runs[0].parameters, MEASURED, *files)
     again = compared_pairs(problem, known, study().runs[0].parameters, pd.read_csv(PAIRS))
     assert again[RECOMMENDED] == pytest.approx(
         dict(done.repeats[done.repeats["pair"] == RECOMMENDED][[SLIDING, ROLLING]].iloc[0])
     )
+    alone = posterior(problem, table)
+    assert known.recommended == alone.recommended
+    name, index = "shear_angle_deg", known.recommended
+    assert known.predicted[name][1][index] < alone.predicted[name][1][index]  # its repeats make it surer
 
 
 def test_box_sizes_are_all_simulated(formula, tmp_path):
