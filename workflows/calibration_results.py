@@ -65,7 +65,8 @@ def provenance(done: Calibrated, study: Study) -> str:
 
 
 def sections(done: Calibrated) -> list[str]:
-    """Return the sections of the page, each with its picture if it has one."""
+    """Return the sections of the page, each with its picture if it has one; checked pairs only where there are some."""
+    checked = [("Pairs in tests that the calibration did not use", checked_text, "")]
     parts = [
         ("The family and the recommended pair", family_text, "family"),
         ("Against what was measured", statements_text, "pairs_against_bands"),
@@ -73,7 +74,7 @@ def sections(done: Calibrated) -> list[str]:
         ("At the pairs that Yan 2022 simulated", published_text, ""),
         ("Scatter between packings", scatter_text, "calibration_progress"),
         ("Size and width of the box", sizes_text, "box_sizes"),
-        ("Recommended pair in the draw-down test", checked_text, ""),
+        *(checked if (done.folder / CHECKED).is_file() else []),
         ("The heap of the recommended pair", lambda done: "", "heaps"),
         ("Cost", cost_text, ""),
     ]
@@ -143,8 +144,6 @@ def sizes_text(done: Calibrated) -> str:
 
 def checked_text(done: Calibrated) -> str:
     """Return pairs simulated in tests that the calibration did not use, beside the measured bands."""
-    if not (done.folder / CHECKED).is_file():
-        return "Not simulated.\n"
     rows = pd.read_csv(done.folder / CHECKED)
     names = [name for name in done.problem.measured if name in rows]
     same = [*(name for name in MARKS if name not in ("pair", "seed")), *done.problem.names]

@@ -59,6 +59,11 @@ class Calibrated:
         return statement_table(self.problem, self.known, self.repeat_means, self.pairs)
 
     @property
+    def everything(self) -> pd.DataFrame:
+        """All simulations of the calibration, those of the pairs that were repeated too."""
+        return pd.concat([self.simulations, self.repeats], ignore_index=True)
+
+    @property
     def compared(self) -> str:
         """Name of the pair that the recommended one is compared with."""
         return self.parameters["calibration"]["compared_pair"]
@@ -90,7 +95,7 @@ def draw_all(
         "heaps": (heaps(pictures, remarks), slopes),
         "response_maps": (
             plots.response_maps(
-                grid, done.simulations, done.problem.measured, done.published, done.problem.names, remarks
+                grid, done.everything, done.problem.measured, done.published, done.problem.names, remarks
             ),
             grid,
         ),

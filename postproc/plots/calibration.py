@@ -98,11 +98,14 @@ def _draw_map(
     name: str,
     pair: list[str],
 ) -> None:
-    """Draw the surrogate's mean as filled contours, and simulated values on the same colours."""
+    """Draw the surrogate's mean as filled contours, and simulated values on the same colours.
+
+    Colours reach as far as our values; published ones stand beside their marks, because some lie far outside.
+    """
     points = {
         marker: table[table[name].notna()] for marker, table in (("o", simulations), ("D", _with(published, name)))
     }
-    values = np.concatenate([grid[name], *(table[name] for table in points.values())])
+    values = np.concatenate([grid[name], points["o"][name]])
     levels = np.linspace(values.min(), values.max(), 15)
     x, y, z = _as_grid(grid, pair, name)
     filled = axes.contourf(x, y, z, levels=levels, cmap=MAP)
@@ -121,6 +124,20 @@ def _draw_map(
             s=28,
             zorder=3,
         )
+    for _, row in points["D"].iterrows():
+        place = np.clip([row[column] for column in pair], [x.min(), y.min()], [x.max(), y.max()])
+        right = place[0] > (x.min() + x.max()) / 2.0
+        value = axes.annotate(
+            f"{row[name]:.3g}",
+            place,
+            (-4 if right else 4, 4),
+            textcoords="offset points",
+            ha="right" if right else "left",
+            fontsize=6,
+            color=OTHERS,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6},
+        )
+        value.set_in_layout(False)
     figure.colorbar(filled, ax=axes, format="%.3g")
 
 
@@ -205,7 +222,7 @@ def _pair_label(name: str, values: Mapping[str, float]) -> str:
 def pairs_against_bands(statements: pd.DataFrame, published: pd.Series, remarks: Sequence[str]) -> Figure:
     """Draw the responses of every pair beside the measured bands; published: of the compared pair, as printed."""
     responses = list(dict.fromkeys(statements["response"]))
-    figure = new_figure(remarks, 3.6)
+    figure = new_figure(remarks, 3.6 if len(responses) < 3 else LARGEST_HEIGHT)
     for name, axes in facets(figure, responses).items():
         part = statements[statements["response"] == name]
         low = part["measured"].iloc[0] - BAND * part["measured_deviation"].iloc[0]
@@ -236,7 +253,7 @@ def pairs_against_bands(statements: pd.DataFrame, published: pd.Series, remarks:
             )
         axes.set_xticks(range(len(part)), [pair.replace("_", " ") for pair in part["pair"]])
         axes.set_xlim(-0.6, len(part) - 0.4)
-        axes.set_ylabel(response_name(name))
+        axes.set_title(response_name(name), loc="left", fontsize=SMALLEST_FONT)
     _explain_bands(figure)
     return figure
 
