@@ -38,10 +38,10 @@ def test_hidden_friction_is_found_by_the_solver(tmp_path):
     pairs = PUBLISHED / "gravel_pairs.csv"
     simulations, _, repeats = run_calibration(run, tmp_path / "measured.csv", pairs, tmp_path, WORKERS)
     assert len(simulations) + len(repeats) <= MOST_SIMULATIONS
-    simulations.to_csv(tmp_path / "simulations.csv", index=False)
-    problem, _, known = read_posterior(
-        run, tmp_path / "measured.csv", tmp_path / "simulations.csv", tmp_path / "repeats.csv"
-    )
+    for name, table in (("simulations", simulations), ("repeats", repeats)):
+        table.to_csv(tmp_path / f"{name}.csv", index=False)
+    files = (tmp_path / f"{name}.csv" for name in ("measured", "simulations", "repeats"))
+    problem, _, known = read_posterior(run, *files)
     values = problem.from_unit(known.points)
     nearest = int(np.argmin(np.linalg.norm(values - np.array(list(HIDDEN.values())), axis=1)))
     assert densest(known.weights, STATED_SHARE)[nearest]
