@@ -10,6 +10,7 @@ from snakemake.utils import min_version
 from workflows.cases import CASES
 from workflows.deck import template_sources
 from workflows.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
+from workflows.figures import plain_runs
 from workflows.job import let_jobs_import
 from workflows.rates import rates_file
 from workflows.solver import CYCLE_EXECUTABLES, LAUNCHER, missing_program
@@ -122,6 +123,12 @@ def bed_restart_of_run(folder):
         return [f"results/{wildcards.study}/{folder}/{bed}/bed.restart"] if bed else []
 
     return paths
+
+
+def restarts_of_plain_beds(wildcards):
+    """The restart files of the beds of a study's plain runs, in the order of the runs."""
+    study = study_of(wildcards)
+    return [f"results/{study.name}/beds/{study.bed_of(name)}/bed.restart" for name in plain_runs(study)]
 
 
 def same_run(wildcards):

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from workflows.derived import flow_measures
-from workflows.design import PARTICLE_SCALE, REPOSITORY, Study
+from workflows.design import PARTICLE_SCALE, REPOSITORY, Run, Study
 from workflows.page_text import name_and_unit
 from workflows.pages import PAGES
 from workflows.remarks import figure_remarks
@@ -169,6 +169,11 @@ def finding_tables(study: Study) -> list[str]:
 def varies_scale(study: Study) -> bool:
     """Return whether a study is one of particle size: its rows give their particle scale."""
     return any(PARTICLE_SCALE in row for row in study.design_rows)
+
+
+def plain_runs(study: Study) -> dict[str, Run]:
+    """Return the plain runs of a study, by name."""
+    return {run.name: run for run in study.runs if run.surface == "plain"}
 
 
 def is_deformed(study: Study) -> bool:

@@ -1,20 +1,9 @@
 """Figures of studies of particle size: wear against scale, packings, and single contacts at every scale."""
 
+from workflows.figures import bumps_and_particles, plain_runs
 from workflows.units import to_si
-from workflows.figures import bumps_and_particles
 
 PUBLISHED_LINES = f"{PUBLISHED_TABLES}/particle_size_lines.csv"
-
-
-def plain_runs(study):
-    """The plain runs of a study, by name."""
-    return {run.name: run for run in study.runs if run.surface == "plain"}
-
-
-def restarts_of_beds(wildcards):
-    """The restart files of the beds of a study's plain runs, in the order of the runs."""
-    study = study_of(wildcards)
-    return [f"results/{study.name}/beds/{study.bed_of(name)}/bed.restart" for name in plain_runs(study)]
 
 
 rule wear_against_scale:
@@ -146,7 +135,7 @@ rule bed_packing:
         wear=lambda wildcards: [
             f"results/{wildcards.study}/{name}/wear.csv" for name in plain_runs(study_of(wildcards))
         ],
-        beds=restarts_of_beds,
+        beds=restarts_of_plain_beds,
         published=f"{PUBLISHED_TABLES}/packing.csv",
     output:
         figure=report(
