@@ -5,7 +5,6 @@ python -m workflows.calibration_results [results/calibration] [docs] [--fidelity
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +25,7 @@ from workflows.cases.calibration import PUBLISHED
 from workflows.checked_pairs import CHECKED, MARKS
 from workflows.design import Study, load_study
 from workflows.remarks import figure_remarks
-from workflows.results_page import bullet, copy_pictures, markdown, picture, prose, simulated_between
+from workflows.results_page import bullet, copy_pictures, markdown, picture, prose, simulated_between, study_arguments
 from workflows.study_report import commit
 
 STUDY, PAGE, TABLE = "calibration", "calibration_results.md", "calibration_simulations.csv"
@@ -70,7 +69,7 @@ def sections(done: Calibrated) -> list[str]:
     parts = [
         ("The family and the recommended pair", family_text, "family"),
         ("Against what was measured", statements_text, "pairs_against_bands"),
-        ("Shear angle over both frictions", simulations_text, "response_maps"),
+        ("Responses over both frictions", simulations_text, "response_maps"),
         ("At the pairs that Yan 2022 simulated", published_text, ""),
         ("Scatter between packings", scatter_text, "calibration_progress"),
         ("Size and width of the box", sizes_text, "box_sizes"),
@@ -162,11 +161,7 @@ def cost_text(done: Calibrated) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, nargs="?", default=Path("results/calibration"))
-    parser.add_argument("docs", type=Path, nargs="?", default=Path("docs"))
-    parser.add_argument("--fidelity", default="quick")
-    given = parser.parse_args()
+    given = study_arguments(__doc__, "results/calibration")
     write_results(given.folder, given.docs, load_study(given.folder.name, overrides={"fidelity": given.fidelity}))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import textwrap
 from collections.abc import Iterable, Sequence
@@ -61,3 +62,12 @@ def copy_pictures(figures: Path, docs: Path, study: str, names: Sequence[str]) -
     for name in names:
         if (figures / f"{name}.png").is_file():
             shutil.copyfile(figures / f"{name}.png", docs / picture_file(study, name))
+
+
+def study_arguments(description: str, folder: str) -> argparse.Namespace:
+    """Return folder, docs and fidelity from the command line of a command that writes a page of results."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, nargs="?", default=Path(folder), help="of the study that was run")
+    parser.add_argument("docs", type=Path, nargs="?", default=Path("docs"), help="where the page is written")
+    parser.add_argument("--fidelity", default="quick", help="at which it was run")
+    return parser.parse_args()

@@ -7,7 +7,6 @@ The page has the rows of the study's design.csv, so of a study that was run with
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -21,7 +20,16 @@ from workflows.design import Study, load_study
 from workflows.figures import page_parameters
 from workflows.pages.sliding_numbers import TEXTS, read_with_texts
 from workflows.remarks import figure_remarks
-from workflows.results_page import bullet, copy_pictures, markdown, picture, prose, simulated_between, solver_words
+from workflows.results_page import (
+    bullet,
+    copy_pictures,
+    markdown,
+    picture,
+    prose,
+    simulated_between,
+    solver_words,
+    study_arguments,
+)
 from workflows.study_report import commit, cost_totals, jobs_of
 
 PICTURES = ("relative_wear", "relative_velocity", "wear_gradient", "flow_views", "regression_contours", "confirmation")
@@ -156,11 +164,7 @@ def durations(folder: Path, page: Mapping[str, Any]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, nargs="?", default=Path("results/screening"))
-    parser.add_argument("docs", type=Path, nargs="?", default=Path("docs"))
-    parser.add_argument("--fidelity", default="quick")
-    given = parser.parse_args()
+    given = study_arguments(__doc__, "results/screening")
     rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
     study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows})
     write_results(given.folder, given.docs, study)

@@ -8,12 +8,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from postproc.analysis.display import MILLIMETRES, in_display_units
 from postproc.analysis.flow_views import ACROSS, AXES, BOTTOM, SIDE
+from postproc.plots.spheres import draw_circles
 from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure
 
 TOP_SHARE = 0.98  # of the particles lie inside the colours
@@ -63,20 +64,7 @@ def _limits(tables: Sequence[pd.DataFrame]) -> np.ndarray:
 
 def _draw(axes: Axes, table: pd.DataFrame, lines: np.ndarray, norm: Normalize) -> None:
     places = table[["horizontal_mm", "vertical_mm"]].to_numpy()
-    size = 2.0 * table["radius_mm"].to_numpy()
-    circles = EllipseCollection(
-        size,
-        size,
-        np.zeros(len(size)),
-        units="xy",
-        offsets=places,
-        offset_transform=axes.transData,
-        array=table["angular_speed_deg_per_s"].to_numpy(),
-        cmap=MAP,
-        norm=norm,
-        linewidths=0.0,
-    )
-    axes.add_collection(circles)
+    draw_circles(axes, places, table["radius_mm"].to_numpy(), table["angular_speed_deg_per_s"].to_numpy(), norm, MAP)
     axes.add_collection(LineCollection(lines, colors="black", linewidths=1.0))
     axes.set_aspect("equal")
     axes.grid(False)

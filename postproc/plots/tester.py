@@ -9,7 +9,6 @@ import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
@@ -19,6 +18,7 @@ from postproc.analysis.pin_series import published_value
 from postproc.analysis.tester_distribution import share_of_bumps
 from postproc.analysis.tester_flow import STEADINESS
 from postproc.plots.pin import named_once
+from postproc.plots.spheres import draw_circles
 from postproc.plots.style import (
     BASE_COLOUR,
     BUMP_COLOUR,
@@ -275,20 +275,8 @@ def relative_motion(
     for axes, surface in zip(grid, surfaces, strict=True):
         of_surface = particles[particles["surface"] == surface]
         places = MILLIMETRES * of_surface[["x_m", "y_m"]].to_numpy()
-        size = 2.0 * MILLIMETRES * of_surface["radius_m"].to_numpy()
-        circles = EllipseCollection(
-            size,
-            size,
-            np.zeros(len(size)),
-            units="xy",
-            offsets=places,
-            offset_transform=axes.transData,
-            array=of_surface[quantity].to_numpy(),
-            cmap=MAP,
-            norm=norm,
-            linewidths=0.0,
-        )
-        axes.add_collection(circles)
+        radii = MILLIMETRES * of_surface["radius_m"].to_numpy()
+        draw_circles(axes, places, radii, of_surface[quantity].to_numpy(), norm, MAP)
         if quantity == "relative_speed":
             arrows = of_surface[["vx_m_per_s", "vy_m_per_s"]].to_numpy()
             axes.quiver(*places.T, *arrows.T, color="white", width=0.003, pivot="mid")

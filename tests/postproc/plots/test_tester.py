@@ -35,8 +35,8 @@ def predicted(fits):
     return predictions(fits, scale, [56.0, 184.0])
 
 
-def check(figure, path, words=()):
-    """It is drawn, has its remarks, and says the words somewhere."""
+def missing_words(figure, path, words=()):
+    """Return which words a figure does not say anywhere; it is drawn and has its remarks."""
     save(figure, path)
     assert path.stat().st_size > SMALLEST_PICTURE
     assert remarks_of(figure) == REMARKS[0]
@@ -48,13 +48,12 @@ def check(figure, path, words=()):
         for table in axes.tables
         for cell in table.get_celld().values()
     ]
-    for word in words:
-        assert any(word in each for each in said), word
+    return [word for word in words if not any(word in each for each in said)]
 
 
 def test_volume_by_revolution(fits, tmp_path):
     figure = tester_volume.volume_by_revolution(study.volumes(), fits, study.PUBLISHED_FITS, REMARKS)
-    check(figure, tmp_path / "a.png", ["convex, particle scale 3", "Eq 6.5", "47.12", "0.75 ±"])
+    assert missing_words(figure, tmp_path / "a.png", ["convex, particle scale 3", "Eq 6.5", "47.12", "0.75 ±"]) == []
 
 
 def test_element_increments(tmp_path):
@@ -63,14 +62,14 @@ def test_element_increments(tmp_path):
         {"particle_scale": [3.0], "rate_crossing": [rate_crossing(*terms)], "crossing": [crossing(*terms)]}
     )
     figure = tester_volume.element_increments(element_increments(study.volumes()), crossings, study.PUBLISHED, REMARKS)
-    check(figure, tmp_path / "a.png", ["from revolution 20,\nhas lost more from 40", "Fig 6.12"])
+    assert missing_words(figure, tmp_path / "a.png", ["from revolution 20,\nhas lost more from 40", "Fig 6.12"]) == []
     never = pd.DataFrame({"particle_scale": [1.0], "rate_crossing": [np.inf], "crossing": [np.inf]})
     assert tester_volume.crossing_words(next(never.itertuples())) == "scale 1: convex never wears faster"
 
 
 def test_benchmark(predicted, tmp_path):
     figure = tester_volume.benchmark(predicted, study.PUBLISHED, study.PUBLISHED_FITS, REMARKS)
-    check(figure, tmp_path / "a.png", ["plain, ours", "convex, thesis' model"])
+    assert missing_words(figure, tmp_path / "a.png", ["plain, ours", "convex, thesis' model"]) == []
     heights = [bar.get_height() for bar in figure.axes[0].patches]
     assert any(np.isclose(heights, 145.2)) and any(np.isclose(heights, 2 * 73.64))
 
@@ -80,30 +79,35 @@ def test_volume_by_hours(fits, predicted, tmp_path):
     figure = tester_volume.volume_by_hours(
         fits[fits["particle_scale"] == 3.0], 56.0 * 75.0 / 145.2, table, study.PUBLISHED, REMARKS
     )
-    check(figure, tmp_path / "a.png", ["plain, measured", "240.3", "swaps"])
+    assert missing_words(figure, tmp_path / "a.png", ["plain, measured", "240.3", "swaps"]) == []
 
 
 def test_steadiness(tmp_path):
     series = study.series()
     means, steady = revolution_means(series, STEADINESS), steady_revolutions(series)
     figure = tester.steadiness(means, steady, study.PUBLISHED, REMARKS)
-    check(figure, tmp_path / "a.png", ["steady from", "Yan 2022"])
+    assert missing_words(figure, tmp_path / "a.png", ["steady from", "Yan 2022"]) == []
 
 
 @pytest.mark.parametrize("measure", tester.MEASURES)
 def test_by_revolution(tmp_path, measure):
     figure = tester.by_revolution(revolution_means(study.series(), [measure]), measure, study.PUBLISHED, REMARKS)
-    check(figure, tmp_path / "a.png", ["plain, Yan 2022", "convex"])
+    assert missing_words(figure, tmp_path / "a.png", ["plain, Yan 2022", "convex"]) == []
 
 
 def test_by_column(tmp_path):
     table = pd.DataFrame({"run": np.repeat(["convex", "plain"], 5), "column": [1, 2, 3, 4, 5] * 2})
     table["base_mm3"], table["bumps_mm3"] = 44.0, [56.0] * 5 + [0.0] * 5
     figure = tester.by_column(table, "mm3", "Worn volume (mm³)", study.PUBLISHED, REMARKS)
-    check(figure, tmp_path / "a.png", ["bumps 56 % (Yan 2022: 56 %)", "base"])
+    assert missing_words(figure, tmp_path / "a.png", ["bumps 56 % (Yan 2022: 56 %)", "base"]) == []
     forces = table.rename(columns={"base_mm3": "base_N", "bumps_mm3": "bumps_N"}).assign(deviation_N=5.0)
-    check(
-        tester.by_column(forces, "N", "Normal force (N)", study.PUBLISHED, REMARKS), tmp_path / "b.png", ["over 65 %"]
+    assert (
+        missing_words(
+            tester.by_column(forces, "N", "Normal force (N)", study.PUBLISHED, REMARKS),
+            tmp_path / "b.png",
+            ["over 65 %"],
+        )
+        == []
     )
 
 
@@ -111,14 +115,22 @@ def test_by_bump(tmp_path):
     names = [f"C{row}{number}" for row in range(1, 6) for number in range(1, 6 - (row + 1) % 2)]
     rows = [int(name[1]) for name in names]
     table = pd.DataFrame({"bump": names, "row": rows, "volume_mm3": np.linspace(7.0, 30.0, len(names))})
-    check(tester.by_bump(table, study.PUBLISHED, "after 17 revolutions", REMARKS), tmp_path / "a.png", ["after 17"])
+    assert (
+        missing_words(
+            tester.by_bump(table, study.PUBLISHED, "after 17 revolutions", REMARKS), tmp_path / "a.png", ["after 17"]
+        )
+        == []
+    )
 
 
 def test_mesh_size(tmp_path):
     table = pd.DataFrame({"surface": np.repeat(["plain", "convex"], 3), "element_size_mm": [0.1, 0.5, 1.0] * 2})
     table["relative_percent"] = [100.0, 99.0, 98.0, 56.0, 57.0, 58.0]
     table["mean_percent"], table["deviation_percent"] = [99.0] * 3 + [57.0] * 3, 1.0
-    check(tester.mesh_size(table, study.PUBLISHED, REMARKS), tmp_path / "a.png", ["97.9 ± 1.8", "99 ± 1 %"])
+    assert (
+        missing_words(tester.mesh_size(table, study.PUBLISHED, REMARKS), tmp_path / "a.png", ["97.9 ± 1.8", "99 ± 1 %"])
+        == []
+    )
 
 
 def test_worn_contours(tmp_path):
@@ -130,7 +142,7 @@ def test_worn_contours(tmp_path):
         for name, height in (("pristine", 6.0), ("8", 5.5), ("17", 5.0))
     ]
     figure = tester.worn_contours(pd.concat(parts), "revolution", REMARKS)
-    check(figure, tmp_path / "a.png", ["C11, side", "17"])
+    assert missing_words(figure, tmp_path / "a.png", ["C11, side", "17"]) == []
 
 
 @pytest.mark.parametrize("quantity", ["relative_speed", "relative_angular_speed"])
@@ -145,5 +157,5 @@ def test_relative_motion(tmp_path, quantity):
     figure = tester.relative_motion(
         relative_motion(particles), quantity, "Over the plain mean (-)", {"plain": edge, "convex": edge}, REMARKS
     )
-    check(figure, tmp_path / "a.png", ["plain"])
+    assert missing_words(figure, tmp_path / "a.png", ["plain"]) == []
     assert [axes.get_title(loc="left") for axes in figure.axes[:2]] == ["plain", "convex"]
