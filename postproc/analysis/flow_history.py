@@ -14,15 +14,17 @@ from postproc.analysis.bed import snapshots
 from postproc.analysis.display import MILLIMETRES, in_display_units
 from postproc.analysis.evaluation import regime_table
 from postproc.analysis.moving_bins import (
+    BinSums,
     MovingBins,
-    bin_history,
+    add_dumps,
     joined,
     relative_velocity_history,
     surcharge_history,
     velocity_profile,
 )
+from postproc.analysis.spin import Segments, SpinSums, mean_spin
 from postproc.analysis.steady import FEWEST_VALUES, steady_window
-from postproc.readers.cycle_folders import FLOW_TABLE, PACKING, cycle_files
+from postproc.readers.cycle_folders import FLOW_TABLE, PACKING, SPIN_TABLE, cycle_files
 
 FIRST_SNAPSHOT = "bed_0.dump"  # of a cycle, at its step 0
 COUNT_LINE = 4  # of a dump, with the number of its particles
@@ -56,12 +58,27 @@ class RunFlow:
     @property
     def definition(self) -> dict[str, float]:
         """Return what tells bins of this run from others; stored with them."""
-        return {**asdict(self.bins), "interval": INTERVAL, "travel_per_step": self.velocity * self.time_step}
+        return {**asdict(self.bins), **self._intervals}
+
+    @property
+    def segments(self) -> Segments:
+        """Return the pieces of the lowest layer along the sample."""
+        return Segments(self.width, self.length, LAYER_HEIGHT * self.particle_scale)
+
+    @property
+    def spin_definition(self) -> dict[str, float]:
+        """Return what tells the pieces along the sample from others; stored with them."""
+        return {**asdict(self.segments), **self._intervals}
+
+    @property
+    def _intervals(self) -> dict[str, float]:
+        return {"interval": INTERVAL, "travel_per_step": self.velocity * self.time_step}
 
 
 def reduce_snapshots(cycle_folder: str | Path, run: RunFlow, start: float) -> list[Path]:
     """Write the bins of a wear cycle from its snapshots and return those of no use from then on, all but the last.
 
+    Beside the bins the angular speed along the sample (`spin.SpinSums`); both from one reading.
     start: m, travel at step 0 of the cycle; the snapshot of that step is the last one of the cycle before, and left
     out. Disk is then bounded by a snapshot and bins times intervals per cycle.
     Raises FileNotFoundError when there is no snapshot, and the errors of `moving_bins.bin_history`.
@@ -69,9 +86,13 @@ def reduce_snapshots(cycle_folder: str | Path, run: RunFlow, start: float) -> li
     dumps = [path for path in snapshots(cycle_folder) if path.name != FIRST_SNAPSHOT]
     if not dumps:
         raise FileNotFoundError(f"{cycle_folder}: no bed_*.dump found, at least one is needed to know the flow.")
-    bins = bin_history(((path, start) for path in dumps), run.bins, run.velocity * run.time_step, INTERVAL)
-    bins.attrs = run.definition
-    bins.to_parquet(Path(cycle_folder) / FLOW_TABLE, index=False)
+    travel_per_step = run.velocity * run.time_step
+    bins, spins = BinSums(run.bins, travel_per_step, INTERVAL), SpinSums(run.segments, travel_per_step, INTERVAL)
+    add_dumps(((path, start) for path in dumps), [bins, spins])
+    for sums, name, definition in ((bins, FLOW_TABLE, run.definition), (spins, SPIN_TABLE, run.spin_definition)):
+        table = sums.table()
+        table.attrs = definition
+        table.to_parquet(Path(cycle_folder) / name, index=False)
     return dumps[:-1]
 
 
@@ -80,18 +101,38 @@ def run_bins(folder: str | Path, run: RunFlow) -> pd.DataFrame:
 
     Raises FileNotFoundError when no cycle was, ValueError for one whose bins are not those of `run`.
     """
+    return joined(_cycle_tables(folder, FLOW_TABLE, run.definition))
+
+
+def _cycle_tables(folder: str | Path, name: str, definition: Mapping[str, float]) -> list[pd.DataFrame]:
+    """Return the tables of that name of a run's wear cycles; errors as of `run_bins`."""
     tables = []
-    for path in cycle_files(folder, FLOW_TABLE):
+    for path in cycle_files(folder, name):
         table = pd.read_parquet(path)
-        if table.attrs != run.definition:
+        if table.attrs != definition:
             raise ValueError(
-                f"{path}: its bins are not those asked for now, allowed are bins of {run.definition}; remove it"
+                f"{path}: its bins are not those asked for now, allowed are bins of {definition}; remove it"
                 " and the run's wear.csv, and its cycles from this one on are simulated again."
             )
         tables.append(table)
     if not tables:
-        raise FileNotFoundError(f"{folder}: no cycle_*/{FLOW_TABLE} found, at least one wear cycle must have been run.")
-    return joined(tables)
+        raise FileNotFoundError(f"{folder}: no cycle_*/{name} found, at least one wear cycle must have been run.")
+    return tables
+
+
+def spin_profiles(
+    folders: Mapping[str, Path], runs: Mapping[str, RunFlow], starts: Mapping[str, float]
+) -> pd.DataFrame:
+    """Return the mean angular speed along the sample of every run, as from `spin.mean_spin`, with a column run.
+
+    starts: m, by run, travel from which on is averaged. Raises the errors of `run_bins`; cycles that were simulated
+    before these tables were kept have none.
+    """
+    tables = []
+    for run, folder in folders.items():
+        history = pd.concat(_cycle_tables(folder, SPIN_TABLE, runs[run].spin_definition), ignore_index=True)
+        tables.append(mean_spin(history, starts[run]).assign(run=run))
+    return pd.concat(tables, ignore_index=True)
 
 
 def along_travel(bins: pd.DataFrame, run: RunFlow, particles: int) -> pd.DataFrame:

@@ -6,9 +6,10 @@ and side bins are those of Yan 2022, Fig 3.9; ahead is where the sample is going
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import pandas as pd
@@ -80,24 +81,66 @@ def bin_history(
 
     Raises ContactDumpError for a damaged dump, ValueError for one without the columns that are needed.
     """
-    sums: dict[int, np.ndarray] = {}
-    frames: dict[int, int] = {}
+    sums = BinSums(bins, travel_per_step, interval)
+    add_dumps(dumps, [sums], block_bytes)
+    return sums.table()
+
+
+class Sums(Protocol):
+    """What batches of frames of a dump are added to; needed: columns of the dump."""
+
+    needed: Sequence[str]
+
+    def add(self, batch: FrameBatch, offset: float) -> None:
+        """Add frames whose step 0 is at a travel of offset (m)."""
+
+
+def add_dumps(dumps: Iterable[tuple[str | Path, float]], sums: Sequence[Sums], block_bytes: int = BLOCK_BYTES) -> None:
+    """Read dumps once, in pieces, and add them to all sums; arguments and errors as for `bin_history`."""
+    needed = list(dict.fromkeys(name for each in sums for name in each.needed))
     for path, offset in dumps:
         for batch in read_frames(path, "ATOMS", ("id",), block_bytes):
-            _check_columns(path, batch)
-            passed = np.ceil((offset + batch.steps * travel_per_step) / interval - BETWEEN)
-            which = np.maximum(passed - 1.0, 0.0).astype(int)
-            _add(batch, which, bins, sums)
-            for number in which:
-                frames[number] = frames.get(number, 0) + 1
-    tables = [_interval_table(number, sums[number], frames[number], bins, interval) for number in sorted(frames)]
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+            _check_columns(path, batch, needed)
+            for each in sums:
+                each.add(batch, offset)
 
 
-def _check_columns(path: str | Path, batch: FrameBatch) -> None:
-    missing = [name for name in NEEDED if name not in batch.columns]
+def interval_numbers(steps: np.ndarray, offset: float, travel_per_step: float, interval: float) -> np.ndarray:
+    """Return the interval of travel (f,), from 0, of every frame; one at the end of an interval belongs to it."""
+    passed = np.ceil((offset + steps * travel_per_step) / interval - BETWEEN)
+    return np.maximum(passed - 1.0, 0.0).astype(int)
+
+
+class BinSums:
+    """Sums over the particles in every bin, by intervals of travel; arguments as for `bin_history`."""
+
+    needed = NEEDED
+
+    def __init__(self, bins: MovingBins, travel_per_step: float, interval: float) -> None:
+        self._bins, self._travel_per_step, self._interval = bins, travel_per_step, interval
+        self._sums: dict[int, np.ndarray] = {}
+        self._frames: dict[int, int] = {}
+
+    def add(self, batch: FrameBatch, offset: float) -> None:
+        """Add frames whose step 0 is at a travel of offset (m)."""
+        which = interval_numbers(batch.steps, offset, self._travel_per_step, self._interval)
+        _add(batch, which, self._bins, self._sums)
+        for number in which:
+            self._frames[number] = self._frames.get(number, 0) + 1
+
+    def table(self) -> pd.DataFrame:
+        """Return the means, see `bin_history`."""
+        tables = [
+            _interval_table(number, self._sums[number], self._frames[number], self._bins, self._interval)
+            for number in sorted(self._frames)
+        ]
+        return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+
+
+def _check_columns(path: str | Path, batch: FrameBatch, needed: Sequence[str]) -> None:
+    missing = [name for name in needed if name not in batch.columns]
     if missing:
-        raise ValueError(f"{path}, line 9: column {missing[0]} is missing, allowed is a dump with {' '.join(NEEDED)}.")
+        raise ValueError(f"{path}, line 9: column {missing[0]} is missing, allowed is a dump with {' '.join(needed)}.")
 
 
 def _add(batch: FrameBatch, which: np.ndarray, bins: MovingBins, sums: dict[int, np.ndarray]) -> None:

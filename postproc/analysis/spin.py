@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.analysis.moving_bins import BETWEEN
-from postproc.readers.dump_text import BLOCK_BYTES, FrameBatch, read_frames
+from postproc.analysis.moving_bins import BETWEEN, add_dumps, interval_numbers
+from postproc.readers.dump_text import BLOCK_BYTES, FrameBatch
 
 NEEDED = ("x", "y", "z", "omegax", "omegay", "omegaz")
 
@@ -51,33 +51,43 @@ def spin_along_sample(
     Arguments as those of `moving_bins.bin_history`. Columns travel_end_m, segment (from 1, the front), along_m (of its
     middle behind the front edge), particles (sum over frames) and angular_speed_rad_per_s, NaN in an empty piece.
     """
-    sums: dict[int, np.ndarray] = {}
-    for path, offset in dumps:
-        for batch in read_frames(path, "ATOMS", ("id",), block_bytes):
-            passed = np.ceil((offset + batch.steps * travel_per_step) / interval - BETWEEN)
-            for number, found in _sums(batch, np.maximum(passed, 1.0).astype(int), segments).items():
-                sums[number] = sums.get(number, 0.0) + found
-    along = (np.arange(segments.count) + 0.5) * segments.length / segments.count
-    tables = []
-    for number in sorted(sums):
-        speed, particles = sums[number]
-        mean = speed / np.where(particles > 0.0, particles, np.nan)
-        table = {"segment": np.arange(1, segments.count + 1), "along_m": along, "particles": particles}
-        tables.append(pd.DataFrame({"travel_end_m": number * interval, **table, "angular_speed_rad_per_s": mean}))
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+    sums = SpinSums(segments, travel_per_step, interval)
+    add_dumps(dumps, [sums], block_bytes)
+    return sums.table()
 
 
-def _sums(batch: FrameBatch, intervals: np.ndarray, segments: Segments) -> dict[int, np.ndarray]:
-    """Return {interval: (2, count) sums of angular speed and particles} of the frames of a batch."""
-    x, y, z, *omega = (batch.table[:, batch.columns.index(name)] for name in NEEDED)
-    place, speed = segments.place(x, y, z), np.linalg.norm(omega, axis=0)
-    interval = np.repeat(intervals, np.diff(batch.starts))
-    found = {}
-    for number in np.unique(intervals):
-        chosen = (interval == number) & (place >= 0)
-        counted = [np.bincount(place[chosen], weight, segments.count) for weight in (speed[chosen], None)]
-        found[int(number)] = np.array(counted, dtype=float)
-    return found
+class SpinSums:
+    """Sums over the particles in every piece, by intervals of travel; arguments as for `spin_along_sample`."""
+
+    needed = NEEDED
+
+    def __init__(self, segments: Segments, travel_per_step: float, interval: float) -> None:
+        self._segments, self._travel_per_step, self._interval = segments, travel_per_step, interval
+        self._sums: dict[int, np.ndarray] = {}
+
+    def add(self, batch: FrameBatch, offset: float) -> None:
+        """Add frames whose step 0 is at a travel of offset (m)."""
+        x, y, z, *omega = (batch.table[:, batch.columns.index(name)] for name in NEEDED)
+        place, speed = self._segments.place(x, y, z), np.linalg.norm(omega, axis=0)
+        numbers = interval_numbers(batch.steps, offset, self._travel_per_step, self._interval)
+        interval = np.repeat(numbers, np.diff(batch.starts))
+        for number in np.unique(numbers):
+            chosen = (interval == number) & (place >= 0)
+            counted = [np.bincount(place[chosen], weight, self._segments.count) for weight in (speed[chosen], None)]
+            self._sums[int(number)] = self._sums.get(int(number), 0.0) + np.array(counted, dtype=float)
+
+    def table(self) -> pd.DataFrame:
+        """Return the means, see `spin_along_sample`."""
+        count = self._segments.count
+        along = (np.arange(count) + 0.5) * self._segments.length / count
+        tables = []
+        for number in sorted(self._sums):
+            speed, particles = self._sums[number]
+            mean = speed / np.where(particles > 0.0, particles, np.nan)
+            table = {"segment": np.arange(1, count + 1), "along_m": along, "particles": particles}
+            end = (number + 1) * self._interval
+            tables.append(pd.DataFrame({"travel_end_m": end, **table, "angular_speed_rad_per_s": mean}))
+        return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
 
 
 def mean_spin(history: pd.DataFrame, start: float) -> pd.DataFrame:

@@ -8,6 +8,7 @@ from pathlib import Path
 FINISHED = re.compile(r"cycle_(\d+)")  # one that is worked on, or was left by a killed run, ends in .part
 PACKING = "packing.dump"  # of cycle 0 in a travelling window: the settled bed, out of which it takes fresh bed
 FLOW_TABLE = "flow.parquet"  # of a wear cycle: the bins that its snapshots were reduced to
+SPIN_TABLE = "spin.parquet"  # likewise, of the lowest layer along the sample
 
 
 def cycle_folders(run_folder: str | Path) -> list[Path]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from postproc.mesh import SurfaceMesh, write_stl
-from postproc.readers.cycle_folders import FLOW_TABLE
+from postproc.readers.cycle_folders import FLOW_TABLE, SPIN_TABLE
 from postproc.readers.solver_log import exchanges, thermo_table
 from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows import deck
@@ -47,7 +47,7 @@ class SlidingSample(Case):
     geometry = ("sample", "pattern")
     first_title = "lowering and run-in"
     leftovers = (SETUP_LOADS, SETUP_BED)
-    kept = (FLOW_TABLE,)
+    kept = (FLOW_TABLE, SPIN_TABLE)
 
     def surfaces(self, head: Mapping[str, Any]) -> Sequence[str]:
         """Return convex, plain, or both, as the study says."""

@@ -16,6 +16,7 @@ from postproc.analysis.flow_history import (
     row_profiles,
     run_bins,
     settled_value,
+    spin_profiles,
     study_regimes,
     undisturbed_particles,
 )
@@ -85,6 +86,25 @@ def test_a_cycle_keeps_its_bins_and_its_last_snapshot(tmp_path):
     expected = bin_history(dumps, RUN.bins, RUN.velocity * RUN.time_step, INTERVAL)
     pd.testing.assert_frame_equal(run_bins(folder, RUN)[expected.columns], expected, rtol=ROUND_OFF)
     assert [path.name for path in sorted(folder.glob("cycle_*/bed_*.dump"))] == ["bed_1000.dump"] * 2
+
+
+def test_a_cycle_keeps_the_spin_along_its_sample(tmp_path):
+    """Every piece of the lowest layer has the spin of (1, 2, 2) rad/s, from all snapshots after the start."""
+    folder = write_run(tmp_path / "R1_convex", [2.0, 1.0])
+    table = spin_profiles({"R1_convex": folder}, {"R1_convex": RUN}, {"R1_convex": 0.02})
+    assert table["along_m"].tolist() == pytest.approx([0.0025 + 0.005 * k for k in range(8)])
+    np.testing.assert_allclose(table["angular_speed_rad_per_s"], 3.0, rtol=SIX_DIGITS)
+    whole = spin_profiles({"R1_convex": folder}, {"R1_convex": RUN}, {"R1_convex": 0.0})
+    assert whole["particles"].sum() == 4 * 2 * 8 * 8  # four frames, two sheets of the lattice, 40 x 40 mm
+    assert table["particles"].sum() == 0.5 * whole["particles"].sum()
+
+
+def test_a_run_without_spins_is_named(tmp_path):
+    """A cycle that was simulated before spins were kept has none; its path and what to remove are said."""
+    folder = write_run(tmp_path / "R1_convex", [2.0])
+    (folder / "cycle_001" / "spin.parquet").unlink()
+    with pytest.raises(FileNotFoundError, match=r"no cycle_\*/spin.parquet found"):
+        spin_profiles({"R1_convex": folder}, {"R1_convex": RUN}, {"R1_convex": 0.0})
 
 
 def test_bins_of_another_definition_are_not_taken(tmp_path):
