@@ -20,6 +20,7 @@ from workflows.bulk_tests import time_step
 from workflows.cases.base import Parameters
 from workflows.chain import RESTART
 from workflows.collision_tests import simulate, spheres_of
+from workflows.derived import WINDOW
 from workflows.solver import DECK, run_deck
 
 MODELS = ("cdt", "epsd2")  # rolling types A and C
@@ -29,6 +30,7 @@ DRAWN_POINTS = 400  # of a collision's history
 SOLVER_KEYS = ("rayleigh_fraction", "rolling_friction", "rolling_radius")
 REST_KEYS = ("energy_fraction", "check_interval_s", "calm_checks", "longest_s")
 END_DIAMETERS = 5.0  # -, of a bed next to its end walls, left out
+LEAVING_DIAMETERS = 2.0  # -, of the wake next to where it leaves a window, left out: it may slide into the room there
 AT_REST_BEHIND = 0.2  # m behind the sample's back edge the bed is at rest again; measured: 0.2 to 0.4
 LOOKED_AT = 0.75  # -, of the bed's thickness, from the floor: what lies above is disturbed by the surface
 
@@ -119,12 +121,16 @@ def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:
 def pieces(run: Parameters) -> dict[str, tuple[float, float, float]]:
     """Return {state: (start, end, width) m}: of the settled bed, and of the bed that the sample has passed.
 
-    Behind the sample it is what lay ahead of its front when it started, as far as it is at rest again, over its width.
+    Behind the sample it is what lay ahead of its front when it started, as far as it is at rest again, over its width;
+    in a window that travels it ends short of where the wake leaves.
     """
     derived, sample = run["derived"], run["sample"]
     start, end = derived["bed_start_m"], derived["bed_start_m"] + derived["bed_length_m"]
     margin = END_DIAMETERS * run["particle"]["median_diameter_m"]
     passed = run["sliding"]["run_in_m"] + run["sliding"]["travel_m"] - sample["length_m"] / 2.0
+    if run["bed"]["ends"] == WINDOW:
+        room = LEAVING_DIAMETERS * run["particle"]["median_diameter_m"]
+        passed = min(passed, sample["length_m"] / 2.0 + run["bed"]["behind_m"] - room)
     return {
         "before": (start + margin, end - margin, run["bed"]["width_m"]),
         "after": (sample["length_m"] / 2.0 + AT_REST_BEHIND, passed, sample["width_m"]),

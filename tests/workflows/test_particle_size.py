@@ -10,6 +10,7 @@ from workflows.design import ConfigError, load_study
 from workflows.figures import PARTICLE_SIZE, bumps_and_particles, figures_of, page_parameters
 from workflows.packings import (
     AT_REST_BEHIND,
+    LEAVING_DIAMETERS,
     MODELS,
     by_scale,
     collision_tables,
@@ -95,7 +96,8 @@ def test_containers_and_collisions_are_of_the_studys_particles():
 
 
 def test_pieces_of_bed_lie_where_they_are_said_to():
-    """Before: the settled bed without its ends. After: at rest behind the sample, and ahead of it when it started."""
+    """Before: the settled bed without its ends. After: at rest behind the sample, ahead of it when it started, and
+    short of where a window lets it out."""
     run = study().run("S4_plain").parameters
     found = pieces(run)
     start, end, width = found["before"]
@@ -103,7 +105,17 @@ def test_pieces_of_bed_lie_where_they_are_said_to():
     assert end < run["derived"]["bed_start_m"] + run["derived"]["bed_length_m"]
     start, end, width = found["after"]
     assert start == pytest.approx(0.1 + AT_REST_BEHIND) and width == run["sample"]["width_m"]
-    assert end == pytest.approx(0.2 + 0.4 - 0.1)  # where the bed at the front has come to, less what was behind it
+    assert end == pytest.approx(0.1 + 0.4 - LEAVING_DIAMETERS * 4 * 2.65e-3)
+    start, end, width = pieces(study("paper").run("S4_plain").parameters)["after"]
+    assert end == pytest.approx(0.7 + 1.0 - 0.1)  # where the bed at the front has come to, less what was behind it
+
+
+@pytest.mark.parametrize("fidelity", ROWS)
+def test_a_piece_of_bed_at_rest_is_left_behind_every_sample(fidelity):
+    """At every scale it is at least three median diameters long, so that a packing can be told from it."""
+    for run in study(fidelity).runs:
+        start, end, _ = pieces(run.parameters)["after"]
+        assert end - start > 3.0 * run.parameters["particle"]["median_diameter_m"]
 
 
 @pytest.mark.solver

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from postproc.reference.size_ratios import LARGEST_RATIO
 from workflows.derived import PERIODIC, WINDOW
+from workflows.design import PARTICLE_SCALE
 from workflows.page_text import range_text
 
 if TYPE_CHECKING:
@@ -61,11 +62,14 @@ def remarks(study: Study) -> list[str]:
         length = study.runs[0].parameters["derived"]["bed_length_m"]
         said.append(f"bed in a channel of {1000.0 * length:g} mm that closes on itself")
     if now["bed"]["ends"] == WINDOW:
-        length = study.runs[0].parameters["derived"]["bed_length_m"]
-        said.append(f"bed in a window of {1000.0 * length:.0f} mm that travels with the sample")
-    thin = {run.row: run.parameters["derived"]["layers"] for run in study.runs if run.parameters["derived"]["thin_bed"]}
-    if thin:
-        rows = ", ".join(f"{row} ({layers:.1f})" for row, layers in thin.items())
+        lengths = sorted({f"{1000.0 * run.parameters['derived']['bed_length_m']:.0f}" for run in study.runs})
+        ends = " to ".join(lengths[:: max(len(lengths) - 1, 1)])
+        said.append(f"bed in a window of {ends} mm that travels with the sample")
+    layers = {run.row: run.parameters["derived"]["layers"] for run in study.runs}
+    if any(PARTICLE_SCALE in row for row in study.design_rows):
+        said.append(f"layers of particles in the bed: {', '.join(f'{row} {each:.1f}' for row, each in layers.items())}")
+    elif thin := {run.row: layers[run.row] for run in study.runs if run.parameters["derived"]["thin_bed"]}:
+        rows = ", ".join(f"{row} ({each:.1f})" for row, each in thin.items())
         said.append(f"fewer than three layers of particles in the bed: {rows}")
     if larger := _beyond_bumps(study):
         rows = ", ".join(f"{row} ({scale:.3g}, {most:.2g})" for row, (scale, most) in larger.items())
