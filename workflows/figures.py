@@ -14,6 +14,7 @@ from workflows.derived import flow_measures
 from workflows.design import PARTICLE_SCALE, REPOSITORY, Run, Study
 from workflows.page_text import name_and_unit
 from workflows.pages import PAGES
+from workflows.pages.sliding_sample import SIZE_TABLES
 from workflows.remarks import figure_remarks
 
 REPORT_FOLDER = Path(__file__).resolve().parent / "report"
@@ -76,7 +77,12 @@ FLOW = (  # of studies that name factors or confirm one that does
 PARTICLE_SIZE = (  # of studies whose rows differ in their particle scale
     "wear_against_scale",
     "wear_against_size_ratios",
+    "wear_maps",
+    "steady_by_scale",
     "velocity_by_layer",
+    "upward_velocity_by_layer",
+    "sideways_velocity_by_layer",
+    "angular_velocity_along_sample",
     "collisions",
     "packing_profiles",
     "bed_packing",
@@ -160,15 +166,21 @@ def has_findings(study: Study) -> bool:
 
 
 def finding_tables(study: Study) -> list[str]:
-    """Return the paths of the tables of findings and best designs that the page of a study shows."""
+    """Return the paths of the tables of findings, best designs and particle size that the page of a study shows."""
     names = ["findings/findings", "findings/runs"] if has_findings(study) else []
     names += ["confirmation/prediction", "confirmation/design"] if study.factors else []
+    names += [f"particle_size/{name}" for name in SIZE_TABLES] if varies_scale(study) else []
     return [f"results/{study.name}/{name}.csv" for name in names]
 
 
 def varies_scale(study: Study) -> bool:
     """Return whether a study is one of particle size: its rows give their particle scale."""
     return any(PARTICLE_SCALE in row for row in study.design_rows)
+
+
+def published_flow(study: Study) -> str:
+    """Return the table of what the source tells of the flow: of its chapter 4 for particle size, else of chapter 3."""
+    return f"config/published/{'particle_size' if varies_scale(study) else 'screening'}_results.csv"
 
 
 def plain_runs(study: Study) -> dict[str, Run]:
@@ -191,6 +203,7 @@ def job_names(study: Study) -> list[str]:
         *dict.fromkeys(job_of_figure(name) for name in figures_of(study)),
         *(("findings",) if has_findings(study) else ()),
         *(("best_designs",) if study.factors else ()),
+        *(("size_findings",) if varies_scale(study) else ()),
     ]
 
 
@@ -214,6 +227,7 @@ def page_parameters(study: Study) -> dict[str, Any]:
         "figures": figures_of(study),
         "factors": study.factors,
         "findings": has_findings(study),
+        "varies_scale": varies_scale(study),
         "replicates": replicate_settings(study) if study.case == "sliding_sample" else {},
         "jobs": job_names(study),
         "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},

@@ -1,9 +1,11 @@
 """Figures of studies of particle size: wear against scale, packings, and single contacts at every scale."""
 
-from workflows.figures import bumps_and_particles, plain_runs
+from workflows.figures import bumps_and_particles, flow_runs, plain_runs
 from workflows.units import to_si
 
 PUBLISHED_LINES = f"{PUBLISHED_TABLES}/particle_size_lines.csv"
+PUBLISHED_SIZES = f"{PUBLISHED_TABLES}/particle_size_results.csv"
+PROFILES_BY_ROW = "results/{study}/flow/profiles.csv"
 
 
 rule wear_against_scale:
@@ -61,7 +63,8 @@ rule wear_against_size_ratios:
 rule velocity_by_layer:
     input:
         summary="results/{study}/summary.csv",
-        profiles="results/{study}/flow/profiles.csv",
+        profiles=PROFILES_BY_ROW,
+        published=PUBLISHED_SIZES,
     output:
         figure=report(
             "results/{study}/figures/velocity_by_layer.png",
@@ -76,10 +79,152 @@ rule velocity_by_layer:
         "results/{study}/logs/velocity_by_layer.benchmark.tsv"
     params:
         remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        component="velocity_m_per_s",
     message:
         "Velocity by layer and particle scale of {wildcards.study}"
     script:
         "scripts/velocity_by_layer.py"
+
+
+use rule velocity_by_layer as upward_velocity_by_layer with:
+    output:
+        figure=report(
+            "results/{study}/figures/upward_velocity_by_layer.png",
+            caption="report/upward_velocity_by_layer.rst",
+            category="Particle size",
+            labels={"figure": "Upward velocity by layer and particle scale"},
+        ),
+        table="results/{study}/figures/upward_velocity_by_layer.csv",
+    log:
+        "results/{study}/logs/upward_velocity_by_layer.log",
+    benchmark:
+        "results/{study}/logs/upward_velocity_by_layer.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        component="upward_m_per_s",
+    message:
+        "Upward velocity by layer and particle scale of {wildcards.study}"
+
+
+use rule velocity_by_layer as sideways_velocity_by_layer with:
+    output:
+        figure=report(
+            "results/{study}/figures/sideways_velocity_by_layer.png",
+            caption="report/sideways_velocity_by_layer.rst",
+            category="Particle size",
+            labels={"figure": "Sideways velocity by layer and particle scale"},
+        ),
+        table="results/{study}/figures/sideways_velocity_by_layer.csv",
+    log:
+        "results/{study}/logs/sideways_velocity_by_layer.log",
+    benchmark:
+        "results/{study}/logs/sideways_velocity_by_layer.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        component="sideways_m_per_s",
+    message:
+        "Sideways velocity by layer and particle scale of {wildcards.study}"
+
+
+rule angular_velocity_along_sample:
+    input:
+        summary="results/{study}/summary.csv",
+        profiles=PROFILES_BY_ROW,
+        # what the snapshots of the bed were reduced to lies beside these
+        wear=WEAR_TABLES,
+    output:
+        figure=report(
+            "results/{study}/figures/angular_velocity_along_sample.png",
+            caption="report/angular_velocity_along_sample.rst",
+            category="Particle size",
+            labels={"figure": "Angular speed along the sample"},
+        ),
+        table="results/{study}/figures/angular_velocity_along_sample.csv",
+    log:
+        "results/{study}/logs/angular_velocity_along_sample.log",
+    benchmark:
+        "results/{study}/logs/angular_velocity_along_sample.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        runs=lambda wildcards: flow_runs(study_of(wildcards)),
+    message:
+        "Angular speed along the samples of {wildcards.study}"
+    script:
+        "scripts/angular_velocity_along_sample.py"
+
+
+rule steady_by_scale:
+    input:
+        summary="results/{study}/summary.csv",
+        steady="results/{study}/flow/steady.csv",
+        published=PUBLISHED_SIZES,
+    output:
+        figure=report(
+            "results/{study}/figures/steady_by_scale.png",
+            caption="report/steady_by_scale.rst",
+            category="Particle size",
+            labels={"figure": "Relative velocity and wear rate by particle scale"},
+        ),
+        table="results/{study}/figures/steady_by_scale.csv",
+    log:
+        "results/{study}/logs/steady_by_scale.log",
+    benchmark:
+        "results/{study}/logs/steady_by_scale.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+    message:
+        "Relative velocity and wear rate by particle scale of {wildcards.study}"
+    script:
+        "scripts/steady_by_scale.py"
+
+
+rule wear_maps:
+    input:
+        summary="results/{study}/summary.csv",
+        surfaces=WORN_SURFACES,
+    output:
+        figure=report(
+            "results/{study}/figures/wear_maps.png",
+            caption="report/wear_maps.rst",
+            category="Particle size",
+            labels={"figure": "Wear of the smallest and the largest particles"},
+        ),
+        table="results/{study}/figures/wear_maps.csv",
+    log:
+        "results/{study}/logs/wear_maps.log",
+    benchmark:
+        "results/{study}/logs/wear_maps.benchmark.tsv"
+    params:
+        remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+        deformed=lambda wildcards: is_deformed(study_of(wildcards)),
+    message:
+        "Maps of the wear by the smallest and the largest particles of {wildcards.study}"
+    script:
+        "scripts/wear_maps.py"
+
+
+rule size_findings:
+    input:
+        wear="results/{study}/figures/wear_against_scale.csv",
+        critical="results/{study}/particle_size/critical_scale.csv",
+        guidance="results/{study}/particle_size/guidance.csv",
+        steady="results/{study}/figures/steady_by_scale.csv",
+        profiles="results/{study}/figures/velocity_by_layer.csv",
+        container="results/{study}/figures/packing_profiles.csv",
+        bed="results/{study}/figures/bed_packing.csv",
+        published=PUBLISHED_SIZES,
+        published_packing=f"{PUBLISHED_TABLES}/packing.csv",
+    output:
+        published="results/{study}/particle_size/published.csv",
+        sentences="results/{study}/particle_size/sentences.csv",
+    log:
+        "results/{study}/logs/size_findings.log",
+    benchmark:
+        "results/{study}/logs/size_findings.benchmark.tsv"
+    message:
+        "What the source tells of particle size beside {wildcards.study}"
+    script:
+        "scripts/size_findings.py"
 
 
 rule collisions:

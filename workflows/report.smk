@@ -10,6 +10,7 @@ from workflows.figures import (
     is_deformed,
     page_parameters,
     page_templates,
+    published_flow,
     published_rows,
     replicate_settings,
 )
@@ -379,7 +380,7 @@ rule relative_velocity:
         # the snapshots of the bed lie beside these
         wear=WEAR_TABLES,
         costs=of_every_run("results/{study}/{run}/cost.csv"),
-        published="config/published/screening_results.csv",
+        published=lambda wildcards: published_flow(study_of(wildcards)),
     output:
         figure=report(
             "results/{study}/figures/relative_velocity.png",

@@ -1,6 +1,6 @@
 """Figures of screening studies: their runs by flow regime, and the motion of the bed over them layer by layer."""
 
-from workflows.figures import CONDITIONS, PATTERN, flow_velocities, passing_beds
+from workflows.figures import CONDITIONS, PATTERN, flow_velocities, passing_beds, published_flow
 
 REGIMES = "results/{study}/flow/regimes.csv"
 
@@ -12,7 +12,7 @@ rule wear_gradient:
         wear=WEAR_TABLES,
         regimes=REGIMES,
         along="results/{study}/figures/relative_velocity.csv",
-        published="config/published/screening_results.csv",
+        published=lambda wildcards: published_flow(study_of(wildcards)),
     output:
         figure=report(
             "results/{study}/figures/wear_gradient.png",

@@ -222,7 +222,9 @@ def flow_tables(
 def published_window(published: pd.DataFrame, run_in: float) -> tuple[float, float]:
     """Return the source's steady window in a study's travel, which counts from the end of its run-in (all in mm).
 
-    published: quantity, relation and value, as in config/published/screening_results.csv
+    published: quantity, relation and value, as in config/published/screening_results.csv, where the wear settles later
+    than the flow, or particle_size_results.csv, where one window is told
     """
-    value = published.set_index(["quantity", "relation"])["value"].astype(float)
-    return float(value["wear_gradient_steady", "from"]) - run_in, float(value["steady", "to"]) - run_in
+    value = published.drop_duplicates(["quantity", "relation"]).set_index(["quantity", "relation"])["value"]
+    first = next(name for name in ("wear_gradient_steady", "steady") if (name, "from") in value.index)
+    return float(value[first, "from"]) - run_in, float(value["steady", "to"]) - run_in

@@ -94,12 +94,15 @@ def guidance_table(
 ) -> pd.DataFrame:
     """Return a row of guidance per pattern, with the particle scale that a study simulates it at.
 
-    patterns, scales: by design row. Columns row, those of `guidance`, particle_scale, within_largest_scale, and
-    published_bias of that scale.
+    patterns, scales: by design row. Columns row, major_radius_m, minor_radius_m and height_m of the bump,
+    median_diameter_m of real particles, those of `guidance`, particle_scale, within_largest_scale, and published_bias
+    of that scale.
     """
     rows = [
         {
             "row": row,
+            **dict(zip(("major_radius_m", "minor_radius_m", "height_m"), pattern.bump, strict=True)),
+            "median_diameter_m": particles.median_diameter,
             **(told := guidance(pattern, particles)),
             "particle_scale": scales[row],
             "within_largest_scale": scales[row] < told["largest_scale"],

@@ -119,6 +119,13 @@ def loose_and_dense(loose: pd.DataFrame, dense: pd.DataFrame, median_diameter: f
     return pd.concat([table.assign(state=state) for state, table in tables.items()], ignore_index=True)
 
 
+def slabs_remark(table: pd.DataFrame) -> str:
+    """Return what a figure must say of how many slabs a container has at every scale; table: layer, particle_scale."""
+    counts = table.groupby("particle_scale")["layer"].max()
+    told = ", ".join(f"{count} at scale {scale:g}" for scale, count in counts.items())
+    return f"slabs of {LAYER_DIAMETERS:g} median diameters: {told}"
+
+
 def within(particles: pd.DataFrame, start: float, end: float) -> pd.DataFrame:
     """Return the particles of a piece of bed, those with their centre between two y (m)."""
     return particles[particles["y_m"].between(start, end, inclusive="left")]

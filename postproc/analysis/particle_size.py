@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -74,6 +75,44 @@ def critical_scale_text(found: Crossing | None) -> str:
     if not found.bounded:
         return "the scales simulated do not tell a critical one: convex and plain wear may be parallel"
     return f"critical scale {found.value:.2g}, 95 % interval {found.low:.2g} to {found.high:.2g}"
+
+
+def read_critical_scale(path: str | Path) -> Crossing | None:
+    """Return the critical scale from critical_scale.csv, which is empty where too few scales tell one."""
+    table = pd.read_csv(path)
+    return None if table.empty else Crossing(**table.iloc[0].to_dict())
+
+
+def smallest_and_largest(summary: pd.DataFrame) -> pd.DataFrame:
+    """Return run, row, surface and particle_scale of the first rows of the smallest and of the largest particles."""
+    table = summary[["run", "row", "surface", "particle_scale"]].sort_values("particle_scale", kind="stable")
+    rows = list(dict.fromkeys([table["row"].iloc[0], table.loc[table["particle_scale"].idxmax(), "row"]]))
+    return table[table["row"].isin(rows)].reset_index(drop=True)
+
+
+def over_the_sample(profiles: pd.DataFrame, scales: Mapping[str, float]) -> pd.DataFrame:
+    """Return the layers over the samples with particle_scale, sideways_m_per_s and upward_m_per_s.
+
+    profiles: as from `flow_history.row_profiles`; scales: by run
+    """
+    table = profiles[profiles["zone"] == "central"]
+    return table.assign(
+        particle_scale=table["run"].map(scales),
+        sideways_m_per_s=table["sideways_ratio"] * table["velocity_m_per_s"],
+        upward_m_per_s=table["upward_ratio"] * table["velocity_m_per_s"],
+    ).reset_index(drop=True)
+
+
+def velocity_bounds(published: pd.DataFrame, table: pd.DataFrame) -> pd.DataFrame:
+    """Return what is published of the velocity (m/s) in every layer and in the lowest one, for `spider_charts`.
+
+    published: as in config/published/particle_size_results.csv; table: as from `over_the_sample`
+    """
+    highest = table["height_mm"].max()
+    lowest = table.groupby("run")["height_mm"].min().max()
+    reach = {"velocity_every_layer": highest, "velocity_lowest_layer": lowest}
+    found = published[published["quantity"].isin(list(reach))]
+    return found[["surface", "relation", "value"]].assign(place_to=found["quantity"].map(reach))
 
 
 def wear_by_size_ratio(wear: pd.DataFrame, ratios: Mapping[str, SizeRatios]) -> pd.DataFrame:

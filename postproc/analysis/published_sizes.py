@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from postproc.analysis.comparison import PLAIN
 from postproc.analysis.lines import Crossing
+from postproc.analysis.packing import MEASURES, inner_means
 from postproc.analysis.particle_size import CONVEX
 
 AGREES, DIFFERS, UNSAID = "agrees", "differs", "cannot be said"
 # -, of a value told as "about": what is read off a figure's axis and told in whole tens of per cent
 ABOUT = 0.15
 GRADIENT, VELOCITY = "relative_gradient", "relative_velocity_percent"
+DIFFERENCE = "difference"  # dense minus loose
 COLUMNS = [
     *("quantity", "surface", "scales", "relation", "value", "unit"),
     *("low", "high", "of_scales", "verdict", "source"),
@@ -70,10 +73,41 @@ def beside_the_source(
             found = table[inside & (table["surface"] == each.surface)].dropna(subset="value")
             low, high = (found["value"].min(), found["value"].max()) if len(found) else (np.nan, np.nan)
             of = ", ".join(f"{scale:g}" for scale in sorted(set(found["particle_scale"])))
-        scales = " to ".join(dict.fromkeys((f"{each.scale_from:g}", f"{each.scale_to:g}")))
-        told = (each.quantity, each.surface, scales, each.relation, each.value, each.unit)
+        told = (each.quantity, each.surface, _scales(each), each.relation, each.value, each.unit)
         rows.append((*told, low, high, of, verdict(each.relation, each.value, low, high), each.source))
     return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def packing_beside_the_source(published: pd.DataFrame, container: pd.DataFrame, bed: pd.DataFrame) -> pd.DataFrame:
+    """Return every published number of packings with ours, columns as of `beside_the_source`; surface is the packing.
+
+    published: as in config/published/packing.csv; container: profiles of all scales, state, particle_scale and those of
+    `packing.packing_profile`, of which the means without the lowest and the highest slab count (Yan 2022, section
+    4.3.1); bed: as from `bed_packing_table` of a study
+    """
+    means = [
+        {"case": "container", "state": state, "particle_scale": scale, **inner_means(one.sort_values("layer"))}
+        for (state, scale), one in container.groupby(["state", "particle_scale"])
+        if state != DIFFERENCE
+    ]
+    table = pd.DataFrame(means).set_index(["state", "particle_scale"])
+    change = (table.loc["dense", list(MEASURES)] - table.loc["loose", list(MEASURES)]).reset_index()
+    parts = [table.reset_index(), change.assign(case="container", state=DIFFERENCE), bed.assign(case="bed")]
+    ours = pd.concat(parts, ignore_index=True)
+    rows = []
+    for each in published.itertuples():
+        chosen = (ours["case"] == each.case) & (ours["state"] == each.state)
+        found = ours[chosen & ours["particle_scale"].between(each.scale_from, each.scale_to)]
+        low, high = (found[each.quantity].min(), found[each.quantity].max()) if len(found) else (np.nan, np.nan)
+        of = ", ".join(f"{scale:g}" for scale in sorted(set(found["particle_scale"])))
+        told = (each.quantity, f"{each.case}, {each.state}", _scales(each), each.relation, each.value, each.unit)
+        rows.append((*told, low, high, of, verdict(each.relation, each.value, low, high), each.source))
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _scales(each: Any) -> str:
+    """Return the scales that a published number is of."""
+    return " to ".join(dict.fromkeys((f"{each.scale_from:g}", f"{each.scale_to:g}")))
 
 
 def verdict(relation: str, value: float, low: float, high: float) -> str:

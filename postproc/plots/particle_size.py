@@ -27,6 +27,11 @@ RATIO_NAMES = {
     "surface_area": "surface area",
     "volume": "volume",
 }
+MEASURE_NAMES = {
+    "relative_velocity": "Relative velocity of\nthe particles (%)",
+    "relative_wear_rate": "Wear rate over the\nlargest of all runs (%)",
+}
+PUBLISHED_MARKS = {"about": "D", "above": "^", "below": "v"}
 POINTS = 50  # of a drawn line
 ROOM = 0.08  # -, of the scales, beside them
 MOST_TICKS = 8  # round a spider chart
@@ -107,21 +112,64 @@ def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remar
     return figure
 
 
+def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw relative velocity and relative wear rate (%) in the steady window against particle scale, with deviations.
+
+    table: as from `analysis.published_sizes.steady_by_scale`; hollow where the window is not steady
+    published: quantity, surface, scale_from, scale_to, relation, value, source; of the two measures
+    """
+    figure = new_figure(remarks)
+    panels = figure.subplots(1, len(MEASURE_NAMES))
+    for axes, (measure, label) in zip(panels, MEASURE_NAMES.items(), strict=True):
+        for surface, one in table[table["measure"] == measure].groupby("surface", sort=False):
+            _with_deviation(axes, one.sort_values("particle_scale"), str(surface))
+        for each in published[published["quantity"] == measure].itertuples():
+            look = {"color": COLOURS[each.surface], "markerfacecolor": "white", "linestyle": ":", "label": "published"}
+            look["marker"] = PUBLISHED_MARKS[each.relation]
+            axes.plot([each.scale_from, each.scale_to], [each.value] * 2, linewidth=0.8, markersize=6, **look)
+        axes.set(xlabel="Particle scale (-)", ylabel=label)
+        axes.set_ylim(bottom=0.0)
+    shown = {name: CURVES[name][:2] for name in ("plain", "convex")}
+    handles = [Line2D([], [], color=each, marker=mark, label=f"{name} sample") for name, (each, mark) in shown.items()]
+    handles.append(Line2D([], [], color="black", marker="o", markerfacecolor="white", linestyle="", label="not steady"))
+    for relation in dict.fromkeys(published.loc[published["quantity"].isin(MEASURE_NAMES), "relation"]):
+        mark = {"marker": PUBLISHED_MARKS[relation], "markerfacecolor": "white", "linestyle": ":"}
+        handles.append(Line2D([], [], color=OTHER_COLOUR, label=f"Yan 2022: {relation}", **mark))
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    return figure
+
+
+def _with_deviation(axes: Axes, one: pd.DataFrame, surface: str) -> None:
+    """Draw means with their deviations along the travel, hollow where the window is not steady."""
+    shade, marker, _ = CURVES[surface]
+    bars = {"color": shade, "capsize": 3, "linewidth": 1.0, "label": surface}
+    axes.errorbar(one["particle_scale"], one["mean_percent"], one["deviation_percent"], **bars)
+    fill = [shade if steady else "white" for steady in one["steady"]]
+    axes.scatter(one["particle_scale"], one["mean_percent"], 36, fill, marker, edgecolors=shade, zorder=3)
+
+
 def spider_charts(
-    table: pd.DataFrame, value: str, place: str, labels: tuple[str, str], remarks: Sequence[str]
+    table: pd.DataFrame,
+    value: str,
+    place: str,
+    labels: tuple[str, str],
+    remarks: Sequence[str],
+    bounds: pd.DataFrame | None = None,
 ) -> Figure:
     """Draw a quantity round a circle of places, a chart per surface, a curve per particle scale.
 
     table: surface, particle_scale, `value` (the radius) and `place`, which begins at the top and runs clockwise; the
-    places of all scales share one circle, which ends short of its beginning
+    places of all scales share one circle, which ends short of its beginning. Negative values lie inside the zero circle
     labels: of value and place, with their units
+    bounds: published ones of the value: surface, relation, value and place_to, as far as it holds; dotted
     """
     surfaces, scales = list(dict.fromkeys(table["surface"])), sorted(set(table["particle_scale"]))
     colours = scale_colours(scales)
     figure = new_figure(remarks, LARGEST_HEIGHT)
     panels = figure.subplots(1, len(surfaces), subplot_kw={"projection": "polar"}, squeeze=False)[0]
     whole = _circle(table, place, scales)
-    largest = table[value].max()
+    lowest, largest = min(table[value].min(), 0.0), table[value].max()
+    bounds = pd.DataFrame(columns=["surface", "relation", "value", "place_to"]) if bounds is None else bounds
     for axes, surface in zip(panels, surfaces, strict=True):
         axes.set_theta_zero_location("N")
         axes.set_theta_direction(-1)
@@ -130,14 +178,21 @@ def spider_charts(
             angle = 2.0 * np.pi * one[place] / whole
             drawn = {"color": colours[scale], "marker": MARKERS[k % len(MARKERS)], "markersize": 3, "linewidth": 1.0}
             axes.plot(angle, one[value], label=f"scale {scale:g}", **drawn)
+        for each in bounds[bounds["surface"] == surface].itertuples():
+            arc = np.linspace(0.0, min(each.place_to / whole, 1.0), POINTS) * 2.0 * np.pi
+            drawn = {"color": "black", "linestyle": ":", "linewidth": 1.2}
+            axes.plot(arc, np.full(POINTS, each.value), label=f"Yan 2022: {each.relation} {each.value:g}", **drawn)
+        if lowest < 0.0:
+            axes.plot(np.linspace(0.0, 2.0 * np.pi, POINTS), np.zeros(POINTS), color=OTHER_COLOUR, linewidth=0.8)
         ticks = _ticks(whole)
         axes.set_xticks(2.0 * np.pi * ticks / whole, [f"{tick:g}" for tick in ticks])
-        axes.set_rlim(0.0, 1.05 * largest)
+        axes.set_rlim(1.05 * lowest, 1.05 * largest if largest > 0.0 else 0.0)
         axes.set_rlabel_position(-0.5 * 360.0 * (1.0 - ticks[-1] / whole))
         axes.set_title(f"{surface} sample", loc="left", fontsize=SMALLEST_FONT)
         axes.set_xlabel(f"round: {labels[1]}")
-    handles = panels[0].get_legend_handles_labels()[0]
-    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 8), title=f"radius: {labels[0]}")
+    named = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    handles = list(named.values())
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 6), title=f"radius: {labels[0]}")
     return figure
 
 

@@ -99,6 +99,32 @@ def _small_multiples(
     _colour_bar(figure, grid, (0.0, 1.0), label)
 
 
+def wear_maps(
+    meshes: Mapping[str, SurfaceMesh],
+    runs: pd.DataFrame,
+    deformed: bool,
+    depths: pd.DataFrame,
+    quantity: str,
+    remarks: Sequence[str],
+) -> Figure:
+    """Draw worn surfaces from above without skirt, all on one colour scale: a line per surface, a column per row.
+
+    meshes: by run; runs: run, row, surface and particle_scale; the others as for `worn_surface`
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    rows, surfaces = list(dict.fromkeys(runs["row"])), list(dict.fromkeys(runs["surface"]))
+    limits = colour_limits(depths)
+    grid = figure.subplots(len(surfaces), len(rows), squeeze=False)
+    for run in runs.itertuples():
+        axes = grid[surfaces.index(run.surface), rows.index(run.row)]
+        picture(axes, *surface_plan(meshes[run.run], deformed, limits, 600, skirt=False))
+        axes.set_title(f"{run.surface} sample, particle scale {run.particle_scale:g}", fontsize=SMALLEST_FONT, pad=3)
+        axes.set(xlabel="x (mm)", ylabel="y (mm), bed moves up")
+    unit, ticks = scaled("µm", limits[1])
+    _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
+    return figure
+
+
 def bed(
     cuts: Mapping[str, pd.DataFrame],
     meshes: Mapping[str, SurfaceMesh],

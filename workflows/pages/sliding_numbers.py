@@ -14,7 +14,7 @@ from postproc.analysis.display import in_display_units
 from postproc.analysis.findings import UNSURE
 from postproc.analysis.replicates import relative_wear_intervals
 from workflows.page_text import data_uri, number
-from workflows.pages.sliding_sample import ROWS_IN_DETAIL
+from workflows.pages.sliding_sample import ROWS_IN_DETAIL, SIZE_TABLES
 
 TEXTS = ("model", "given", "not_in_model", "warning")  # columns of words, which may be empty
 REGRESSION_TABLES = ("models", "best_designs", "warnings")
@@ -40,6 +40,7 @@ def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -
         "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
         "regression": regression(folder) | {"factors": list(study["factors"])} if study["factors"] else None,
         "findings": findings(folder / "findings") if study["findings"] else None,
+        "sizes": sizes(folder / "particle_size") if study["varies_scale"] else None,
     }
 
 
@@ -54,6 +55,20 @@ def read_with_texts(path: Path, texts: Sequence[str]) -> pd.DataFrame:
     """Return a table in which empty cells of some columns are empty words, not missing numbers."""
     table = pd.read_csv(path, dtype=dict.fromkeys(texts, object))
     return table.assign(**{name: table[name].fillna("") for name in texts if name in table})
+
+
+def sizes(folder: Path) -> dict[str, Any]:
+    """Return what a study tells of its critical particle scale, its lines beside the source's, and the guidance."""
+    texts = dict.fromkeys(("row", "scales", "of_scales"), str)
+    tables = {name: pd.read_csv(folder / f"{name}.csv", dtype=texts) for name in SIZE_TABLES}
+    tables["guidance"] = in_display_units(tables["guidance"])
+    return {
+        **{name: table.to_dict("records") for name, table in tables.items() if name != "sentences"},
+        "sentences": tables["sentences"]["sentence"].tolist(),
+        "counts": tables["published"]["verdict"].value_counts().to_dict(),
+        "csv": data_uri(tables["published"].to_csv(index=False).encode(), "text/csv"),
+        "guidance_csv": data_uri(tables["guidance"].to_csv(index=False).encode(), "text/csv"),
+    }
 
 
 def findings(folder: Path) -> dict[str, Any]:

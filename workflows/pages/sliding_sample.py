@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from workflows.design import Study
 
 KEY_NUMBERS = "key_numbers_sliding_sample.html.j2"
-FURTHER_TEMPLATES = ("findings.html.j2",)  # that it includes
+FURTHER_TEMPLATES = ("findings.html.j2", "particle_size.html.j2")  # that it includes
 RUNS_NOTE = (
     "Layers: thickness of the bed over the median diameter of the (scaled) particles. Equivalent size ratio: particle "
     "over bump (Yan 2022, Eq 4.18). Particles: estimate from mass; the solver's number is under Cost."
@@ -24,6 +24,7 @@ DECKS = (  # {bed} and {run} are those of the first run
     ("Lowering and run-in", "{run}/cycle_000/deck.in"),
     ("First wear cycle", "{run}/cycle_001/deck.in"),
 )
+SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/, of a study of particle size
 ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
 TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
 ALONG = {  # bed.ends -> what it makes of the packing along the travel

@@ -22,7 +22,7 @@ with job_log(snakemake.log[0]):
     label = "Relative velocity of the particles (%)"
     published = pd.read_csv(snakemake.input.published)
     window = published_window(published, snakemake.params.run_in)
-    lines = published[published["quantity"] == "relative_velocity"]
+    lines = published[published["quantity"] == "relative_velocity"] if "of" in published else None
     remarks = [*snakemake.params.remarks, *regime_remarks(regimes)]
     figure = along_travel(along, "relative_velocity_percent", label, window, remarks, lines)
     save(figure, snakemake.output.figure)

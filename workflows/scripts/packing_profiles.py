@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from postproc.analysis.packing import slabs_remark
 from postproc.plots.packing import packing_profiles
 from postproc.plots.style import save
 from workflows.job import job_log
@@ -14,6 +15,6 @@ with job_log(snakemake.log[0]):
     table = packing_table(snakemake.params.runs, packing, Path(snakemake.output.table).parents[1] / "packings")
     published = pd.read_csv(snakemake.input.published).query("case == 'container'")
     sides = f"container of {packing['width_diameters']:g} median diameters to a side"
-    remarks = [sides, f"shaken along {packing['axis']} for {packing['shaking_s']:g} s"]
+    remarks = [sides, f"shaken along {packing['axis']} for {packing['shaking_s']:g} s", slabs_remark(table)]
     save(packing_profiles(table, published, remarks), snakemake.output.figure)
     table.to_csv(snakemake.output.table, index=False)

@@ -1,19 +1,22 @@
-"""Draw the velocity over the samples round a circle of layers, a curve per particle scale."""
+"""Draw a component of the velocity over the samples round a circle of layers, a curve per particle scale."""
 
 import pandas as pd
 
 from postproc.analysis.comparison import read_summary
+from postproc.analysis.particle_size import over_the_sample, velocity_bounds
 from postproc.plots.particle_size import spider_charts
 from postproc.plots.style import save
 from workflows.job import job_log
 
-LABELS = ("velocity with the sample (m/s)", "height of the layer (mm)")
+NAMES = {"velocity_m_per_s": "velocity with the sample", "upward_m_per_s": "velocity upwards"}
+NAMES |= {"sideways_m_per_s": "velocity sideways"}
 
 with job_log(snakemake.log[0]):
+    component = snakemake.params.component
     scales = read_summary(snakemake.input.summary).set_index("run")["particle_scale"]
-    profiles = pd.read_csv(snakemake.input.profiles, dtype={"run": str, "row": str}).query("zone == 'central'")
-    table = profiles.assign(particle_scale=profiles["run"].map(scales))
-    save(
-        spider_charts(table, "velocity_m_per_s", "height_mm", LABELS, snakemake.params.remarks), snakemake.output.figure
-    )
+    table = over_the_sample(read_summary(snakemake.input.profiles), scales)
+    bounds = velocity_bounds(pd.read_csv(snakemake.input.published), table) if component == "velocity_m_per_s" else None
+    labels = (f"{NAMES[component]} (m/s)", "height of the layer (mm)")
+    figure = spider_charts(table, component, "height_mm", labels, snakemake.params.remarks, bounds)
+    save(figure, snakemake.output.figure)
     table.to_csv(snakemake.output.table, index=False)

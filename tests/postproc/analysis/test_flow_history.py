@@ -185,3 +185,5 @@ def test_published_window_counts_from_the_run_in():
     """The source's 1000 to 1700 mm count from the start; a study's travel starts after its run-in."""
     published = pd.read_csv(ROOT / "config/published/screening_results.csv")
     assert published_window(published, 300.0) == (700.0, 1400.0)
+    sizes = pd.read_csv(ROOT / "config/published/particle_size_results.csv")  # one window for flow and wear
+    assert published_window(sizes, 500.0) == (200.0, 1200.0)

@@ -15,6 +15,7 @@ from postproc.analysis.packing import (
     packing_profile,
     porosity,
     porosity_of_whole_particles,
+    slabs_remark,
     volume_below,
     within,
 )
@@ -155,3 +156,9 @@ def test_a_piece_of_bed_has_the_centres_between_its_ends():
     cuts = [0.0, RADIUS, 5.0 * RADIUS, 1.0]
     pieces = [within(bed, start, end) for start, end in itertools.pairwise(cuts)]
     assert [len(piece) for piece in pieces] == [0, 2 * SIDE**2, 4 * SIDE**2]
+
+
+def test_a_figure_counts_its_slabs():
+    """By scale, as many as there are, never a fixed number."""
+    table = pd.DataFrame({"layer": [1, 2, 3, 1, 2, 3, 4], "particle_scale": [8.0] * 3 + [4.0] * 4})
+    assert slabs_remark(table) == "slabs of 4 median diameters: 4 at scale 4, 3 at scale 8"

@@ -8,13 +8,20 @@ from postproc.analysis.lines import Crossing
 from postproc.analysis.particle_size import (
     critical_scale,
     published_by_size_ratio,
+    velocity_bounds,
     wear_by_scale,
     wear_by_size_ratio,
 )
-from postproc.plots.particle_size import spider_charts, wear_against_scale, wear_against_size_ratios
+from postproc.plots.particle_size import (
+    spider_charts,
+    steady_by_scale,
+    wear_against_scale,
+    wear_against_size_ratios,
+)
 from postproc.plots.style import remarks_of
 from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
 from tests.postproc.analysis.test_particle_size import LINES, SCALES, TRUTH, summary
+from tests.postproc.analysis.test_published_sizes import RESULTS, profiles, steady_rows
 
 
 def labels_of(axes):
@@ -83,3 +90,38 @@ def test_spider_charts_share_circle_and_radius():
         along = spins().query("surface == 'convex' and particle_scale == @scale")["along_mm"].to_numpy()
         turn[scale] = angle / along
     assert np.ptp(np.concatenate(list(turn.values()))) < 1e-12
+
+
+def test_negative_velocities_lie_inside_a_zero_circle():
+    """The radius begins below the lowest value, and zero is drawn in every chart."""
+    figure = spider_charts(profiles(), "sideways_m_per_s", "height_mm", ("sideways (m/s)", "height (mm)"), [])
+    for axes in figure.axes:
+        assert axes.get_rmin() < profiles()["sideways_m_per_s"].min() and axes.get_rmax() >= 0.0
+        assert any(np.all(line.get_ydata() == 0.0) for line in axes.lines)
+
+
+def test_published_bounds_are_arcs():
+    """Over the plain sample up to the highest layer, over the convex one up to the lowest; both in the legend."""
+    table = profiles()
+    labels = ("velocity (m/s)", "height (mm)")
+    figure = spider_charts(table, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, table))
+    ends = {}
+    for axes, surface in zip(figure.axes, dict.fromkeys(table["surface"]), strict=True):
+        arc = next(line for line in axes.lines if line.get_label().startswith("Yan 2022"))
+        ends[surface] = (arc.get_ydata()[0], arc.get_xdata()[-1])
+    assert ends["plain"][0] == 0.35 and ends["convex"][0] == 0.9
+    assert ends["plain"][1] == pytest.approx(3.0 * ends["convex"][1])  # 30 mm over 10 mm
+    told = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"Yan 2022: below 0.35", "Yan 2022: above 0.9"} <= set(told)
+
+
+def test_means_by_scale_show_deviations_and_published_values():
+    """A panel per measure; windows that are not steady are hollow; published marks stand on their measure only."""
+    figure = steady_by_scale(steady_rows(), RESULTS, ["shrunk"])
+    velocity, rate = figure.axes
+    assert len([line for line in velocity.lines if line.get_label() == "published"]) == 5
+    assert not [line for line in rate.lines if line.get_label() == "published"]
+    assert all(
+        np.allclose(points.get_facecolors()[:, :3], 1.0) for points in rate.collections if len(points.get_facecolors())
+    )
+    assert len(velocity.containers) == 2 and "shrunk" in remarks_of(figure)

@@ -128,3 +128,20 @@ def test_margins_are_cut_off():
     assert [cut.shape for cut in cuts] == [(4, 6, 3)] * 2
     assert (cuts[0][0, 0] == 0).all()
     assert (cuts[1][3, 5] == 10).all()
+
+
+def test_wear_maps_have_a_column_per_scale(mesh):
+    """A line per surface, all on one colour scale; titles tell sample and scale."""
+    runs = pd.DataFrame(
+        {
+            "run": ["S2_convex", "S2_plain", "S8_convex", "S8_plain"],
+            "row": ["S2", "S2", "S8", "S8"],
+            "surface": ["convex", "plain"] * 2,
+            "particle_scale": [2.0, 2.0, 8.0, 8.0],
+        }
+    )
+    meshes = dict.fromkeys(runs["run"], mesh)
+    figure = pictures.wear_maps(meshes, runs, True, depth_table(meshes, True), "Removed thickness", REMARKS)
+    titles = [axes.get_title() for axes in figure.axes if axes.get_title()]
+    assert titles[:2] == ["convex sample, particle scale 2", "convex sample, particle scale 8"] and len(titles) == 4
+    assert REMARKS[0] in remarks_of(figure)

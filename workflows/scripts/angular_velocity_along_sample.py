@@ -1,0 +1,22 @@
+"""Draw the angular speed of the lowest layer along the samples round a circle, a curve per particle scale."""
+
+from pathlib import Path
+
+from postproc.analysis.comparison import read_summary
+from postproc.analysis.display import MILLIMETRES, in_display_units
+from postproc.analysis.flow_history import RunFlow, spin_profiles
+from postproc.plots.particle_size import spider_charts
+from postproc.plots.style import save
+from workflows.job import job_log
+
+LABELS = ("angular speed of the lowest layer (°/s)", "distance behind the front edge (mm)")
+
+with job_log(snakemake.log[0]):
+    summary = read_summary(snakemake.input.summary)[["run", "row", "surface", "particle_scale"]]
+    starts = read_summary(snakemake.input.profiles).groupby("run")["window_start_mm"].first() / MILLIMETRES
+    runs = {run: RunFlow(**values) for run, values in snakemake.params.runs.items()}
+    folders = dict(zip(summary["run"], [Path(path).parent for path in snakemake.input.wear], strict=True))
+    table = in_display_units(summary.merge(spin_profiles(folders, runs, starts.to_dict()), on="run"))
+    figure = spider_charts(table, "angular_speed_deg_per_s", "along_mm", LABELS, snakemake.params.remarks)
+    save(figure, snakemake.output.figure)
+    table.to_csv(snakemake.output.table, index=False)

@@ -1,0 +1,22 @@
+"""Set what a study of particle size found beside the numbers of the source, and tell of its critical scale."""
+
+import pandas as pd
+
+from postproc.analysis.comparison import read_summary
+from postproc.analysis.particle_size import read_critical_scale
+from postproc.analysis.published_sizes import beside_the_source, critical_sentences, packing_beside_the_source
+from postproc.reference.size_ratios import PUBLISHED_CRITICAL_SCALE
+from workflows.job import job_log
+
+with job_log(snakemake.log[0]):
+    files = snakemake.input
+    steady, profiles, wear = (read_summary(path) for path in (files.steady, files.profiles, files.wear))
+    critical, guidance = read_critical_scale(files.critical), pd.read_csv(files.guidance)
+    ratio = guidance["equivalent_radius"].iloc[0]  # of real particles: the pattern of all rows is one
+    table = beside_the_source(pd.read_csv(files.published), steady, profiles, critical, ratio)
+    packings = [pd.read_csv(path) for path in (files.published_packing, files.container, files.bed)]
+    table = pd.concat([table, packing_beside_the_source(*packings)], ignore_index=True)
+    table.to_csv(snakemake.output.published, index=False)
+    unsteady = int((~steady["steady"]).sum())
+    said = critical_sentences(critical, PUBLISHED_CRITICAL_SCALE, wear, unsteady)
+    pd.DataFrame({"sentence": said}).to_csv(snakemake.output.sentences, index=False)
