@@ -145,7 +145,7 @@ def _with_deviation(axes: Axes, one: pd.DataFrame, surface: str) -> None:
     bars = {"color": shade, "capsize": 3, "linewidth": 1.0, "label": surface}
     axes.errorbar(one["particle_scale"], one["mean_percent"], one["deviation_percent"], **bars)
     fill = [shade if steady else "white" for steady in one["steady"]]
-    axes.scatter(one["particle_scale"], one["mean_percent"], 36, fill, marker, edgecolors=shade, zorder=3)
+    axes.scatter(one["particle_scale"], one["mean_percent"], 36, fill, marker=marker, edgecolors=shade, zorder=3)
 
 
 def spider_charts(
