@@ -79,7 +79,7 @@ def _run_stretches(run: dict[str, str], folder: Path) -> pd.DataFrame:
 
 
 def force_history(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
-    """Return the bed's force on the sample along the travel: run, row, surface, travel_mm, normal_force_N
+    """Return the bed's force on the whole mesh along the travel: run, row, surface, travel_mm, vertical_force_N
     (down), drag_force_N (along the bed's motion), side_force_N; at most about `ROWS_PER_RUN` evenly spaced
     rows per run, each the mean over its stretch of travel.
 
@@ -96,7 +96,7 @@ def _run_forces(run: dict[str, str], folder: Path) -> pd.DataFrame:
     table = pd.DataFrame(
         {
             "travel_m": forces["travel_m"],
-            "normal_force_N": -forces["force_z_N"],
+            "vertical_force_N": -forces["force_z_N"],
             "drag_force_N": forces["force_y_N"],
             "side_force_N": forces["force_x_N"],
         }
@@ -106,8 +106,8 @@ def _run_forces(run: dict[str, str], folder: Path) -> pd.DataFrame:
 
 
 def force_summary(forces: pd.DataFrame) -> pd.DataFrame:
-    """Return mean, 10th and 90th percentile of normal and drag force (N) of each run along its travel."""
-    names = ("normal_force_N", "drag_force_N")
+    """Return mean, 10th and 90th percentile of vertical and drag force (N) of each run along its travel."""
+    names = ("vertical_force_N", "drag_force_N")
     grouped = forces.groupby(["run", "row", "surface"], sort=False)
     columns = {}
     for name in names:

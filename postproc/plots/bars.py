@@ -166,7 +166,7 @@ def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
 
 def mean_forces(summary: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw mean normal and drag force (N) per run with the 10th to 90th percentile along the travel.
+    """Draw mean vertical and drag force (N) per run with the 10th to 90th percentile along the travel.
 
     summary: as from `analysis.history.force_summary`. For studies of many rows.
     """
@@ -174,7 +174,7 @@ def mean_forces(summary: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     panels = figure.subplots(2, 1, sharex=True)
     rows = list(dict.fromkeys(summary["row"]))
     surfaces = list(dict.fromkeys(summary["surface"]))
-    for axes, name, label in zip(panels, ("normal_force_N", "drag_force_N"), ("Normal", "Drag"), strict=True):
+    for axes, name, label in zip(panels, ("vertical_force_N", "drag_force_N"), ("Vertical", "Drag"), strict=True):
         for index, surface in enumerate(surfaces):
             runs = summary[summary["surface"] == surface]
             places = np.array([rows.index(row) for row in runs["row"]]) + (index - 0.5) * BAR_WIDTH

@@ -114,19 +114,19 @@ def depth_distribution(curves: pd.DataFrame, quantity: str, remarks: Sequence[st
 
 
 def forces(history: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw normal and drag force (N) on the sample against travel (mm) for a study of few design rows."""
+    """Draw vertical and drag force (N) on the sample against travel (mm) for a study of few design rows."""
     rows = list(dict.fromkeys(history["row"]))
     figure = new_figure(remarks, LARGEST_HEIGHT)
     grid = figure.subplots(2, len(rows), sharex=True, sharey="row", squeeze=False)
     for column, row in enumerate(rows):
         for run in _runs(history[history["row"] == row]):
             drawn = {"color": colour(run["surface"].iloc[0]), "linewidth": 1.0, "label": run["run"].iloc[0]}
-            grid[0, column].plot(run["travel_mm"], run["normal_force_N"], **drawn)
+            grid[0, column].plot(run["travel_mm"], run["vertical_force_N"], **drawn)
             grid[1, column].plot(run["travel_mm"], run["drag_force_N"], **drawn)
         if len(rows) > 1:
             grid[0, column].set_title(row, loc="left")
         grid[1, column].set_xlabel("Travel (mm)")
-    grid[0, 0].set_ylabel("Normal force (N)")
+    grid[0, 0].set_ylabel("Vertical force (N)")
     grid[1, 0].set_ylabel("Drag force (N)")
     for axes in grid.ravel():
         axes.axhline(0.0, color="#888888", linewidth=0.6)

@@ -71,7 +71,7 @@ def test_a_run_without_wear_within_cycles_is_named(design, tmp_path):
 
 
 def test_forces_keep_their_mean_and_count_down_as_positive(design, tmp_path):
-    """Bunching rows keeps the mean force; pressure on the sample (force_z < 0) is a positive normal force."""
+    """Bunching rows keeps the mean force; pressure on the sample (force_z < 0) is a positive vertical force."""
     rows = 4 * ROWS_PER_RUN
     normal = np.random.default_rng(3).normal(5.0, 1.0, rows)
     travel = np.linspace(0.0, 1.0, rows)
@@ -81,12 +81,12 @@ def test_forces_keep_their_mean_and_count_down_as_positive(design, tmp_path):
     table = force_history(design, [tmp_path / "1_convex", tmp_path / "1_plain"])
     run = table[table["run"] == "1_convex"]
     assert len(run) == ROWS_PER_RUN
-    assert run["normal_force_N"].mean() == pytest.approx(normal.mean(), rel=RELATIVE)
+    assert run["vertical_force_N"].mean() == pytest.approx(normal.mean(), rel=RELATIVE)
     assert run["travel_mm"].is_monotonic_increasing
     assert (table["drag_force_N"] == 2.0).all()
     summary = force_summary(table)
-    assert summary["mean_normal_force_N"].to_numpy() == pytest.approx(normal.mean(), rel=RELATIVE)
-    assert (summary["low_normal_force_N"] < summary["high_normal_force_N"]).all()
+    assert summary["mean_vertical_force_N"].to_numpy() == pytest.approx(normal.mean(), rel=RELATIVE)
+    assert (summary["low_vertical_force_N"] < summary["high_vertical_force_N"]).all()
 
 
 def test_missing_forces_are_named(design, tmp_path):

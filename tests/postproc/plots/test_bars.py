@@ -92,11 +92,11 @@ def test_mean_forces_of_many_rows():
     """Means stand where their row is named, in N, bars from the low to the high percentile."""
     rows = [f"R{k}" for k in range(1, 5)]
     table = pd.DataFrame({"row": np.repeat(rows, 2), "surface": ["convex", "plain"] * 4})
-    for name in ("normal_force_N", "drag_force_N"):
+    for name in ("vertical_force_N", "drag_force_N"):
         mean = np.arange(8.0) + 1.0
         table = table.assign(**{f"mean_{name}": mean, f"low_{name}": mean - 0.5, f"high_{name}": mean + 1.0})
     figure = bars.mean_forces(table, REMARKS)
-    assert [axes.get_ylabel() for axes in figure.axes] == ["Normal force (N)", "Drag force (N)"]
+    assert [axes.get_ylabel() for axes in figure.axes] == ["Vertical force (N)", "Drag force (N)"]
     assert [label.get_text() for label in figure.axes[1].get_xticklabels()] == rows
     for axes in figure.axes:
         convex, plain = (container.lines[0].get_ydata() for container in axes.containers)

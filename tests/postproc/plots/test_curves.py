@@ -94,12 +94,12 @@ def test_distribution_is_drawn_as_tabled():
 
 
 def test_forces_are_drawn_as_tabled():
-    """Normal force above, drag below, both in N against travel in mm."""
-    values = {"travel_mm": [1.0, 2.0, 3.0], "normal_force_N": [5.0, 6.0, 7.0], "drag_force_N": [2.0, 2.5, 3.0]}
+    """Vertical force above, drag below, both in N against travel in mm."""
+    values = {"travel_mm": [1.0, 2.0, 3.0], "vertical_force_N": [5.0, 6.0, 7.0], "drag_force_N": [2.0, 2.5, 3.0]}
     table = pd.concat([pd.DataFrame(values).assign(**run) for run in runs("R9")], ignore_index=True)
     figure = curves.forces(table, REMARKS)
     drawn = lines_of(figure)
-    np.testing.assert_array_equal(drawn["R9_plain", "Normal force (N)"], table[["travel_mm", "normal_force_N"]][:3])
+    np.testing.assert_array_equal(drawn["R9_plain", "Vertical force (N)"], table[["travel_mm", "vertical_force_N"]][:3])
     np.testing.assert_array_equal(drawn["R9_plain", "Drag force (N)"], table[["travel_mm", "drag_force_N"]][:3])
     assert figure.axes[1].get_xlabel() == "Travel (mm)"
 
