@@ -34,9 +34,9 @@ def folder(study, tmp_path):
     ]
     pd.DataFrame(rows).to_csv(tmp_path / "summary.csv", index=False)
     (tmp_path / "flow").mkdir()
-    pd.DataFrame([{"run": run.name, "regime": "continuous", "relative_velocity": 0.3} for run in study.runs]).to_csv(
-        tmp_path / "flow" / "regimes.csv", index=False
-    )
+    pd.DataFrame(
+        [{"run": run.name, "regime": "continuous", "steady": True, "relative_velocity": 0.3} for run in study.runs]
+    ).to_csv(tmp_path / "flow" / "regimes.csv", index=False)
     window = {
         "measure": "relative_gradient",
         "mean": 0.6,
@@ -63,7 +63,7 @@ def test_a_row_stands_beside_its_plain_twin(study, folder):
     """Ratios of the two surfaces, wear in mm3 per metre, and the regime over the convex one."""
     lines = wear_text(folder, study).splitlines()
     assert lines[0].startswith("| row | particle scale | regime |")
-    assert lines[2] == "| R5 | 1.25 | continuous | 30 | 0.75 | 25 | 33.3 | 33.3 | 1.5 |"
+    assert lines[2] == "| R5 | 1.25 | continuous | yes | 30 | 0.75 | 25 | 33.3 | 33.3 | 1.5 |"
     assert len(lines) == 4
 
 
