@@ -69,4 +69,4 @@ def _legend(figure: Figure, histories: pd.DataFrame) -> None:
         handles.append(Line2D([], [], label=f"scale {scale:g}", **drawn))
     for model in dict.fromkeys(histories["rolling_friction"]):
         handles.append(Line2D([], [], color=SHADES[model], label=NAMES[model]))
-    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 5))
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 4))

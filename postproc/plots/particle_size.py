@@ -135,7 +135,7 @@ def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Seque
     for relation in dict.fromkeys(published.loc[published["quantity"].isin(MEASURE_NAMES), "relation"]):
         mark = {"marker": PUBLISHED_MARKS[relation], "markerfacecolor": "white", "linestyle": ":"}
         handles.append(Line2D([], [], color=OTHER_COLOUR, label=f"Yan 2022: {relation}", **mark))
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    figure.legend(handles=handles, loc="outside upper center", ncols=3)
     return figure
 
 
@@ -168,8 +168,8 @@ def spider_charts(
     figure = new_figure(remarks, LARGEST_HEIGHT)
     panels = figure.subplots(1, len(surfaces), subplot_kw={"projection": "polar"}, squeeze=False)[0]
     whole = _circle(table, place, scales)
-    lowest, largest = min(table[value].min(), 0.0), table[value].max()
     bounds = pd.DataFrame(columns=["surface", "relation", "value", "place_to"]) if bounds is None else bounds
+    lowest, largest = min(table[value].min(), 0.0), max([table[value].max(), *bounds["value"]])
     for axes, surface in zip(panels, surfaces, strict=True):
         axes.set_theta_zero_location("N")
         axes.set_theta_direction(-1)

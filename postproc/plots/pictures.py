@@ -18,6 +18,7 @@ from postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface
 from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
 
 ROWS_PER_LINE = 7  # design rows side by side in small multiples
+MAPS_HEIGHT = 4.4  # inches, of a figure with maps side by side
 TOP_SHARE = 0.99  # of the worn area: deeper spots share the top colour
 
 
@@ -107,21 +108,22 @@ def wear_maps(
     quantity: str,
     remarks: Sequence[str],
 ) -> Figure:
-    """Draw worn surfaces from above without skirt, all on one colour scale: a line per surface, a column per row.
+    """Draw worn surfaces from above without skirt side by side, all on one colour scale, surface by surface.
 
-    meshes: by run; runs: run, row, surface and particle_scale; the others as for `worn_surface`
+    meshes: by run; runs: run, surface and particle_scale; the others as for `worn_surface`
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
-    rows, surfaces = list(dict.fromkeys(runs["row"])), list(dict.fromkeys(runs["surface"]))
-    limits = colour_limits(depths)
-    grid = figure.subplots(len(surfaces), len(rows), squeeze=False)
-    for run in runs.itertuples():
-        axes = grid[surfaces.index(run.surface), rows.index(run.row)]
+    figure = new_figure(remarks, MAPS_HEIGHT)
+    limits, ordered = colour_limits(depths), runs.sort_values("surface", kind="stable")
+    grid = figure.subplots(1, len(runs), sharey=True, squeeze=False)
+    for axes, run in zip(grid[0], ordered.itertuples(), strict=True):
         picture(axes, *surface_plan(meshes[run.run], deformed, limits, 600, skirt=False))
-        axes.set_title(f"{run.surface} sample, particle scale {run.particle_scale:g}", fontsize=SMALLEST_FONT, pad=3)
-        axes.set(xlabel="x (mm)", ylabel="y (mm), bed moves up")
+        axes.set_title(f"{run.surface} sample,\nparticle scale {run.particle_scale:g}", fontsize=SMALLEST_FONT)
+        axes.set_xlabel("x (mm)")
+    grid[0, 0].set_ylabel("y (mm)\nbed moves to +y →")
     unit, ticks = scaled("µm", limits[1])
-    _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
+    place = {"location": "bottom", "shrink": 0.6, "aspect": 40, "pad": 0.04}
+    bar = ScalarMappable(Normalize(*limits), MAP)
+    figure.colorbar(bar, ax=grid, label=f"{quantity} ({unit})", format=ticks, extend="max", **place)
     return figure
 
 

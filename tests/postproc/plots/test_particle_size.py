@@ -110,6 +110,9 @@ def test_published_bounds_are_arcs():
         arc = next(line for line in axes.lines if line.get_label().startswith("Yan 2022"))
         ends[surface] = (arc.get_ydata()[0], arc.get_xdata()[-1])
     assert ends["plain"][0] == 0.35 and ends["convex"][0] == 0.9
+    slow = table.assign(velocity_m_per_s=0.1 * table["velocity_m_per_s"])
+    figure = spider_charts(slow, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, slow))
+    assert all(axes.get_rmax() > 0.9 for axes in figure.axes)  # also a bound that ours stay far below is seen
     assert ends["plain"][1] == pytest.approx(3.0 * ends["convex"][1])  # 30 mm over 10 mm
     told = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"Yan 2022: below 0.35", "Yan 2022: above 0.9"} <= set(told)

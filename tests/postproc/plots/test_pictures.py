@@ -131,7 +131,7 @@ def test_margins_are_cut_off():
 
 
 def test_wear_maps_have_a_column_per_scale(mesh):
-    """A line per surface, all on one colour scale; titles tell sample and scale."""
+    """Surface by surface, small beside large, all on one colour scale; titles tell sample and scale."""
     runs = pd.DataFrame(
         {
             "run": ["S2_convex", "S2_plain", "S8_convex", "S8_plain"],
@@ -143,5 +143,5 @@ def test_wear_maps_have_a_column_per_scale(mesh):
     meshes = dict.fromkeys(runs["run"], mesh)
     figure = pictures.wear_maps(meshes, runs, True, depth_table(meshes, True), "Removed thickness", REMARKS)
     titles = [axes.get_title() for axes in figure.axes if axes.get_title()]
-    assert titles[:2] == ["convex sample, particle scale 2", "convex sample, particle scale 8"] and len(titles) == 4
+    assert titles[:2] == ["convex sample,\nparticle scale 2", "convex sample,\nparticle scale 8"] and len(titles) == 4
     assert REMARKS[0] in remarks_of(figure)
