@@ -40,7 +40,7 @@ study: setup ## Run a whole study: make study STUDY=<name of a file in config/st
 forecast: setup ## What a study will cost: core hours, wall time, memory, disk of each run (STUDY=demo)
 	$(SNAKEMAKE) $(STUDY)_forecast
 
-rates: setup ## Measure what the solver's work costs on this machine, for forecasts; about a minute, best with nothing beside it
+rates: setup ## Measure what the solver's work costs on this machine, for forecasts; a minute or two, best with nothing beside it
 	$(SNAKEMAKE) cost_rates --force
 
 screening: setup ## Run the screening study

@@ -1,18 +1,24 @@
-"""Measure the rates of the cost model on this machine, in about a minute on an idle core: small runs of real decks.
+"""Measure the rates of the cost model on this machine, in little more than a minute: small runs of real decks.
 
 A bed of some 3,000 particles is filled, and slides over a sample of two mesh sizes; a pin goes round on a disc of two
-mesh sizes. Times are processor times, so that other work on the machine disturbs them little: what a `run` command of a
-deck took by the solver's clock, times the share of a processor that its program had.
+mesh sizes. As many copies of that run side by side as a study has cores: they share the machine's memory and caches,
+as the runs of a study do. Times are processor times, so that other work on the machine disturbs them little: what a
+`run` command of a deck took by the solver's clock, times the share of a processor that its program had; the median of
+the copies.
 """
 
 from __future__ import annotations
 
 import io
+import os
+import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -28,7 +34,7 @@ from workflows.design import Study, load_study
 from workflows.progress import Progress
 from workflows.rates import MachineRates, machine_facts
 from workflows.schedule import Span
-from workflows.solver import LOG, processor_seconds
+from workflows.solver import LOG, die_with, processor_seconds
 from workflows.work import Stage
 
 BED_STUDY, BED_RUN = "demo", "R9_plain"
@@ -66,6 +72,7 @@ GROUPS = {  # kind of measurement -> the rates that those of its kind tell, give
     "mesh": ("meshed_triangles",),
     "job": ("jobs",),
 }
+MOST_COPIES = 8  # side by side: more processors share no more of a cache, and each copy needs its memory
 LEAST_SECONDS = 0.2  # processor time of a `run` command; shorter ones tell more about the clock
 Say = Callable[[str], None]
 
@@ -80,18 +87,36 @@ class Measurement:
     seconds: float
 
 
-def measured_rates(folder: Path, say: Say) -> MachineRates:
-    """Return the rates of this machine; simulates in an empty folder. Raises SolverError and what runs raise."""
-    measured: list[Measurement] = []
+def measured_rates(folder: Path, say: Say, cores: int = 1) -> MachineRates:
+    """Return the rates of this machine for runs that share so many cores; simulates in an empty folder.
+
+    There are as many copies side by side as cores, `MOST_COPIES` at most, and each part of the work is begun by all of
+    them together. Raises SolverError and what runs raise.
+    """
+    copies = [folder / f"copy_{number}" for number in range(min(cores, MOST_COPIES))]
+    found: list[list[Measurement]] = [[] for _ in copies]
     parts = [(_sliding, *sample) for sample in SAMPLES.items()] + [(_pin, *disc) for disc in DISCS.items()]
-    for number, (part, title, settings) in enumerate(parts, start=1):
-        say(f"part {number} of {len(parts)}, {title}")
-        measured += part(title, settings, folder)
-    return rates_from([*measured, _job()])
+    # processes, because a process knows the processor time of all that it has started, and of nothing else
+    with ProcessPoolExecutor(len(copies), initializer=die_with(os.getpid())) as pool:
+        for number, (part, title, settings) in enumerate(parts, start=1):
+            say(f"part {number} of {len(parts)}, {title}, {len(copies)} side by side")
+            for of_copy, more in zip(found, pool.map(partial(part, title, settings), copies), strict=True):
+                of_copy += more
+        jobs = pool.map(_job, copies)
+        found = [[*of_copy, job] for of_copy, job in zip(found, jobs, strict=True)]
+    return rates_from(typical(found), len(copies))
 
 
-def rates_from(measured: Sequence[Measurement]) -> MachineRates:
-    """Return the rates that measurements tell, group by group, and how well each is met."""
+def typical(copies: Sequence[Sequence[Measurement]]) -> list[Measurement]:
+    """Return the measurements of one copy, each with the median of the seconds that all copies took for it."""
+    same: dict[tuple[str, str], list[Measurement]] = {}
+    for each in (each for found in copies for each in found):
+        same.setdefault((each.kind, each.what), []).append(each)
+    return [replace(found[0], seconds=statistics.median(each.seconds for each in found)) for found in same.values()]
+
+
+def rates_from(measured: Sequence[Measurement], side_by_side: int = 1) -> MachineRates:
+    """Return the rates that measurements tell, group by group, and how well each is met; side_by_side: copies."""
     rates: dict[str, float] = {}
     for kind, terms in GROUPS.items():
         told = [each for each in measured if each.kind == kind]
@@ -104,7 +129,7 @@ def rates_from(measured: Sequence[Measurement]) -> MachineRates:
         )
         for each in measured
     }
-    return MachineRates(rates, machine_facts(), time.strftime("%Y-%m-%d"), fit)
+    return MachineRates(rates, machine_facts(), time.strftime("%Y-%m-%d"), fit, side_by_side)
 
 
 # ---------------------------------------------------------------- what is simulated
@@ -136,7 +161,7 @@ def _chain(study: Study, run: str, title: str, folder: Path) -> tuple[Chain, Mea
     """Return a run as the driver sees it, its surface made, and what that took."""
     parameters, bed = study.run(run).parameters, study.bed_of(run)
     surface = folder / title.replace(" ", "_") / "surface.vtu"
-    surface.parent.mkdir()
+    surface.parent.mkdir(parents=True)
     started = time.process_time()
     mesh = CASES[study.case].surface_mesh(parameters)
     meshed = Measurement("mesh", title, {"meshed_triangles": len(mesh.triangles)}, time.process_time() - started)
@@ -180,8 +205,8 @@ def _loops(
     return found
 
 
-def _job() -> Measurement:
-    """Return what starting a job of the workflow and importing what it needs takes."""
+def _job(folder: Path) -> Measurement:
+    """Return what starting a job of the workflow and importing what it needs takes; it needs no folder."""
     before = processor_seconds()
     subprocess.run([sys.executable, "-c", JOB], cwd=Path(__file__).resolve().parents[1], check=True)
     return Measurement("job", "imports", {"jobs": 1}, processor_seconds() - before)

@@ -25,18 +25,21 @@ class RatesError(ValueError):
 class MachineRates:
     """Rates (s per unit of each term of the cost model), where and when they were measured, and how well they fit.
 
-    fit: {measurement: seconds by the model over measured ones}
+    fit: {measurement: seconds by the model over measured ones}; side_by_side: copies of the benchmark that shared the
+    machine, 1 in files that do not tell
     """
 
     rates: dict[str, float]
     machine: dict[str, Any]
     date: str
     fit: dict[str, float]
+    side_by_side: int = 1
     measured_here: bool = True
 
     def said(self) -> str:
         """Return in one phrase where the numbers come from."""
-        where = f"{self.machine['processor']}, {self.machine['cores']} cores, measured {self.date}"
+        beside = f"by {self.side_by_side} processes side by side" if self.side_by_side > 1 else "by a single process"
+        where = f"{self.machine['processor']}, {self.machine['cores']} cores, measured {self.date} {beside}"
         if not self.measured_here:
             return f"DEFAULT RATES OF ANOTHER MACHINE ({where}); `make rates` measures this one's in about a minute"
         if self.machine != machine_facts():
@@ -62,6 +65,11 @@ def read_rates(path: Path) -> MachineRates:
     if not all(number >= 0.0 for number in numbers):
         raise RatesError(
             f"{path}: a rate is {min(numbers):g} s, allowed is 0 or more; `make rates` measures them anew."
+        )
+    if not (isinstance(rates.side_by_side, int) and rates.side_by_side >= 1):
+        raise RatesError(
+            f"{path}: side_by_side is {rates.side_by_side!r}, allowed are whole numbers from 1 on; `make rates`"
+            " measures them anew."
         )
     return rates
 

@@ -104,7 +104,7 @@ def run_deck(
             stdin=subprocess.DEVNULL,
             stdout=screen,
             stderr=subprocess.STDOUT,
-            preexec_fn=_die_with(os.getpid()),
+            preexec_fn=die_with(os.getpid()),
         )
         try:
             _watch(process, folder, on_step, unchecked)
@@ -170,8 +170,11 @@ def _stop(process: subprocess.Popen) -> None:
             process.wait()
 
 
-def _die_with(parent: int) -> Callable[[], None]:
-    """Return what lets the kernel stop the solver when the driver dies, however; mpirun then stops its ranks."""
+def die_with(parent: int) -> Callable[[], None]:
+    """Return what lets the kernel stop a child, such as the solver, when its parent dies; mpirun then stops its ranks.
+
+    To be called in the child; parent: id of the process that starts it
+    """
 
     def before_exec() -> None:
         if sys.platform == "linux":
