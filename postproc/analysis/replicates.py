@@ -40,6 +40,26 @@ def replicate_intervals(settings: np.ndarray, values: np.ndarray, level: float =
     )
 
 
+def ratio_intervals(settings: np.ndarray, values: np.ndarray, reference: str, level: float = 0.95) -> pd.DataFrame:
+    """Return `replicate_intervals` with each setting's ratio to a reference: columns ratio, ratio_low, ratio_high.
+
+    Runs of a setting and of the reference are independent samples. The interval of the ratio is that of the difference
+    of mean logarithms, by Student's t on `freedom` degrees of freedom, those of all settings together; of the reference
+    itself it is NaN. Raises ValueError without a value of the reference.
+    """
+    found = replicate_intervals(settings, values, level)
+    if reference not in found["setting"].to_numpy():
+        raise ValueError(f"no run of {reference}, found are {', '.join(map(str, found['setting'])) or 'none'}")
+    own = found["setting"] == reference
+    freedom = int(found["runs"].sum()) - len(found)
+    against = found[own].iloc[0]
+    error = found["deviation"] * np.sqrt(1.0 / found["runs"] + 1.0 / against["runs"])
+    reach = (stats.t.ppf(0.5 + level / 2.0, max(freedom, 1)) * error).mask(own)
+    ratio = found["mean"] / against["mean"]
+    ends = {"ratio_low": ratio * np.exp(-reach), "ratio_high": ratio * np.exp(reach)}
+    return found.assign(ratio=ratio, **ends, freedom=freedom)
+
+
 def by_setting(table: pd.DataFrame, settings: Mapping[str, str]) -> pd.DataFrame:
     """Return a table of relative wear with a line per setting instead of per row; `row` is then the setting's name.
 

@@ -1,63 +1,163 @@
-"""The comparison of a full bed with windows: means, their errors, costs, and what a second surface leaves alone."""
+"""The comparison of a full bed with windows: means over packings, their intervals, costs, and that runs go on."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks.travelling_window import BEDS, BLOCK, FULL, at_source_size, comparison, results_page, with_other_surface
+import benchmarks.window_case as window
+from benchmarks import travelling_window
+from benchmarks.travelling_window import BLOCK, at_source_size, block_rows, comparison, publish, run_row
+from benchmarks.window_case import BEDS, FULL, SOURCE_FRACTION, Case, chain_of, packing, said_beforehand
+from postproc.analysis.replicates import ratio_intervals
 
-WINDOW = list(BEDS)[-1]
-VALUES = {FULL: [1.0, 3.0], WINDOW: [2.0, 2.4]}  # J in each block
-
-
-def tables(surface="plain"):
-    work = [
-        {"surface": surface, "bed": bed, "block": k + 1, "sliding_work_J": value}
-        for bed, values in VALUES.items()
-        for k, value in enumerate(values)
-    ]
-    names = {"bed_length_m": 2.0, "particles": 100.0, "bed_processor_s": 1.0}
-    cost = [
-        {"surface": surface, "bed": bed, **names, "particle_steps": steps, "processor_s": seconds}
-        for bed, steps, seconds in ((FULL, 1000.0, 60.0), (WINDOW, 200.0, 15.0))
-    ]
-    return work, cost
+WINDOW, COARSE = list(BEDS)[1], list(BEDS)[-1]
+STUDENT_95_2 = 4.302653  # two-sided 95 % point of Student's t with two degrees of freedom; tables
 
 
-def test_means_errors_and_costs_are_those_of_the_blocks():
-    """Per metre; the standard error of two values is half their difference; ratios are against the full bed."""
-    work, cost = map(pd.DataFrame, tables())
-    table = comparison(work, cost).set_index("bed")
-    assert list(table["sliding_work_J_per_m"] * BLOCK) == pytest.approx([2.0, 2.2])
-    assert list(table["standard_error_J_per_m"] * BLOCK) == pytest.approx([1.0, 0.2])
-    assert list(table["wear_over_full"]) == pytest.approx([1.0, 1.1])
-    joint = np.hypot(1.0, 0.2)
-    assert table["deviations_apart"][WINDOW] == pytest.approx(0.2 / joint)
-    assert table["error_of_that"][WINDOW] == pytest.approx(joint / 2.0)
-    assert table.loc[FULL, ["deviations_apart", "error_of_that"]].isna().all()
-    assert list(table["cheaper_in_particle_steps"]) == [1.0, 5.0]
-    assert list(table["cheaper_in_processor_time"]) == [1.0, 4.0]
-    page = results_page(table.reset_index())
-    assert "| plain | bed of 2 m | 20 | 10 | 2 | 1 |" in page and "window 100 + 50" in page
-
-
-def test_rows_of_the_other_surface_stay(tmp_path):
-    """A second run of one surface replaces its rows only."""
-    file = tmp_path / "table.csv"
-    with_other_surface(file, "plain", tables("plain")[0]).to_csv(file, index=False)
-    both = with_other_surface(file, "convex", tables("convex")[0])
-    both.to_csv(file, index=False)
-    assert len(both) == 8
-    assert with_other_surface(file, "plain", tables("plain")[0]).equals(
-        pd.concat([both[4:], both[:4]], ignore_index=True)
+def runs(surface="plain", per_bed=((FULL, (1.0, 4.0), 1000.0, 60.0), (WINDOW, (2.0, 8.0), 200.0, 15.0))):
+    """A table of two packings in two beds: J/m, particle-steps, processor seconds."""
+    names = {"bed_length_m": 2.0, "time_step_s": 1e-5, "triangles": 100, "particles": 50.0, "bed_processor_s": 1.0}
+    return pd.DataFrame(
+        {
+            **{"surface": surface, "bed": bed, "seed": seed, "sliding_work_J_per_m": value, "normal_force_N": value},
+            **{**names, "particle_steps": steps, "processor_s": seconds},
+        }
+        for bed, values, steps, seconds in per_bed
+        for seed, value in enumerate(values)
     )
 
 
-def test_the_shortest_window_is_five_times_shorter_than_the_sources_bed():
-    """200 mm of sample, 100 + 50 of bed, 20 between exchanges, three particles and their skin."""
+def blocks(surface="plain"):
+    """Two blocks of travel of each of those runs."""
+    return pd.DataFrame(
+        {**row, "block": block, "sliding_work_J": BLOCK * row["sliding_work_J_per_m"]}
+        for row in runs(surface)[["surface", "bed", "seed", "sliding_work_J_per_m"]].to_dict("records")
+        for block in (1, 2)
+    )
+
+
+def test_packings_are_what_is_repeated():
+    """Logarithms 0, ln 4 and ln 2, ln 8: means ln 2 and ln 4, pooled variance 2 (ln 2)^2, two degrees of freedom; the
+    error of a difference of two means of two is then sqrt(2) ln 2.
+    """
+    table = comparison(runs()).set_index("bed")
+    assert list(table["sliding_work_J_per_m"]) == pytest.approx([2.0, 4.0])
+    assert list(table["packings"]) == [2, 2]
+    assert list(table["scatter"]) == pytest.approx([np.sqrt(2.0) * np.log(2.0)] * 2)
+    assert list(table["wear_over_full"]) == pytest.approx([1.0, 2.0])
+    reach = STUDENT_95_2 * np.sqrt(2.0) * np.log(2.0)
+    assert table["ratio_low"][WINDOW] == pytest.approx(2.0 * np.exp(-reach), rel=1e-6)
+    assert table["ratio_high"][WINDOW] == pytest.approx(2.0 * np.exp(reach), rel=1e-6)
+    assert table.loc[FULL, ["ratio_low", "ratio_high"]].isna().all()
+    assert list(table["freedom"]) == [2, 2]
+    assert list(table["force_over_full"]) == pytest.approx([1.0, 2.0])  # 2.5 and 5 N, arithmetic means
+    assert list(table["cheaper_in_particle_steps"]) == [1.0, 5.0]
+    assert list(table["cheaper_in_processor_time"]) == [1.0, 4.0]
+
+
+def test_the_scatter_of_one_surface_does_not_widen_the_other():
+    """Packings that agree exactly on one surface leave its interval without width, whatever the other does."""
+    calm = runs("convex", ((FULL, (3.0, 3.0), 1.0, 1.0), (WINDOW, (3.0, 3.0), 1.0, 1.0)))
+    table = comparison(pd.concat([runs(), calm])).set_index(["surface", "bed"])
+    assert table["ratio_low"]["convex", WINDOW] == pytest.approx(1.0)
+    assert table["ratio_high"]["convex", WINDOW] == pytest.approx(1.0)
+    assert table["ratio_high"]["plain", WINDOW] > 2.0
+
+
+def test_a_single_packing_has_no_interval():
+    """One packing says nothing of the scatter: no interval, rather than one without width."""
+    table = comparison(runs(per_bed=((FULL, (1.0,), 1.0, 1.0), (WINDOW, (2.0,), 1.0, 1.0))))
+    assert list(table["wear_over_full"]) == pytest.approx([1.0, 2.0])
+    assert table[["low", "high", "ratio_low", "ratio_high", "scatter"]].isna().all(axis=None)
+
+
+def test_nothing_to_compare_with_is_refused():
+    """Without a run in the full bed there is no ratio."""
+    with pytest.raises(ValueError, match="no run of bed of 2 m, found are window"):
+        ratio_intervals(np.array(["window"]), np.array([1.0]), FULL)
+
+
+def test_page_and_figure_show_both_surfaces(tmp_path):
+    """A row per surface and bed, what the intervals rest on, and a picture."""
+    both = pd.concat([runs(), runs("convex")], ignore_index=True)
+    work = pd.concat([blocks(), blocks("convex")], ignore_index=True)
+    page = publish(tmp_path, both, work)
+    assert (tmp_path / "travelling_window_results.md").read_text() == page
+    assert (tmp_path / "travelling_window.png").stat().st_size > 10_000
+    assert "| plain | bed of 2 m | 2 | 2 |" in page and "| convex | window 150 + 200 | 2 | 4 |" in page
+    assert "2 degrees of freedom" in page and "2 packings" in page
+
+
+def test_a_row_at_the_sources_size_is_five_times_cheaper():
+    """200 mm of sample, 150 + 200 of bed, 20 between exchanges, three particles and their skin; and longer steps."""
     rows = at_source_size().set_index("bed")
-    length = 0.2 + 0.1 + 0.05 + 0.02 + 3 * 1.2 * 2.65e-3 + 0.2 * 0.8 * 2.65e-3
-    assert rows["length_m"][WINDOW] == pytest.approx(length, rel=1e-9)
+    length = 0.2 + 0.15 + 0.2 + 0.02 + 3 * 1.2 * 2.65e-3 + 0.2 * 0.8 * 2.65e-3
+    assert rows["length_m"][COARSE] == rows["length_m"][WINDOW] == pytest.approx(length, rel=1e-9)
     assert rows["length_m"][FULL] == pytest.approx(2.0)
     assert rows["cheaper_in_particle_steps"][WINDOW] == pytest.approx(2.0 / length)
-    assert rows["cheaper_in_particle_steps"][WINDOW] > 5.0
+    steps = BEDS[COARSE]["fraction"] / SOURCE_FRACTION
+    assert rows["cheaper_in_particle_steps"][COARSE] == pytest.approx(steps * 2.0 / length, rel=1e-3)  # whole steps
+    assert rows["cheaper_in_core_hours"][COARSE] > 5.0
+
+
+def test_every_run_is_a_chain_of_its_own(tmp_path):
+    """Beds, packings and surfaces differ in what they should and in nothing else."""
+    cases = packing(window.SURFACES, 0) + packing(window.SURFACES[:1], 1)
+    assert len({case.folder for case in cases}) == len(cases) == 3 * len(BEDS)
+    chains = {case: chain_of(case, tmp_path, window.SETTINGS) for case in cases}
+    full = [chain for case, chain in chains.items() if case.bed == FULL]
+    assert all(chain.bed["length_m"] == pytest.approx(2.0) for chain in full)
+    plain, convex, other = full
+    assert plain.bed == convex.bed and plain.parameters["pattern"] is None
+    assert convex.parameters["pattern"]["minor_radius_m"] == window.BUMPS["minor_radius_m"]
+    assert {**other.bed, "seed": plain.bed["seed"]} == plain.bed and other.bed["seed"] != plain.bed["seed"]
+    steps = [chains[Case("plain", bed, cases[0].seed)].parameters["derived"]["time_step_s"] for bed in (WINDOW, COARSE)]
+    assert steps[1] / steps[0] == pytest.approx(BEDS[COARSE]["fraction"] / SOURCE_FRACTION, rel=1e-3)
+
+
+def test_what_there_is_to_do_is_said_beforehand():
+    """Twice the packings are twice the particle-steps."""
+    words = [said_beforehand(("plain",), packings, window.SETTINGS) for packings in (1, 2)]
+    one, two = (float(said.split("runs: ")[1].split()[0]) for said in words)
+    assert two == pytest.approx(2.0 * one, rel=0.05)  # two digits are said
+    assert one > 1e8
+
+
+def test_packings_are_published_one_after_another(tmp_path, monkeypatch):
+    """After each packing all runs so far are told, in their order, though two processes share them."""
+    monkeypatch.setattr(travelling_window, "simulated", as_it_is)
+    monkeypatch.setattr(travelling_window, "run_row", lambda case, chain: {"case": case, "chain": chain})
+    monkeypatch.setattr(travelling_window, "block_rows", lambda case, chain: [{"chain": chain}] * 2)
+    told = []
+    travelling_window.simulate_all(("plain",), 2, tmp_path, 2, lambda runs, blocks: told.append((runs, blocks)))
+    assert [len(runs) for runs, _ in told] == [len(BEDS), 2 * len(BEDS)]
+    runs, blocks = told[-1]
+    assert (runs["case"] == runs["chain"]).all() and len(blocks) == 2 * len(runs)
+    assert list(runs["case"]) == packing(("plain",), 0) + packing(("plain",), 1)
+
+
+def as_it_is(case, folder, settings):
+    """Stands for a simulation."""
+    return case
+
+
+def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
+    """What is finished is not simulated again; a tiny bed, one window, both looked at block by block."""
+    tiny = {
+        **window.QUICK,
+        "particle_scale": 12.0,
+        "bed": {"width_mm": 80, "exchange_mm": 80, "allow_thin_bed": True},
+        "sliding": {"run_in_mm": 20, "travel_mm": 200, "cycles": 2},
+        "solver": {"picture_interval_mm": 100, "wear_interval_mm": 100},
+    }
+    case = Case("plain", list(BEDS)[2], window.FIRST_SEED)
+    first = window.simulated(case, tmp_path, tiny)
+    monkeypatch.setattr(window, "run_chain", lambda chain: pytest.fail("was done before"))
+    monkeypatch.setattr(window, "fill_bed", lambda *given: pytest.fail("was done before"))
+    again = window.simulated(case, tmp_path, tiny)
+    found = pd.DataFrame(block_rows(case, first))
+    assert list(found["block"]) == [1, 2]
+    row = run_row(case, again)
+    assert found["sliding_work_J"].sum() == pytest.approx(row["sliding_work_J_per_m"] * 2 * BLOCK, rel=1e-3)
+    assert found["normal_force_N"].mean() == pytest.approx(row["normal_force_N"], rel=1e-3)
+    assert row["particle_steps"] > 0.0 and row["processor_s"] > 0.0
