@@ -22,6 +22,7 @@ rule forecast_table:
         "results/{study}/logs/forecast_table.log",
     params:
         work=lambda wildcards: solver_work(wildcards.study)(wildcards),
+        fidelity=lambda wildcards: study_of(wildcards).fidelity,
     message:
         "Forecast of {wildcards.study}, to compare with what it takes"
     script:

@@ -9,4 +9,4 @@ from workflows.rates import read_rates
 with job_log(snakemake.log[0]):
     found = read_rates(Path(snakemake.input.rates))
     table = forecast_table(snakemake.params.work, found.rates)
-    table.assign(by=found.said()).to_csv(snakemake.output[0], index=False)
+    table.assign(fidelity=snakemake.params.fidelity, by=found.said()).to_csv(snakemake.output[0], index=False)

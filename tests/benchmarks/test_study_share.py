@@ -1,0 +1,95 @@
+"""What finished studies cost, from what their jobs left: share outside the solver, measured over forecast."""
+
+import json
+
+import pandas as pd
+import pytest
+
+from benchmarks import study_share
+from benchmarks.study_share import UNTOLD, measures, study_row, study_rows
+
+HOUR = 3600.0
+
+
+def write(path, **columns):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    pd.DataFrame(columns).to_csv(path, index=False)
+
+
+def sliding(results, fidelity=None):
+    """A run of two cycles of half an hour and a bed of a quarter, tables of a quarter; forecast: 1.5 and 0.5 hours."""
+    folder = results / "demo"
+    sizes = {"particles": [10, 10], "steps": [5, 5]}
+    write(
+        folder / "R9_plain" / "cost.csv",
+        solver_s=[0.5 * HOUR] * 2,
+        processor_s=[0.3 * HOUR] * 2,
+        other_s=[0.0] * 2,
+        **sizes,
+    )
+    write(
+        folder / "beds" / "bed_1" / "cost.csv",
+        solver_s=[0.25 * HOUR],
+        processor_s=[0.2 * HOUR],
+        steps=[5],
+        particles=[10],
+    )
+    (folder / "logs").mkdir()
+    for job, seconds in (("worn_run_R9_plain", HOUR), ("settled_bed_bed_1", 0.25 * HOUR), ("summary", 0.25 * HOUR)):
+        (folder / "logs" / f"{job}.benchmark.tsv").write_text(f"s\th:m:s\n{seconds}\t-\n")
+    told = {"fidelity": [fidelity] * 3} if fidelity else {}
+    write(
+        folder / "forecast.csv",
+        job=["worn_run_R9_plain", "settled_bed_bed_1", "worn_run_R9_convex"],
+        solver_s=[1.5 * HOUR, 0.5 * HOUR, 7.0 * HOUR],
+        by=["rates"] * 3,
+        **told,
+    )
+    return folder
+
+
+def test_a_study_against_its_forecast(tmp_path):
+    """1.25 of 1.5 hours of wall time are the solver's: a sixth is not. 0.8 core hours were forecast as 2; what was
+    forecast and never ran counts on neither side.
+    """
+    row = study_row(sliding(tmp_path, "standard"))
+    assert (row["study"], row["fidelity"], row["jobs"], row["solver_jobs"]) == ("demo", "standard", 3, 2)
+    assert row["outside_solver_percent"] == pytest.approx(100.0 / 6.0)
+    assert row["solver_core_hours"] == pytest.approx(0.8)
+    assert row["forecast_core_hours"] == pytest.approx(2.0)
+    assert row["measured_over_forecast"] == pytest.approx(0.4)
+
+
+def test_a_calibration_counts_all_its_simulations(tmp_path):
+    """Wall time of the solver, 1 and 2 hours, over the forecast of its jobs together."""
+    folder = tmp_path / "calibration"
+    for number, hours in enumerate((1.0, 2.0)):
+        place = folder / "simulations" / f"shear_box_{number}" / "cycle_000"
+        place.mkdir(parents=True)
+        cost = {"solver_s": hours * HOUR, "steps": 100, "particles": 50}
+        (place / "state.json").write_text(json.dumps({"cost": cost}))
+    write(folder / "forecast.csv", job=["calibrated_parameters", "box_sizes"], solver_s=[HOUR, HOUR], by=["rates"] * 2)
+    row = study_row(folder)
+    assert row["measured_over_forecast"] == pytest.approx(1.5) and row["fidelity"] == UNTOLD
+    assert row["solver_core_hours"] == pytest.approx(3.0) and pd.isna(row["outside_solver_percent"])
+
+
+def test_what_left_no_record_is_no_study(tmp_path):
+    """Folders of other things, and studies whose solver has not run, have no line; without a forecast no ratio."""
+    (tmp_path / "benchmarks").mkdir()
+    assert study_rows(tmp_path).empty
+    (sliding(tmp_path) / "forecast.csv").unlink()
+    (row,) = study_rows(tmp_path).to_dict("records")
+    assert pd.isna(row["measured_over_forecast"]) and row["fidelity"] == UNTOLD
+    assert row["outside_solver_percent"] == pytest.approx(100.0 / 6.0)
+
+
+def test_both_become_lines_of_the_table(tmp_path, monkeypatch):
+    """A line for the share and one whose ratio is measured over forecast; no second one without a forecast."""
+    monkeypatch.setattr(study_share, "RESULTS", tmp_path)
+    folder = sliding(tmp_path, "quick")
+    share, hours = measures(tmp_path, quick=True)
+    assert share.name == "demo (quick), outside the solver" and share.value == pytest.approx(100.0 / 6.0)
+    assert (hours.unit, hours.against) == ("core h", "its forecast") and hours.ratio == pytest.approx(0.4)
+    (folder / "forecast.csv").unlink()
+    assert len(measures(tmp_path, quick=True)) == 1
