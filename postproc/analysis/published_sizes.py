@@ -146,7 +146,9 @@ def critical_sentences(critical: Crossing | None, published: float, wear: pd.Dat
     less, more = (list(over.index[chosen]) for chosen in (over < 1.0, over >= 1.0))
     said = [f"The convex sample wears less than the plain one in {_listed(less)}, and not less in {_listed(more)}."]
     if critical is None or not critical.bounded:
-        return [*said, f"These rows do not bound a critical scale; the source's is about {published:g}."]
+        crossing = "" if critical is None else f", whose straight lines cross at {critical.value:.2g},"
+        few = f"{len(table)} rows{crossing} do not bound a critical scale; the source's is about {published:g}."
+        return [*said, few]
     interval = f"{critical.value:.2g} (95 % interval {critical.low:.2g} to {critical.high:.2g})"
     inside = critical.low <= published <= critical.high
     word = "holds" if inside else "does not hold"

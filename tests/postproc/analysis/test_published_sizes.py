@@ -160,7 +160,9 @@ def test_the_critical_scale_is_told_beside_the_sources():
     said = " ".join(critical_sentences(Crossing(9.0, 8.5, 12.0, True), 4.0, wear, 3))
     assert "does not hold" in said and "What differs from the source" in said
     assert "outside the scales simulated (2 to 8)" in said and "In 3 of the windows" in said
-    assert "do not bound a critical scale" in " ".join(critical_sentences(None, 4.0, wear, 0))
+    assert "5 rows do not bound a critical scale" in " ".join(critical_sentences(None, 4.0, wear, 0))
+    said = " ".join(critical_sentences(Crossing(5.0, -np.inf, np.inf, False), 4.0, wear, 0))
+    assert "5 rows, whose straight lines cross at 5, do not bound a critical scale" in said
 
 
 def test_the_critical_scale_is_read_back(tmp_path):
