@@ -265,6 +265,7 @@ rule packing_profiles:
         "results/{study}/logs/packing_profiles.log",
     benchmark:
         "results/{study}/logs/packing_profiles.benchmark.tsv"
+    priority: 1  # waits for nothing and takes long: first, beside the beds
     params:
         runs=lambda wildcards: {run.name: run.parameters for run in study_of(wildcards).runs},
         packing=lambda wildcards: to_si(study_of(wildcards).settings)["packing"],
