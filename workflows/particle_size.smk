@@ -261,6 +261,7 @@ rule packing_profiles:
             labels={"figure": "Packing of a container"},
         ),
         table="results/{study}/figures/packing_profiles.csv",
+        cost="results/{study}/packings/cost.csv",
     log:
         "results/{study}/logs/packing_profiles.log",
     benchmark:
