@@ -4,8 +4,7 @@
     snakemake screening --config fidelity=standard
     snakemake screening_forecast --config fidelity=paper
 
-Snakemake finds profiles/default by itself, the choices for one machine; docs/cluster.md has those for a cluster.
-"""
+Snakemake finds profiles/default by itself, the choices for one machine; docs/cluster.md has those for a cluster."""
 
 
 include: "workflows/common.smk"
@@ -17,6 +16,7 @@ include: "workflows/report.smk"
 include: "workflows/screening.smk"
 include: "workflows/particle_size.smk"
 include: "workflows/pin_on_disc.smk"
+include: "workflows/circular_tester.smk"
 include: "workflows/calibration.smk"
 include: "workflows/submissions.smk"
 

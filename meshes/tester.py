@@ -8,6 +8,7 @@ consolidator have the label `part` -1: they do not wear.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -149,23 +150,48 @@ def consolidator(
     return SurfaceMesh(up.points, up.triangles[:, ::-1], up.cell_data)
 
 
+def straight_consolidator(
+    half_width: float, level: float, rise: float, start: float, ramp_end: float, end: float
+) -> SurfaceMesh:
+    """The consolidator of a straight channel along y: as `consolidator`, with places along the travel (m) for angles.
+
+    Raises ValueError for what cannot be.
+    """
+    _checked(half_width=half_width, rise=rise)
+    if not start < ramp_end < end:
+        raise ValueError(f"places of a consolidator must be start < ramp end < end, found {start}, {ramp_end}, {end} m")
+    y, z = np.array([start, ramp_end, end]), np.array([level + rise, level, level])
+    x = np.array([half_width, -half_width])
+    points, triangles = _grid(*np.broadcast_arrays(x, y[:, None], z[:, None]), closed=False)
+    return _unworn(points, triangles)
+
+
 def sample_block(
-    width: float, length: float, thickness: float, element_size: float, pattern: ConvexPattern | None
+    width: float,
+    length: float,
+    thickness: float,
+    element_size: float,
+    pattern: ConvexPattern | None,
+    holder_size: float | None = None,
 ) -> SurfaceMesh:
     """A whole submerged sample: `sample_top` with upright sides and a bottom `thickness` below it, one closed surface.
 
     All in m. Sides and bottom are the holder's (`part` -1); they come after the top's triangles, whose order and labels
-    are those of `sample_top`. Raises ValueError as that.
+    are those of `sample_top`. holder_size: of elements of sides and bottom; those of the top without.
+    Raises ValueError as that.
     """
     _checked(thickness=thickness)
+    holder_size = holder_size or element_size
     top = sample_top(width, length, element_size, pattern)
     rim = np.sort(boundary_edges(top.triangles)[:, 0])  # the first nodes, anticlockwise: see `meshes.plane`
-    levels = np.linspace(0.0, -thickness, _steps(thickness, element_size) + 1)[1:]
-    sides = np.concatenate([top.points[rim] + (0.0, 0.0, level) for level in levels])
+    coarse = _thinned(top.points[rim, :2], holder_size)
+    levels = np.linspace(0.0, -thickness, _steps(thickness, holder_size) + 1)[1:]
+    below = top.points[rim[coarse], :2]
+    sides = np.concatenate([np.column_stack([below, np.full(len(coarse), level)]) for level in levels])
     first = len(top.points)
-    rings = np.concatenate([rim[None], first + np.arange(len(sides)).reshape(len(levels), len(rim))])
-    points, triangles = _bottom(top.points[rim, :2], -thickness, element_size, rings[-1], first + len(sides))
-    count = [_between(rings), triangles]
+    rings = first + np.arange(len(sides)).reshape(len(levels), len(coarse))
+    points, triangles = _bottom(below, -thickness, holder_size, rings[-1], first + len(sides))
+    count = [_down_to(rim, rings[0], coarse), _between(rings), triangles]
     mesh = np.concatenate([top.triangles, *count])
     holder = len(mesh) - len(top.triangles)
     labels = {
@@ -173,6 +199,35 @@ def sample_block(
         for name, label in top.cell_data.items()
     }
     return SurfaceMesh(np.concatenate([top.points, sides, points]), mesh, labels)
+
+
+def _thinned(rim: np.ndarray, size: float) -> np.ndarray:
+    """Numbers (k,) of nodes of a rectangle's rim (r, 2), anticlockwise from a corner: its corners, and between them so
+    many that none are much farther apart than `size` (m), evenly.
+    """
+    corners = np.flatnonzero((np.abs(rim) >= np.abs(rim).max(axis=0) * (1.0 - ROUNDING)).all(axis=1))
+    ends = np.append(corners, len(rim))
+    kept = []
+    for start, end in pairwise(ends):
+        length = np.linalg.norm(rim[end % len(rim)] - rim[start])
+        pieces = min(_steps(length, size), end - start)
+        kept.append(start + np.round(np.linspace(0, end - start, pieces, endpoint=False)).astype(np.int64))
+    return np.concatenate(kept)
+
+
+def _down_to(rim: np.ndarray, below: np.ndarray, coarse: np.ndarray) -> np.ndarray:
+    """Triangles from a rim's nodes (r,) down to a ring (k,) below some of them, which are `coarse` (k,) in the rim.
+
+    Each edge of the rim has the nearer end of the ring's edge below it, each edge of the ring the node over its middle.
+    """
+    ends = np.append(coarse, len(rim))
+    middle = (ends[:-1] + ends[1:]) // 2
+    edge = np.arange(len(rim))
+    piece = np.searchsorted(coarse, edge, side="right") - 1
+    apex = below[(piece + (edge >= middle[piece])) % len(below)]
+    upper = np.column_stack([rim, apex, np.roll(rim, -1)])
+    lower = np.column_stack([rim[middle], below, np.roll(below, -1)])
+    return np.concatenate([upper, lower])
 
 
 def _between(rings: np.ndarray) -> np.ndarray:

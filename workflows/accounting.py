@@ -49,6 +49,7 @@ def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.
     columns = producer(chain.parameters).columns(chain, span, folder, piece.mesh)
     own = read_mesh_loads(folder / f"loads_{span.solver_steps}.vtk", len(piece.triangles))
     ledger = pd.DataFrame({"triangle": piece.triangles[own.pop("triangle")], **columns, **own})
+    ledger = CASES[chain.case].on_surface(chain.parameters, ledger)
     ledger.to_parquet(folder / LEDGER, index=False)
     return ledger
 

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from postproc.mesh import SurfaceMesh, read_surface, write_stl
-from workflows import deck, state
+from workflows import deck, state, tester_deck
 from workflows.cases import CASES
 from workflows.schedule import Span, cycle_title, first_span, known_spans, next_span
 from workflows.solver import DECK, LAUNCHER
 
+BED_DECKS = {"settled_bed": deck.settled_bed, "tester_bed": tester_deck.tester_bed}  # by template
 MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
 SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
 
@@ -108,10 +109,23 @@ def title(chain: Chain, cycle: int) -> str:
 # ---------------------------------------------------------------- decks by hand
 
 
+def bed_template(bed: Mapping[str, Any]) -> str:
+    """Return the name of the template of a bed's deck."""
+    return bed.get("template", "settled_bed")
+
+
+def bed_deck(bed: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of a bed's deck."""
+    return BED_DECKS[bed_template(bed)](bed)
+
+
 def write_bed(bed: Mapping[str, Any], folder: Path) -> None:
-    """Write the deck of a bed into its folder, where it runs by hand."""
+    """Write the deck of a bed, and what it reads, into its folder, where it runs by hand."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / DECK).write_text(deck.render("settled_bed", deck.settled_bed(bed)))
+    if bed_template(bed) == "tester_bed":
+        tester_deck.write_machine(bed, folder)
+        tester_deck.write_block(bed, folder)
+    (folder / DECK).write_text(deck.render(bed_template(bed), bed_deck(bed)))
 
 
 def write_decks(chain: Chain) -> None:

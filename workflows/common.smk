@@ -8,6 +8,7 @@ from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
 from workflows.cases import CASES
+from workflows.chain import bed_template
 from workflows.deck import template_sources
 from workflows.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
 from workflows.figures import plain_runs
@@ -109,6 +110,11 @@ def run_geometry(wildcards):
 
 def bed_parameters(wildcards):
     return study_of(wildcards).beds[wildcards.bed]
+
+
+def bed_templates(wildcards):
+    """The sources of the templates of a bed's deck: a bed is filled again when one changes."""
+    return template_sources(bed_template(bed_parameters(wildcards)))
 
 
 def bed_parameters_of_run(wildcards):

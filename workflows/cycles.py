@@ -15,13 +15,14 @@ from typing import Any
 from postproc.mesh import read_surface, write_surface
 from postproc.readers.load_ledger import announcement
 from postproc.readers.solver_log import solver_version, thermo_table, warnings
-from workflows import deck, state
+from workflows import state
 from workflows.accounting import HISTORY, LEDGER, account_and_wear
 from workflows.cases import CASES
 from workflows.chain import (
     RESTART,
     SURFACE,
     Chain,
+    bed_deck,
     decks_without_paths,
     run_in_steps,
     span_of,
@@ -52,6 +53,12 @@ from workflows.tables import write_table
 from workflows.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"
+BED_STEPS = (
+    "settling_steps",
+    "relaxing_steps",
+    "packing_steps",
+    "steady_steps",
+)  # of the decks of beds, where they have them
 
 
 def run_chain(chain: Chain) -> None:
@@ -204,8 +211,8 @@ def write_products(chain: Chain, finished: int) -> None:
 
 def fill_bed(name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1, launcher: str = LAUNCHER) -> None:
     """Fill and settle a bed; leaves bed.restart and cost.csv in the folder. Raises SolverError."""
-    parameters = deck.settled_bed(bed)
-    total = sum(parameters.get(name, 0) for name in ("settling_steps", "relaxing_steps", "packing_steps"))
+    parameters = bed_deck(bed)
+    total = sum(parameters.get(name, 0) for name in BED_STEPS)
     progress = Progress(name, total)
     with state.only_driver(folder, progress.say):
         write_bed(bed, folder)

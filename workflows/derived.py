@@ -104,7 +104,7 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
     return {
         "layers": layers,
         "thin_bed": layers < THIN_BED_LAYERS * (1.0 - ROUNDING),
-        "equivalent_size_ratio": _size_ratio(parameters),
+        "equivalent_size_ratio": size_ratio(parameters),
         "physical_patch_factor": physical_patch_factor(parameters),
         **derived_materials(parameters),
         **_derived_geometry(parameters),
@@ -112,7 +112,7 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _size_ratio(parameters: dict[str, Any]) -> float | None:
+def size_ratio(parameters: dict[str, Any]) -> float | None:
     pattern = parameters["pattern"]
     if pattern is None:
         return None

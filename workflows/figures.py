@@ -62,6 +62,46 @@ OF_PINS = (  # of every study of pins on discs: what answers its question first,
     "size_invariance",
 )
 OF_SERIES = {"mesh": ("mesh_series", "mesh_contours"), "size": ("size_invariance",)}  # of them, where the design has it
+TESTER_FIGURES = {  # of the circular wear tester: rule -> category, {figure: label}; see tester_figures.py
+    "tester_volumes": (
+        "Volume",
+        {
+            "tester_hours": "Volume against hours",
+            "tester_volume": "Volume by revolution",
+            "tester_increments": "Increments",
+            "tester_benchmark": "Volume after 56 hours",
+        },
+    ),
+    "tester_distribution": (
+        "Distribution",
+        {
+            "tester_columns": "Wear by column",
+            "tester_bumps": "Wear of every bump",
+            "tester_contours": "Contours by revolution",
+            "tester_force_columns": "Normal force by column",
+        },
+    ),
+    "tester_worn_out_pattern": ("Volume", {"tester_worn_out": "Until the pattern is gone"}),
+    "tester_flow": (
+        "Flow",
+        {
+            "tester_steadiness": "Steadiness",
+            "tester_spin": "Spin of the lowest layer",
+            "tester_velocity": "Velocity of the lowest layer",
+            "tester_force": "Normal force by revolution",
+            "tester_spin_map": "Map of spin",
+            "tester_velocity_map": "Map of velocity",
+        },
+    ),
+    "tester_meshes": ("Elements", {"tester_mesh": "Volume by mesh size", "tester_mesh_contours": "Contours by mesh"}),
+    "tester_machines": ("Machine", {"tester_ring": "Channel and ring"}),
+}
+TESTER_SERIES = {
+    "tester_worn_out_pattern": "worn_out",
+    "tester_meshes": "mesh",
+    "tester_machines": "ring",
+}  # that it needs
+OF_TESTED_SAMPLES = ("worn_surface", "wear_updates")  # of every study of the tester besides
 OF_WEAR_UPDATES = ("worn_film", "wear_updates")  # of studies whose samples deform
 SECOND_ROW = "flow_views_second"
 FLOW = (  # of studies that name factors or confirm one that does
@@ -133,13 +173,21 @@ def _figures_of_pins(study: Study) -> list[str]:
     return [name for name in OF_PINS if name not in left_out]
 
 
+def _figures_of_testers(study: Study) -> list[str]:
+    series = {row["series"] for row in study.design_rows}
+    jobs = [name for name in TESTER_FIGURES if TESTER_SERIES.get(name, "volume") in series]
+    return [*(figure for name in jobs for figure in TESTER_FIGURES[name][1]), *OF_TESTED_SAMPLES]
+
+
 RUN_RULES = {  # case -> rules that make a job of every run
     "sliding_sample": ("surface_mesh", "worn_run"),
     "pin_on_disc": ("surface_mesh", "worn_run", "track_tables"),
+    "circular_tester": ("surface_mesh", "worn_run"),
 }
 FIGURES = {  # case -> names of a study's figures
     "sliding_sample": _figures_of_samples,
     "pin_on_disc": _figures_of_pins,
+    "circular_tester": _figures_of_testers,
     "calibration": lambda study: list(OF_CALIBRATIONS),
 }
 
@@ -201,6 +249,7 @@ def job_names(study: Study) -> list[str]:
         *(f"settled_bed_{bed}" for bed in study.beds),
         *(f"{rule}_{run.name}" for run in study.runs for rule in RUN_RULES[study.case]),
         *dict.fromkeys(job_of_figure(name) for name in figures_of(study)),
+        *(("tester_tables",) if study.case == "circular_tester" else ()),
         *(("findings",) if has_findings(study) else ()),
         *(("best_designs",) if study.factors else ()),
         *(("size_findings",) if varies_scale(study) else ()),
@@ -209,7 +258,8 @@ def job_names(study: Study) -> list[str]:
 
 def job_of_figure(name: str) -> str:
     """Return the name of the job that draws a figure."""
-    return "regression" if name in REGRESSION else "profiles" if name in PROFILES else name
+    tester_job = next((job for job, (_, figures) in TESTER_FIGURES.items() if name in figures), None)
+    return tester_job or ("regression" if name in REGRESSION else "profiles" if name in PROFILES else name)
 
 
 def page_parameters(study: Study) -> dict[str, Any]:

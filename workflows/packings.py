@@ -15,14 +15,13 @@ from postproc.analysis.display import in_display_units
 from postproc.analysis.packing import MEASURES, loose_and_dense, packing_profile, within
 from postproc.readers.cycle_folders import cycle_files
 from workflows import deck
-from workflows.bulk_simulations import FILLED, simulated, simulation_folder
+from workflows.bulk_simulations import FILLED, simulated
 from workflows.bulk_tests import time_step
 from workflows.cases.base import Parameters
 from workflows.chain import RESTART
 from workflows.collision_tests import simulate, spheres_of
 from workflows.derived import WINDOW
 from workflows.solver import DECK, run_deck
-from workflows.state import read_state
 
 MODELS = ("cdt", "epsd2")  # rolling types A and C
 COLLISION = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}  # before contact: of beds at rest and in motion
@@ -109,12 +108,6 @@ def packing_table(runs: Mapping[str, Parameters], packing: Mapping[str, Any], fo
         table = loose_and_dense(loose, dense, run["particle"]["median_diameter_m"], test["box"]["length_m"] ** 2)
         tables.append(table.assign(particle_scale=scale))
     return in_display_units(pd.concat(tables, ignore_index=True))
-
-
-def packing_costs(runs: Mapping[str, Parameters], packing: Mapping[str, Any], folder: Path) -> pd.DataFrame:
-    """Return what the simulations of `packing_table` took: solver_s, steps and particles, a row per particle scale."""
-    tests = (container(run, packing) for run in by_scale(runs).values())
-    return pd.DataFrame([read_state(simulation_folder(test, folder), 0)["cost"] for test in tests])
 
 
 def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:

@@ -261,12 +261,10 @@ rule packing_profiles:
             labels={"figure": "Packing of a container"},
         ),
         table="results/{study}/figures/packing_profiles.csv",
-        cost="results/{study}/packings/cost.csv",
     log:
         "results/{study}/logs/packing_profiles.log",
     benchmark:
         "results/{study}/logs/packing_profiles.benchmark.tsv"
-    priority: 1  # waits for nothing and takes long: first, beside the beds
     params:
         runs=lambda wildcards: {run.name: run.parameters for run in study_of(wildcards).runs},
         packing=lambda wildcards: to_si(study_of(wildcards).settings)["packing"],

@@ -24,7 +24,7 @@ rule settled_bed:
         mpi=launcher_of,
     params:
         bed=bed_parameters,
-        templates=template_sources("settled_bed"),
+        templates=bed_templates,
     message:
         "Filling and settling {wildcards.bed}"
     script:
@@ -69,7 +69,7 @@ rule bed_deck:
         "results/{study}/logs/bed_deck_{bed}.log",
     params:
         bed=bed_parameters,
-        templates=template_sources("settled_bed"),
+        templates=bed_templates,
     message:
         "Deck of {wildcards.bed}"
     script:

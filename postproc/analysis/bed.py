@@ -32,8 +32,9 @@ def last_snapshot(run_folder: str | Path) -> Path:
 
 
 def read_snapshot(path: str | Path) -> pd.DataFrame:
-    """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s and velocity_y_m_per_s (relative
-    to the sample), angular_speed_rad_per_s, and contacts (of each with other particles) where the solver counted them.
+    """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s, velocity_x_m_per_s and
+    velocity_y_m_per_s (relative to the sample), angular_speed_rad_per_s, and contacts (of each with other particles)
+    where the solver counted them.
 
     Raises ValueError when the file is no dump of one frame or is cut short.
     """
@@ -55,6 +56,7 @@ def read_snapshot(path: str | Path) -> pd.DataFrame:
             **{f"{axis}_m": table[axis] for axis in "xyz"},
             "radius_m": table["radius"],
             "speed_m_per_s": np.linalg.norm(table[["vx", "vy", "vz"]], axis=1),
+            "velocity_x_m_per_s": table["vx"],
             "velocity_y_m_per_s": table["vy"],
             "angular_speed_rad_per_s": np.linalg.norm(table[["omegax", "omegay", "omegaz"]], axis=1),
             **counted,

@@ -9,6 +9,7 @@ FINISHED = re.compile(r"cycle_(\d+)")  # one that is worked on, or was left by a
 PACKING = "packing.dump"  # of cycle 0 in a travelling window: the settled bed, out of which it takes fresh bed
 FLOW_TABLE = "flow.parquet"  # of a wear cycle: the bins that its snapshots were reduced to
 SPIN_TABLE = "spin.parquet"  # likewise, of the lowest layer along the sample
+LAYER_TABLE = "lowest_layer.csv"  # of a wear cycle of the circular tester: what its snapshots were reduced to
 
 
 def cycle_folders(run_folder: str | Path) -> list[Path]:

@@ -133,6 +133,17 @@ def test_convex_block():
     assert (mesh.cell_data["part"][count:] == -1).all()
 
 
+def test_a_coarse_holder_is_closed_too():
+    """Fine top, coarse sides and bottom: closed, the box's volume and areas, a tenth of the holder's triangles."""
+    fine, coarse = (sample_block(SAMPLE, SAMPLE, THICKNESS, SIZE, None, holder) for holder in (None, 2.5 * SIZE))
+    assert len(boundary_edges(coarse.triangles)) == len(nonmanifold_edges(coarse.triangles)) == 0
+    assert enclosed_volume(coarse.points, coarse.triangles) == pytest.approx(SAMPLE**2 * THICKNESS, rel=ROUNDING)
+    part, whole = coarse.cell_data["part"], areas(coarse.points, coarse.triangles)
+    assert whole[part == -1].sum() == pytest.approx(SAMPLE**2 + 4.0 * SAMPLE * THICKNESS, rel=ROUNDING)
+    assert (part == -1).sum() < 0.3 * (fine.cell_data["part"] == -1).sum()
+    assert smallest_angles(coarse.points, coarse.triangles).min() > SMALLEST_ANGLE
+
+
 def test_the_sample_lies_at_its_depth_and_incline():
     """Its middle at the depth, its base inclined by 2 degrees, its trailing edge higher, square to the radius."""
     incline, depth, bed = math.radians(2.0), 0.09, 0.15

@@ -70,7 +70,7 @@ BAD_KEYS = [
         "design: small.csv",
         "case: drum\ndesign: small.csv",
         "config/studies/small.yaml, line 3: case is 'drum', allowed is one of sliding_sample, pin_on_disc,"
-        " calibration.",
+        " calibration, circular_tester.",
     ),
     (
         STUDY,

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from workflows.cases.base import Case
 from workflows.cases.calibration import Calibration
+from workflows.cases.circular_tester import CircularTester
 from workflows.cases.pin_on_disc import PinOnDisc
 from workflows.cases.sliding_sample import SlidingSample
 
@@ -14,4 +15,5 @@ CASES: dict[str, Case] = {
     "sliding_sample": SlidingSample(),
     "pin_on_disc": PinOnDisc(),
     "calibration": Calibration(),
+    "circular_tester": CircularTester(),
 }

@@ -116,6 +116,10 @@ class Case:
         """Return what the solver gets of the surface in a cycle; here all of it."""
         return Piece(surface, np.arange(len(surface.triangles)))
 
+    def on_surface(self, parameters: Parameters, ledger: pd.DataFrame) -> pd.DataFrame:
+        """Return a ledger in the frame of the master surface, where the solver's is another one."""
+        return ledger
+
     def substeps(self, parameters: Parameters, wear: Mapping[str, float]) -> int:
         """Return in how many the solver takes each time step of a cycle whose predecessor left that row of wear.csv."""
         return 1

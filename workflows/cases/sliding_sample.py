@@ -156,7 +156,7 @@ class SlidingSample(Case):
         """Return the bed's force on the sample."""
         import pandas as pd
 
-        thermo = _thermo(folder)
+        thermo = thermo_rows(folder)
         time_s = (thermo["Step"] + span.first_step) * parameters["derived"]["time_step_s"]
         table = {"time_s": time_s, "travel_m": time_s * parameters["sliding"]["velocity_m_per_s"]}
         return pd.DataFrame(table | {f"force_{axis}_N": thermo[f"force_{axis}"] for axis in "xyz"})
@@ -171,7 +171,7 @@ class SlidingSample(Case):
             return exchanged_particles(folder) | {"front_lag": front_lag(parameters, folder)}
         if parameters["bed"]["ends"] != PERIODIC:
             return {}
-        pace = _thermo(folder)["bed_pace"].mean()
+        pace = thermo_rows(folder)["bed_pace"].mean()
         return {"bed_over_floor_velocity": float(pace / parameters["sliding"]["velocity_m_per_s"])}
 
     def cycle_fault(self, parameters: Parameters, own: Mapping[str, float]) -> str | None:
@@ -231,7 +231,7 @@ def exchanged_particles(folder: Path) -> dict[str, int]:
     }
 
 
-def _thermo(folder: Path) -> dict[str, np.ndarray]:
+def thermo_rows(folder: Path) -> dict[str, np.ndarray]:
     """Return the thermo table of a cycle without the set-up rows of its pieces, which hold no force."""
     thermo = thermo_table(folder / LOG)
     told = np.diff(thermo["run"], prepend=-1) == 0

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from types import ModuleType
 
-from workflows.pages import calibration, pin_on_disc, sliding_sample
+from workflows.pages import calibration, circular_tester, pin_on_disc, sliding_sample
 
 PAGES: dict[str, ModuleType] = {
     "sliding_sample": sliding_sample,
     "pin_on_disc": pin_on_disc,
     "calibration": calibration,
+    "circular_tester": circular_tester,
 }
