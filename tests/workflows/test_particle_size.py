@@ -7,7 +7,7 @@ from postproc.analysis.guidance import Particles, Pattern, guidance
 from workflows.bulk_tests import deck_text
 from workflows.collision_tests import collision
 from workflows.design import ConfigError, load_study
-from workflows.figures import PARTICLE_SIZE, bumps_and_particles, figures_of, page_parameters
+from workflows.figures import PARTICLE_SIZE, bumps_and_particles, figures_of, page_parameters, published_flow
 from workflows.packings import (
     AT_REST_BEHIND,
     LEAVING_DIAMETERS,
@@ -58,7 +58,10 @@ def test_a_study_of_particle_size_has_figures_of_its_own():
     assert names[: len(PARTICLE_SIZE)] == list(PARTICLE_SIZE)
     assert {"relative_velocity", "wear_gradient", "velocity_profiles", "wear_split"} <= set(names)
     assert not set(PARTICLE_SIZE) & set(figures_of(load_study("demo")))
-    assert not set(PARTICLE_SIZE) & set(figures_of(load_study("screening")))
+    screening = load_study("screening")
+    assert not set(PARTICLE_SIZE) & set(figures_of(screening))
+    tables = [published_flow(each) for each in (study(), screening)]  # chapter 4 has a steady window of its own
+    assert tables == [f"config/published/{name}_results.csv" for name in ("particle_size", "screening")]
 
 
 def test_a_scale_out_of_range_is_refused_with_its_row(config):
