@@ -156,8 +156,8 @@ def _logged(path: Path, revolution_steps: int) -> pd.DataFrame:
     step = thermo["Step"][last]
     table = {
         "revolution": (step - step[0]) / revolution_steps,
-        "velocity_m_per_s": thermo["velocity_over"][last],
-        "bed_height_m": thermo["height_over"][last],
+        "velocity_m_per_s": thermo["sample_v"][last],
+        "bed_height_m": thermo["sample_h"][last],
     }
     return pd.DataFrame(table).iloc[1:]  # the first row is of no motion yet
 

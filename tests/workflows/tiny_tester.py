@@ -43,7 +43,7 @@ def tiny_tester(**changes) -> Study:
     return load_study("circular_tester", overrides={"fidelity": "quick", "rows": list(ROWS), **settings})
 
 
-def tester_chain(study: Study, folder: Path, run: str) -> Chain:
+def chain_of_tester(study: Study, folder: Path, run: str) -> Chain:
     """Return a chain in `folder`, its surface built and its bed filled and turned unless they are there."""
     bed_name = study.bed_of(run)
     bed_folder, run_folder = folder / "beds" / bed_name, folder / run

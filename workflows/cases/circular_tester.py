@@ -150,8 +150,8 @@ class CircularTester(Case):
                 "travel_m": time_s * parameters["sliding"]["velocity_m_per_s"],
                 "revolution": revolution(parameters, step),
                 **{f"force_{axis}_N": thermo[f"force_{axis}"] for axis in "xyz"},
-                "velocity_over_m_per_s": thermo["velocity_over"],
-                "height_over_m": thermo["height_over"],
+                "velocity_over_m_per_s": thermo["sample_v"],
+                "height_over_m": thermo["sample_h"],
             }
         )
 
