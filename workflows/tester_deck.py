@@ -47,6 +47,9 @@ HOLDER_SIZE = 0.01  # m, elements of sides and bottom of the sample, which do no
 WALL_GAP = 2e-3  # m, between the consolidator and the side walls: less than a particle
 TROUGH_ELEMENT = 0.05  # m, chords of the trough; at the outer wall they lie 0.6 mm inside the circle
 FREEBOARD = 1.0  # -, height of the trough's walls over the bed, in bed heights
+# Centres are cut off so far below the consolidator, in largest diameters: a grain that it overlaps by a millimetre when
+# it comes down is shot out at 17 m/s.
+LEVEL_DIAMETERS = 0.55
 FILL_GAP_DIAMETERS = 0.6  # -, between centres of poured particles and walls or block, in largest diameters
 
 Parameters = Mapping[str, Any]
@@ -73,7 +76,7 @@ def tester_bed(bed: Parameters) -> dict[str, Any]:
         "density_kg_per_m3": particle["density_kg_per_m3"],
         "fill_fraction": FILL_FRACTION,
         "fall_speed_m_per_s": FALL_SPEED,
-        "level_m": bed["depth_m"] - particle["median_diameter_m"] / 2.0,
+        "level_m": bed["depth_m"] - LEVEL_DIAMETERS * max(particle["diameters_m"]),
         "particle_diameter_m": particle["diameters_m"],
         "size_distribution": size_distribution(particle["mass_fractions"]),
         "size_count": len(particle["mass_fractions"]),
@@ -130,6 +133,7 @@ def _walls(bed: Parameters, cycle: int | str, coefficient: float, folder: str, s
         "velocity_m_per_s": bed["velocity_m_per_s"],
         "half_sample_width_m": 0.5 * bed["sample_width_m"],
         "half_sample_length_m": 0.5 * bed["sample_length_m"],
+        "depth_m": bed["depth_m"],
         "finnie_coefficient_per_pa": [[coefficient] * 3] * 3,
         "sample_file": sample,
         "consolidator_file": folder + CONSOLIDATOR,

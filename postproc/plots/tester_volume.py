@@ -227,7 +227,7 @@ def _numbers(axes: Axes, table: pd.DataFrame) -> None:
         + ["" if np.isnan(row[name]) else f"{row[name]:.4g}" for name in columns]
         for _, row in table.iterrows()
     ]
-    notes = list(dict.fromkeys(note for note in table["note"] if note))
+    notes = list(dict.fromkeys(note for notes in table["note"] if notes for note in notes.split("; ")))
     if notes:
         axes.set_title("* " + "; ".join(notes), loc="left", fontsize=SMALLEST_FONT)
     printed_table(axes, ["", "", *columns], cells)

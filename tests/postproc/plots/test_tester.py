@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from meshes.plate import flat_plate
+from postproc.analysis.tester_comparison import mean_ratios, pattern_left, ratios_by_revolution, worn_out_at
 from postproc.analysis.tester_flow import STEADINESS, relative_motion, revolution_means, steady_revolutions
 from postproc.analysis.tester_volume import (
     chosen_fit,
@@ -18,6 +19,7 @@ from postproc.analysis.tester_volume import (
 )
 from postproc.plots import tester, tester_volume
 from postproc.plots.style import remarks_of, save
+from postproc.plots.tester_comparison import channel_and_ring, worn_out
 from tests.postproc import tester_study as study
 
 REMARKS = ["reduced scale, for tests"]
@@ -143,6 +145,37 @@ def test_worn_contours(tmp_path):
     ]
     figure = tester.worn_contours(pd.concat(parts), "revolution", REMARKS)
     assert missing_words(figure, tmp_path / "a.png", ["C11, side", "17"]) == []
+
+
+def test_channel_and_ring(tmp_path):
+    """Ratios of both machines, of the revolutions that both have, stand on the figure."""
+    table = study.volumes()
+    table = table[table["particle_scale"] == 3.0]
+    both = pd.concat(
+        [
+            table.assign(shape="channel", run=table["run"] + "_channel"),
+            table[table["revolution"] < 6].assign(shape="ring", run=table["run"] + "_ring"),
+        ]
+    )
+    ratios = ratios_by_revolution(both)
+    figure = channel_and_ring(both, mean_ratios(ratios, shared=True), ratios, REMARKS)
+    words = ["convex, ring, scale 3", "channel, scale 3: 0.65", "first 5 revolutions"]
+    assert missing_words(figure, tmp_path / "a.png", words) == []
+
+
+def test_worn_out(tmp_path):
+    """The share that is left, and the revolution at which it is nothing, of the run with the larger coefficient."""
+    x = np.arange(18.0)
+    parts = [
+        pd.DataFrame({"revolution": x, "law_volume_m3": 4e-8 * each * x})
+        .assign(pattern_volume_m3=1e-6 * np.clip(1.0 - each * x / 300.0, 0.0, None), coefficient=each * 5e-9)
+        .assign(run=run, surface="convex", particle_scale=6.0)
+        for run, each in (("convex", 1.0), ("worn-out", 40.0))
+    ]
+    left = pattern_left(pd.concat(parts, ignore_index=True), 5e-9)
+    figure = worn_out(left, worn_out_at(left), 45.0, REMARKS)
+    words = ["worn-out, coefficient x 40", "worn-out: gone at 320", "convex: 94.3 % left", "plain sample"]
+    assert missing_words(figure, tmp_path / "a.png", words) == []
 
 
 @pytest.mark.parametrize("quantity", ["relative_speed", "relative_angular_speed"])
