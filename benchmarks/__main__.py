@@ -3,6 +3,7 @@
     python -m benchmarks                     # in the root of the repository, on an idle machine: about 20 minutes
     python -m benchmarks --only ranks        # one of them; its lines in the table are replaced
     python -m benchmarks --quick             # tiny sizes, printed only: does everything run?
+    python -m benchmarks --redraw            # the page from its table, nothing measured
 
 Writes benchmarks.csv and benchmarks.md into docs. Benchmarks that make a figure of their own are commands of their own
 (benchmarks/groove.py and others).
@@ -62,7 +63,12 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="tiny sizes; nothing is written")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks"), help="for simulations")
     parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--redraw", action="store_true", help="write the page from the table of earlier measurements")
     given = parser.parse_args()
+    file = given.output / "benchmarks.csv"
+    if given.redraw:
+        write_page(file)
+        return
     folder = given.folder / ("quick" if given.quick else "full")
     if (load := os.getloadavg()[0]) > BUSY:
         print(f"This machine is busy (load {load:.1f}): wall times, and all of `ranks`, will mean little.")
@@ -71,11 +77,15 @@ def main() -> None:
         found.append(lines_of(module, folder, given.quick))
         print(table_text(found[-1]), flush=True)
         if not given.quick:
-            file = given.output / "benchmarks.csv"
             before = pd.read_csv(file) if file.is_file() else pd.DataFrame()
             table = replaced(before, [found[-1]])
             table.to_csv(file, index=False, float_format="%.4g")
-            file.with_suffix(".md").write_text(page(table, machine_facts()), encoding="utf-8")
+            write_page(file)
+
+
+def write_page(file: Path) -> None:
+    """Write the page of a table of benchmarks beside it. The machine named is this one."""
+    file.with_suffix(".md").write_text(page(pd.read_csv(file), machine_facts()), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from postproc.readers.solver_log import thermo_table
 from workflows import state
 from workflows.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
 from workflows.cycles import fill_bed, inputs_digest, run_cycle
-from workflows.design import load_study
+from workflows.design import Study, load_study
 from workflows.geometry import sample_surface
 from workflows.progress import Progress
 from workflows.schedule import first_span
@@ -18,22 +18,33 @@ from workflows.solver import LOG
 STUDY, RUN = "demo", "R9_convex"
 
 
-def prepared_chain(folder: Path, particle_scale: float) -> Chain:
-    """Return the chain of the case; fills its bed and runs it in unless that was done in this folder before."""
-    study = load_study(STUDY, overrides={"particle_scale": particle_scale, "fidelity": "quick"})
+def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain:
+    """Return the chain of the case; fills its bed and runs it in unless that was done in this folder before.
+
+    wider: as many times as wide are bed and sample, and so many ranks prepare them
+    """
+    study = case_study(particle_scale, wider)
     parameters, bed_name = study.run(RUN).parameters, study.bed_of(RUN)
     bed_folder, surface = folder / "bed", folder / RUN / "surface.vtu"
     if not (bed_folder / "bed.restart").exists():
-        fill_bed(bed_name, study.beds[bed_name], bed_folder)
+        fill_bed(bed_name, study.beds[bed_name], bed_folder, ranks=wider)
     if not surface.exists():
         surface.parent.mkdir(parents=True, exist_ok=True)
         write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
     chain = Chain(
-        RUN, surface.parent, study.case, parameters, surface, study.beds[bed_name], bed_folder / "bed.restart"
+        RUN, surface.parent, study.case, parameters, surface, study.beds[bed_name], bed_folder / "bed.restart", wider
     )
     if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
         run_cycle(chain, None, inputs_digest(chain), Progress(RUN, run_in_steps(chain)))
     return chain
+
+
+def case_study(particle_scale: float, wider: int = 1) -> Study:
+    """Return the study of the case, bed and sample so many times as wide."""
+    size = {"particle_scale": particle_scale, "fidelity": "quick"}
+    settings = load_study(STUDY, overrides=size).settings
+    widths = {name: {"width_mm": wider * settings[name]["width_mm"]} for name in ("sample", "bed")}
+    return load_study(STUDY, overrides=size | widths)
 
 
 def cycle_deck(chain: Chain, name: str) -> tuple[Path, SurfaceMesh, str]:

@@ -40,13 +40,19 @@ def scaling_section(cost: float) -> list[str]:
     rows = [
         [
             *(str(value) for value in (row.study, f"{row.particles:,}", row.ranks)),
-            *(f"{row.split_across:.2f}", row.best_grid, f"{row.best:.2f}", f"{row.bed_as_wide_again:.2f}"),
+            *(f"{row.split_across:.2f}", row.deck_grid, f"{row.of_decks:.2f}"),
+            *(row.best_grid, f"{row.best:.2f}", f"{row.bed_as_wide_again:.2f}"),
         ]
         for row in scaling_table(cost).itertuples()
     ]
-    head = ["study, paper", "particles", "ranks", "all across", "best grid", "its efficiency", "bed as much wider"]
+    head = ["study, paper", "particles", "ranks", "all across", "the decks' grid", "its efficiency"]
+    head += ["best grid", "its efficiency", "bed as much wider"]
     said = inspect.getdoc(model).strip()
-    return [f"{said} Here a ghost costs {cost:.2f} of a particle. Efficiencies (-):", markdown(head, rows)]
+    return [
+        f"{said} Here a ghost costs {cost:.2f} of a particle. Grids are ranks across by ranks along the travel,"
+        " efficiencies (-):",
+        markdown(head, rows),
+    ]
 
 
 def cells(lines: pd.DataFrame) -> list[list[str]]:

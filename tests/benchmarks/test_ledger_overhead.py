@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from tiny import tiny_study
 
+from benchmarks.bed_case import RUN, case_study
 from benchmarks.ledger_overhead import variants
 from benchmarks.ranks import GRIDS, PROCESSORS
 from workflows.chain import Chain
@@ -49,3 +50,12 @@ def test_each_grid_is_written_into_the_deck(decks):
     """The deck's own choice is replaced, once."""
     for grid in GRIDS.values():
         assert PROCESSORS.sub(f"processors {grid}", decks["solver"]).count(f"processors {grid} ") == 1
+
+
+def test_a_bed_twice_as_wide_has_twice_the_work():
+    """Bed, sample and particles are doubled, length and time step are not."""
+    one, two = (case_study(4.0, wider).run(RUN).parameters for wider in (1, 2))
+    for section in ("bed", "sample"):
+        assert two[section] == {**one[section], "width_m": pytest.approx(2.0 * one[section]["width_m"])}
+    assert two["derived"]["bed_particles"] == pytest.approx(2 * one["derived"]["bed_particles"], abs=1)
+    assert two["derived"]["time_step_s"] == one["derived"]["time_step_s"]

@@ -63,6 +63,22 @@ def test_golden_deck():
     assert text == GOLDEN.read_text()
 
 
+@pytest.mark.parametrize(("ends", "grid"), [("walls", "* 1 1"), ("periodic", "* * 1"), ("window", "* * 1")])
+def test_ranks_share_a_bed_as_its_geometry_wants(ends, grid):
+    """A bed that travels through its domain is split across; one that fills it is the solver's to split. All decks of a
+    run say the same, and none knows how many ranks there will be.
+    """
+    study = tiny_study(bed={"ends": ends, "ahead_mm": 60, "exchange_mm": 60})
+    parameters, bed = run_and_bed(study)
+    texts = [
+        deck.render("settled_bed", deck.settled_bed(bed)),
+        deck.render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
+        deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
+    ]
+    for text in texts:
+        assert re.findall(r"^processors +(\S+ \S+ \S+)", text, re.MULTILINE) == [grid]
+
+
 def cycle(parameters, number):
     """Span of a wear cycle."""
     return known_spans(parameters)[number - 1]

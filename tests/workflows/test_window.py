@@ -3,6 +3,7 @@
 import itertools
 import re
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,6 +39,7 @@ FRONT_LAG = 0.1  # -, 160 mm ahead of a small sample in a bed of two layers; see
 PRINTED = 2e-6  # m, of places that the solver prints with six digits
 UNDISTURBED = 0.02  # m/s, of nine tenths of fresh bed against its floor; seen 0.005
 LOOSE = 0.5  # m/s, of the rest, a grain on top that tumbles down; seen 0.1, and 6 where the bed enters 1 mm too low
+RANKS_PART = 1e-5  # relative, work of two ranks against one, that sums in another order: seen 3e-9, grows with travel
 UNDISTURBED_STEPS = 500  # since an exchange, in which the sample has not come near
 
 
@@ -330,3 +332,30 @@ def test_a_run_in_pieces_exchanges_as_often(run, tmp_path):
     np.testing.assert_array_equal(exchanges(folder / "log.liggghts")["step"], told)
     assert exchanged_particles(folder)["missing_particles"] == 0
     assert summed_by_solver(chain, span, folder, read_surface(chain.surface))["contact_time_s"].sum() > 0.0
+
+
+@pytest.mark.solver
+@pytest.mark.parametrize(("asked", "grid"), [("2 1 1", (2, 1)), ("* * 1", (1, 2))])
+def test_two_ranks_exchange_as_one_does(run, asked, grid):
+    """Split across, and as the solver chooses for the deck, which is along the travel: the same exchanges of as many
+    particles at the same steps, none lost, and the same work but for the rounding of sums.
+    """
+    chain, whole = run
+    span = first_span(chain.parameters)
+    folder = chain.folder / f"grid_{grid[0]}_{grid[1]}"
+    folder.mkdir()
+    triangles = write_cycle(chain, span, folder, read_surface(chain.surface))
+    text = (folder / "deck.in").read_text()
+    assert len(re.findall(r"^processors +\* \* 1 ", text, re.MULTILINE)) == 1
+    (folder / "deck.in").write_text(re.sub(r"^processors .*", f"processors {asked}", text, flags=re.MULTILINE))
+    cycles.simulate(replace(chain, ranks=2), span, folder, triangles, Progress("window", 1))
+    assert f"{grid[0]} by {grid[1]} by 1 MPI processor grid" in (folder / "log.liggghts").read_text()
+    alone, shared = (exchanges(place / "log.liggghts") for place in (whole, folder))
+    for column, values in alone.items():
+        np.testing.assert_array_equal(shared[column], values, column)
+    assert exchanged_particles(folder)["missing_particles"] == 0
+    work = [
+        summed_by_solver(chain, span, place, read_surface(chain.surface))["sliding_work_J"].sum()
+        for place in (whole, folder)
+    ]
+    assert work[1] == pytest.approx(work[0], rel=RANKS_PART)

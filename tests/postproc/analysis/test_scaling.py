@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from postproc.analysis.scaling import Bed, best_grid, efficiency, ghost_cost, ghost_share, waiting
+from postproc.analysis.scaling import Bed, best_grid, deck_grid, efficiency, ghost_cost, ghost_share, waiting
 
 ROUNDING = 1e-12
 CHANNEL = Bed(width=0.1, length=0.4, travel=0.0, layer=0.005, sample_length=0.1, triangle_share=0.0)
@@ -52,6 +52,16 @@ def test_grids_follow_the_geometry():
     across, along = best_grid(PUSHED, 1.0, 64)
     assert across * along == 64 and along > 1
     assert best_grid(CHANNEL, 0.0, 6) == (6, 1)
+
+
+def test_decks_choose_the_least_cut_surface_where_the_bed_fills_its_domain():
+    """100 x 400 mm: two slabs of 100 x 200 mm, four of 100 x 100 mm, sixteen of 50 x 50 mm; a bed that travels is split
+    across. Of two grids with equal surface the one with fewer ranks across is taken.
+    """
+    assert [deck_grid(CHANNEL, ranks) for ranks in (1, 2, 4, 16)] == [(1, 1), (1, 2), (1, 4), (2, 8)]
+    assert deck_grid(CHANNEL, 7) == (1, 7)
+    assert [deck_grid(PUSHED, ranks) for ranks in (2, 16)] == [(2, 1), (16, 1)]
+    assert deck_grid(replace(CHANNEL, length=0.1), 2) == (1, 2)
 
 
 def test_an_impossible_efficiency_is_refused():
