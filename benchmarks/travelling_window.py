@@ -3,6 +3,7 @@ of travel, and the solver's processor time. Every bed is filled several times; t
 intervals rest on.
 
     python -m benchmarks.travelling_window --cores 2    # in the root of the repository
+    python -m benchmarks.travelling_window --finished   # while it runs, or after it was stopped: of the runs so far
     python -m benchmarks.travelling_window --redraw
 
 Runs stay in `--folder`, where a stopped one goes on; more `--packings` are added to those that are there. After each
@@ -34,6 +35,7 @@ from benchmarks.window_case import (
     SOURCE_FRACTION,
     SURFACES,
     Case,
+    chain_of,
     packing,
     said_beforehand,
     simulated,
@@ -57,6 +59,7 @@ PACKINGS, QUICK_PACKINGS = 3, 2
 BLOCK = 0.1  # m of travel
 LEVEL = 0.95  # of intervals
 SOURCE_EXCHANGE = 20  # mm of travel, at the source's particles
+LATE = {"ratio": "second_half_over_full", "ratio_low": "second_half_low", "ratio_high": "second_half_high"}
 CHEAPER = {"particle_steps": "particle_steps", "core_hours": "core_hours"}  # column -> what it is the cost in
 
 
@@ -104,17 +107,18 @@ def block_rows(case: Case, chain: Chain) -> list[dict[str, Any]]:
 def run_row(case: Case, chain: Chain) -> dict[str, Any]:
     """Return what a run found and what it cost.
 
-    Sliding work per metre and mean normal force over the whole counted travel; particles: mean over the cycles;
-    processor_s: of the solver; bed_processor_s: of filling its bed
+    Sliding work per metre over the whole counted travel and over its second half, mean normal force; particles: mean
+    over the cycles; processor_s: of the solver; bed_processor_s: of filling its bed
     """
-    wear = pd.read_csv(chain.folder / "wear.csv")
+    wear, travel = pd.read_csv(chain.folder / "wear.csv"), chain.parameters["sliding"]["travel_m"]
     records = [state.read_state(chain.folder, cycle)["cost"] for cycle in range(len(cycle_folders(chain.folder)))]
     bed = pd.read_csv(chain.bed_restart.with_name("cost.csv")).iloc[0]
     return {
         "surface": case.surface,
         "bed": case.bed,
         "seed": case.seed,
-        "sliding_work_J_per_m": wear["sliding_work_J"].sum() / chain.parameters["sliding"]["travel_m"],
+        "sliding_work_J_per_m": wear["sliding_work_J"].sum() / travel,
+        "second_half_J_per_m": wear["sliding_work_J"].iloc[len(wear) // 2 :].sum() / (0.5 * travel),
         "normal_force_N": wear["mean_normal_force_N"].mean(),  # cycles are equally long
         "bed_length_m": chain.bed["length_m"],
         "time_step_s": chain.parameters["derived"]["time_step_s"],
@@ -130,14 +134,17 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per surface and bed: sliding work per metre, and over the full bed's, with intervals; and the cost.
 
     runs: as from `run_row`. A packing is what is repeated; scatter between packings is pooled over the beds of a
-    surface (`ratio_intervals`). scatter: standard deviation of ln(work) between packings; force_over_full: mean normal
-    force over the full bed's; cheaper_in_...: cost of the full bed over the bed's own, means over the packings
+    surface (`ratio_intervals`). scatter: standard deviation of ln(work) between packings; second_half_...: the same
+    ratio over the second half of the travel; force_over_full: mean normal force over the full bed's; cheaper_in_...:
+    cost of the full bed over the bed's own, means over the packings
     """
     parts = []
     for surface, of in runs.groupby("surface", sort=False):
         found = ratio_intervals(of["bed"].to_numpy(), of["sliding_work_J_per_m"].to_numpy(), FULL, LEVEL)
+        late = ratio_intervals(of["bed"].to_numpy(), of["second_half_J_per_m"].to_numpy(), FULL, LEVEL)
         means = of.groupby("bed", sort=False).mean(numeric_only=True).reset_index(names="setting")
-        table = found.merge(means.drop(columns=["seed", "sliding_work_J_per_m"]), on="setting")
+        means = means.drop(columns=["seed", "sliding_work_J_per_m", "second_half_J_per_m"])
+        table = found.merge(late[["setting", *LATE]].rename(columns=LATE), on="setting").merge(means, on="setting")
         full = table[table["setting"] == FULL].iloc[0]
         over = {
             "force_over_full": table["normal_force_N"] / full["normal_force_N"],
@@ -190,7 +197,7 @@ def remarks(runs: pd.DataFrame) -> list[str]:
         f"reduced scale: particles {SETTINGS['particle_scale']:g} times their size, sample {sample['width_mm']} x"
         f" {sample['length_mm']} mm of elements of {1e3 * ELEMENT_SIZE:g} mm, bed {bed['width_mm']} mm wide and 40 mm"
         " thick, 1 m/s; the sample keeps its shape; wear is proportional to the sliding work",
-        f"{runs['seed'].nunique()} packings per bed, {sliding['travel_mm']:g} mm of counted travel each after"
+        f"{packings_of(runs)} packings per bed, {sliding['travel_mm']:g} mm of counted travel each after"
         f" {sliding['run_in_mm']:g} mm",
         "windows are named by the bed ahead of and behind the sample in mm; time steps are"
         f" {SOURCE_FRACTION:g} of the Rayleigh time, the source's, where nothing else is said",
@@ -198,9 +205,15 @@ def remarks(runs: pd.DataFrame) -> list[str]:
     ]
 
 
+def packings_of(runs: pd.DataFrame) -> str:
+    """Return how many packings beds have, a range where not all have as many."""
+    counts = runs.groupby(["surface", "bed"]).size()
+    return f"{counts.min()} to {counts.max()}" if counts.min() < counts.max() else str(counts.max())
+
+
 def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
     """Return the page of results; table: as from `comparison`, runs: what it was made from."""
-    names, freedom = ["surface", "bed"], int(table["freedom"].min())
+    names, freedom = ["surface", "bed"], " and ".join(f"{number:g}" for number in table["freedom"].unique())
     wear = ["packings", "sliding_work_J_per_m", "low", "high", "scatter", "wear_over_full", "ratio_low", "ratio_high"]
     cost = ["bed_length_m", "time_step_s", "triangles", "particles", "particle_steps", "processor_s", "bed_processor_s"]
     surfaces, minutes = list(dict.fromkeys(runs["surface"])), runs["processor_s"].sum() / 60.0
@@ -223,7 +236,12 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
             " the scatter between packings (standard deviation of the logarithm) is taken to be that of all beds of a"
             " surface together. Ratios are of geometric means."
         ),
-        markdown(table[[*names, *wear, "force_over_full"]]),
+        markdown(table[[*names, *wear]], digits=4),
+        prose(
+            "A rate is steady where it no longer changes with the travel: the same ratio over the second half of the"
+            " travel alone; and the mean normal force on the sample over that in the full bed."
+        ),
+        markdown(table[[*names, *LATE.values(), "force_over_full"]], digits=4),
         "![Sliding work along the travel in a full bed and in windows](travelling_window.png)",
         "## Cost",
         prose(
@@ -262,16 +280,26 @@ def simulate_all(
     each: Callable[[pd.DataFrame, pd.DataFrame], object],
 ) -> None:
     """Simulate packing by packing, as many runs side by side as there are cores; give all runs and blocks so far."""
-    runs: list[dict[str, Any]] = []
-    blocks: list[dict[str, Any]] = []
+    done: list[tuple[Case, Chain]] = []
     with ProcessPoolExecutor(cores, initializer=die_with(os.getpid())) as pool:
         for number in range(packings):
             cases = packing(surfaces, number)
             chains = pool.map(partial(simulated, folder=folder, settings=SETTINGS), cases)
-            for case, chain in zip(cases, chains, strict=True):
-                runs.append(run_row(case, chain))
-                blocks += block_rows(case, chain)
-            each(pd.DataFrame(runs), pd.DataFrame(blocks))
+            done += zip(cases, chains, strict=True)
+            each(*tables_of(done))
+
+
+def finished(surfaces: Sequence[str], packings: int, folder: Path) -> list[tuple[Case, Chain]]:
+    """Return the runs of a folder that are finished; nothing is simulated."""
+    cases = [case for number in range(packings) for case in packing(surfaces, number)]
+    chains = [(case, chain_of(case, folder, SETTINGS)) for case in cases]
+    return [(case, chain) for case, chain in chains if (chain.folder / "wear.csv").exists()]
+
+
+def tables_of(done: Sequence[tuple[Case, Chain]]) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the rows of runs, and of their blocks of travel."""
+    blocks = [row for case, chain in done for row in block_rows(case, chain)]
+    return pd.DataFrame([run_row(case, chain) for case, chain in done]), pd.DataFrame(blocks)
 
 
 def main() -> None:
@@ -281,6 +309,7 @@ def main() -> None:
     parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each bed, {PACKINGS} if it is not given")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full") / PLACE)
     parser.add_argument("--cores", type=int, default=1, help="runs side by side")
+    parser.add_argument("--finished", action="store_true", help="simulate nothing, take the runs that are finished")
     parser.add_argument("--redraw", action="store_true", help="from the tables of an earlier run")
     given = parser.parse_args()
     files = [given.output / f"travelling_window{part}.csv" for part in ("", "_blocks")]
@@ -294,6 +323,9 @@ def main() -> None:
         print(publish(given.output, *map(pd.read_csv, files)))
         return
     surfaces = (given.surface,) if given.surface else SURFACES
+    if given.finished:
+        write(*tables_of(finished(surfaces, given.packings, given.folder)))
+        return
     print(said_beforehand(surfaces, given.packings, SETTINGS), flush=True)
     simulate_all(surfaces, given.packings, given.folder, given.cores, write)
 

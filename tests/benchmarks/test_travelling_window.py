@@ -6,7 +6,7 @@ import pytest
 
 import benchmarks.window_case as window
 from benchmarks import travelling_window
-from benchmarks.travelling_window import BLOCK, at_source_size, block_rows, comparison, publish, run_row
+from benchmarks.travelling_window import BLOCK, at_source_size, comparison, publish, run_row
 from benchmarks.window_case import BEDS, FULL, SOURCE_FRACTION, Case, chain_of, packing, said_beforehand
 from postproc.analysis.replicates import ratio_intervals
 
@@ -20,6 +20,7 @@ def runs(surface="plain", per_bed=((FULL, (1.0, 4.0), 1000.0, 60.0), (WINDOW, (2
     return pd.DataFrame(
         {
             **{"surface": surface, "bed": bed, "seed": seed, "sliding_work_J_per_m": value, "normal_force_N": value},
+            "second_half_J_per_m": value * (1.5 if bed == WINDOW else 1.0),
             **{**names, "particle_steps": steps, "processor_s": seconds},
         }
         for bed, values, steps, seconds in per_bed
@@ -50,9 +51,20 @@ def test_packings_are_what_is_repeated():
     assert table["ratio_high"][WINDOW] == pytest.approx(2.0 * np.exp(reach), rel=1e-6)
     assert table.loc[FULL, ["ratio_low", "ratio_high"]].isna().all()
     assert list(table["freedom"]) == [2, 2]
+    assert list(table["second_half_over_full"]) == pytest.approx([1.0, 3.0])
+    assert table["second_half_high"][WINDOW] == pytest.approx(3.0 * np.exp(reach), rel=1e-6)
     assert list(table["force_over_full"]) == pytest.approx([1.0, 2.0])  # 2.5 and 5 N, arithmetic means
     assert list(table["cheaper_in_particle_steps"]) == [1.0, 5.0]
     assert list(table["cheaper_in_processor_time"]) == [1.0, 4.0]
+
+
+def test_beds_may_have_unequal_packings():
+    """A run that is not finished yet takes nothing from the others: one degree of freedom is left of two beds."""
+    some = runs().iloc[:3]
+    table = comparison(some).set_index("bed")
+    assert list(table["packings"]) == [2, 1] and list(table["freedom"]) == [1, 1]
+    assert table["wear_over_full"][WINDOW] == pytest.approx(1.0) and np.isfinite(table["ratio_low"][WINDOW])
+    assert "1 to 2 packings per bed" in travelling_window.remarks(some)[1]
 
 
 def test_the_scatter_of_one_surface_does_not_widen_the_other():
@@ -126,14 +138,12 @@ def test_what_there_is_to_do_is_said_beforehand():
 def test_packings_are_published_one_after_another(tmp_path, monkeypatch):
     """After each packing all runs so far are told, in their order, though two processes share them."""
     monkeypatch.setattr(travelling_window, "simulated", as_it_is)
-    monkeypatch.setattr(travelling_window, "run_row", lambda case, chain: {"case": case, "chain": chain})
-    monkeypatch.setattr(travelling_window, "block_rows", lambda case, chain: [{"chain": chain}] * 2)
+    monkeypatch.setattr(travelling_window, "tables_of", lambda done: (list(done), None))
     told = []
-    travelling_window.simulate_all(("plain",), 2, tmp_path, 2, lambda runs, blocks: told.append((runs, blocks)))
-    assert [len(runs) for runs, _ in told] == [len(BEDS), 2 * len(BEDS)]
-    runs, blocks = told[-1]
-    assert (runs["case"] == runs["chain"]).all() and len(blocks) == 2 * len(runs)
-    assert list(runs["case"]) == packing(("plain",), 0) + packing(("plain",), 1)
+    travelling_window.simulate_all(("plain",), 2, tmp_path, 2, lambda done, _: told.append(done))
+    assert [len(done) for done in told] == [len(BEDS), 2 * len(BEDS)]
+    cases = packing(("plain",), 0) + packing(("plain",), 1)
+    assert told[-1] == list(zip(cases, cases, strict=True))
 
 
 def as_it_is(case, folder, settings):
@@ -151,13 +161,18 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
         "solver": {"picture_interval_mm": 100, "wear_interval_mm": 100},
     }
     case = Case("plain", list(BEDS)[2], window.FIRST_SEED)
-    first = window.simulated(case, tmp_path, tiny)
+    window.simulated(case, tmp_path, tiny)
     monkeypatch.setattr(window, "run_chain", lambda chain: pytest.fail("was done before"))
     monkeypatch.setattr(window, "fill_bed", lambda *given: pytest.fail("was done before"))
     again = window.simulated(case, tmp_path, tiny)
-    found = pd.DataFrame(block_rows(case, first))
+    monkeypatch.setattr(travelling_window, "SETTINGS", tiny)
+    (one,) = travelling_window.finished(("plain",), 2, tmp_path)
+    assert one[0] == case
+    row_table, found = travelling_window.tables_of([one])
+    assert len(row_table) == 1
     assert list(found["block"]) == [1, 2]
     row = run_row(case, again)
     assert found["sliding_work_J"].sum() == pytest.approx(row["sliding_work_J_per_m"] * 2 * BLOCK, rel=1e-3)
     assert found["normal_force_N"].mean() == pytest.approx(row["normal_force_N"], rel=1e-3)
+    assert row["second_half_J_per_m"] == pytest.approx(found["sliding_work_J"].iloc[1] / BLOCK, rel=1e-2)
     assert row["particle_steps"] > 0.0 and row["processor_s"] > 0.0
