@@ -41,9 +41,9 @@ class MachineRates:
         beside = f"by {self.side_by_side} processes side by side" if self.side_by_side > 1 else "by a single process"
         where = f"{self.machine['processor']}, {self.machine['cores']} cores, measured {self.date} {beside}"
         if not self.measured_here:
-            return f"DEFAULT RATES OF ANOTHER MACHINE ({where}); `make rates` measures this one's in about a minute"
+            return f"DEFAULT RATES OF ANOTHER MACHINE ({where}); `make rates` measures this one's in a minute or two"
         if self.machine != machine_facts():
-            return f"RATES OF ANOTHER MACHINE ({where}); `make rates` measures this one's in about a minute"
+            return f"RATES OF ANOTHER MACHINE ({where}); `make rates` measures this one's in a minute or two"
         return f"rates of this machine ({where})"
 
 
