@@ -10,5 +10,5 @@ from workflows.rates import write_rates
 
 with job_log(snakemake.log[0]), tempfile.TemporaryDirectory() as folder:
     say = Progress("rates", 1).say
-    say("little more than a minute on an idle machine; other work on it makes them less sharp")
+    say("a minute or two on an idle machine; other work on it makes them less sharp")
     write_rates(Path(snakemake.output[0]), measured_rates(Path(folder), say, snakemake.threads))
