@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 import textwrap
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pandas as pd
+from PIL import Image
 
 from postproc.readers.solver_log import solver_version
 from workflows.page_text import number
 
 LINE = 118  # characters of a line of prose
+COLOURS = 256  # of a picture's palette
 
 
 def markdown(table: pd.DataFrame, digits: int = 3) -> str:
@@ -58,10 +59,11 @@ def picture_file(study: str, name: str) -> str:
 
 
 def copy_pictures(figures: Path, docs: Path, study: str, names: Sequence[str]) -> None:
-    """Put the pictures that a study has beside its page of results."""
+    """Put the pictures that a study has beside its page of results, a third as large by a palette."""
     for name in names:
         if (figures / f"{name}.png").is_file():
-            shutil.copyfile(figures / f"{name}.png", docs / picture_file(study, name))
+            shown = Image.open(figures / f"{name}.png").convert("RGB")
+            shown.quantize(COLOURS, dither=Image.Dither.NONE).save(docs / picture_file(study, name), optimize=True)
 
 
 def study_arguments(description: str, folder: str) -> argparse.Namespace:

@@ -309,7 +309,9 @@ def _no_effect(evidence: Evidence) -> Verdict:
         for name, line in lines.items()
     ]
     strong = [line is not None and line["p_value_permutation"] <= SIGNIFICANT for line in lines.values()]
-    return _verdict("; ".join(words), not any(strong))
+    others = [name for name, line in lines.items() if line is None and any(name in model for model in evidence.models)]
+    several = f"models as good as the best have {' and '.join(others)}" if others else ""
+    return _verdict("; ".join(words), not any(strong), several or _chance(evidence))
 
 
 TESTS: Mapping[str, Test] = {

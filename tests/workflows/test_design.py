@@ -554,7 +554,7 @@ def test_a_ramp_curved_by_v_squared_over_g_ends_the_hop():
 # ---------------------------------------------------------------- regression and replicates
 
 
-def with_factors(config, factors, design="R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\n"):
+def with_factors(config, factors, design="R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\nR3,4,4,20,1.5,0.5,30\n"):
     """The small study with factors of a regression, and with more rows."""
     config.edit("studies/small.yaml", "surfaces: [convex, plain]", f"surfaces: [convex, plain]\nfactors: {factors}")
     path = config.path("designs/small.csv")
@@ -573,10 +573,10 @@ def test_factors_of_a_regression(config):
     [
         ("{a: major_radius_mm, b: radius_mm}", "", "factors.b is 'radius_mm', allowed is one of major_radius_mm,"),
         ("{a: major_radius_mm}", "", "factors"),
-        ("{a: major_radius_mm, b: minor_radius_mm}", "", "found a design of 2 rows, allowed are 4 or more."),
+        ("{a: major_radius_mm, b: minor_radius_mm}", "", "found a design of 2 rows, allowed are 5 or more."),
         (
             "{a: major_radius_mm, t: height_mm}",
-            "R1,2,2,20,6.0,0.5,30\nR2,4,2,20,6.0,0.5,30\n",
+            "R1,2,2,20,6.0,0.5,30\nR2,4,2,20,6.0,0.5,30\nR3,4,4,20,6.0,0.5,30\n",
             "factors.t is height_mm, which is 6 in every row of the design, allowed are columns with two levels",
         ),
     ],
@@ -611,7 +611,7 @@ def test_best_designs_are_a_study_of_their_own(config):
     """<study>_confirmation has the settings of its study and the rows of its regression, each convex and plain."""
     config.edit("studies/small.yaml", "surfaces: [convex, plain]", FACTORS)
     path = config.path("designs/small.csv")
-    path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\n")
+    path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\nR3,4,4,20,1.5,0.5,30\n")
     with pytest.raises(
         ConfigError, match=r"small/confirmation/design\.csv: there is no such file yet, `snakemake small`"
     ):

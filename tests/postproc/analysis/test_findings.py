@@ -157,6 +157,24 @@ def test_an_aliased_scale_leaves_the_thickness_open(tables):
         assert table.loc[key, "reason"] == "t cannot be told from the particle scale"
 
 
+def test_a_model_by_chance_tells_of_no_term(tables):
+    """Where permutations find as good a model, neither a term that it has nor one that it lacks is judged."""
+    models = tables["models"].assign(p_value_permutation=0.2)
+    table = verdicts({**tables, "models": models})
+    for key in ("thickness_strongest", "same_terms", "no_effect_of_height"):
+        assert table.loc[key, "verdict"] == UNSAID
+        assert table.loc[key, "reason"] == "a model as good comes by chance in 20 % of permutations"
+
+
+def test_a_term_of_a_model_as_good_is_not_absent(tables):
+    """That the best model lacks the height says nothing where one as good has it."""
+    best = tables["models"].iloc[[0]]
+    models = pd.concat([best, best.assign(model=f"{best['model'].iloc[0]} + h"), tables["models"].iloc[1:]])
+    table = verdicts({**tables, "models": models})
+    assert table.loc["no_effect_of_height", "verdict"] == UNSAID
+    assert table.loc["no_effect_of_height", "reason"] == "models as good as the best have h"
+
+
 def test_rows_that_were_not_run_are_named(tables):
     """Without R5, R2 and R12 what is told of them cannot be said; the rest is."""
     names = ("summary", "regimes", "profiles", "gradients", "steady")
