@@ -121,6 +121,7 @@ def run_row(case: Case, chain: Chain) -> dict[str, Any]:
         "second_half_J_per_m": wear["sliding_work_J"].iloc[len(wear) // 2 :].sum() / (0.5 * travel),
         "normal_force_N": wear["mean_normal_force_N"].mean(),  # cycles are equally long
         "bed_length_m": chain.bed["length_m"],
+        "settled_particles_per_m": bed["particles"] / chain.bed["length_m"],
         "time_step_s": chain.parameters["derived"]["time_step_s"],
         "triangles": records[-1]["triangles"],
         "particles": sum(record["particles"] for record in records) / len(records),
@@ -239,9 +240,10 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
         markdown(table[[*names, *wear]], digits=4),
         prose(
             "A rate is steady where it no longer changes with the travel: the same ratio over the second half of the"
-            " travel alone; and the mean normal force on the sample over that in the full bed."
+            " travel alone; the mean normal force on the sample over that in the full bed; and how many particles a"
+            " metre of settled bed has."
         ),
-        markdown(table[[*names, *LATE.values(), "force_over_full"]], digits=4),
+        markdown(table[[*names, *LATE.values(), "force_over_full", "settled_particles_per_m"]], digits=4),
         "![Sliding work along the travel in a full bed and in windows](travelling_window.png)",
         "## Cost",
         prose(

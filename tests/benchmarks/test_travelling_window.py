@@ -16,10 +16,18 @@ STUDENT_95_2 = 4.302653  # two-sided 95 % point of Student's t with two degrees 
 
 def runs(surface="plain", per_bed=((FULL, (1.0, 4.0), 1000.0, 60.0), (WINDOW, (2.0, 8.0), 200.0, 15.0))):
     """A table of two packings in two beds: J/m, particle-steps, processor seconds."""
-    names = {"bed_length_m": 2.0, "time_step_s": 1e-5, "triangles": 100, "particles": 50.0, "bed_processor_s": 1.0}
+    names = {
+        "settled_particles_per_m": 25.0,
+        "bed_length_m": 2.0,
+        "time_step_s": 1e-5,
+        "triangles": 100,
+        "particles": 50.0,
+        "bed_processor_s": 1.0,
+    }
     return pd.DataFrame(
         {
             **{"surface": surface, "bed": bed, "seed": seed, "sliding_work_J_per_m": value, "normal_force_N": value},
+            "settled_particles_per_m": 25.0,
             "second_half_J_per_m": value * (1.5 if bed == WINDOW else 1.0),
             **{**names, "particle_steps": steps, "processor_s": seconds},
         }
