@@ -9,13 +9,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pandas as pd
-from PIL import Image
 
+from postproc.plots.style import save_small
 from postproc.readers.solver_log import solver_version
 from workflows.page_text import number
 
 LINE = 118  # characters of a line of prose
-COLOURS = 256  # of a picture's palette
 
 
 def markdown(table: pd.DataFrame, digits: int = 3) -> str:
@@ -59,11 +58,10 @@ def picture_file(study: str, name: str) -> str:
 
 
 def copy_pictures(figures: Path, docs: Path, study: str, names: Sequence[str]) -> None:
-    """Put the pictures that a study has beside its page of results, a third as large by a palette."""
+    """Put the pictures that a study has beside its page of results."""
     for name in names:
         if (figures / f"{name}.png").is_file():
-            shown = Image.open(figures / f"{name}.png").convert("RGB")
-            shown.quantize(COLOURS, dither=Image.Dither.NONE).save(docs / picture_file(study, name), optimize=True)
+            save_small(figures / f"{name}.png", docs / picture_file(study, name))
 
 
 def study_arguments(description: str, folder: str) -> argparse.Namespace:
