@@ -1,6 +1,6 @@
 """Every benchmark of this project, as one table: speed, overhead, scaling.
 
-    python -m benchmarks                     # in the root of the repository, on an idle machine: about 20 minutes
+    python -m benchmarks                     # in the root of the repository, on an idle machine: about 50 minutes
     python -m benchmarks --only ranks        # one of them; its lines in the table are replaced
     python -m benchmarks --quick             # tiny sizes, printed only: does everything run?
     python -m benchmarks --redraw            # the page from its table, nothing measured
