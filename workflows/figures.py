@@ -209,8 +209,13 @@ def page_templates(study: Study) -> list[str]:
 
 
 def has_findings(study: Study) -> bool:
-    """Return whether a study can be held against the source's findings: it has some of its rows, and a regression."""
-    return study.case == "sliding_sample" and bool(study.factors and published_rows(study))
+    """Return whether a study can be held against the source's findings: it has some of its rows, and their regimes."""
+    return study.case == "sliding_sample" and study.finds_regimes and bool(published_rows(study))
+
+
+def regression_table(study: Study, name: str) -> list[str]:
+    """Return the path of a table of the study's regression; none without one."""
+    return [f"results/{study.name}/regression/{name}.csv"] if study.factors else []
 
 
 def finding_tables(study: Study) -> list[str]:

@@ -1,6 +1,6 @@
 """Figures of screening studies: their runs by flow regime, and the motion of the bed over them layer by layer."""
 
-from workflows.figures import CONDITIONS, PATTERN, flow_velocities, passing_beds, published_flow
+from workflows.figures import CONDITIONS, PATTERN, flow_velocities, passing_beds, published_flow, regression_table
 
 REGIMES = "results/{study}/flow/regimes.csv"
 
@@ -152,8 +152,9 @@ rule findings:
         profiles="results/{study}/flow/profiles.csv",
         gradients="results/{study}/figures/wear_gradient.csv",
         steady="results/{study}/flow/steady.csv",
-        coefficients="results/{study}/regression/coefficients.csv",
-        models="results/{study}/regression/models.csv",
+        # none of a study with too few rows for a regression
+        coefficients=lambda wildcards: regression_table(study_of(wildcards), "coefficients"),
+        models=lambda wildcards: regression_table(study_of(wildcards), "models"),
         published_findings="config/published/screening_findings.csv",
         published_regimes="config/published/screening_regimes.csv",
         published_results="config/published/screening_results.csv",

@@ -17,7 +17,7 @@ from postproc.analysis.comparison import read_summary
 from postproc.analysis.display import in_display_units
 from postproc.readers.cycle_folders import cycle_files
 from workflows.design import Study, load_study
-from workflows.figures import page_parameters
+from workflows.figures import has_findings, page_parameters
 from workflows.pages.sliding_numbers import TEXTS, read_with_texts
 from workflows.remarks import figure_remarks
 from workflows.results_page import (
@@ -87,9 +87,10 @@ def sections(folder: Path, study: Study, page: Mapping[str, Any]) -> list[str]:
         ("Wear along the travel", "", ("wear_gradient",)),
         ("The flow", "", ("flow_views",)),
     ]
+    if has_findings(study):
+        parts.append(("Findings of the source", findings_text(folder), ()))
     if study.factors:
         parts += [
-            ("Findings of the source", findings_text(folder), ()),
             ("Regression", regression_text(folder), ("regression_coefficients", "regression_contours")),
             ("Best designs", best_text(folder), (CONFIRMED,)),
         ]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -62,7 +63,7 @@ class Evidence:
 
 def gather(
     tables: Mapping[str, pd.DataFrame],
-    study: Screening,
+    study: Screening | None,
     run_in: float,
     settings: Mapping[str, str],
     published_rows: Mapping[str, str],
@@ -70,12 +71,11 @@ def gather(
     """Return what a study found.
 
     tables: summary, regimes, profiles, gradients, steady, coefficients and models of the study; published_results and
-    published_coefficients. run_in: mm; settings: {row: setting}; published_rows: {row: row of the source}
+    published_coefficients. study: None without a regression, and then no coefficients and models
+    run_in: mm; settings: {row: setting}; published_rows: {row: row of the source}
     """
     summary, theirs = tables["summary"], tables["published_results"]
     terms = frozenset(tables["published_coefficients"]["term"]) - {CONSTANT}
-    same_factors = has_factors(tables["published_coefficients"], study.names)
-    found = tables["models"][tables["models"]["heredity"] == "none"]
     of_runs = [tables[name] for name in ("gradients", "profiles", "steady")]
     named = [table.assign(row=table["row"].map(published_rows)).dropna(subset=["row"]) for table in of_runs]
     return Evidence(
@@ -83,14 +83,24 @@ def gather(
         gradients=named[0],
         profiles=named[1],
         steady=named[2],
-        terms=tables["coefficients"] if same_factors else None,
-        models=tuple(frozenset(model.split(" + ")) - {CONSTANT} for model in found["model"]),
-        model_p=float(found["p_value_permutation"].iloc[0]),
-        aliased={name: what for what, factors in confounded(study).items() for name in factors},
+        **_regression(tables, study),
         travel_end=run_in + MILLIMETRES * float(summary["travel_m"].max()),
         published=theirs.set_index(["quantity", "of", "relation"])["value"].astype(float).to_dict(),
         published_terms=terms,
     )
+
+
+def _regression(tables: Mapping[str, pd.DataFrame], study: Screening | None) -> dict[str, Any]:
+    """Return what the evidence has of the regression."""
+    if study is None:
+        return {"terms": None, "models": (), "model_p": np.nan, "aliased": {}}
+    found = tables["models"][tables["models"]["heredity"] == "none"]
+    return {
+        "terms": tables["coefficients"] if has_factors(tables["published_coefficients"], study.names) else None,
+        "models": tuple(frozenset(model.split(" + ")) - {CONSTANT} for model in found["model"]),
+        "model_p": float(found["p_value_permutation"].iloc[0]),
+        "aliased": {name: what for what, factors in confounded(study).items() for name in factors},
+    }
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,18 @@ def folder(study, tmp_path):
     pd.DataFrame([{"run": r["run"], "row": r["row"], "surface": r["surface"], **window} for r in rows]).to_csv(
         tmp_path / "flow" / "steady.csv", index=False
     )
+    (tmp_path / "findings").mkdir()
+    finding = {
+        "key": "k",
+        "finding": "force up",
+        "source": "S",
+        "found": "2 of 2",
+        "verdict": "confirmed",
+        "reason": "",
+    }
+    pd.DataFrame([finding]).to_csv(tmp_path / "findings" / "findings.csv", index=False)
+    beside = {"row": ["R5"], "published_regime": ["continuous"], "published_wear_over_plain": ["0.34"]}
+    pd.DataFrame(beside).to_csv(tmp_path / "findings" / "runs.csv", index=False)
     jobs = [f"worn_run_{run.name}" for run in study.runs]
     pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(tmp_path / "forecast.csv", index=False)
     for run in study.runs:
@@ -75,11 +87,12 @@ def test_durations_stand_beside_their_forecast(study, folder):
 
 
 def test_a_few_rows_make_a_page_without_a_regression(study, folder, tmp_path):
-    """The page names its fidelity and its rows; what needs all rows is left out."""
+    """The page names its fidelity and its rows; what needs many rows is left out."""
     docs = tmp_path / "docs"
     docs.mkdir()
     write_results(folder, docs, study)
     text = (docs / "screening_results_quick.md").read_text(encoding="utf-8")
     assert text.startswith("# Screening at quick fidelity: results")
     assert "4 runs of 2 rows" in " ".join(text.split()) and "## Durations" in text
+    assert "1 confirmed." in text and "force up" in text
     assert "## Regression" not in text and "![" not in text

@@ -13,8 +13,8 @@ OF_RUNS = ("summary", "regimes", "profiles", "gradients", "steady")  # tables wh
 
 with job_log(snakemake.log[0]):
     given, files = snakemake.params, snakemake.input
-    tables = {name: (read_summary if name in OF_RUNS else pd.read_csv)(path) for name, path in files.items()}
-    study = screen_summary(tables["summary"], given.factors)
+    tables = {name: (read_summary if name in OF_RUNS else pd.read_csv)(path) for name, path in files.items() if path}
+    study = screen_summary(tables["summary"], given.factors) if given.factors else None
     evidence = gather(tables, study, given.run_in, given.settings, given.published_rows)
     told = tables["published_regimes"]
     found = findings_table(evidence, tables["published_findings"], told)

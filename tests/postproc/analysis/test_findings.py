@@ -175,6 +175,18 @@ def test_a_term_of_a_model_as_good_is_not_absent(tables):
     assert table.loc["no_effect_of_height", "reason"] == "models as good as the best have h"
 
 
+def test_without_a_regression_the_other_findings_stand(tables):
+    """Too few rows for a regression: what it would tell cannot be said, the rest is judged as ever."""
+    few = {name: table for name, table in tables.items() if name not in ("coefficients", "models")}
+    evidence = gather(few, None, 1000.0, SELF, SELF)
+    table = findings_table(evidence, read("findings"), read("regimes")).set_index("key")
+    of_regression = ["thickness_strongest", "same_terms", "no_effect_of_height"]
+    assert table.loc[of_regression, "verdict"].unique().tolist() == [UNSAID]
+    assert table.loc["same_terms", "reason"] == "the study has no regression on the source's factors"
+    assert table.drop(index=of_regression)["verdict"].unique().tolist() == [CONFIRMED]
+    assert runs_beside_source(evidence, read("regimes"), {})["published_model"].isna().all()
+
+
 def test_rows_that_were_not_run_are_named(tables):
     """Without R5, R2 and R12 what is told of them cannot be said; the rest is."""
     names = ("summary", "regimes", "profiles", "gradients", "steady")
