@@ -1,7 +1,7 @@
 """Circular wear tester: tables of all runs, and the figures of the study (Yan 2022, chapter 6)."""
 
 from workflows.figures import TESTER_FIGURES
-from workflows.pages.circular_tester import run_values
+from workflows.pages.circular_tester import values_of_runs
 from workflows.remarks import figure_remarks
 
 TESTER_PUBLISHED = {
@@ -12,11 +12,6 @@ TESTER_RUNS = {
     "wear": of_every_run("results/{study}/{run}/wear.csv"),
     "worn": of_every_run("results/{study}/{run}/worn_surface.vtu"),
 }
-
-
-def tester_values(wildcards):
-    """What the analysis of every run of a study needs to know of it."""
-    return [run_values(study_of(wildcards), run) for run in study_of(wildcards).runs]
 
 
 rule tester_tables:
@@ -37,7 +32,7 @@ rule tester_tables:
     benchmark:
         "results/{study}/logs/tester_tables.benchmark.tsv"
     params:
-        runs=tester_values,
+        runs=lambda wildcards: values_of_runs(study_of(wildcards)),
     message:
         "Tables of the runs of {wildcards.study}"
     script:
@@ -69,7 +64,7 @@ for JOB, (CATEGORY, FIGURES_OF_JOB) in TESTER_FIGURES.items():
         benchmark:
             f"results/{{study}}/logs/{JOB}.benchmark.tsv"
         params:
-            runs=tester_values,
+            runs=lambda wildcards: values_of_runs(study_of(wildcards)),
             job=JOB,
             remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
         message:

@@ -60,6 +60,11 @@ def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+def values_of_runs(study: Study) -> list[dict[str, Any]]:
+    """Return what the analysis of every run of a study needs to know of it."""
+    return [run_values(study, run) for run in study.runs]
+
+
 def run_values(study: Study, run: Run) -> dict[str, Any]:
     """Return what the analysis of a run needs, JSON-able, see `postproc.analysis.tester_runs.TesterRun`."""
     parameters, bed = run.parameters, study.beds[study.bed_of(run.name)]
