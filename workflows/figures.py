@@ -213,9 +213,9 @@ def has_findings(study: Study) -> bool:
     return study.case == "sliding_sample" and study.finds_regimes and bool(published_rows(study))
 
 
-def regression_table(study: Study, name: str) -> list[str]:
-    """Return the path of a table of the study's regression; none without one."""
-    return [f"results/{study.name}/regression/{name}.csv"] if study.factors else []
+def regression_table(study: Study, name: str) -> str | list[str]:
+    """Return the path of a table of the study's regression, an empty list without one."""
+    return f"results/{study.name}/regression/{name}.csv" if study.factors else []
 
 
 def finding_tables(study: Study) -> list[str]:
