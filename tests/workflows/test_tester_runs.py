@@ -10,7 +10,7 @@ from tiny_tester import ROWS, chain_of_tester, tiny_tester
 from postproc.analysis.bed import last_snapshot, read_snapshot
 from postproc.mesh import read_surface
 from postproc.readers.solver_log import thermo_table
-from workflows import cycles, tester_deck, tester_figures
+from workflows import cycles, tester_deck, tester_figures, tester_results
 from workflows.derived import neighbour_skin
 from workflows.pages.circular_tester import run_values
 from workflows.state import read_state
@@ -124,10 +124,20 @@ def test_tables_and_figures_are_made_of_the_runs(finished, repository, tmp_path)
     before = sliding["steady_revolutions"] + sliding["run_in_revolutions"]
     np.testing.assert_allclose(series["revolution"] - series["worn_revolution"], before, atol=1e-6)
     assert series["revolution"].max() == pytest.approx(before + REVOLUTIONS, abs=1e-6)
-    figures = tmp_path / "figures"
-    figures.mkdir()
+    figures = tmp_path / "study" / "figures"
+    figures.mkdir(parents=True)
     job = tester_figures.Drawing(runs, tmp_path, figures, paths, ["tiny, for tests"])
     for name in ("tester_volumes", "tester_flow", "tester_distribution"):
         tester_figures.JOBS[name](job)
+    (figures.parent / "tester").symlink_to(tmp_path)
+    for text, word in (
+        (tester_results.comparison_text(figures.parent), "| 56 | plain volume | mm3 | 145.2 |"),
+        (tester_results.fit_text(figures.parent), "Eq 6.6"),
+        (tester_results.ratio_text(figures.parent), "| channel | 4 | 2 |"),
+        (tester_results.steady_text(figures.parent), "wear rate m3 per s"),
+        (tester_results.distribution_text(figures.parent), "% on bumps"),
+    ):
+        assert word in text
+    assert tester_results.worn_out_text(figures.parent) == ""
     drawn = {path.stem for path in figures.glob("*.png")}
     assert drawn == {path.stem for path in figures.glob("*.csv")} and len(drawn) == 14
