@@ -15,6 +15,7 @@ import pandas as pd
 
 from postproc.analysis import tester_comparison, tester_distribution, tester_flow, tester_volume
 from postproc.analysis.pin_series import published_value
+from postproc.analysis.scan_comparison import bump_names
 from postproc.analysis.tester_runs import (
     MESH,
     RING,
@@ -232,7 +233,9 @@ def draw_meshes(job: Drawing) -> None:
     convex.sort(key=lambda run: run.element_size_mm)
     worn = {f"{run.element_size_mm:g} mm": next(iter(cycle_surfaces(run, [same]).values())) for run in convex}
     pristine = top_of(read_surface(convex[0].folder / SURFACE))
-    contours = tester_distribution.worn_contours(pristine, worn, MESH_BUMP)
+    there = bump_names(pristine)["bump"].tolist()  # a sample smaller than the source's has fewer
+    shown = [name for name in MESH_BUMP if name in there] or there[:1]
+    contours = tester_distribution.worn_contours(pristine, worn, shown)
     job.write("tester_mesh_contours", tester.worn_contours(contours, "elements", remarks), contours)
 
 
