@@ -21,7 +21,8 @@ from workflows.geometry import sample_surface
 from workflows.screening_design import FIRST_SEED, SEED_STEP
 
 STUDY, ROW, SURFACES = "demo", "R9", ("plain", "convex")
-SOURCE_FRACTION, FRACTION = 0.23, 0.4  # -, of the Rayleigh time: the source's 5e-6 s, and what the screening takes
+# -, of the Rayleigh time: the source's 5e-6 s, between, and what the screening takes
+SOURCE_FRACTION, MIDDLE_FRACTION, FRACTION = 0.23, 0.3, 0.4
 FULL = "bed of 2 m"
 BEDS: dict[str, dict[str, Any]] = {  # the first, with the source's time step, is what others are compared with
     FULL: {"bed": {"ends": WALLS, "ahead_mm": 300, "behind_mm": 100}, "fraction": SOURCE_FRACTION},
@@ -32,6 +33,10 @@ BEDS: dict[str, dict[str, Any]] = {  # the first, with the source's time step, i
     "window 100 + 50": {
         "bed": {"ends": WINDOW, "ahead_mm": 100, "behind_mm": 50},
         "fraction": SOURCE_FRACTION,
+    },
+    f"window 100 + 50, time step {MIDDLE_FRACTION:g}": {
+        "bed": {"ends": WINDOW, "ahead_mm": 100, "behind_mm": 50},
+        "fraction": MIDDLE_FRACTION,
     },
     f"window 150 + 200, time step {FRACTION:g}": {
         "bed": {"ends": WINDOW, "ahead_mm": 150, "behind_mm": 200},
