@@ -39,7 +39,7 @@ __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies",
 
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
-FEWEST_RUNS = 5  # of a regression, see postproc/analysis/screening.py, which is slow to import
+FEWEST_RUNS = 5  # for which a regression is made: AICc needs four more than a model has terms
 PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
 ROWS = "rows"  # key of the settings
 DESIGN = "design"  # key of a study, and of its fidelity blocks

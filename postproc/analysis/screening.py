@@ -28,7 +28,7 @@ from postproc.analysis.selection import (
 )
 
 HEREDITIES: tuple[Heredity, ...] = ("none", "weak", "strong")
-FEWEST_RUNS = 5  # AICc needs four more than a model has terms
+FEWEST_RUNS = 4  # with four only the mean can be judged: AICc needs four more than a model has terms
 
 
 @dataclass(frozen=True, eq=False)

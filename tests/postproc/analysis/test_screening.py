@@ -165,7 +165,7 @@ def test_a_factor_that_stays_the_same_is_left_out(design, factors, wear):
 
 def test_three_runs_are_refused(design, factors, wear):
     """Nothing can be said of three runs."""
-    with pytest.raises(ValueError, match="found 3 runs with wear above zero, allowed are 5 or more"):
+    with pytest.raises(ValueError, match="found 3 runs with wear above zero, allowed are 4 or more"):
         screen(design, factors, np.where(np.arange(13) < 3, wear, np.nan))
 
 
