@@ -193,7 +193,8 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         factors=factors if _can_tell(factors, rows) else {},
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
         materials=materials,
-        finds_regimes=bool(factors or confirms or any(PARTICLE_SCALE in row.values for row in rows)),
+        finds_regimes=sources.case == "sliding_sample"
+        and bool(factors or confirms or any(PARTICLE_SCALE in row.values for row in rows)),
         confirms=confirms,
     )
 

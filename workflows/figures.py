@@ -227,8 +227,8 @@ def finding_tables(study: Study) -> list[str]:
 
 
 def varies_scale(study: Study) -> bool:
-    """Return whether a study is one of particle size: its rows give their particle scale."""
-    return any(PARTICLE_SCALE in row for row in study.design_rows)
+    """Return whether a study is one of particle size: the rows of its sliding samples give their particle scale."""
+    return study.case == "sliding_sample" and any(PARTICLE_SCALE in row for row in study.design_rows)
 
 
 def published_flow(study: Study) -> str:

@@ -394,7 +394,7 @@ def test_a_study_with_factors_has_a_regression(config, tmp_path):
         "surfaces: [convex, plain]\nfactors: {a: major_radius_mm, b: minor_radius_mm}",
     )
     path = config.path("designs/small.csv")
-    path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\n")
+    path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\nR3,4,4,20,1.5,0.5,30\n")
     study = load_study("small", config.root)
     assert {"wear_gradient", "wear_by_regime", "velocity_profiles", "flow_views_second"} <= set(figures_of(study))
     names = [name for name in figures_of(study) if name.startswith("regression_")]
