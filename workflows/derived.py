@@ -203,15 +203,20 @@ def window_lengths(particle: Mapping[str, Any]) -> tuple[float, float]:
     return STRIP_DIAMETERS * largest, largest + neighbour_skin(particle)
 
 
-def _derived_times(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return time steps (s) and numbers of steps."""
-    particle, sliding, solver = parameters["particle"], parameters["sliding"], parameters["solver"]
-    rayleigh = rayleigh_time(
+def smallest_rayleigh_time(particle: Mapping[str, Any]) -> float:
+    """Return the Rayleigh time (s) of the smallest particle."""
+    return rayleigh_time(
         min(particle["diameters_m"]) / 2.0,
         particle["density_kg_per_m3"],
         particle["shear_modulus_pa"],
         particle["poissons_ratio"],
     )
+
+
+def _derived_times(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return time steps (s) and numbers of steps."""
+    particle, sliding, solver = parameters["particle"], parameters["sliding"], parameters["solver"]
+    rayleigh = smallest_rayleigh_time(particle)
     largest = solver["rayleigh_fraction"] * rayleigh
     sampled = solver.get("sampling_interval_steps", 1)  # only sampled contacts ask for whole samples in a cycle
     cycles = 1 if sliding["cycles"] == ADAPTIVE else sliding["cycles"]

@@ -11,8 +11,8 @@ from workflows.derived import (
     HEADROOM_DIAMETERS,
     derived_materials,
     physical_patch_factor,
-    rayleigh_time,
     size_ratio,
+    smallest_rayleigh_time,
     whole_steps,
 )
 from workflows.sections import particle_section, solver_section, wall_section, wear_section
@@ -84,12 +84,7 @@ def bed_particles(parameters: Mapping[str, Any]) -> int:
 def _derived_times(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return time steps (s) and numbers of steps; a revolution has whole wear cycles."""
     particle, sliding, solver = (parameters[name] for name in ("particle", "sliding", "solver"))
-    rayleigh = rayleigh_time(
-        min(particle["diameters_m"]) / 2.0,
-        particle["density_kg_per_m3"],
-        particle["shear_modulus_pa"],
-        particle["poissons_ratio"],
-    )
+    rayleigh = smallest_rayleigh_time(particle)
     largest = solver["rayleigh_fraction"] * rayleigh
     duration = sliding["revolution_rad"] / sliding["angular_speed_rad_per_s"]
     of_revolution, time_step = whole_steps(duration, largest, sliding["cycles_per_revolution"])
