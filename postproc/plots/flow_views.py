@@ -23,6 +23,7 @@ LABELS = {
     BOTTOM: ("Along the travel, y (mm)", "x (mm)"),
     ACROSS: ("Across the travel, x (mm)", "z (mm)"),
 }
+ROW_GAP = 0.09  # inches above and below every panel: titles clear the labels of the row above
 LEAST_SHARE = 0.25  # -, of the highest panel: what a flat one gets of the height of the figure
 
 
@@ -41,6 +42,7 @@ def flow_views(
     limits = {view: _limits([table[table["view"] == view] for table in tables.values()]) for view in AXES}
     heights = [np.ptp(vertical) / np.ptp(horizontal) for horizontal, vertical in limits.values()]
     ratios = np.maximum(heights, LEAST_SHARE * max(heights))
+    figure.get_layout_engine().set(h_pad=ROW_GAP)
     grid = figure.subplots(len(AXES), len(tables), squeeze=False, sharex="row", sharey="row", height_ratios=ratios)
     for column, (run, table) in enumerate(tables.items()):
         for axes, view in zip(grid[:, column], AXES, strict=True):
