@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
@@ -22,6 +22,9 @@ from workflows.chain import RESTART
 from workflows.collision_tests import simulate, spheres_of
 from workflows.derived import WINDOW
 from workflows.solver import DECK, run_deck
+
+if TYPE_CHECKING:
+    from workflows.design import Study
 
 MODELS = ("cdt", "epsd2")  # rolling types A and C
 COLLISION = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}  # before contact: of beds at rest and in motion
@@ -76,13 +79,20 @@ def collision_tables(runs: Mapping[str, Parameters], folder: Path) -> tuple[pd.D
     return pd.concat(histories, ignore_index=True), pd.concat(measures, ignore_index=True)
 
 
+def packed_runs(study: Study) -> dict[str, Parameters]:
+    """Return the runs whose particles are packed in containers: those chosen, or those of the whole design."""
+    runs = study.all_runs if study.settings["packing"]["every_scale"] else study.runs
+    return {run.name: run.parameters for run in runs}
+
+
 def container(run: Parameters, packing: Mapping[str, Any]) -> dict[str, Any]:
     """Return the bulk test of a container with a run's particles; packing: the study's settings of it, SI."""
     diameter = run["particle"]["median_diameter_m"]
     width = packing["width_diameters"] * diameter
+    height = min(packing["fill_height_m"], packing["most_fill_diameters"] * diameter)
     return {
         "kind": "packed_container",
-        "box": {"length_m": width, "width_m": width, "fill_height_m": packing["fill_height_m"]},
+        "box": {"length_m": width, "width_m": width, "fill_height_m": height},
         "shaking": {
             "amplitude_m": packing["amplitude_diameters"] * diameter,
             "frequency_rad_per_s": packing["frequency_rad_per_s"],

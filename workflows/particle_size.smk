@@ -1,6 +1,7 @@
 """Figures of studies of particle size: wear against scale, packings, and single contacts at every scale."""
 
 from workflows.figures import bumps_and_particles, flow_runs, plain_runs
+from workflows.packings import packed_runs
 from workflows.units import to_si
 
 PUBLISHED_LINES = f"{PUBLISHED_TABLES}/particle_size_lines.csv"
@@ -266,7 +267,7 @@ rule packing_profiles:
     benchmark:
         "results/{study}/logs/packing_profiles.benchmark.tsv"
     params:
-        runs=lambda wildcards: {run.name: run.parameters for run in study_of(wildcards).runs},
+        runs=lambda wildcards: packed_runs(study_of(wildcards)),
         packing=lambda wildcards: to_si(study_of(wildcards).settings)["packing"],
         templates=template_sources("packed_container"),
     message:

@@ -16,6 +16,7 @@ from workflows.packings import (
     collision_tables,
     collision_tests,
     container,
+    packed_runs,
     packing_table,
     pieces,
 )
@@ -130,6 +131,20 @@ def test_collisions_of_the_study_are_alike_and_thinned_out(tmp_path):
     for name in ("restitution", "largest_overlap", "largest_force"):
         assert (first[name] / other[name] - 1.0).abs().max() < 1e-3
     assert len(histories) < 20_000 and not list(tmp_path.glob("*/*.dump"))
+
+
+@pytest.mark.parametrize("fidelity", ROWS)
+def test_containers_of_every_scale(fidelity):
+    """Standard packs all scales of the design, in containers no higher than thirty diameters; paper fills 300 mm."""
+    found = study(fidelity)
+    packing, packed = to_si(found.settings)["packing"], by_scale(packed_runs(found))
+    assert list(packed) == (ROWS["quick"] if fidelity == "quick" else ROWS["paper"])
+    heights = {scale: container(run, packing)["box"]["fill_height_m"] for scale, run in packed.items()}
+    most = {
+        scale: packing["most_fill_diameters"] * run["particle"]["median_diameter_m"] for scale, run in packed.items()
+    }
+    assert heights == {scale: pytest.approx(min(0.3, most[scale]), rel=ROUNDING) for scale in packed}
+    assert (heights[min(packed)] < 0.3) is (fidelity == "standard")
 
 
 @pytest.mark.solver
