@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+RIGHT_ANGLE = 1e-9  # -, cosine of an angle that counts as right
 STL_FACETS_PER_BLOCK = 20_000  # facets formatted at once: bounds the memory of a write
 _FACET = (
     "  facet normal %.9g %.9g %.9g\n    outer loop\n"
@@ -202,8 +203,27 @@ def read_surface(path: str | os.PathLike) -> SurfaceMesh:
     return SurfaceMesh(content.points, triangles, cell_data, dict(content.point_data))
 
 
+def obtuse_last(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Triangles (m, 3) turned so that an obtuse corner is their last one; normals and order stay.
+
+    LIGGGHTS (3.8, surface_mesh_I.h, calcObtuseAngleIndex) forgets an obtuse first or second corner. A sphere beside it
+    then has no contact with the edges that meet there: at a sharp edge it sinks in and is shot out a little further on.
+    """
+    corners = points[triangles]
+    edge = np.roll(corners, -1, axis=1) - corners
+    edge /= np.linalg.norm(edge, axis=-1, keepdims=True)
+    cosine = -np.einsum("mij,mij->mi", edge, np.roll(edge, 1, axis=1))
+    first = np.where(cosine.min(axis=1) < -RIGHT_ANGLE, np.argmin(cosine, axis=1) + 1, 0)
+    return np.take_along_axis(np.asarray(triangles), (np.arange(3) + first[:, None]) % 3, axis=1)
+
+
+def stl_corners(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Corners (m, 3, 3) m of the facets that `write_stl` writes, in the solver's order."""
+    return np.asarray(points)[obtuse_last(points, triangles)]
+
+
 def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray) -> None:
-    """Write an ASCII STL with nine significant digits, facets in the order of the triangles.
+    """Write an ASCII STL with nine significant digits, facets in the order of the triangles, obtuse corners last.
 
     Raises ValueError when a facet has no area: the solver would drop it, and every later id would shift.
     """
@@ -211,7 +231,7 @@ def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray
     faulty = np.flatnonzero(~np.isfinite(normals).all(axis=1))
     if faulty.size:
         raise ValueError(f"{path}: facet {faulty[0]} has no area; {faulty.size} such facets found, allowed are 0")
-    numbers = np.concatenate([normals[:, None], points[triangles]], axis=1).reshape(len(triangles), 12)
+    numbers = np.concatenate([normals[:, None], stl_corners(points, triangles)], axis=1).reshape(len(triangles), 12)
 
     def write(name: Path) -> None:
         with open(name, "w", encoding="ascii") as file:

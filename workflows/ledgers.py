@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh
+from postproc.mesh import SurfaceMesh, stl_corners
 from postproc.readers.contacts import read_contact_batches
 from postproc.readers.load_ledger import read_load_ledger
 from postproc.wear.laws import law_kernels
@@ -75,7 +75,7 @@ def history_of_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMe
 
 def _columns_of_file(path: Path, chain: Chain, span: Span, surface: SurfaceMesh, steps: int) -> Columns:
     loads = read_load_ledger(path, mesh=f"sample_{span.cycle}", n_triangles=len(surface.triangles), steps=steps)
-    corners = surface.points[surface.triangles]
+    corners = stl_corners(surface.points, surface.triangles)
     return columns_of_solver(loads.columns, corners, law_kernels(chain.parameters["wear"]["law"]))
 
 

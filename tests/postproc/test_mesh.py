@@ -190,6 +190,17 @@ def test_stl_keeps_order_and_digits(tmp_path):
     assert facets == pytest.approx(ball.points[ball.triangles], rel=STL_DIGITS, abs=1e-300)
 
 
+def test_obtuse_corners_come_last(tmp_path):
+    """A facet begins after its obtuse corner, wherever that stood, with the same normal; others stay as they are."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [-0.5, 1, 0], [0.5, 1, 0], [0, 1, 0]])
+    obtuse, others = np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1]]), np.array([[0, 1, 3], [0, 1, 4]])  # acute and right
+    assert pm.obtuse_last(points, obtuse).tolist() == [[1, 2, 0]] * 3
+    assert pm.obtuse_last(points, others).tolist() == others.tolist()
+    pm.write_stl(tmp_path / "a.stl", points, np.concatenate([obtuse, others]))
+    facets = pm.read_stl(tmp_path / "a.stl")
+    assert facets[0].tolist() == points[[1, 2, 0]].tolist() and facets[3].tolist() == points[[0, 1, 3]].tolist()
+
+
 def test_stl_in_blocks_is_the_same_file(tmp_path, monkeypatch):
     """The block size of the writer is no part of the result."""
     ball = sphere(0.1, 1)

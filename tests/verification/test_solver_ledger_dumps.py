@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from meshes.plate import flat_plate
-from postproc.mesh import areas
+from postproc.mesh import areas, stl_corners
 from postproc.readers.mesh_loads import read_mesh_loads
 from tests.verification.ledger_cases import (
     DUMP_LINES,
@@ -58,7 +58,7 @@ def test_straight_drag_gives_the_same_map(tmp_path, element_size):
     table = ledger_of_dumps(tmp_path, mesh, 2e-6, after_step=0)
     assert_same_map(ledger, table)
     weights = np.column_stack([ledger.columns[f"contact_weight_{k}"] for k in (1, 2, 3)])
-    position = np.einsum("ik,ikj->ij", weights, mesh.points[mesh.triangles])
+    position = np.einsum("ik,ikj->ij", weights, stl_corners(mesh.points, mesh.triangles))
     sampled = np.column_stack([table[f"contact_position_{axis}_m"] for axis in "xyz"])
     assert position == pytest.approx(sampled, abs=POSITION_TOLERANCE, nan_ok=True)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from meshes.plate import flat_plate
-from postproc.mesh import SurfaceMesh
+from postproc.mesh import SurfaceMesh, stl_corners
 from tests.verification.ledger_cases import (
     LOAD,
     PIN_MOTION,
@@ -120,7 +120,7 @@ def _assert_on_track(ledger, mesh, touched, radius, element_size):
     Inside a triangle the track is an arc; the mean of an arc lies at most its sagitta, e^2/(8 r) for a chord e, inside.
     """
     weights = np.column_stack([ledger.columns[f"contact_weight_{k}"] for k in (1, 2, 3)])[touched]
-    position = np.einsum("ik,ikj->ij", weights, mesh.points[mesh.triangles[touched]])
+    position = np.einsum("ik,ikj->ij", weights, stl_corners(mesh.points, mesh.triangles)[touched])
     longest = np.sqrt(2.0) * element_size  # m, diagonal of a quad
     inward = radius - np.linalg.norm(position[:, :2], axis=1)
     assert inward.min() > -1e-9
