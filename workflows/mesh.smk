@@ -8,6 +8,7 @@ rule surface_mesh:
         "results/{study}/logs/surface_mesh_{run}.log",
     benchmark:
         "results/{study}/logs/surface_mesh_{run}.benchmark.tsv"
+    priority: 1  # as beds: before the runs
     group:
         "meshes"
     params:

@@ -15,6 +15,7 @@ rule settled_bed:
         "results/{study}/logs/settled_bed_{bed}.log",
     benchmark:
         "results/{study}/logs/settled_bed_{bed}.benchmark.tsv"
+    priority: 1  # all of them first: of the runs that can then start, the one with the largest bed does
     threads: ranks_of
     resources:
         runtime=asked("settled_bed", 0),

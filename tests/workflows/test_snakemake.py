@@ -29,6 +29,26 @@ fidelities:
     bed: {width_mm: 60, ahead_mm: 20, behind_mm: 20}
     sliding: {run_in_mm: 10, travel_mm: 20, cycles: 2}
 """
+THREE_RUNS = """\
+rule all:
+    input:
+        expand("{size}.run", size=[5000, 1000, 9000]),
+
+rule run:
+    input:
+        "{size}.bed",
+    output:
+        "{size}.run",
+    shell:
+        "echo {wildcards.size} >> started; touch {output}"
+
+rule bed:
+    output:
+        "{size}.bed",
+    priority: 1
+    shell:
+        "echo bed >> started; head -c {wildcards.size} /dev/zero > {output}"
+"""
 
 
 def workspace(folder: Path) -> Path:
@@ -150,6 +170,20 @@ def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):
     assert "liggghts-ledger: there is no such program; `make setup` (or `make -C solver`) builds it" in output
     assert "Traceback" not in output
     assert not (folder / "results").exists()
+
+
+def test_the_run_with_the_largest_bed_starts_first(tmp_path):
+    """On one core the profile's scheduler takes all jobs of higher priority, then the others by size of their input;
+    so beds and meshes have that priority, and runs do not.
+    """
+    (tmp_path / "Snakefile").write_text(THREE_RUNS)
+    profile = str(REPOSITORY / "profiles" / "default")
+    finish(snakemake(tmp_path, "--workflow-profile", profile, "--cores", "1"))
+    started = (tmp_path / "started").read_text().split()
+    assert started[:3] == ["bed"] * 3 and started[3:] == ["9000", "5000", "1000"]
+    rules = "".join((REPOSITORY / "workflows" / f"{name}.smk").read_text() for name in ("mesh", "solve"))
+    with_priority = re.findall(r"^rule (\w+):(?:\n(?!rule ).*)*?\n    priority: 1\b", rules, flags=re.MULTILINE)
+    assert with_priority == ["surface_mesh", "settled_bed"]
 
 
 def planned_jobs(output: str) -> dict[str, int]:
