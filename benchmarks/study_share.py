@@ -19,7 +19,7 @@ from postproc.analysis.cost import BENCHMARK_SUFFIX, against_forecast, benchmark
 from workflows import state
 from workflows.calibration import SIMULATIONS
 from workflows.results_page import markdown
-from workflows.study_report import FORECAST, cost_totals
+from workflows.study_report import FORECAST, FURTHER_COSTS, cost_totals
 
 RESULTS = Path("results")
 SECONDS_PER_HOUR = 3600.0
@@ -34,6 +34,7 @@ def study_jobs(folder: Path) -> pd.DataFrame:
     """
     costs = {f"worn_run_{path.parent.name}": pd.read_csv(path) for path in sorted(folder.glob("*/cost.csv"))}
     costs |= {f"settled_bed_{path.parent.name}": pd.read_csv(path) for path in sorted(folder.glob("beds/*/cost.csv"))}
+    costs |= {job: pd.read_csv(folder / path) for job, path in FURTHER_COSTS.items() if (folder / path).is_file()}
     simulations = [
         json.loads((path / state.STATE).read_text())["cost"] for path in folder.glob(f"{SIMULATIONS}/*/cycle_000")
     ]

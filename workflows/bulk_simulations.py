@@ -23,7 +23,7 @@ from postproc.calibration.loop import packing_seed
 from postproc.readers.solver_log import failure, last_step, solver_version, thermo_table, warnings
 from workflows import state
 from workflows.bulk_tests import deck_text, slot_length, time_step, write_test
-from workflows.solver import LOG, SCREEN, SolverError, run_deck
+from workflows.solver import LOG, SCREEN, SolverError, processor_seconds, run_deck
 
 FILLED = "filled.dump"
 PACKINGS = 3  # of a test, before it is given up because arches block all of them
@@ -41,15 +41,21 @@ def inputs_digest(test: Mapping[str, Any]) -> str:
     return state.digest(test, deck_text(test))
 
 
-def simulated(test: Mapping[str, Any], root: Path) -> Path:
-    """Return the folder with a test's dumps and log; it is simulated unless it was before. Raises SolverError."""
+def simulated(test: Mapping[str, Any], root: Path, alone: bool = False) -> Path:
+    """Return the folder with a test's dumps and log; it is simulated unless it was before. Raises SolverError.
+
+    alone: this process simulates nothing else meanwhile, so that the processor time can be told and is recorded
+    """
     kept, inputs = simulation_folder(test, root), inputs_digest(test)
     if state.finished_cycles(kept, inputs) == 0:
         with state.working_folder(kept, 0) as folder:
             write_test(test, folder)
-            seconds = _run(folder, test)
+            before = processor_seconds()
+            spent = {"solver_s": round(_run(folder, test), 3)}
+            if alone:
+                spent["processor_s"] = round(processor_seconds() - before, 3)
             check_rest(folder, test)
-            state.write_state(folder, inputs, (HEAP, FILLED, LOG), _record(test, folder, seconds))
+            state.write_state(folder, inputs, (HEAP, FILLED, LOG), _record(test, folder, spent))
     return state.cycle_folder(kept, 0)
 
 
@@ -74,15 +80,11 @@ def check_rest(folder: Path, test: Mapping[str, Any]) -> None:
             )
 
 
-def _record(test: Mapping[str, Any], folder: Path, seconds: float) -> dict[str, Any]:
+def _record(test: Mapping[str, Any], folder: Path, spent: Mapping[str, float]) -> dict[str, Any]:
     thermo = thermo_table(folder / LOG)
     return {
         "test": test,
-        "cost": {
-            "solver_s": round(seconds, 3),
-            "steps": last_step(folder / LOG),
-            "particles": int(thermo["Atoms"].max()),
-        },
+        "cost": {**spent, "steps": last_step(folder / LOG), "particles": int(thermo["Atoms"].max())},
         "solver": solver_version(folder / SCREEN),
         "solver_warnings": warnings(folder / SCREEN),
     }

@@ -20,7 +20,7 @@ min_version("9.0")
 
 ROOT = Path(workflow.basedir)
 PUBLISHED_TABLES = ROOT / "config" / "published"
-SOLVER_RULES = ("settled_bed", "worn_run", "calibrated_parameters", "box_sizes")
+SOLVER_RULES = ("packing_profiles", "settled_bed", "worn_run", "calibrated_parameters", "box_sizes")
 CORES = workflow.cores or 1  # on a cluster those of a submission of small jobs
 # What comes before the tables of a study: on a cluster all that is not named here is one submission.
 BEFORE_TABLES = ("surface_mesh", "cost_rates", *SOLVER_RULES)

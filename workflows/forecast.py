@@ -14,8 +14,10 @@ import pandas as pd
 from postproc.analysis.cost_model import OUTSIDE_TERMS, SOLVER_TERMS, TERMS, Rates, seconds
 from workflows.cases import CASES
 from workflows.design import Study
+from workflows.figures import varies_scale
 from workflows.progress import duration_text
 from workflows.rates import RatesError, rates_file, read_rates
+from workflows.units import to_si
 from workflows.work import Work
 
 # Memory of a job, measured as the largest resident sets of solver and driver. B per particle, per triangle, B alone.
@@ -37,9 +39,15 @@ SHOWN = {  # column of the table -> heading of the printed one
 
 
 def work_of(study: Study) -> tuple[Work, ...]:
-    """Return the jobs of a study that call the solver, beds first."""
+    """Return the jobs of a study that call the solver: its packings where it has any, then beds, then runs."""
     bed_of = {run.name: bed for run in study.runs if (bed := study.bed_of(run.name))}
-    return CASES[study.case].work(study.runs, study.beds, bed_of, study.settings["solver"]["ranks"])
+    work = CASES[study.case].work(study.runs, study.beds, bed_of, study.settings["solver"]["ranks"])
+    if not varies_scale(study):
+        return work
+    from workflows.packing_work import packing_work  # slow to import, and few studies have packings
+    from workflows.packings import packed_runs
+
+    return packing_work(packed_runs(study), to_si(study.settings)["packing"]), *work
 
 
 def forecast_table(work: Sequence[Work], rates: Rates) -> pd.DataFrame:

@@ -15,13 +15,14 @@ from postproc.analysis.display import in_display_units
 from postproc.analysis.packing import MEASURES, loose_and_dense, packing_profile, within
 from postproc.readers.cycle_folders import cycle_files
 from workflows import deck
-from workflows.bulk_simulations import FILLED, simulated
+from workflows.bulk_simulations import FILLED, simulated, simulation_folder
 from workflows.bulk_tests import time_step
 from workflows.cases.base import Parameters
 from workflows.chain import RESTART
 from workflows.collision_tests import simulate, spheres_of
 from workflows.derived import WINDOW
 from workflows.solver import DECK, run_deck
+from workflows.state import read_state
 
 if TYPE_CHECKING:
     from workflows.design import Study
@@ -113,11 +114,20 @@ def packing_table(runs: Mapping[str, Parameters], packing: Mapping[str, Any], fo
     tables = []
     for scale, run in by_scale(runs).items():
         test = container(run, packing)
-        there = simulated(test, folder)
+        there = simulated(test, folder, alone=True)
         loose, dense = (read_snapshot(there / name) for name in (FILLED, HEAP))
         table = loose_and_dense(loose, dense, run["particle"]["median_diameter_m"], test["box"]["length_m"] ** 2)
         tables.append(table.assign(particle_scale=scale))
     return in_display_units(pd.concat(tables, ignore_index=True))
+
+
+def packing_costs(runs: Mapping[str, Parameters], packing: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Return what the simulations of `packing_table` took, a row per particle scale: solver_s, processor_s, steps and
+    particles. Without processor_s where one of them was recorded without it, by an earlier version.
+    """
+    tests = {scale: container(run, packing) for scale, run in by_scale(runs).items()}
+    costs = [read_state(simulation_folder(test, folder), 0)["cost"] for test in tests.values()]
+    return pd.DataFrame(costs, index=pd.Index(tests, name="particle_scale")).dropna(axis="columns").reset_index()
 
 
 def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:

@@ -262,10 +262,15 @@ rule packing_profiles:
             labels={"figure": "Packing of a container"},
         ),
         table="results/{study}/figures/packing_profiles.csv",
+        cost="results/{study}/packings/solver_cost.csv",
     log:
         "results/{study}/logs/packing_profiles.log",
     benchmark:
         "results/{study}/logs/packing_profiles.benchmark.tsv"
+    priority: 1  # waits for nothing and takes long: first, beside the beds
+    resources:
+        runtime=asked("packing_profiles", 0),
+        mem_mb=asked("packing_profiles", 1),
     params:
         runs=lambda wildcards: packed_runs(study_of(wildcards)),
         packing=lambda wildcards: to_si(study_of(wildcards).settings)["packing"],

@@ -38,6 +38,7 @@ TABLE_OF = {"worn_surface_3d": "worn_surface", "worn_disc": "unrolled_track"}  #
 DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
 FORECAST = "forecast.csv"
+FURTHER_COSTS = {"packing_profiles": "packings/solver_cost.csv"}  # job that calls the solver, besides beds and runs
 KEY_NUMBERS = {  # case -> (study, folder, summary) -> what is shown
     "sliding_sample": sliding_numbers.key_numbers,
     "pin_on_disc": pin_numbers.key_numbers,
@@ -177,6 +178,7 @@ def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
     files = [folder / "logs" / f"{job}{BENCHMARK_SUFFIX}" for job in study["jobs"]]
     costs = {f"worn_run_{run}": folder / run / "cost.csv" for run in study["runs"]}
     costs |= {f"settled_bed_{bed}": folder / "beds" / bed / "cost.csv" for bed in study["beds"]}
+    costs |= {job: folder / path for job, path in FURTHER_COSTS.items() if job in study["jobs"]}
     tables = {job: pd.read_csv(path) for job, path in costs.items() if path.is_file()}
     jobs = job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
     return against_forecast(jobs, pd.read_csv(folder / FORECAST))

@@ -48,6 +48,20 @@ def sliding(results, fidelity=None):
     return folder
 
 
+def test_packings_count_as_the_solvers(tmp_path):
+    """A job of packings with containers of 0.3 and 0.1 hours of processor time, forecast as 0.5: 1.2 of 2.5 hours."""
+    folder = sliding(tmp_path)
+    sizes = {"particles": [10, 10], "steps": [5, 5]}
+    hours = {"solver_s": [0.4 * HOUR, 0.2 * HOUR], "processor_s": [0.3 * HOUR, 0.1 * HOUR]}
+    write(folder / "packings" / "solver_cost.csv", **hours, **sizes)
+    forecast = pd.read_csv(folder / "forecast.csv")
+    more = pd.DataFrame({"job": ["packing_profiles"], "solver_s": [0.5 * HOUR], "by": ["rates"]})
+    pd.concat([more, forecast]).to_csv(folder / "forecast.csv", index=False)
+    row = study_row(folder)
+    assert row["solver_jobs"] == 3
+    assert row["solver_core_hours"] == pytest.approx(1.2) and row["forecast_core_hours"] == pytest.approx(2.5)
+
+
 def test_a_study_against_its_forecast(tmp_path):
     """1.25 of 1.5 hours of wall time are the solver's: a sixth is not. 0.8 core hours were forecast as 2; what was
     forecast and never ran counts on neither side.

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from postproc.analysis.cost_model import TERMS
+from workflows.bulk_tests import time_step
 from workflows.cases.sliding_work import cycles, settled_particles
 from workflows.design import list_studies, load_study
 from workflows.forecast import (
@@ -20,8 +21,10 @@ from workflows.forecast import (
     wall_hours,
     work_of,
 )
+from workflows.packings import by_scale, container, packed_runs
 from workflows.progress import duration_text
 from workflows.rates import DEFAULT, read_rates
+from workflows.units import to_si
 from workflows.work import Stage, Work
 
 EXACT = 1e-12  # relative; rounding of a few sums
@@ -90,6 +93,40 @@ def test_jobs_are_those_of_the_workflow(repository):
         "calibrated_parameters",
         "box_sizes",
     ]
+
+
+@pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
+def test_packings_are_a_job_of_the_study_of_particle_size(repository, fidelity):
+    """One job that waits for nothing, with a container per scale: filled, then shaken for as long as the study says."""
+    study = load_study("particle_size", repository, {"fidelity": fidelity})
+    first, *others = work_of(study)
+    assert (first.name, first.needs) == ("packing_profiles", "")
+    assert {each.rule for each in others} == {"settled_bed", "worn_run"}
+    runs = by_scale(packed_runs(study))
+    packing = to_si(study.settings)["packing"]
+    filled, shaken = first.stages[::2], first.stages[1::2]
+    assert len(filled) == len(shaken) == len(runs)
+    for run, poured, levelled in zip(runs.values(), filled, shaken, strict=True):
+        assert poured.decks == 1 and levelled.decks == 0 and levelled.moving
+        assert poured.particles > levelled.particles > packing["width_diameters"] ** 2
+        assert levelled.steps * time_step(container(run, packing)) > packing["shaking_s"]
+
+
+def test_packings_of_larger_and_of_fewer_particles_cost_less(repository):
+    """Rows left out take their containers with them, and a container of smaller particles costs more."""
+    rates = read_rates(repository / DEFAULT).rates
+    seconds = {}
+    for rows in (["S4"], ["S8"], ["S4", "S8"]):
+        work = work_of(load_study("particle_size", repository, {"rows": rows}))[:1]
+        seconds["".join(rows)] = forecast_table(work, rates)["solver_s"].iloc[0]
+    assert seconds["S4S8"] == pytest.approx(seconds["S4"] + seconds["S8"], rel=EXACT)
+    assert seconds["S4"] > 2.0 * seconds["S8"]
+
+
+def test_other_studies_have_no_packings(repository):
+    """A study whose rows are of one particle scale, or of another case, has none in its forecast."""
+    for name in ("demo", "screening", "pin_on_disc", "calibration", "circular_tester"):
+        assert "packing_profiles" not in {each.name for each in work_of(load_study(name, repository))}
 
 
 @pytest.mark.parametrize("name", COUNTED)

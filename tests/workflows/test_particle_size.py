@@ -8,6 +8,7 @@ from workflows.bulk_tests import deck_text
 from workflows.collision_tests import collision
 from workflows.design import ConfigError, load_study
 from workflows.figures import PARTICLE_SIZE, bumps_and_particles, figures_of, page_parameters, published_flow
+from workflows.packing_work import packing_work
 from workflows.packings import (
     AT_REST_BEHIND,
     LEAVING_DIAMETERS,
@@ -17,6 +18,7 @@ from workflows.packings import (
     collision_tests,
     container,
     packed_runs,
+    packing_costs,
     packing_table,
     pieces,
 )
@@ -24,6 +26,7 @@ from workflows.page_text import number, setting_rows
 from workflows.units import to_si
 
 ROUNDING = 1e-9  # relative
+CONTAINER = 0.25  # relative, of the forecast of the narrowest container: fewer fit between its sides. Measured: 0.19
 ROWS = {"quick": [4, 6, 8], "standard": [2, 3, 4, 6, 8], "paper": [1, 2, 3, 4, 5, 6, 7, 8]}
 
 
@@ -151,7 +154,15 @@ def test_containers_of_every_scale(fidelity):
 def test_packings_of_the_study(tmp_path):
     """The largest scale in a narrow container, shaken for a moment: three layers of four diameters in each state."""
     found = study(packing={"width_diameters": 4, "shaking_s": 0.05})
-    table = packing_table({"S8_plain": found.run("S8_plain").parameters}, to_si(found.settings)["packing"], tmp_path)
+    asked = {"S8_plain": found.run("S8_plain").parameters}, to_si(found.settings)["packing"], tmp_path
+    table = packing_table(*asked)
+    cost = packing_costs(*asked)
+    assert cost["particle_scale"].tolist() == [8.0]
+    assert (cost[["solver_s", "processor_s", "steps", "particles"]] > 0).all(axis=None)
+    assert cost["processor_s"].iloc[0] <= cost["solver_s"].iloc[0]
+    expected = packing_work(*asked[:2]).stages
+    assert sum(stage.steps for stage in expected) == pytest.approx(cost["steps"].iloc[0], rel=CONTAINER)
+    assert expected[0].particles == pytest.approx(cost["particles"].iloc[0], rel=CONTAINER)
     assert isinstance(table, pd.DataFrame) and set(table["particle_scale"]) == {8.0}
     assert table.groupby("state")["layer"].max().to_dict() == {"dense": 3, "difference": 3, "loose": 3}
     assert table.loc[table["state"] == "loose", "height_mm"].iloc[0] == pytest.approx(0.5 * 4 * 8 * 2.65, rel=ROUNDING)

@@ -94,7 +94,10 @@ def folder(study, tmp_path):
     table = summary(study)
     table.to_csv(tmp_path / "summary.csv", index=False)
     write_sizes(tmp_path, study, table)
-    jobs = [f"worn_run_{run.name}" for run in study.runs]
+    (tmp_path / "packings").mkdir()
+    cost = {"solver_s": [40.0, 20.0], "processor_s": [36.0, 18.0], "steps": [5000, 4000], "particles": [300, 200]}
+    pd.DataFrame(cost).to_csv(tmp_path / "packings" / "solver_cost.csv", index=False)
+    jobs = ["packing_profiles", *(f"worn_run_{run.name}" for run in study.runs)]
     pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(tmp_path / "forecast.csv", index=False)
     for run in study.runs:
         cycle = tmp_path / run.name / "cycle_000"
@@ -122,7 +125,8 @@ def test_the_page_in_docs_tells_what_the_tables_do(study, folder, tmp_path):
     assert "| convex | 3 |" in told and "Yan 2022, Eq 4.15" in told
     assert "agrees" in told and "cannot be said" in told
     assert "major radius mm" in told and "largest scale" in told and "| 3.46 |" in told
-    assert "took 15 minutes of wall time" in told
+    assert "took 16 minutes of wall time" in told  # of runs 150 s each, of packings 60 s
+    assert "| packing profiles | 300 | 9 000 | 1 | 0.9 | 0.833 | 1.08 |" in told  # 54 of 50 s
     assert "![wear maps](particle_size_quick_wear_maps.png)" in text and text.count("![") == 1
     assert (docs / "particle_size_quick_wear_maps.png").is_file()
 
