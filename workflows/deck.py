@@ -151,17 +151,24 @@ def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
         "fill_bottom_m": floor + gap,
         "fill_top_m": floor + gap + filled,
         "fill_gap_m": gap if bed["ends"] == WALLS else 0.0,
+        "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
+        **poured_particles(particle, bed["seed"]),
+        "settling_steps": settling,
+        "relaxing_steps": steps(RELAXING_TIME, step),
+        **({"packing_steps": falling_steps(bed, step, PACKING_FREE_FALLS)} if bed["ends"] == WINDOW else {}),
+    }
+
+
+def poured_particles(particle: Mapping[str, Any], seed: int) -> dict[str, Any]:
+    """Return what decks that pour a bed say of its particles."""
+    return {
         "fill_fraction": FILL_FRACTION,
         "fall_speed_m_per_s": FALL_SPEED,
-        "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
         "density_kg_per_m3": particle["density_kg_per_m3"],
         "particle_diameter_m": particle["diameters_m"],
         "size_distribution": size_distribution(particle["mass_fractions"]),
         "size_count": len(particle["mass_fractions"]),
-        "seeds": primes(bed["seed"], len(particle["diameters_m"]) + 2),
-        "settling_steps": settling,
-        "relaxing_steps": steps(RELAXING_TIME, step),
-        **({"packing_steps": falling_steps(bed, step, PACKING_FREE_FALLS)} if bed["ends"] == WINDOW else {}),
+        "seeds": primes(seed, len(particle["diameters_m"]) + 2),
     }
 
 

@@ -16,9 +16,9 @@ from postproc.analysis.comparison import read_summary
 from postproc.analysis.display import in_display_units
 from postproc.analysis.packing import inner_means
 from postproc.reference.size_ratios import size_ratios
-from workflows.design import Study, load_study
+from workflows.design import Study
 from workflows.figures import bumps_and_particles, page_parameters
-from workflows.results_page import copy_pictures, markdown, picture, prose, study_arguments
+from workflows.results_page import copy_pictures, markdown, picture, prose, write_page_of_rows
 from workflows.screening_results import durations, provenance
 
 HEAD = """# Particle size at {fidelity} fidelity: results
@@ -176,10 +176,7 @@ def collision_text(folder: Path) -> str:
 
 
 def main() -> None:
-    given = study_arguments(__doc__, "results/particle_size")
-    rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
-    study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows})
-    write_results(given.folder, given.docs, study)
+    write_page_of_rows(__doc__, "results/particle_size", write_results)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -12,6 +12,7 @@ import pandas as pd
 
 from postproc.plots.style import save_small
 from postproc.readers.solver_log import solver_version
+from workflows.design import Study, load_study
 from workflows.page_text import number
 
 LINE = 118  # characters of a line of prose
@@ -71,3 +72,13 @@ def study_arguments(description: str, folder: str) -> argparse.Namespace:
     parser.add_argument("docs", type=Path, nargs="?", default=Path("docs"), help="where the page is written")
     parser.add_argument("--fidelity", default="quick", help="at which it was run")
     return parser.parse_args()
+
+
+def write_page_of_rows(description: str, folder: str, write: Callable[[Path, Path, Study], None]) -> None:
+    """Write the page of a study that was run, or of those of its rows that were, as the command line says.
+
+    write: takes the folder of the study, that of the page, and the study
+    """
+    given = study_arguments(description, folder)
+    rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
+    write(given.folder, given.docs, load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows}))

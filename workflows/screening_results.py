@@ -16,7 +16,7 @@ import pandas as pd
 from postproc.analysis.comparison import read_summary
 from postproc.analysis.display import in_display_units
 from postproc.readers.cycle_folders import cycle_files
-from workflows.design import Study, load_study
+from workflows.design import Study
 from workflows.figures import has_findings, page_parameters
 from workflows.pages.sliding_numbers import TEXTS, read_with_texts
 from workflows.remarks import figure_remarks
@@ -28,7 +28,7 @@ from workflows.results_page import (
     prose,
     simulated_between,
     solver_words,
-    study_arguments,
+    write_page_of_rows,
 )
 from workflows.study_report import commit, cost_totals, jobs_of
 
@@ -185,10 +185,7 @@ def durations(folder: Path, page: Mapping[str, Any]) -> str:
 
 
 def main() -> None:
-    given = study_arguments(__doc__, "results/screening")
-    rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
-    study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows})
-    write_results(given.folder, given.docs, study)
+    write_page_of_rows(__doc__, "results/screening", write_results)
 
 
 if __name__ == "__main__":

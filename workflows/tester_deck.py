@@ -26,15 +26,13 @@ from meshes.tester import (
 from postproc.mesh import SurfaceMesh, write_stl
 from workflows.deck import (
     DOMAIN_MARGIN_DIAMETERS,
-    FALL_SPEED,
     FILL_EXCESS,
     FILL_FRACTION,
     RELAXING_TIME,
     exact_ledger,
     integration,
     material_tables,
-    primes,
-    size_distribution,
+    poured_particles,
     steps,
 )
 from workflows.derived import GRAVITY
@@ -73,14 +71,8 @@ def tester_bed(bed: Parameters) -> dict[str, Any]:
         **material_tables(particle, bed["sample_material"], bed["floor_material"], bed),
         **_walls(bed, "bed", bed["coefficient_per_pa"], "", BLOCK),  # no mesh of a run may have these fix ids
         "report_steps": bed["report_steps"],
-        "density_kg_per_m3": particle["density_kg_per_m3"],
-        "fill_fraction": FILL_FRACTION,
-        "fall_speed_m_per_s": FALL_SPEED,
         "level_m": bed["depth_m"] - LEVEL_DIAMETERS * max(particle["diameters_m"]),
-        "particle_diameter_m": particle["diameters_m"],
-        "size_distribution": size_distribution(particle["mass_fractions"]),
-        "size_count": len(particle["mass_fractions"]),
-        "seeds": primes(bed["seed"], len(particle["diameters_m"]) + 2),
+        **poured_particles(particle, bed["seed"]),
         "settling_steps": settling,
         "relaxing_steps": steps(RELAXING_TIME, step),
         "steady_steps": bed["steady_steps"],

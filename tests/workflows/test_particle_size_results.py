@@ -2,6 +2,7 @@
 
 import pandas as pd
 import pytest
+from finished_runs import leave_runs
 from matplotlib.figure import Figure
 
 from postproc.analysis.guidance import Particles, Pattern, guidance_table
@@ -97,15 +98,7 @@ def folder(study, tmp_path):
     (tmp_path / "packings").mkdir()
     cost = {"solver_s": [40.0, 20.0], "processor_s": [36.0, 18.0], "steps": [5000, 4000], "particles": [300, 200]}
     pd.DataFrame(cost).to_csv(tmp_path / "packings" / "solver_cost.csv", index=False)
-    jobs = ["packing_profiles", *(f"worn_run_{run.name}" for run in study.runs)]
-    pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(tmp_path / "forecast.csv", index=False)
-    for run in study.runs:
-        cycle = tmp_path / run.name / "cycle_000"
-        cycle.mkdir(parents=True)
-        (cycle / "state.json").write_text("{}")
-        (cycle / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled)\n")
-        cost = {"cycle": [0], "particles": [1000], "steps": [6000], "solver_s": [120.0], "processor_s": [60.0]}
-        pd.DataFrame(cost | {"other_s": [30.0]}).to_csv(tmp_path / run.name / "cost.csv", index=False)
+    leave_runs(study, tmp_path, "packing_profiles")
     return tmp_path
 
 

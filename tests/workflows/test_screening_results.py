@@ -2,6 +2,7 @@
 
 import pandas as pd
 import pytest
+from finished_runs import leave_runs
 
 from workflows.design import load_study
 from workflows.figures import page_parameters
@@ -59,15 +60,7 @@ def folder(study, tmp_path):
     pd.DataFrame([finding]).to_csv(tmp_path / "findings" / "findings.csv", index=False)
     beside = {"row": ["R5"], "published_regime": ["continuous"], "published_wear_over_plain": ["0.34"]}
     pd.DataFrame(beside).to_csv(tmp_path / "findings" / "runs.csv", index=False)
-    jobs = [f"worn_run_{run.name}" for run in study.runs]
-    pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(tmp_path / "forecast.csv", index=False)
-    for run in study.runs:
-        cycle = tmp_path / run.name / "cycle_000"
-        cycle.mkdir(parents=True)
-        (cycle / "state.json").write_text("{}")
-        (cycle / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled)\n")
-        cost = {"cycle": [0], "particles": [1000], "steps": [6000], "solver_s": [120.0], "processor_s": [60.0]}
-        pd.DataFrame(cost | {"other_s": [30.0]}).to_csv(tmp_path / run.name / "cost.csv", index=False)
+    leave_runs(study, tmp_path)
     return tmp_path
 
 
