@@ -8,6 +8,7 @@ TESTER_PUBLISHED = {
     "published": f"{PUBLISHED_TABLES}/circular_tester.csv",
     "published_fits": f"{PUBLISHED_TABLES}/circular_tester_volume.csv",
 }
+TESTER_FINDINGS = f"{PUBLISHED_TABLES}/circular_tester_findings.csv"
 TESTER_RUNS = {
     "wear": of_every_run("results/{study}/{run}/wear.csv"),
     "worn": of_every_run("results/{study}/{run}/worn_surface.vtu"),
@@ -18,13 +19,14 @@ rule tester_tables:
     input:
         **TESTER_PUBLISHED,
         **TESTER_RUNS,
+        published_findings=TESTER_FINDINGS,
     output:
         volumes="results/{study}/tester/lost_volumes.csv",
         others=[
             f"results/{{study}}/tester/{name}.csv"
             for name in (
                 *("fits", "time_scale", "predictions", "comparison"),
-                *("crossings", "ratios", "mean_ratios", "series"),
+                *("crossings", "ratios", "mean_ratios", "series", "findings"),
             )
         ],
     log:

@@ -13,7 +13,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.analysis import tester_comparison, tester_distribution, tester_flow, tester_volume
+from postproc.analysis import (
+    tester_comparison,
+    tester_distribution,
+    tester_findings,
+    tester_flow,
+    tester_volume,
+)
 from postproc.analysis.pin_series import published_value
 from postproc.analysis.scan_comparison import bump_names
 from postproc.analysis.tester_runs import (
@@ -43,7 +49,7 @@ from postproc.plots.style import save
 SHOWN_BUMPS = ["C11", "C13", "C15"]  # of Fig 6.5 and 6.16
 MESH_BUMP = ["C15"]  # of Fig 6.9
 FLOW_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
-TOLD_HOURS = ("short_test", "long_test")
+TOLD_HOURS = (tester_volume.SHORT, tester_volume.LONG)
 MOTION = {  # figure -> column of relative_motion, its colour bar
     "tester_spin_map": ("relative_angular_speed", "Angular speed over the plain sample's mean (-)"),
     "tester_velocity_map": ("relative_speed", "Speed over the plain sample's mean (-)"),
@@ -71,6 +77,28 @@ def tester_runs(study: Sequence[Mapping[str, Any]], results: Path) -> list[Teste
     return [tester_run(values, results) for values in study]
 
 
+def flow_means(flow: pd.DataFrame) -> pd.DataFrame:
+    """Return spin and velocity of the lowest layer and normal force per revolution of wear."""
+    worn = flow[flow["worn_revolution"] > 0.0]
+    return tester_flow.revolution_means(worn.assign(revolution=worn["worn_revolution"]), list(BY_REVOLUTION.values()))
+
+
+def main_runs(runs: Sequence[TesterRun]) -> list[TesterRun]:
+    """Return the convex and the plain run of which most figures are made."""
+    return sorted(of_series(runs, VOLUME), key=lambda run: run.surface)
+
+
+def volumes_of_meshes(lost: pd.DataFrame) -> pd.DataFrame | None:
+    """Return volumes after equal revolutions of runs that differ in their elements, finest first; None without any."""
+    of_meshes = chosen(lost, MESH)
+    if of_meshes.empty:
+        return None
+    same = of_meshes.groupby("run")["revolution"].max().min()
+    at = chosen(lost, MESH, VOLUME, SIZE)
+    at = at[np.isclose(at["revolution"], same) & at["particle_scale"].isin(of_meshes["particle_scale"])]
+    return at.sort_values("element_size_mm")
+
+
 def published_tables(paths: Mapping[str, str]) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return published values and fits."""
     return pd.read_csv(paths["published"]), pd.read_csv(paths["published_fits"])
@@ -95,31 +123,66 @@ def main_plain(runs: Sequence[TesterRun]) -> TesterRun:
 
 
 def write_tables(runs: Sequence[TesterRun], folder: Path, paths: Mapping[str, str]) -> None:
-    """Write volumes, fits, time scale, predictions, comparison, ratios and series of a study as <name>.csv."""
+    """Write volumes, fits, time scale, predictions, comparison, ratios, series, findings of a study as <name>.csv."""
     published, published_fits = published_tables(paths)
     lost, plain = volumes(runs), main_plain(runs)
     fits = tester_volume.volume_fits(whole_revolutions(chosen(lost, VOLUME, SIZE)))
-    terms = tester_volume.chosen_fit(fits, plain.name)
+    terms = tester_volume.fit_up_to(fits, plain.name, published_value(published, "plain_volume_56_h", "laboratory"))
     scale = tester_volume.time_scale(
         terms, plain.coefficient, published, plain.distance_per_revolution, plain.width * plain.length
     )
     hours = [published_value(published, name, "laboratory") for name in TOLD_HOURS]
     predicted = tester_volume.predictions(fits, scale, hours)
     main = predicted[predicted["run"].isin([run.name for run in of_series(runs, VOLUME)])]
+    compared = [
+        tester_volume.comparison_table(main, published, published_fits, plain.particle_scale),
+        measured_losses(main_runs(runs)[0], published, scale.revolutions(hours[-1])),
+    ]
     ratios = tester_comparison.ratios_by_revolution(whole_revolutions(chosen(lost, VOLUME, SIZE, RING)))
     tables = {
         "lost_volumes": lost,
         "fits": fits,
         "time_scale": pd.DataFrame([vars(scale)]),
         "predictions": predicted,
-        "comparison": tester_volume.comparison_table(main, published, published_fits, plain.particle_scale),
+        "comparison": pd.concat([table for table in compared if len(table)], ignore_index=True),
         "crossings": crossings(fits),
         "ratios": ratios,
         "mean_ratios": tester_comparison.mean_ratios(ratios, shared=False),
         "series": pd.concat([series(run) for run in of_series(runs, VOLUME)], ignore_index=True),
     }
+    tables["findings"] = tester_findings.findings_table(
+        evidence(runs, tables, hours), pd.read_csv(paths["published_findings"])
+    )
     for name, table in tables.items():
         table.to_csv(folder / f"{name}.csv", index=False, float_format="%.9g")
+
+
+def measured_losses(convex: TesterRun, published: pd.DataFrame, wanted: float) -> pd.DataFrame:
+    """Return rows of the comparison: the largest loss of the bumps that were scanned, after `wanted` revolutions."""
+    (revolution, worn), *_ = cycle_surfaces(convex, [wanted]).items()
+    pristine = top_of(read_surface(convex.folder / SURFACE))
+    losses = tester_distribution.contour_losses(pristine, worn, SHOWN_BUMPS)
+    return tester_volume.loss_rows(losses, published, float(revolution), wanted)
+
+
+def evidence(
+    runs: Sequence[TesterRun], tables: Mapping[str, pd.DataFrame], hours: Sequence[float]
+) -> tester_findings.Evidence:
+    """Return what findings are judged by; tables: those of `write_tables`; hours: of the short and the long test."""
+    main, meshes = main_runs(runs), volumes_of_meshes(tables["lost_volumes"])
+    worn = {run.surface: read_surface(run.folder / WORN_SURFACE) for run in main}
+    columns = tester_distribution.wear_by_column(worn)
+    return tester_findings.Evidence(
+        **{name: tables[name] for name in ("fits", "predictions", "crossings", "ratios")},
+        columns=columns.assign(surface=columns["run"]),
+        bumps=tester_distribution.wear_by_bump(worn["convex"]),
+        means=flow_means(tables["series"]),
+        steady=tester_flow.steady_revolutions(tables["series"]),
+        meshes=None if meshes is None else tester_distribution.mesh_size_effect(meshes),
+        main=main_plain(runs).particle_scale,
+        short=hours[0],
+        long=hours[-1],
+    )
 
 
 def crossings(fits: pd.DataFrame) -> pd.DataFrame:
@@ -182,8 +245,7 @@ def draw_flow(job: Drawing) -> None:
     means = tester_flow.revolution_means(flow, tester_flow.STEADINESS)
     steady = tester_flow.steady_revolutions(flow)
     job.write("tester_steadiness", tester.steadiness(means, steady, published, job.remarks), means)
-    worn = flow[flow["worn_revolution"] > 0.0]
-    means = tester_flow.revolution_means(worn.assign(revolution=worn["worn_revolution"]), list(BY_REVOLUTION.values()))
+    means = flow_means(flow)
     for name, measure in BY_REVOLUTION.items():
         figure = tester.by_revolution(means, measure, published, job.remarks)
         job.write(name, figure, means[means["measure"] == measure])
@@ -199,7 +261,7 @@ def draw_flow(job: Drawing) -> None:
 def draw_distribution(job: Drawing) -> None:
     """Draw where the samples wear and are loaded: Fig 6.13, 6.14, 6.16, 6.22."""
     published, _ = published_tables(job.paths)
-    main = sorted(of_series(job.runs, VOLUME), key=lambda run: run.surface)
+    main = main_runs(job.runs)
     worn = {run.name: read_surface(run.folder / WORN_SURFACE) for run in main}
     table = tester_distribution.wear_by_column(worn)
     figure = tester.by_column(table, "mm3", "Worn volume (mm³)", published, job.remarks)
@@ -207,7 +269,7 @@ def draw_distribution(job: Drawing) -> None:
     forces = pd.concat([mean_force_by_column(run) for run in main], ignore_index=True)
     figure = tester.by_column(forces, "N", "Normal force (N)", published, job.remarks)
     job.write("tester_force_columns", figure, forces)
-    convex = next(run for run in main if run.surface == "convex")
+    convex = main[0]
     bumps = tester_distribution.wear_by_bump(worn[convex.name])
     last = job.table("lost_volumes").groupby("run")["revolution"].max()[convex.name]
     theirs = published_value(published, "last_revolution", "simulation")
@@ -221,11 +283,8 @@ def draw_distribution(job: Drawing) -> None:
 def draw_meshes(job: Drawing) -> None:
     """Draw what the size of the elements changes: Fig 6.8 and 6.9."""
     published, _ = published_tables(job.paths)
-    lost = job.table("lost_volumes")
-    same = chosen(lost, MESH).groupby("run")["revolution"].max().min()
-    at = chosen(lost, MESH, VOLUME, SIZE)
-    at = at[np.isclose(at["revolution"], same) & at["particle_scale"].isin(chosen(lost, MESH)["particle_scale"])]
-    at = at.sort_values("element_size_mm")
+    at = volumes_of_meshes(job.table("lost_volumes"))
+    same = at["revolution"].iloc[0]
     effect = tester_distribution.mesh_size_effect(at)
     remarks = [f"after {same:g} revolutions", *job.remarks]
     job.write("tester_mesh", tester.mesh_size(effect, published, remarks), effect)

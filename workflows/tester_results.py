@@ -15,10 +15,10 @@ from postproc.analysis.tester_comparison import worn_out_at
 from postproc.analysis.tester_distribution import share_of_bumps
 from postproc.analysis.tester_flow import steady_revolutions
 from postproc.analysis.tester_volume import TERMS
-from workflows.design import REPOSITORY, Study, load_study
+from workflows.design import REPOSITORY, Study
 from workflows.figures import figures_of, page_parameters
-from workflows.pages.tester_numbers import result_table
-from workflows.results_page import copy_pictures, markdown, picture, prose, study_arguments
+from workflows.pages.tester_numbers import findings_table, result_table
+from workflows.results_page import copy_pictures, markdown, picture, prose, write_page_of_rows
 from workflows.screening_results import durations, provenance
 
 PUBLISHED_FITS = REPOSITORY / "config" / "published" / "circular_tester_volume.csv"
@@ -45,6 +45,7 @@ def sections(folder: Path, study: Study) -> list[str]:
     """Return the sections of the page, of figures only those that the study has."""
     parts = [
         ("Experiment, thesis' model and ours", comparison_text(folder), ("tester_hours", "tester_benchmark")),
+        ("Findings of the source", findings_text(folder), ()),
         ("Volume by revolution", fit_text(folder), ("tester_volume", "tester_increments")),
         ("Convex over plain at equal distance", ratio_text(folder), ("tester_ring",)),
         ("Every run", run_text(folder), ("worn_surface",)),
@@ -94,6 +95,11 @@ def comparison_text(folder: Path) -> str:
     return f"{prose(told)}\n\n{markdown(compared.assign(note=compared['note'].fillna('')), 4)}"
 
 
+def findings_text(folder: Path) -> str:
+    """Return the source's findings with their verdicts."""
+    return markdown(findings_table(folder))
+
+
 def fit_text(folder: Path) -> str:
     """Return the fits of every run beside those of the source, and when convex overtakes plain."""
     columns = ["surface", "particle_scale", *TERMS, "r_squared"]
@@ -104,7 +110,7 @@ def fit_text(folder: Path) -> str:
     never = np.isinf(crossing[["rate_crossing", "crossing"]]).any(axis=None)
     words = "No crossing (inf) means never by the fits.\n\n" if never else ""
     return (
-        f"{markdown(ours[['run', 'fit', *columns, *errors, 'curved']], 4)}\n{markdown(theirs, 4)}\n"
+        f"{markdown(ours[['run', 'fit', *columns, *errors, 'curved']], 5)}\n{markdown(theirs, 5)}\n"
         f"Convex faster, and more in sum, from revolution:\n\n{words}{markdown(crossing)}"
     )
 
@@ -139,10 +145,7 @@ def worn_out_text(folder: Path) -> str:
 
 
 def main() -> None:
-    given = study_arguments(__doc__, "results/circular_tester")
-    rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
-    study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows})
-    write_results(given.folder, given.docs, study)
+    write_page_of_rows(__doc__, "results/circular_tester", write_results)
 
 
 if __name__ == "__main__":

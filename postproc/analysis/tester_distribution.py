@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 
 from postproc.analysis.depth import WORN_VOLUME
-from postproc.analysis.display import CUBIC_MILLIMETRES
-from postproc.analysis.scan_comparison import bump_names, bump_sections
+from postproc.analysis.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
+from postproc.analysis.scan_comparison import bump_names, bump_sections, largest_losses
 from postproc.mesh import SurfaceMesh, centroids
 from postproc.wear.update import worn_faces
 
@@ -100,3 +100,9 @@ def worn_contours(pristine: SurfaceMesh, worn: Mapping[str, SurfaceMesh], bumps:
     names = {f"{name}_height_mm": name for name in ("pristine", *worn)}
     kept = sections[["bump", "view", "along_mm", *names]].rename(columns=names)
     return kept.melt(["bump", "view", "along_mm"], list(names.values()), "name", "height_mm")
+
+
+def contour_losses(pristine: SurfaceMesh, worn: SurfaceMesh, bumps: list[str]) -> pd.Series:
+    """Largest vertical loss (mm) in the sections of bumps, by bump; flanks too steep for it do not count (Fig 6.5)."""
+    losses = largest_losses(bump_sections(NOTHING, pristine, {"worn": worn}, 0.0)).set_index("bump")["worn_um"]
+    return losses[[bump for bump in bumps if bump in losses.index]] * (MILLIMETRES / MICROMETRES)

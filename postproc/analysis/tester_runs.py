@@ -132,7 +132,8 @@ def series(run: TesterRun) -> pd.DataFrame:
     parts.append(_after(forces.rename(columns=over)[["revolution", *over.values()]], run.before))
     history = _rows(run.folder, "wear_history.csv")
     duration = np.diff(history["time_s"], prepend=0.0)
-    wear = pd.DataFrame({"revolution": history["time_s"] / run.revolution_s})
+    middle = history["time_s"] - 0.5 * duration  # a stretch up to the end of a revolution belongs to it
+    wear = pd.DataFrame({"revolution": middle / run.revolution_s})
     wear["wear_rate_m3_per_s"] = history["archard_volume_m3"] / duration
     wear["normal_force_N"] = history["mean_normal_force_N"]
     parts.append(_after(wear, run.before))

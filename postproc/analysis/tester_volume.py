@@ -25,6 +25,9 @@ SECONDS_PER_HOUR = 3600.0
 SURE = 2.0  # standard errors from zero that a quadratic term must be to be told from none
 LABORATORY, THESIS, OURS = "experiment", "thesis' model", "ours"
 THESIS_ALIKE = "thesis, our particle scale"
+SHORT, LONG = "short_test", "long_test"  # published hours
+COMPARED = ["hours", "quantity", "unit", LABORATORY, THESIS, THESIS_ALIKE, OURS, "note"]
+ALIKE = 0.1  # relative; of revolutions: wear cycles end at a few places only
 THESIS_SCALE = 1.0  # particle scale of Eq 6.2 and 6.3, which the thesis itself holds against its experiment
 
 
@@ -71,6 +74,23 @@ def chosen_fit(fits: pd.DataFrame, run: str) -> np.ndarray:
     """Terms (2,) of a run's fit: the quadratic one where its curvature is sure, else the linear one. mm3."""
     of_run = fits[fits["run"] == run].set_index("fit")
     return of_run.loc["quadratic" if of_run.loc["quadratic", "curved"] else "linear", TERMS].to_numpy(float)
+
+
+def fit_at(fits: pd.DataFrame, run: str, revolution: float) -> np.ndarray:
+    """Terms (2,) of a run's fit for a revolution: beyond its last one a curve that flattens gives way to the line, as
+    it would turn down somewhere. mm3.
+    """
+    terms, of_run = chosen_fit(fits, run), fits[fits["run"] == run].set_index("fit")
+    beyond = revolution > of_run["revolutions"].iloc[0]
+    return of_run.loc["linear", TERMS].to_numpy(float) if beyond and terms[1] < 0.0 else terms
+
+
+def fit_up_to(fits: pd.DataFrame, run: str, volume: float) -> np.ndarray:
+    """Terms (2,) of a run's fit that say when it has lost a volume (mm3), by the same rule."""
+    line = fits[(fits["run"] == run) & (fits["fit"] == "linear")].iloc[0]
+    last = chosen_fit(fits, run)
+    reached = float(volume_at(last, line["revolutions"])) >= volume
+    return fit_at(fits, run, line["revolutions"] if reached else np.inf)
 
 
 def published_terms(published: pd.DataFrame, surface: str, scale: float) -> np.ndarray:
@@ -160,7 +180,7 @@ def time_scale(
     def laboratory(quantity: str) -> float:
         return published_value(published, quantity, "laboratory")
 
-    volume, hours = laboratory("plain_volume_56_h"), laboratory("short_test")
+    volume, hours = laboratory("plain_volume_56_h"), laboratory(SHORT)
     stand_for = published_value(published, "revolutions_of_short_test", "simulation")
     needed = _revolution_of(plain, volume)
     at_theirs = volume_at(plain, stand_for) / CUBIC_MILLIMETRES
@@ -202,8 +222,8 @@ def predictions(fits: pd.DataFrame, scale: TimeScale, hours: list[float]) -> pd.
         plain = fits[(fits["surface"] == PLAIN) & (fits["particle_scale"] == case[2])]["run"]
         for each in hours:
             revolution = scale.revolutions(each)
-            volume = float(volume_at(chosen_fit(fits, case[0]), revolution))
-            beside = volume_at(chosen_fit(fits, plain.iloc[0]), revolution) if len(plain) else np.nan
+            volume = float(volume_at(fit_at(fits, case[0], revolution), revolution))
+            beside = volume_at(fit_at(fits, plain.iloc[0], revolution), revolution) if len(plain) else np.nan
             row = dict(zip(CASE, case, strict=True)) | {"hours": each, "revolution": revolution, "volume_mm3": volume}
             row |= {"reduction_percent": 100.0 * (1.0 - volume / beside)}
             rows.append(row | {"extrapolated": revolution > of_run["revolutions"].iloc[0]})
@@ -221,7 +241,7 @@ def comparison_table(
     Columns: hours, quantity, unit, <the four>, note.
     """
     per_hour = published_value(published, "revolutions_of_short_test", "simulation") / published_value(
-        published, "short_test", "laboratory"
+        published, SHORT, "laboratory"
     )
     rows = []
     for hours, of_hours in predicted[predicted["particle_scale"] == particle_scale].groupby("hours"):
@@ -244,9 +264,27 @@ def comparison_table(
         beyond = "ours extrapolated" if of_hours["extrapolated"].any() else ""
         rows += [[hours, f"{surface} volume", "mm3", *values, beyond] for surface, values in volumes.items()]
         rows.append([hours, "reduction", "%", *reduction, beyond])
-    table = pd.DataFrame(rows, columns=["hours", "quantity", "unit", LABORATORY, THESIS, THESIS_ALIKE, OURS, "note"])
-    long = (table["hours"] == published_value(published, "long_test", "laboratory")) & (table["unit"] == "mm3")
-    table.loc[long, "note"] = table.loc[long, "note"].map(
-        lambda said: "; ".join(filter(None, ["the thesis' text swaps experiment and model here", said]))
-    )
+    table = pd.DataFrame(rows, columns=COMPARED)
+    short, long = (table["hours"] == published_value(published, name, "laboratory") for name in (SHORT, LONG))
+    printed = published_value(published, "reduction_56_h", "simulation")
+    _note(table, short & (table["unit"] == "%"), f"the thesis' text has {printed:g} % for its model")
+    _note(table, long & (table["unit"] == "mm3"), "the thesis' text swaps experiment and model here")
     return table
+
+
+def _note(table: pd.DataFrame, where: pd.Series, words: str) -> None:
+    """Put words before the notes of some rows."""
+    table.loc[where, "note"] = [f"{words}; {said}" if said else words for said in table.loc[where, "note"]]
+
+
+def loss_rows(losses: pd.Series, published: pd.DataFrame, revolution: float, wanted: float) -> pd.DataFrame:
+    """Rows of a comparison table for the largest vertical loss (mm) of bumps after the long test (Fig 6.5).
+
+    losses: by bump, of the surface after `revolution`; wanted: revolutions that the long test stands for.
+    """
+    hours = published_value(published, LONG, "laboratory")
+    short = revolution < wanted * (1.0 - ALIKE)
+    note = f"ours after {revolution:.3g} revolutions, {hours:g} h are {wanted:.3g}" if short else ""
+    table = pd.DataFrame({"quantity": [f"largest loss of {bump}" for bump in losses.index], OURS: losses.to_numpy()})
+    table[LABORATORY] = [published_value(published, f"largest_loss_{bump}", "laboratory") for bump in losses.index]
+    return table.assign(hours=hours, unit="mm", note=note).reindex(columns=COMPARED)

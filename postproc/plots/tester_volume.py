@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -20,6 +21,7 @@ from postproc.analysis.tester_volume import (
     THESIS,
     THESIS_ALIKE,
     chosen_fit,
+    fit_at,
     published_terms,
     volume_at,
 )
@@ -27,10 +29,10 @@ from postproc.plots.pin import PUBLISHED, named_once, printed_table
 from postproc.plots.style import COLOURS, LARGEST_HEIGHT, MARKERS, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 CURVE_POINTS = 101
+NOTE_CHARACTERS = 105  # of a line over a printed table
 SCALE_STYLES = {1: "-", 2: "--", 3: "-.", 4: ":"}
 LABORATORY_COLOUR = "#CC79A7"
 BARS = 0.8  # of the space of a case
-FIT_NAMES = {"linear": "a x", "quadratic": "a x + b x²"}
 
 
 def _case_name(surface: str, scale: float) -> str:
@@ -64,30 +66,31 @@ def volume_by_revolution(
     for row in published.itertuples():
         same = (row.surface, row.particle_scale) in ours
         look = PUBLISHED if same else PUBLISHED | {"color": "#999999", "linewidth": 0.7}
-        name = row.source.partition(" (")[0] if same else None
+        name = row.source.partition(" (")[0] if same else "Yan 2022, other cases"
         axes.plot(x, volume_at(np.array([getattr(row, term) for term in TERMS]), x), label=name, **look)
     axes.set(xlabel="Revolutions", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=3)
-    same = [(row.surface, row.particle_scale) in ours for row in published.itertuples()]
-    _fit_table(printed, fits, published[same])
+    figure.legend(*named_once([axes]), loc="outside upper center", ncols=3)
+    _fit_table(printed, fits, published)
     return figure
 
 
 def _fit_table(axes: Axes, fits: pd.DataFrame, published: pd.DataFrame) -> None:
-    head = ["", "fit", "a (mm³)", "b (mm³)", "R²"]
-    cells = [
-        [_case_name(row["surface"], row["particle_scale"]), FIT_NAMES[row["fit"]]]
-        + [f"{row[term]:.3g} ± {row[f'{term}_error']:.2g}" for term in TERMS]
-        + [f"{row['r_squared']:.5f}"]
-        for _, row in fits.iterrows()
-    ]
-    cells += [
-        [_case_name(row["surface"], row["particle_scale"]), row["source"].partition(" (")[0]]
-        + [f"{row[term]:.4g}" for term in TERMS]
-        + ["" if np.isnan(row["r_squared"]) else f"{row['r_squared']:g}"]
-        for _, row in published.iterrows()
-    ]
+    """Print a line per run: its linear and its quadratic fit, and the published one of its case."""
+    head = ["", "a x: a (mm³)", "R²", "a x + b x²: a (mm³)", "b (mm³)", "R²", "Yan 2022: a, b (mm³)"]
+    cells = []
+    for _, of_run in fits.groupby("run", sort=False):
+        rows = of_run.set_index("fit")
+        line, curve = rows.loc["linear"], rows.loc["quadratic"]
+        shown = [_with_error(line, TERMS[0]), f"{line['r_squared']:.5f}"]
+        shown += [*(_with_error(curve, term) for term in TERMS), f"{curve['r_squared']:.5f}"]
+        theirs = published_terms(published, line["surface"], line["particle_scale"])
+        known = "" if np.isnan(theirs).any() else ", ".join(f"{term:g}" for term in theirs)
+        cells.append([f"{line['surface']}, scale {line['particle_scale']:g}", *shown, known])
     printed_table(axes, head, cells)
+
+
+def _with_error(row: pd.Series, term: str) -> str:
+    return f"{row[term]:.3g} ± {row[f'{term}_error']:.2g}"
 
 
 def element_increments(
@@ -109,6 +112,9 @@ def element_increments(
     ends = [published_value(published, f"plain_{which}_increment", "simulation") for which in ("first", "last")]
     last = published_value(published, "last_revolution", "simulation")
     left.plot([1.0, last], ends, label="Yan 2022, Fig 6.12, plain", **PUBLISHED)
+    theirs = published_value(published, "increments_cross_at", "simulation")
+    words = "Yan 2022, convex of scale 4 overtakes plain"
+    left.axvline(theirs, color="black", linewidth=0.8, linestyle=SCALE_STYLES[4], label=words)
     largest = increments["revolution"].max()
     for row in crossings.itertuples():
         if row.rate_crossing <= largest:
@@ -129,10 +135,8 @@ def crossing_words(row: tuple) -> str:
     """Say when convex overtakes plain, in rate and in sum."""
     if not np.isfinite(row.rate_crossing):
         return f"scale {row.particle_scale:g}: convex never wears faster"
-    return (
-        f"scale {row.particle_scale:g}: convex faster from revolution {row.rate_crossing:.3g},\n"
-        f"has lost more from {row.crossing:.3g}"
-    )
+    words = f"convex faster from {row.rate_crossing:.3g}, more in sum from {row.crossing:.3g}"
+    return f"scale {row.particle_scale:g}: {words}"
 
 
 def benchmark(
@@ -188,7 +192,7 @@ def volume_by_hours(
     for surface in (PLAIN, CONVEX):
         rate = published[published["quantity"] == f"{surface}_volume_per_interval"].iloc[0]
         low, high = ((rate["value"] + sign * rate["uncertainty"]) / interval * hours for sign in (-1.0, 1.0))
-        words = f"{surface}, measured per {interval:g} h" if surface == PLAIN else None
+        words = f"{surface}, measured per {interval:g} h"
         axes.fill_between(hours, low, high, color=COLOURS[surface], alpha=0.15, linewidth=0.0, label=words)
         for length in ("short", "long"):
             end = published_value(published, f"{length}_test", "laboratory")
@@ -205,7 +209,7 @@ def volume_by_hours(
                 label=f"{surface}, measured" if length == "short" else None,
             )
     for (run, surface, scale), _ in fits.groupby(["run", "surface", "particle_scale"], sort=False):
-        curve = volume_at(chosen_fit(fits, run), hours / hours_per_revolution)
+        curve = [volume_at(fit_at(fits, run, each), each) for each in hours / hours_per_revolution]
         look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
         axes.plot(hours, curve, label=f"{_case_name(surface, scale)}, ours", **look)
     axes.set_title(
@@ -220,14 +224,18 @@ def volume_by_hours(
 
 
 def _numbers(axes: Axes, table: pd.DataFrame) -> None:
-    """Print the comparison; a star leads to the notes below its title."""
+    """Print the volumes compared; numbers in brackets lead to the notes in its title."""
     columns = [LABORATORY, THESIS, THESIS_ALIKE, OURS]
-    cells = [
-        [f"{row['hours']:g} h", f"{row['quantity']} ({row['unit'].replace('mm3', 'mm³')}){'*' if row['note'] else ''}"]
-        + ["" if np.isnan(row[name]) else f"{row[name]:.4g}" for name in columns]
-        for _, row in table.iterrows()
-    ]
-    notes = list(dict.fromkeys(note for notes in table["note"] if notes for note in notes.split("; ")))
-    if notes:
-        axes.set_title("* " + "; ".join(notes), loc="left", fontsize=SMALLEST_FONT)
+    shown = table[table["unit"] != "mm"]
+    notes = list(dict.fromkeys(note for words in shown["note"] if words for note in words.split("; ")))
+    cells = []
+    for _, row in shown.iterrows():
+        marks = ", ".join(str(notes.index(note) + 1) for note in row["note"].split("; ") if note)
+        words = f"{row['quantity']} ({row['unit'].replace('mm3', 'mm³')}){f' [{marks}]' if marks else ''}"
+        values = ["" if np.isnan(row[name]) else f"{row[name]:.4g}" for name in columns]
+        cells.append([f"{row['hours']:g} h", words, *values])
+    said = "\n".join(
+        textwrap.wrap("; ".join(f"[{k}] {note}" for k, note in enumerate(notes, start=1)), NOTE_CHARACTERS)
+    )
+    axes.set_title(said, loc="left", fontsize=SMALLEST_FONT)
     printed_table(axes, ["", "", *columns], cells)

@@ -6,7 +6,8 @@ Takes some two minutes.
 import numpy as np
 import pandas as pd
 import pytest
-from tiny_tester import chain_of_tester, tiny_tester
+from tiny import tiny_chain
+from tiny_tester import tiny_tester
 
 from postproc.analysis.bed import last_snapshot, read_snapshot
 from postproc.readers.solver_log import thermo_table
@@ -33,7 +34,7 @@ def ring(tmp_path_factory):
             "revolutions": 1,
         },
     )
-    chain = chain_of_tester(study, tmp_path_factory.mktemp("ring"), "plain")
+    chain = tiny_chain(study, tmp_path_factory.mktemp("ring"), "plain")
     cycles.run_chain(chain)
     return chain
 

@@ -192,6 +192,8 @@ def test_a_design_needs_a_pair_of_one_particle_scale():
     assert "series volume" in case.design_fault(rows)
     rows[1]["series"] = "volume"
     assert case.design_fault(rows) is None
+    rows[1]["particle_scale"] = 4
+    assert "differ in particle_scale, allowed are equal ones" in case.design_fault(rows)
 
 
 def test_work_is_that_of_beds_and_runs():

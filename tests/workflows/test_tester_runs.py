@@ -5,15 +5,20 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from tiny_tester import ROWS, chain_of_tester, tiny_tester
+from tiny import tiny_chain
+from tiny_tester import ROWS, tiny_tester
 
+from postproc.analysis import tester_distribution
 from postproc.analysis.bed import last_snapshot, read_snapshot
 from postproc.mesh import read_surface
 from postproc.readers.solver_log import thermo_table
+from postproc.wear.update import worn_faces
 from workflows import cycles, tester_deck, tester_figures, tester_results
+from workflows.cases import CASES
 from workflows.derived import neighbour_skin
 from workflows.pages.circular_tester import run_values
 from workflows.state import read_state
+from workflows.tables import write_table
 
 pytestmark = pytest.mark.solver
 
@@ -30,7 +35,7 @@ ON_TOP = 5e-4  # m, of mean contact points from the plain top: it wears by less,
 def finished(tmp_path_factory):
     """Both runs, finished, below one folder of results."""
     study, folder = tiny_tester(), tmp_path_factory.mktemp("tester")
-    chains = {run: chain_of_tester(study, folder, run) for run in ROWS}
+    chains = {run: tiny_chain(study, folder, run) for run in ROWS}
     for chain in chains.values():
         cycles.run_chain(chain)
     return SimpleNamespace(study=study, folder=folder, chains=chains)
@@ -87,6 +92,27 @@ def test_wear_is_that_of_the_law_and_stays_in_the_samples_frame(finished, run):
     np.testing.assert_allclose(state["pose"], tester_deck.pose(chain.parameters["tester"]))
 
 
+@pytest.mark.parametrize("run", ROWS)
+def test_the_front_that_ploughs_does_not_count(finished, run):
+    """Volume and normal force are those of the faces that wear; front, sides and bottom of the holder bear work too."""
+    chain = finished.chains[run]
+    wear = pd.read_csv(chain.folder / "wear.csv").iloc[0]
+    ledger = pd.read_parquet(chain.folder / "cycle_001" / "ledger.parquet").set_index("triangle")
+    surface = read_surface(chain.surface)
+    counts = worn_faces(surface)[ledger.index]
+    coefficient = chain.parameters["wear"]["accelerated_wear_coefficient_per_pa"]
+    assert ledger["sliding_work_J"][~counts].sum() > 0.0
+    assert wear["archard_volume_m3"] == pytest.approx(
+        coefficient * ledger["sliding_work_J"][counts].sum(), rel=ROUND_OFF
+    )
+    force = ledger["normal_impulse_N_s"][counts].sum() / wear["time_s"]
+    assert wear["mean_normal_force_N"] == pytest.approx(force, rel=ROUND_OFF)
+    worn = read_surface(chain.folder / "worn_surface.vtu")
+    table = tester_distribution.wear_by_column({run: worn})
+    total = pd.read_csv(chain.folder / "wear.csv")["total_archard_volume_m3"].iloc[-1]
+    assert 1e-9 * table[["base_mm3", "bumps_mm3"]].to_numpy().sum() == pytest.approx(total, rel=1e-6)
+
+
 def test_a_convex_sample_has_a_pattern_to_lose(finished):
     """What is left of the bumps never grows; a plain sample has none."""
     left = {run: pd.read_csv(chain.folder / "wear.csv")["pattern_volume_m3"] for run, chain in finished.chains.items()}
@@ -103,41 +129,67 @@ def test_snapshots_become_a_table_of_the_lowest_layer(finished):
         assert table["revolution"].between(0.0, REVOLUTIONS).all()
 
 
-def test_tables_and_figures_are_made_of_the_runs(finished, repository, tmp_path):
-    """Volumes, scale of time, comparison and series; every figure of a study of two rows with its table."""
-    study, published = finished.study, repository / "config" / "published"
-    paths = {"published": published / "circular_tester.csv"}
-    paths["published_fits"] = published / "circular_tester_volume.csv"
-    runs = tester_figures.tester_runs([run_values(study, run) for run in study.runs], finished.folder)
-    tester_figures.write_tables(runs, tmp_path, paths)
-    lost = pd.read_csv(tmp_path / "lost_volumes.csv")
+@pytest.fixture(scope="module")
+def tables(finished, repository):
+    """The tables of the study below its folder, and what a job of figures has."""
+    published = repository / "config" / "published"
+    names = {"published": "", "published_fits": "_volume", "published_findings": "_findings"}
+    paths = {key: published / f"circular_tester{name}.csv" for key, name in names.items()}
+    runs = tester_figures.tester_runs([run_values(finished.study, run) for run in finished.study.runs], finished.folder)
+    for name in ("tester", "figures"):
+        (finished.folder / name).mkdir()
+    tester_figures.write_tables(runs, finished.folder / "tester", paths)
+    return tester_figures.Drawing(
+        runs, finished.folder / "tester", finished.folder / "figures", paths, ["tiny, for tests"]
+    )
+
+
+def test_tables_are_made_of_the_runs(finished, tables):
+    """Volumes, scale of time, comparison, series and findings."""
+    lost = tables.table("lost_volumes")
     for run, chain in finished.chains.items():
         wear = pd.read_csv(chain.folder / "wear.csv")
         of_run = lost[lost["run"] == run]
         np.testing.assert_allclose(of_run["volume_m3"].iloc[1:], wear["total_applied_volume_m3"], rtol=1e-6)
         assert of_run["volume_m3"].iloc[0] == 0.0
-    compared = pd.read_csv(tmp_path / "comparison.csv")
+    compared = tables.table("comparison")
     plain = compared[(compared["hours"] == 56) & (compared["quantity"] == "plain volume")]
     assert plain["ours"].iloc[0] == pytest.approx(145.2, rel=1e-6)  # it sets the scale of time
-    series = pd.read_csv(tmp_path / "series.csv")
-    sliding = study.settings["sliding"]
+    loss = compared[compared["quantity"] == "largest loss of C11"].iloc[0]
+    assert loss["experiment"] == 0.34 and loss["ours"] > 0.0
+    series = tables.table("series")
+    sliding = finished.study.settings["sliding"]
     before = sliding["steady_revolutions"] + sliding["run_in_revolutions"]
     np.testing.assert_allclose(series["revolution"] - series["worn_revolution"], before, atol=1e-6)
     assert series["revolution"].max() == pytest.approx(before + REVOLUTIONS, abs=1e-6)
-    figures = tmp_path / "study" / "figures"
-    figures.mkdir(parents=True)
-    job = tester_figures.Drawing(runs, tmp_path, figures, paths, ["tiny, for tests"])
+    wear = series.dropna(subset="wear_rate_m3_per_s")
+    per_revolution = wear.groupby(["run", np.floor(wear["worn_revolution"])]).size()
+    assert (per_revolution == finished.study.settings["solver"]["looks_per_revolution"]).all()
+    assert (tables.table("findings")["verdict"].isin(["confirmed", "not confirmed", "cannot be said"])).all()
+
+
+def test_figures_and_page_are_made_of_the_tables(finished, tables, tmp_path):
+    """Every figure of a study of two rows with its table; the page of results shows them and says what was found."""
     for name in ("tester_volumes", "tester_flow", "tester_distribution"):
-        tester_figures.JOBS[name](job)
-    (figures.parent / "tester").symlink_to(tmp_path)
-    for text, word in (
-        (tester_results.comparison_text(figures.parent), "| 56 | plain volume | mm3 | 145.2 |"),
-        (tester_results.fit_text(figures.parent), "Eq 6.6"),
-        (tester_results.ratio_text(figures.parent), "| channel | 4 | 2 |"),
-        (tester_results.steady_text(figures.parent), "wear rate m3 per s"),
-        (tester_results.distribution_text(figures.parent), "% on bumps"),
-    ):
+        tester_figures.JOBS[name](tables)
+    drawn = {path.stem for path in tables.folder.glob("*.png")}
+    assert drawn == {path.stem for path in tables.folder.glob("*.csv")} and len(drawn) == 14
+    folder, case = finished.folder, CASES[finished.study.case]
+    write_table(folder / "design.csv", finished.study.design_table())
+    wear = [chain.folder / "wear.csv" for chain in finished.chains.values()]
+    case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
+    jobs = [*(f"worn_run_{run}" for run in ROWS), "settled_bed_bed_1"]
+    pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(folder / "forecast.csv", index=False)
+    tester_results.write_results(folder, tmp_path, finished.study)
+    text = (tmp_path / "circular_tester_results_quick.md").read_text(encoding="utf-8")
+    words = (
+        "| 56 | plain volume | mm3 | 145.2 |",
+        "R² over 0.99",
+        "Eq 6.6",
+        "| channel | 4 | 2 |",
+        "wear rate m3 per s",
+    )
+    for word in (*words, "% on bumps", "## Durations"):
         assert word in text
-    assert tester_results.worn_out_text(figures.parent) == ""
-    drawn = {path.stem for path in figures.glob("*.png")}
-    assert drawn == {path.stem for path in figures.glob("*.csv")} and len(drawn) == 14
+    assert "Until the pattern" not in text and text.count("![") == len(drawn) + 1  # worn surfaces are drawn elsewhere
+    assert len(list(tmp_path.glob("*.png"))) == len(drawn)

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from postproc.mesh import write_surface
+from workflows.cases import CASES
 from workflows.chain import Chain
 from workflows.cycles import fill_bed
 from workflows.design import Study, load_study
-from workflows.geometry import sample_surface
 
 TINY = {
     "particle_scale": 4,
@@ -34,7 +34,7 @@ def tiny_chain(study: Study, folder: Path, run: str = "R9_convex") -> Chain:
     surface = run_folder / "surface.vtu"
     if not surface.exists():
         run_folder.mkdir(parents=True, exist_ok=True)
-        write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))
+        write_surface(surface, CASES[study.case].surface_mesh(parameters))
     return Chain(
         name=run,
         folder=run_folder,

@@ -1,11 +1,5 @@
 """A circular wear tester small enough for tests: 700 particles, a sample of 40 mm, two cycles, some seconds."""
 
-from pathlib import Path
-
-from postproc.mesh import write_surface
-from workflows.cases import CASES
-from workflows.chain import Chain
-from workflows.cycles import fill_bed
 from workflows.design import Study, load_study
 
 TINY = {
@@ -41,25 +35,3 @@ def tiny_tester(**changes) -> Study:
     for key, value in changes.items():
         settings[key] = {**settings.get(key, {}), **value} if isinstance(value, dict) else value
     return load_study("circular_tester", overrides={"fidelity": "quick", "rows": list(ROWS), **settings})
-
-
-def chain_of_tester(study: Study, folder: Path, run: str) -> Chain:
-    """Return a chain in `folder`, its surface built and its bed filled and turned unless they are there."""
-    bed_name = study.bed_of(run)
-    bed_folder, run_folder = folder / "beds" / bed_name, folder / run
-    if not (bed_folder / "bed.restart").exists():
-        fill_bed(bed_name, study.beds[bed_name], bed_folder)
-    parameters = study.run(run).parameters
-    surface = run_folder / "surface.vtu"
-    if not surface.exists():
-        run_folder.mkdir(parents=True, exist_ok=True)
-        write_surface(surface, CASES[study.case].surface_mesh(parameters))
-    return Chain(
-        name=run,
-        folder=run_folder,
-        case=study.case,
-        parameters=parameters,
-        surface=surface,
-        bed=study.beds[bed_name],
-        bed_restart=bed_folder / "bed.restart",
-    )

@@ -51,10 +51,14 @@ class CircularTester(Case):
     kept = (LAYER_TABLE,)
 
     def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
-        """Return a phrase unless one plain and one convex row are of series volume, of which most figures are made."""
-        found = sorted(row["surface"] for row in rows if row["series"] == VOLUME)
+        """Return a phrase unless one plain and one convex row are of series volume, of which most figures are made, in
+        equal machines with equal particles.
+        """
+        main = [row for row in rows if row["series"] == VOLUME]
+        found = sorted(row["surface"] for row in main)
         if found == ["convex", "plain"]:
-            return None
+            apart = [name for name in ("shape", "particle_scale") if main[0].get(name) != main[1].get(name)]
+            return f"rows of series {VOLUME} differ in {' and '.join(apart)}, allowed are equal ones" if apart else None
         return f"series {VOLUME} has {' and '.join(found) or 'no row'}, allowed is one convex and one plain row"
 
     def run_parameters(

@@ -27,7 +27,13 @@ def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -
         "sources": [LABORATORY, THESIS, THESIS_ALIKE, OURS],
         "scale": tables["time_scale"].iloc[0].to_dict(),
         "machines": tables["mean_ratios"].to_dict("records"),
+        "verdicts": findings_table(folder).to_dict("records"),
     }
+
+
+def findings_table(folder: Path) -> pd.DataFrame:
+    """Return finding, source, found, verdict and reason of the source's findings, words all of them."""
+    return pd.read_csv(folder / "tester" / "findings.csv", keep_default_na=False).drop(columns="key")
 
 
 def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:

@@ -10,6 +10,7 @@ from meshes.sample import sample_top
 from postproc.analysis.depth import WORN_VOLUME
 from postproc.analysis.tester_distribution import (
     column_numbers,
+    contour_losses,
     force_by_column,
     mesh_size_effect,
     share_of_bumps,
@@ -115,3 +116,10 @@ def test_contours_without_a_scan(convex):
     assert len(heights) > 100
     assert (heights["pristine"] - heights["17"]).to_numpy() == pytest.approx(np.full(len(heights), 0.2))
     assert heights["pristine"].max() == pytest.approx(6.0, abs=0.15)
+
+
+def test_losses_of_contours(convex):
+    """A sample lowered by 0.2 mm has lost that everywhere; bumps that it does not have are left out."""
+    lower = SurfaceMesh(convex.points - (0.0, 0.0, 2e-4), convex.triangles, convex.cell_data)
+    losses = contour_losses(convex, lower, ["C11", "C15", "C99"])
+    assert losses.to_dict() == pytest.approx({"C11": 0.2, "C15": 0.2})
