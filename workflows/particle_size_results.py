@@ -15,6 +15,7 @@ from postproc.analysis.collision import spread_over_scales
 from postproc.analysis.comparison import read_summary
 from postproc.analysis.display import in_display_units
 from postproc.analysis.packing import inner_means
+from postproc.analysis.published_sizes import AGREES, DIFFERS, UNSAID
 from postproc.reference.size_ratios import size_ratios
 from workflows.design import Study
 from workflows.figures import bumps_and_particles, page_parameters
@@ -64,11 +65,11 @@ def sections(folder: Path, study: Study, page: Mapping[str, Any]) -> list[str]:
         "Durations": durations(folder, page),
     }
     shown = set(shown_pictures(folder))
-    return [
-        f"## {title}\n\n{text}"
-        + "".join(picture(page_name(study), name) for name in PICTURES.get(title, ()) if name in shown)
-        for title, text in texts.items()
-    ]
+    found = []
+    for title, text in texts.items():
+        pictures = "".join(picture(page_name(study), name) for name in PICTURES.get(title, ()) if name in shown)
+        found.append(f"## {title}\n\n{text}{pictures}" if text else f"## {title}\n{pictures}")
+    return found
 
 
 PICTURES = {  # of the sections
@@ -122,9 +123,10 @@ def published_text(folder: Path) -> str:
     """Return every number of the source with ours and a verdict."""
     table = pd.read_csv(folder / "particle_size" / "published.csv", dtype={"scales": str, "of_scales": str})
     table["of_scales"] = table["of_scales"].fillna("")
-    counts = ", ".join(f"{count} {verdict}" for verdict, count in table["verdict"].value_counts().items())
+    counts = table["verdict"].value_counts().reindex([AGREES, DIFFERS, UNSAID], fill_value=0)
     told = prose(
-        f"Of {len(table)} numbers that the source's text gives: {counts}. Low and high: range of ours over the scales"
+        f"Of {len(table)} numbers that the source's text gives ours agree with {counts[AGREES]} and differ from"
+        f" {counts[DIFFERS]}; of {counts[UNSAID]} nothing can be said. Low and high: range of ours over the scales"
         " simulated of those in question, of a critical value its 95 % interval. About: within 15 %."
     )
     return f"{told}\n\n{markdown(table)}"
@@ -169,10 +171,14 @@ def packing_text(folder: Path) -> str:
 
 
 def collision_text(folder: Path) -> str:
-    """Return how far single contacts differ between scales."""
-    measures = pd.read_csv(folder / "particle_size" / "collisions.csv")
-    told = prose("Single collisions in units of their size: largest difference of a measure between the scales.")
-    return f"{told}\n\n{markdown(spread_over_scales(measures))}"
+    """Return how far single contacts differ between scales: of each collision the measure that differs most."""
+    spread = spread_over_scales(pd.read_csv(folder / "particle_size" / "collisions.csv"))
+    most = spread.loc[spread.groupby(["rolling_friction", "collision"], sort=False)["spread"].idxmax()]
+    told = prose(
+        "Single collisions in units of their size, at all scales simulated: the measure that differs most between them,"
+        " largest minus smallest over the largest."
+    )
+    return f"{told}\n\n{markdown(most)}"
 
 
 def main() -> None:

@@ -116,7 +116,12 @@ def test_the_page_in_docs_tells_what_the_tables_do(study, folder, tmp_path):
         line = next(line for line in text.splitlines() if line.startswith(f"| {row} | {row[1]} |"))
         assert round(float(line.split("|")[3]), 1) == layers and f"{row} {layers}" in told
     assert "| convex | 3 |" in told and "Yan 2022, Eq 4.15" in told
-    assert "agrees" in told and "cannot be said" in told
+    verdicts = pd.read_csv(folder / "particle_size" / "published.csv")["verdict"].value_counts()
+    assert (
+        f"agree with {verdicts['agrees']} and differ from {verdicts['differs']}; of {verdicts['cannot be said']}"
+        in told
+    )
+    assert "| cdt | pair | restitution | 0 |" in told
     assert "major radius mm" in told and "largest scale" in told and "| 3.46 |" in told
     assert "took 16 minutes of wall time" in told  # of runs 150 s each, of packings 60 s
     assert "| packing profiles | 300 | 9 000 | 1 | 0.9 | 0.833 | 1.08 |" in told  # 54 of 50 s
