@@ -96,6 +96,7 @@ def wear_text(folder: Path, study: Study) -> str:
     convex = summary[summary["surface"] == "convex"].set_index("row")
     plain = summary[summary["surface"] == "plain"].set_index("row").reindex(convex.index)
     rate = "archard_volume_per_metre_mm3_per_m"
+    over = convex[["archard_volume_mm3", "mean_normal_force_N"]] / plain[["archard_volume_mm3", "mean_normal_force_N"]]
     derived = [study.run(run).parameters["derived"] for run in convex["run"]]
     table = pd.DataFrame(
         {
@@ -103,7 +104,9 @@ def wear_text(folder: Path, study: Study) -> str:
             "particle scale": convex["particle_scale"].to_numpy(),
             "layers of particles": [each["layers"] for each in derived],
             "equivalent size ratio": [each["equivalent_size_ratio"] for each in derived],
-            "wear over plain": (convex["archard_volume_mm3"] / plain["archard_volume_mm3"]).to_numpy(),
+            "wear over plain": over["archard_volume_mm3"].to_numpy(),
+            "normal force over plain": over["mean_normal_force_N"].to_numpy(),
+            "sliding over plain": (over["archard_volume_mm3"] / over["mean_normal_force_N"]).to_numpy(),
             "wear, convex (mm3/m)": convex[rate].to_numpy(),
             "wear, plain (mm3/m)": plain[rate].to_numpy(),
             "share of the bumps (%)": (
@@ -111,12 +114,16 @@ def wear_text(folder: Path, study: Study) -> str:
             ).to_numpy(),
         }
     )
+    factors = prose(
+        "Wear over plain is the product of two factors: of the sums of normal forces, and of how far contacts slide"
+        " under them while the sample travels as far."
+    )
     lines = pd.read_csv(folder / "particle_size" / "lines.csv")
     note = prose(
         "Straight lines of wear over that of the plain sample with the smallest particles simulated, against particle"
         " scale; the source's are over its plain sample at scale 1."
     )
-    return f"{prose(' '.join(said))}\n\n{markdown(table)}\n{note}\n\n{markdown(lines)}"
+    return f"{prose(' '.join(said))}\n\n{markdown(table)}\n{factors}\n\n{note}\n\n{markdown(lines)}"
 
 
 def published_text(folder: Path) -> str:

@@ -20,6 +20,8 @@ from workflows.study_report import environment
 
 PUBLISHED = REPOSITORY / "config" / "published"
 WEAR = {4.0: 1.1, 6.0: 1.4, 8.0: 2.1}  # -, of the convex sample, over its plain twin's
+PRINTED = 0.005  # three digits of numbers around 1
+FORCE = {4.0: 1.5, 6.0: 1.6, 8.0: 1.7}  # -, of the convex sample, over its plain twin's
 LAYERS = {"S4": 4.3, "S6": 2.9, "S8": 2.2}  # 46 mm over 2.65 mm times the scale
 
 
@@ -44,6 +46,7 @@ def summary(study):
                 "base_archard_volume_m3": volume - bumps,
                 "bump_archard_volume_m3": bumps,
                 "archard_volume_per_metre_m3_per_m": volume / 0.8,
+                "mean_normal_force_N": 20.0 * (FORCE[scale] if convex else 1.0),
             }
         )
     return pd.DataFrame(rows)
@@ -114,7 +117,12 @@ def test_the_page_in_docs_tells_what_the_tables_do(study, folder, tmp_path):
     assert "and not less in S4, S6, S8" in told and "6 runs of 3 rows" in told
     for row, layers in LAYERS.items():
         line = next(line for line in text.splitlines() if line.startswith(f"| {row} | {row[1]} |"))
-        assert round(float(line.split("|")[3]), 1) == layers and f"{row} {layers}" in told
+        cells = line.split("|")
+        assert round(float(cells[3]), 1) == layers and f"{row} {layers}" in told
+        wear, force, sliding = (float(cell) for cell in cells[5:8])
+        scale = float(row[1])
+        assert [wear, force] == [WEAR[scale], FORCE[scale]]
+        assert sliding == pytest.approx(wear / force, abs=PRINTED)
     assert "| convex | 3 |" in told and "Yan 2022, Eq 4.15" in told
     verdicts = pd.read_csv(folder / "particle_size" / "published.csv")["verdict"].value_counts()
     assert (
