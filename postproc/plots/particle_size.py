@@ -84,7 +84,7 @@ def _scale_legend(figure: Figure, published: pd.DataFrame, critical: bool) -> No
         handles.append(Line2D([], [], color="black", linestyle=":", label=source))
     if critical:
         handles.append(Line2D([], [], color="black", linestyle="--", linewidth=0.8, label="critical scale, 95 %"))
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), columnspacing=1.2)
 
 
 def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
