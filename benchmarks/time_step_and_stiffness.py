@@ -14,13 +14,14 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pandas as pd
 
+from benchmarks.runs import changed
 from postproc.analysis.deviation import BEYOND, FAILED, WITHIN, changes
 from postproc.mesh import write_surface
 from postproc.plots.deviation import Panel, deviation_figure
@@ -28,7 +29,6 @@ from postproc.plots.style import save
 from workflows.cases import CASES
 from workflows.chain import Chain
 from workflows.cycles import fill_bed, run_chain
-from workflows.derived import derived_parameters
 from workflows.design import Run, load_study
 from workflows.results_page import bullet, prose
 from workflows.screening_design import FIRST_SEED, SEED_STEP
@@ -92,13 +92,14 @@ def variants(seed: int) -> list[Variant]:
 
 def with_derived(run: Run, fraction: float, modulus: float, seed: int) -> Run:
     """Return the run with that Rayleigh fraction, shear modulus and packing, whatever the configuration allows."""
-    given: dict[str, Any] = {key: value for key, value in run.parameters.items() if key != "derived"}
-    given["bed"] = {**given["bed"], "thickness_m": BED_THICKNESS, "seed": seed}
-    given["sample"] = {**given["sample"], "element_size_m": ELEMENT_SIZE}
-    given["particle"] = {**given["particle"], "shear_modulus_pa": modulus}
-    given["sliding"] = {**given["sliding"], "velocity_m_per_s": VELOCITY}
-    given["solver"] = {**given["solver"], "rayleigh_fraction": fraction}
-    return replace(run, parameters={**given, "derived": derived_parameters(given)})
+    change = {
+        "bed": {"thickness_m": BED_THICKNESS, "seed": seed},
+        "sample": {"element_size_m": ELEMENT_SIZE},
+        "particle": {"shear_modulus_pa": modulus},
+        "sliding": {"velocity_m_per_s": VELOCITY},
+        "solver": {"rayleigh_fraction": fraction},
+    }
+    return changed(run, change)
 
 
 def chain_of(variant: Variant, folder: Path) -> Chain:

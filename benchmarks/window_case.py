@@ -6,18 +6,16 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from postproc.mesh import write_surface
+from benchmarks.runs import changed, simulated_run
 from workflows.cases import CASES
 from workflows.cases.sliding_work import settled_particles
 from workflows.chain import Chain, total_steps
-from workflows.cycles import fill_bed, run_chain
-from workflows.derived import WALLS, WINDOW, derived_parameters
+from workflows.derived import WALLS, WINDOW
 from workflows.design import Run, load_study
-from workflows.geometry import sample_surface
 from workflows.screening_design import FIRST_SEED, SEED_STEP
 
 STUDY, ROW, SURFACES = "demo", "R9", ("plain", "convex")
@@ -86,14 +84,7 @@ def packing(surfaces: Iterable[str], number: int) -> list[Case]:
 
 def simulated(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
     """Return a run, simulated from where it stopped; its sample is meshed and its bed filled unless they are there."""
-    chain = chain_of(case, folder, settings)
-    if not chain.bed_restart.with_name("cost.csv").exists():
-        fill_bed(case.bed, chain.bed, chain.bed_restart.parent)
-    if not chain.surface.exists():
-        write_surface(chain.surface, sample_surface(chain.parameters["sample"], chain.parameters["pattern"]))
-    if not (chain.folder / "wear.csv").exists():
-        run_chain(chain)
-    return chain
+    return simulated_run(chain_of(case, folder, settings), case.bed)
 
 
 def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
@@ -121,10 +112,7 @@ def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
 
 def coarser(run: Run) -> Run:
     """Return the run with the elements and the bumps of this comparison."""
-    given: dict[str, Any] = {key: value for key, value in run.parameters.items() if key != "derived"}
-    given["sample"] = {**given["sample"], "element_size_m": ELEMENT_SIZE}
-    given["pattern"] = given["pattern"] and {**given["pattern"], **BUMPS}
-    return replace(run, parameters={**given, "derived": derived_parameters(given)})
+    return changed(run, {"sample": {"element_size_m": ELEMENT_SIZE}, "pattern": BUMPS})
 
 
 def particle_steps(chain: Chain) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import benchmarks.runs as whole_runs
 import benchmarks.window_case as window
 from benchmarks import travelling_window
 from benchmarks.travelling_window import BLOCK, at_source_size, comparison, publish, run_row
@@ -170,8 +171,8 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     }
     case = Case("plain", list(BEDS)[2], window.FIRST_SEED)
     window.simulated(case, tmp_path, tiny)
-    monkeypatch.setattr(window, "run_chain", lambda chain: pytest.fail("was done before"))
-    monkeypatch.setattr(window, "fill_bed", lambda *given: pytest.fail("was done before"))
+    monkeypatch.setattr(whole_runs, "run_chain", lambda chain: pytest.fail("was done before"))
+    monkeypatch.setattr(whole_runs, "fill_bed", lambda *given: pytest.fail("was done before"))
     again = window.simulated(case, tmp_path, tiny)
     monkeypatch.setattr(travelling_window, "SETTINGS", tiny)
     (one,) = travelling_window.finished(("plain",), 2, tmp_path)

@@ -1,0 +1,227 @@
+"""Why does a convex sample in coarse particles wear less here than in the source? A row of the study `particle_size`,
+convex and plain, as it is and with one thing changed at a time: what the source leaves open, what the simulation
+chooses, and, for their size, some things that are published.
+
+    python -m benchmarks.critical_scale --cores 2    # in the root of the repository
+    python -m benchmarks.critical_scale --finished   # while it runs, or after it was stopped: of the runs so far
+    python -m benchmarks.critical_scale --redraw
+
+Runs stay in `--folder`, where a stopped one goes on; more packings, scales and candidates are added to those that are
+there. Writes into docs: critical_scale.csv (every run), figure and critical_scale_results.md; `--redraw` makes the last
+two from the first.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from datetime import date
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from benchmarks.runs import simulated_run, with_bed
+from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
+from benchmarks.scale_page import results_page, source_ratio
+from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
+from postproc.analysis.flow_history import RunFlow, along_travel, run_bins, settled_value, undisturbed_particles
+from postproc.analysis.replicates import ratio_intervals
+from postproc.analysis.summary import run_summary
+from postproc.plots.critical_scale import ratio_by_candidate
+from postproc.plots.style import save
+from workflows.chain import Chain
+from workflows.derived import flow_measures
+from workflows.solver import SolverError, die_with
+from workflows.state import StateError
+
+FAILED = "failed.txt"  # in the folder of a run whose simulation failed, with the reason
+SCALES, PACKINGS, OF_REFERENCE = (6,), 1, 3
+LEVEL = 0.95  # of intervals
+MM3 = 1e9  # mm3 in a m3
+PERCENT = 100.0
+
+
+# ---------------------------------------------------------------- runs
+
+
+def filled(case: Case, folder: Path, settings: dict[str, Any]) -> None:
+    """Fill the bed of a run unless it is there."""
+    chain = chain_of(case, folder, settings)
+    attempted(chain, lambda: with_bed(chain, case.candidate))
+
+
+def simulated(case: Case, folder: Path, settings: dict[str, Any]) -> None:
+    """Simulate a run from where it stopped, unless it is finished or failed before."""
+    chain = chain_of(case, folder, settings)
+    attempted(chain, lambda: simulated_run(chain, case.candidate))
+
+
+def attempted(chain: Chain, task: Callable[[], object]) -> None:
+    """Do the task, or leave the reason why it failed: one candidate that cannot be simulated stops no other."""
+    failed = chain.folder.parent / FAILED
+    if failed.exists():
+        return
+    try:
+        task()
+    except (SolverError, StateError, ValueError) as fault:
+        failed.write_text(str(fault))
+        print(f"{chain.name} failed: {fault}", flush=True)
+
+
+def simulate_all(wanted: Sequence[Case], folder: Path, cores: int, each: Callable[[], object]) -> None:
+    """Fill all beds, then simulate all runs, as many side by side as there are cores; call `each` after every run."""
+    chains = {case: chain_of(case, folder, SETTINGS) for case in wanted}
+    beds, runs = ({getattr(chain, name): case for case, chain in chains.items()} for name in ("bed_restart", "folder"))
+    with ProcessPoolExecutor(cores, initializer=die_with(os.getpid())) as pool:
+        list(pool.map(partial(filled, folder=folder, settings=SETTINGS), beds.values()))
+        for _ in pool.map(partial(simulated, folder=folder, settings=SETTINGS), runs.values()):
+            each()
+
+
+def said_beforehand(wanted: Sequence[Case], folder: Path) -> str:
+    """Return in a phrase how much there is to simulate, and about how long a core takes for it."""
+    chains = {chain.folder: chain for chain in (chain_of(case, folder, SETTINGS) for case in wanted)}
+    steps = sum(map(particle_steps, chains.values()))
+    minutes = steps / PARTICLE_STEPS_PER_SECOND / 60.0
+    return f"{len(chains)} runs: {steps:.2g} particle-steps, some {minutes:.0f} minutes of a core without triangles"
+
+
+# ---------------------------------------------------------------- what came out
+
+
+def run_row(case: Case, chain: Chain) -> dict[str, Any]:
+    """Return what a finished run found.
+
+    Wear per metre of counted travel (mm3/m), whole and of the bumps; mean normal force (N); slip_percent: sliding work
+    per metre over that force, the mean velocity of contacts over the sample's; velocity_percent: of the bed over the
+    sample, likewise (Yan 2022, Eq 4.10); processor_s: of the solver
+    """
+    found, cost = run_summary(pd.read_csv(chain.folder / "wear.csv")), pd.read_csv(chain.folder / "cost.csv")
+    flow, travel = RunFlow(**flow_measures(chain.parameters)), found["travel_m"]
+    along = along_travel(run_bins(chain.folder, flow), flow, undisturbed_particles(chain.folder))
+    force = found["mean_normal_force_N"]
+    return {
+        "particle_scale": case.scale,
+        "candidate": case.candidate,
+        "surface": case.surface,
+        "seed": case.seed,
+        "wear_mm3_per_m": MM3 * found["archard_volume_m3"] / travel,
+        "bumps_mm3_per_m": MM3 * found["bump_archard_volume_m3"] / travel,
+        "normal_force_N": force,
+        "slip_percent": PERCENT * found["sliding_work_J"] / travel / force,
+        "velocity_percent": PERCENT * settled_value(along["travel_m"], along["relative_velocity"])[0],
+        "layers": chain.parameters["derived"]["layers"],
+        "particles": int(cost["particles"].iloc[-1]),
+        "triangles": int(cost["triangles"].iloc[-1]),
+        "processor_s": cost["processor_s"].sum(),
+    }
+
+
+def finished(wanted: Sequence[Case], folder: Path) -> pd.DataFrame:
+    """Return the rows of those runs that are finished; nothing is simulated."""
+    chains = [(case, chain_of(case, folder, SETTINGS)) for case in wanted]
+    return pd.DataFrame([run_row(case, chain) for case, chain in chains if (chain.folder / "wear.csv").exists()])
+
+
+def comparison(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return a row per particle scale and candidate: wear, convex over plain, its interval, and over the reference's.
+
+    runs: as from `run_row`. A packing is what is repeated, convex and plain sample together; its scatter is pooled over
+    the candidates of a scale (`ratio_intervals`) and NaN where nothing is repeated. Columns in the order of the page.
+    """
+    pairs = pd.merge(
+        *(runs[runs["surface"] == name].drop(columns="surface") for name in ("convex", "plain")),
+        on=["particle_scale", "candidate", "seed"],
+        suffixes=("_convex", "_plain"),
+    )
+    plain = pairs["wear_mm3_per_m_plain"]
+    pairs["wear_over_plain"] = pairs["wear_mm3_per_m_convex"] / plain
+    pairs["bumps_over_plain"] = pairs["bumps_mm3_per_m_convex"] / plain
+    pairs["base_over_plain"] = pairs["wear_over_plain"] - pairs["bumps_over_plain"]
+    pairs["share_of_bumps_percent"] = PERCENT * pairs["bumps_over_plain"] / pairs["wear_over_plain"]
+    pairs["force_over_plain"] = pairs["normal_force_N_convex"] / pairs["normal_force_N_plain"]
+    kept = [
+        *("wear_mm3_per_m_convex", "wear_mm3_per_m_plain", "base_over_plain", "bumps_over_plain"),
+        *("share_of_bumps_percent", "force_over_plain", "slip_percent_convex", "slip_percent_plain"),
+        *("velocity_percent_convex", "velocity_percent_plain"),
+    ]
+    parts = []
+    for scale, of in pairs.groupby("particle_scale", sort=False):
+        told = ratio_intervals(of["candidate"].to_numpy(), of["wear_over_plain"].to_numpy(), REFERENCE, LEVEL)
+        names = {"ratio": "over_reference", "ratio_low": "over_reference_low", "ratio_high": "over_reference_high"}
+        ends = {"setting": "candidate", "runs": "packings", "mean": "wear_over_plain"}
+        told = told.rename(columns=names | ends | {"low": "ratio_low", "high": "ratio_high", "deviation": "scatter"})
+        means = of.groupby("candidate", sort=False)[kept].mean().reset_index()
+        parts.append(told.merge(means, on="candidate").assign(particle_scale=scale))
+    table = pd.concat(parts, ignore_index=True)
+    order = list(CANDIDATES)
+    kinds = table["candidate"].map({name: candidate.kind for name, candidate in CANDIDATES.items()})
+    return table.assign(kind=kinds).sort_values(
+        ["particle_scale", "candidate"],
+        key=lambda column: column.map(order.index) if column.dtype == object else column,
+    )
+
+
+# ---------------------------------------------------------------- page
+
+
+def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
+    """Return what must be known about the figure."""
+    packings = table.set_index("candidate")["packings"]
+    others = packings.drop(REFERENCE)
+    return [
+        "runs of the study particle_size at quick fidelity, one thing changed at a time: particles at scale"
+        f" {', '.join(f'{scale:g}' for scale in runs['particle_scale'].unique())}, wear over 800 mm of travel after"
+        " 500 mm",
+        "green line: the source's lines, whose reading of the pattern and whose code are not known",
+        f"{packings[REFERENCE].max()} packings of the study's runs, {others.max() if len(others) else 0} of the others;"
+        f" bars: {PERCENT * LEVEL:g} % intervals from the scatter of packings of all candidates together",
+        f"made by benchmarks/critical_scale.py, {date.today():%Y-%m-%d}",
+    ]
+
+
+def publish(output: Path, runs: pd.DataFrame) -> str:
+    """Write figure and page of the runs; return the page."""
+    table = comparison(runs)
+    page = results_page(table, runs)
+    (output / "critical_scale_results.md").write_text(page, encoding="utf-8")
+    source = {scale: source_ratio(scale) for scale in table["particle_scale"]}
+    save(ratio_by_candidate(table, source, remarks(runs, table)), output / "critical_scale.png")
+    return page
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--scales", type=int, nargs="+", default=SCALES, help="particle scales, rows S1 to S8")
+    parser.add_argument("--candidates", nargs="+", choices=CANDIDATES, default=list(CANDIDATES), metavar="NAME")
+    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each candidate, else {PACKINGS}")
+    parser.add_argument("--reference-packings", type=int, default=OF_REFERENCE, help=f"else {OF_REFERENCE}")
+    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/critical_scale"))
+    parser.add_argument("--cores", type=int, default=1, help="runs side by side")
+    parser.add_argument("--finished", action="store_true", help="simulate nothing, take the runs that are finished")
+    parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
+    given = parser.parse_args()
+    file = given.output / "critical_scale.csv"
+    if not given.redraw:
+        of_reference = max(given.packings, given.reference_packings)
+        wanted = cases(given.scales, given.candidates, given.packings, of_reference)
+        if not given.finished:
+            print(said_beforehand(wanted, given.folder), flush=True)
+            write = partial(write_table, file, wanted, given.folder)
+            simulate_all(wanted, given.folder, given.cores, write)
+        write_table(file, wanted, given.folder)
+    print(publish(given.output, pd.read_csv(file)), flush=True)
+
+
+def write_table(file: Path, wanted: Sequence[Case], folder: Path) -> None:
+    """Write the rows of the runs that are finished."""
+    finished(wanted, folder).to_csv(file, index=False, float_format="%.6g")
+
+
+if __name__ == "__main__":
+    main()

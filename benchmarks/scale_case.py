@@ -1,0 +1,185 @@
+"""The runs that tell what moves the wear of a convex sample in coarse particles: a row of `particle_size`, convex and
+plain, as the study has it and with one thing changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+from typing import Any
+
+from benchmarks.runs import changed
+from postproc.analysis.comparison import PLAIN
+from workflows import state
+from workflows.cases import CASES
+from workflows.cases.sliding_work import settled_particles
+from workflows.chain import Chain, total_steps
+from workflows.derived import WALLS
+from workflows.design import Run, load_study
+from workflows.screening_design import FIRST_SEED, SEED_STEP
+
+STUDY, SURFACES = "particle_size", (PLAIN, "convex")
+SETTINGS: dict[str, Any] = {"fidelity": "quick"}
+REFERENCE = "as in the study"
+OPEN, PUBLISHED, NUMERICAL = "open", "published", "ours"  # what the source says of a thing
+SIZES = "relative_diameters"  # key of a change; over the median
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One thing that is changed: parameters of the runs (SI, nested), what the source says of it, and what exactly."""
+
+    change: Mapping[str, Any]
+    kind: str
+    why: str
+
+
+def _of_sample(**contact: float) -> dict[str, Any]:
+    return {"sample_material": {"contact": contact}}
+
+
+CANDIDATES: dict[str, Candidate] = {
+    REFERENCE: Candidate({}, "", "row of the study at quick fidelity"),
+    "one size of particles": Candidate(
+        {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}},
+        OPEN,
+        "the source prints a curve; the study assumes 0.8, 1 and 1.2 of the median with 25, 50 and 25 % of the mass",
+    ),
+    "sizes 0.5 to 1.5": Candidate(
+        {"particle": {SIZES: [0.5, 0.75, 1.0, 1.25, 1.5], "mass_fractions": [0.1, 0.2, 0.4, 0.2, 0.1]}},
+        OPEN,
+        "of the median, 10, 20, 40, 20 and 10 % of the mass; wider than the source's 0.26 % below 2 mm allows",
+    ),
+    "sizes 0.8 to 1.6": Candidate(
+        {"particle": {SIZES: [0.8, 1.0, 1.6], "mass_fractions": [0.3, 0.4, 0.3]}},
+        OPEN,
+        "of the median, 30, 40 and 30 % of the mass: a coarse tail, of which the source says nothing",
+    ),
+    "rows 20 mm apart": Candidate(
+        {"pattern": {"row_spacing_m": 0.02}},
+        OPEN,
+        "c = 40 mm read as the distance of rows of the same phase, as the source's Figure 6.1 asks",
+    ),
+    "c and d exchanged": Candidate(
+        {"pattern": {"row_spacing_m": 0.06, "column_spacing_m": 0.04}},
+        OPEN,
+        "the source's list of symbols calls c the horizontal and d the vertical distance, its text the reverse",
+    ),
+    "bumps turned": Candidate(
+        {"pattern": {"major_axis": "across_travel"}},
+        OPEN,
+        "radius a = 4 mm across the travel and b = 8 mm along it",
+    ),
+    "sample 5 mm above the floor": Candidate(
+        {"sample": {"height_above_floor_m": 0.005, "skirt_slope_rad": pi / 4, "skirt_radius_m": 0.0}},
+        OPEN,
+        "how the source's sample and its holder meet the floor is not said; here with a skirt of 45 degrees",
+    ),
+    "bed between walls": Candidate(
+        {"bed": {"ends": WALLS, "ahead_m": 0.09, "behind_m": 0.01}},
+        NUMERICAL,
+        "1.6 m of bed instead of a window; ahead and behind as in the source",
+    ),
+    "time step 0.2": Candidate(
+        {"solver": {"rayleigh_fraction": 0.2}}, NUMERICAL, "of the Rayleigh time, instead of 0.4; the source's is 0.23"
+    ),
+    "elements of 1.5 mm": Candidate(
+        {"sample": {"element_size_m": 0.0015}}, OPEN, "instead of 2.5 mm; those of the source's sample are not told"
+    ),
+    "rolling radius reduced": Candidate(
+        {"solver": {"rolling_radius": "reduced"}},
+        NUMERICAL,
+        "rolling friction between particles as the solver has it, half as large; the source's code has the full radius",
+    ),
+    "bed of 92 mm": Candidate(
+        {"bed": {"thickness_m": 0.092}}, PUBLISHED, "twice the 46 mm that follow from 40 kg: twice as many layers"
+    ),
+    "no rolling friction of the sample": Candidate(
+        _of_sample(rolling_friction=0.0), PUBLISHED, "instead of 0.3 (Table 3.2)"
+    ),
+    "rolling friction of the sample 0.6": Candidate(
+        _of_sample(rolling_friction=0.6), PUBLISHED, "instead of 0.3 (Table 3.2)"
+    ),
+    "sliding friction of the sample 0.5": Candidate(
+        _of_sample(sliding_friction=0.5), PUBLISHED, "instead of 0.38 (Table 3.2)"
+    ),
+    "particles ten times softer": Candidate(
+        {"particle": {"shear_modulus_pa": 7.0e6}}, PUBLISHED, "shear modulus 0.007 instead of 0.07 GPa (Table 3.2)"
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run: name of the candidate, surface of the sample, particle scale (-), seed of the packing.
+
+    A change of the pattern changes no plain sample: such a run is the reference's.
+    """
+
+    candidate: str
+    surface: str
+    scale: int
+    seed: int
+
+    @property
+    def folder(self) -> str:
+        """Path of its folder within that of all."""
+        same = self.surface == PLAIN and set(CANDIDATES[self.candidate].change) == {"pattern"}
+        name = (REFERENCE if same else self.candidate).replace(" ", "_")
+        return f"scale_{self.scale}/{name}/{self.surface}/{self.seed}"
+
+
+def cases(scales: Iterable[int], names: Iterable[str], packings: int, of_reference: int) -> list[Case]:
+    """Return all runs: packing by packing, candidates in order, the reference more often than the others."""
+    told = [
+        (name, of_reference if name == REFERENCE else packings) for name in CANDIDATES if name in {*names, REFERENCE}
+    ]
+    return [
+        Case(name, surface, scale, FIRST_SEED + number * SEED_STEP)
+        for scale in scales
+        for number in range(max(packings, of_reference))
+        for name, count in told
+        if number < count
+        for surface in SURFACES
+    ]
+
+
+def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
+    """Return a run as the driver sees it, its folder made.
+
+    Runs whose beds have equal parameters share one, so both surfaces of a packing, and all candidates that leave the
+    bed as it is, start from the same particles.
+    """
+    row = f"S{case.scale}"
+    study = load_study(STUDY, overrides={**settings, "rows": [row]})
+    candidate = CANDIDATES[case.candidate]
+    runs = [with_change(run, candidate.change, case.seed) for run in study.runs]
+    beds, bed_of = CASES[study.case].beds(runs)
+    (run,) = (run for run in runs if run.surface == case.surface)
+    bed, place = beds[bed_of[run.name]], folder / case.folder
+    place.mkdir(parents=True, exist_ok=True)
+    return Chain(
+        f"{case.candidate}, {case.surface}, scale {case.scale}, {case.seed}",
+        place / "run",
+        study.case,
+        run.parameters,
+        place / "surface.vtu",
+        bed,
+        folder / "beds" / state.digest(bed)[:12] / "bed.restart",
+    )
+
+
+def with_change(run: Run, change: Mapping[str, Any], seed: int) -> Run:
+    """Return the run with a candidate's change and the seed of a packing."""
+    particle = dict(change.get("particle", {}))
+    if SIZES in particle:
+        median = run.parameters["particle"]["median_diameter_m"]
+        particle["diameters_m"] = [median * size for size in particle.pop(SIZES)]
+    return changed(run, {**change, "particle": particle, "bed": {**change.get("bed", {}), "seed": seed}})
+
+
+def particle_steps(chain: Chain) -> float:
+    """Return about how many particle-steps a run has, known before it starts."""
+    return settled_particles(chain.parameters) * total_steps(chain)

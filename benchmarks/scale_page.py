@@ -1,0 +1,143 @@
+"""The page of `benchmarks.critical_scale`: what each candidate does, and what geometry tells of a code's contacts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+from benchmarks.scale_case import CANDIDATES, REFERENCE
+from meshes.bump import bump_shell
+from meshes.sample import sample_top
+from postproc.analysis.touched import mean_touched, mean_touched_on_flat, met_from_above, met_from_the_front
+from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN
+from postproc.reference.sphere_contact import effective_modulus, hertz_overlap
+from postproc.wear.caps import GRAVITY
+from workflows.derived import youngs_modulus
+from workflows.design import REPOSITORY
+from workflows.results_page import markdown, prose
+
+LINES = Path("config/published/particle_size_lines.csv")
+SCALES = (1, 2, 4, 6, 8)
+EDGE = 1e-3  # m, of the triangles, as on the source's disc; those of its sample are not told
+FLAT_SIDE = 0.03  # m
+SPHERES = 1000  # at random places, of each scale and way
+GRAVEL = (2.0 * 0.07e9 * 1.24, 0.24)  # Pa, -: Young's modulus and Poisson's ratio (Yan 2022, Table 3.2)
+BULK_DENSITY, THICKNESS = 1450.0, 0.046  # kg/m3, m, of the source's bed
+NEWTONS_TIMES = (1.0, 10.0)  # loads, over the bed's weight on a square as wide as the particle
+
+
+def source_ratio(scale: float) -> float:
+    """Return the convex sample's wear over the plain one's by the source's lines (-)."""
+    lines = pd.read_csv(REPOSITORY / LINES).set_index("curve")
+    convex, plain = (lines.loc[name, "intercept"] + lines.loc[name, "slope"] * scale for name in ("convex", "plain"))
+    return float(convex / plain)
+
+
+def touched_by_scale() -> pd.DataFrame:
+    """Return how many triangles of EDGE a particle touches at once, mean of random places, by particle scale.
+
+    On a bump of run R5, met from the front or from above, and on a flat; pressed in by the bed's weight on a square as
+    wide as it is, and by ten times that. The overlap over the radius is then the same at all scales.
+    """
+    half_length, half_width, height = PUBLISHED_PATTERN
+    points, triangles, _ = bump_shell(half_width, half_length, height, EDGE)
+    flat = sample_top(FLAT_SIDE, FLAT_SIDE, EDGE, None)
+    bump, level = points[triangles], flat.points[flat.triangles]
+    steel = (youngs_modulus(78.0e9, 0.3), 0.3)
+    modulus, rows = effective_modulus(*GRAVEL, *steel), []
+    for scale in SCALES:
+        radius, row = 0.5 * scale * PUBLISHED_DIAMETER, {"particle_scale": scale}
+        for times in NEWTONS_TIMES:
+            load = times * BULK_DENSITY * GRAVITY * THICKNESS * (2.0 * radius) ** 2
+            overlap, ending = hertz_overlap(load, radius, modulus), "" if times == 1.0 else f"_{times:g}_loads"
+            shape = (half_width, height, half_length)
+            for way, name in ((met_from_the_front, "front"), (met_from_above, "above")):
+                row[f"bump_from_{name}{ending}"] = mean_touched(way, shape, radius, overlap, bump, SPHERES)
+            row[f"flat{ending}"] = mean_touched_on_flat(radius, overlap, level, SPHERES)
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def needed_factor(reference: pd.Series, scale: float) -> float:
+    """Return by how much the reference's bumps would have to wear more to give the source's ratio, base kept (-)."""
+    return (source_ratio(scale) - reference["base_over_plain"]) / reference["bumps_over_plain"]
+
+
+def conclusion(rows: pd.DataFrame) -> str:
+    """Return in words what moved the ratio at a particle scale, and whether anything reaches the source's."""
+    scale, others = rows["particle_scale"].iloc[0], rows[rows["candidate"] != REFERENCE]
+    reference, source = rows[rows["candidate"] == REFERENCE].iloc[0], source_ratio(scale)
+    head = (
+        f"Particle scale {scale:g}: the study has {reference['wear_over_plain']:.2f}, the source's lines"
+        f" {source:.2f}, {source / reference['wear_over_plain']:.1f} times as much. With base and plain sample as they"
+        f" are here, the bumps would have to wear {needed_factor(reference, scale):.1f} times as much."
+    )
+    if others.empty:
+        return head
+    ranked = others.sort_values("over_reference", ascending=False)
+    moved = [f"{row.candidate} ({row.over_reference:.2f})" for row in ranked.itertuples()]
+    reach = [row.candidate for row in ranked.itertuples() if max(row.wear_over_plain, row.ratio_high) >= source]
+    sure = [row.candidate for row in ranked.itertuples() if row.wear_over_plain >= source]
+    return (
+        f"{head} Over the study's ratio, largest first: {', '.join(moved)}. The source's ratio is reached by"
+        f" {', '.join(sure) or 'none of them'}, and lies in or below the interval of {', '.join(reach) or 'none'}."
+    )
+
+
+def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
+    """Return the page; table: as from `critical_scale.comparison`, runs: what it was made from."""
+    ratio = ["kind", "packings", "wear_over_plain", "ratio_low", "ratio_high", "over_reference"]
+    ratio += ["over_reference_low", "over_reference_high"]
+    parts_of = ["wear_mm3_per_m_convex", "wear_mm3_per_m_plain", "base_over_plain", "bumps_over_plain"]
+    parts_of += ["share_of_bumps_percent", "force_over_plain", "slip_percent_convex", "slip_percent_plain"]
+    parts_of += ["velocity_percent_convex", "velocity_percent_plain"]
+    names = ["particle_scale", "candidate"]
+    freedom, scatter = int(table["packings"].sum() - len(table)), table["scatter"].max()
+    said = pd.DataFrame([{"candidate": name, "kind": told.kind, "what": told.why} for name, told in CANDIDATES.items()])
+    parts = [
+        "# Why the critical particle scale differs: candidates",
+        prose(
+            "Generated by `python -m benchmarks.critical_scale`; not to be edited. What the question is, is said in"
+            " [particle_size.md](particle_size.md). [Every run](critical_scale.csv);"
+            f" {runs['processor_s'].sum() / 60.0:.0f} minutes of the solver's processor time."
+        ),
+        "## Wear of the convex sample over the plain one's",
+        *(prose(conclusion(rows)) for _, rows in table.groupby("particle_scale", sort=False)),
+        prose(
+            "Low and high are 95 % intervals: what is repeated is the packing, convex and plain sample in the same"
+            f" bed; its scatter, {100.0 * scatter:.1f} % of the ratio, is pooled over all candidates ({freedom}"
+            " degrees of freedom). A candidate of one packing has its interval by the scatter of the others."
+            " Kind: what the source leaves open; what is a choice of this simulation (ours); what it publishes, changed"
+            " only to see how much hangs on it."
+        ),
+        markdown(table[[*names, *ratio]]),
+        "![Wear, convex over plain, of every candidate](critical_scale.png)",
+        prose(
+            "Wear per metre of travel, and its two parts over the plain sample's. Force: mean normal force, convex over"
+            " plain. Slip: sliding work per metre over the mean normal force, which is the velocity at the contacts"
+            " over the sample's, in %: no change of the flow can raise it above 100 %. Velocity: of the particles over"
+            " the sample, in % of the sample's; the source has 40 to 45 % (convex) and 10 to 15 % (plain)."
+        ),
+        markdown(table[[*names, *parts_of]]),
+        "## What was changed",
+        markdown(said),
+        "## Triangles that one particle touches",
+        prose(
+            "A candidate that these runs cannot test: the source's code is closed. Here a particle that touches several"
+            " triangles at an edge or a corner of the surface has one contact. A code that gave each touched triangle"
+            " the particle's whole force, in the flow or only in the sum of wear, would count the wear of a bump"
+            f" several times. By geometry alone, on triangles of {1e3 * EDGE:g} mm: how many a particle touches, mean"
+            f" of {SPHERES} random places, pressed in by the bed's weight on a square as wide as the particle (overlap"
+            " over radius is then the same at all scales), and by ten times that."
+        ),
+        markdown(touched_by_scale()),
+        prose(
+            "On a bump the number grows with the particles, which rest on corners where six triangles meet. But on a"
+            " flat it grows as well, so a code that counted every touched triangle everywhere would multiply the plain"
+            " sample's wear too, and the source's pin on a flat disc of triangles of 1 mm wears what Archard's law says"
+            " within 0.6 % at all scales. The candidate needs a code that counts triangles of one plane once and others"
+            " each; nothing published says so. The triangles of the source's sample may also have another size."
+        ),
+    ]
+    return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"

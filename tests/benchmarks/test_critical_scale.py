@@ -1,0 +1,148 @@
+"""Candidates for the critical particle scale: what they change and what they leave, their table, page and figure."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from benchmarks import critical_scale, scale_case, scale_page
+from benchmarks.critical_scale import comparison, finished, publish, remarks, simulate_all
+from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
+from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
+from workflows.design import load_study
+from workflows.screening_design import FIRST_SEED
+
+OTHER = "rows 20 mm apart"
+TINY = {
+    "fidelity": "quick",
+    "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 4, "skirt_radius_mm": 0, "skirt_slope_deg": 1},
+    "bed": {"width_mm": 80, "ahead_mm": 60, "behind_mm": 60},
+    "sliding": {"run_in_mm": 20, "travel_mm": 100},
+    "solver": {"picture_interval_mm": 10, "wear_interval_mm": 50},
+}
+STUDENT_95_1 = 12.7062  # two-sided 95 % point of Student's t with one degree of freedom; tables
+
+
+def rows(ratios=((REFERENCE, (0.5, 0.5 * np.e)), (OTHER, (1.0,)))):
+    """Runs whose convex sample wears so many times as much as the plain one; half of it on the bumps."""
+    told = {"normal_force_N": 10.0, "slip_percent": 50.0, "velocity_percent": 40.0, "processor_s": 1.0}
+    return pd.DataFrame(
+        {
+            **{"particle_scale": 6, "candidate": name, "surface": surface, "seed": seed},
+            **{"wear_mm3_per_m": wear, "bumps_mm3_per_m": 0.5 * wear * (surface == "convex"), **told},
+        }
+        for name, values in ratios
+        for seed, ratio in enumerate(values)
+        for surface, wear in (("plain", 2.0), ("convex", 2.0 * ratio))
+    )
+
+
+def test_reference_is_the_row_of_the_study(tmp_path):
+    """Nothing is changed in it but the seed, which for the first packing is the study's own."""
+    (run,) = (run for run in load_study("particle_size").runs if run.name == "S6_convex")
+    assert chain_of(Case(REFERENCE, "convex", 6, FIRST_SEED), tmp_path, SETTINGS).parameters == run.parameters
+
+
+def test_every_candidate_changes_something_and_only_that(tmp_path):
+    """Given parameters differ in the sections named, in both surfaces or, for the pattern, in the convex one."""
+    reference = {name: chain_of(Case(REFERENCE, name, 6, 1), tmp_path, SETTINGS) for name in scale_case.SURFACES}
+    for name, candidate in CANDIDATES.items():
+        for surface, before in reference.items():
+            chain = chain_of(Case(name, surface, 6, 1), tmp_path, SETTINGS)
+            given = set(before.parameters) - {"derived"}
+            moved = {key for key in given if chain.parameters[key] != before.parameters[key]}
+            same = surface == "plain" and set(candidate.change) == {"pattern"}
+            assert moved == (set() if same else set(candidate.change)), name
+            assert (chain.folder == before.folder) == (same or name == REFERENCE), name
+
+
+def test_mass_fractions_add_up_and_keep_the_median():
+    """Half of the mass is in particles below the median, half of the middle class counted to each side."""
+    for candidate in CANDIDATES.values():
+        particle = candidate.change.get("particle", {})
+        if scale_case.SIZES not in particle:
+            continue
+        sizes, masses = np.array(particle[scale_case.SIZES]), np.array(particle["mass_fractions"])
+        assert masses.sum() == pytest.approx(1.0)
+        assert masses[sizes < 1.0].sum() + 0.5 * masses[sizes == 1.0].sum() == pytest.approx(0.5)
+
+
+def test_beds_are_shared_where_they_are_the_same(tmp_path):
+    """What concerns the sample alone starts from the reference's packing; another seed or another bed does not."""
+    bed = {
+        (name, seed): chain_of(Case(name, "convex", 6, seed), tmp_path, SETTINGS).bed_restart
+        for name in CANDIDATES
+        for seed in (1, 2)
+    }
+    shared = {name for name, seed in bed if bed[name, seed] == bed[REFERENCE, 1]}
+    assert {REFERENCE, OTHER, "bumps turned", "sliding friction of the sample 0.5"} <= shared
+    assert not {"one size of particles", "bed of 92 mm", "bed between walls", "time step 0.2"} & shared
+    assert bed[REFERENCE, 1] != bed[REFERENCE, 2]
+
+
+def test_the_reference_has_more_packings():
+    """Its scatter serves all; candidates that are not asked for are left out."""
+    found = cases((6,), (OTHER,), 1, 3)
+    assert [case.candidate for case in found if case.surface == "convex"] == [REFERENCE, OTHER, REFERENCE, REFERENCE]
+    assert len({case.seed for case in found}) == 3
+
+
+def test_packings_are_what_is_repeated():
+    """Logarithms 0 and 1 of one candidate: deviation sqrt(1/2), one degree of freedom, mean sqrt(e)."""
+    table = comparison(rows()).set_index("candidate")
+    assert list(table["wear_over_plain"]) == pytest.approx([0.5 * np.sqrt(np.e), 1.0])
+    assert table["over_reference"][OTHER] == pytest.approx(2.0 / np.sqrt(np.e))
+    reach = STUDENT_95_1 * np.sqrt(0.5)
+    assert table["ratio_high"][OTHER] == pytest.approx(np.exp(reach), rel=1e-4)
+    assert table["over_reference_high"][OTHER] == pytest.approx(
+        table["over_reference"][OTHER] * np.exp(reach * np.sqrt(1.5)), rel=1e-4
+    )
+    assert table["share_of_bumps_percent"].to_numpy() == pytest.approx([50.0, 50.0])
+    assert table["kind"].to_list() == ["", "open"]
+
+
+def test_the_sources_ratio_is_that_of_its_lines():
+    """Eq 4.14 and 4.15 at scale 6: 1.48 over 0.998; the bumps' part of 0.5 + 0.5 has to be 1.97 times as large."""
+    assert source_ratio(6) == pytest.approx(1.48 / 0.998)
+    reference = pd.Series({"base_over_plain": 0.5, "bumps_over_plain": 0.5})
+    assert needed_factor(reference, 6) == pytest.approx((1.48 / 0.998 - 0.5) / 0.5)
+
+
+def test_page_and_figure(tmp_path):
+    """A row per candidate, what moved the ratio most, and a picture; one packing alone has no interval."""
+    page = publish(tmp_path, rows())
+    assert (tmp_path / "critical_scale_results.md").read_text() == page
+    assert (tmp_path / "critical_scale.png").stat().st_size > 10_000
+    assert f"| 6 | {OTHER} | open | 1 | 1 |" in page and "reached by none of them" in page
+    single = rows(((REFERENCE, (0.5,)), (OTHER, (1.5,))))
+    table = comparison(single)
+    assert table["ratio_low"].isna().all()
+    assert f"reached by {OTHER}" in conclusion(table)
+    assert "1 packings of the study's runs" in " ".join(remarks(single, table))
+
+
+def test_large_particles_touch_more_triangles(monkeypatch):
+    """The number grows with scale and load, on the bump and on the flat."""
+    monkeypatch.setattr(scale_page, "SPHERES", 60)
+    monkeypatch.setattr(scale_page, "SCALES", (1, 8))
+    small, large = touched_by_scale().drop(columns="particle_scale").to_numpy()
+    assert (small >= 1.0).all() and (large > small).all()
+
+
+def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
+    """Tiny runs, both surfaces; what is finished is not simulated again, and a failure stops nothing else."""
+    monkeypatch.setattr(critical_scale, "SETTINGS", TINY)
+    wanted = [Case(REFERENCE, surface, 8, FIRST_SEED) for surface in scale_case.SURFACES]
+    assert "2 runs" in critical_scale.said_beforehand(wanted, tmp_path)
+    simulate_all(wanted, tmp_path, 1, lambda: None)
+    found = finished([*wanted, replace(wanted[0], seed=1)], tmp_path)
+    assert list(found["surface"]) == ["plain", "convex"]
+    assert (found["wear_mm3_per_m"] > 0.0).all() and found["slip_percent"].between(1.0, 150.0).all()
+    assert list(found["bumps_mm3_per_m"] > 0.0) == [False, True]
+    monkeypatch.setattr("benchmarks.runs.run_chain", lambda chain: pytest.fail("was done before"))
+    simulate_all(wanted, tmp_path, 1, lambda: None)
+    broken = chain_of(replace(wanted[0], seed=1), tmp_path, TINY)
+    critical_scale.attempted(broken, lambda: (_ for _ in ()).throw(ValueError("no bed")))
+    assert (broken.folder.parent / critical_scale.FAILED).read_text() == "no bed"
+    critical_scale.attempted(broken, lambda: pytest.fail("failed before"))
