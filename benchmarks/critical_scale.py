@@ -158,12 +158,9 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
         means = of.groupby("candidate", sort=False)[kept].mean().reset_index()
         parts.append(told.merge(means, on="candidate").assign(particle_scale=scale))
     table = pd.concat(parts, ignore_index=True)
-    order = list(CANDIDATES)
     kinds = table["candidate"].map({name: candidate.kind for name, candidate in CANDIDATES.items()})
-    return table.assign(kind=kinds).sort_values(
-        ["particle_scale", "candidate"],
-        key=lambda column: column.map(order.index) if column.dtype == object else column,
-    )
+    place = table["candidate"].map(list(CANDIDATES).index)
+    return table.assign(kind=kinds, place=place).sort_values(["particle_scale", "place"], ignore_index=True)
 
 
 # ---------------------------------------------------------------- page
