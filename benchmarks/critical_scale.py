@@ -176,7 +176,11 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
         " 500 mm",
         "green line: the source's lines, whose reading of the pattern and whose code are not known",
         f"{packings[REFERENCE].max()} packings of the study's runs, {others.max() if len(others) else 0} of the others;"
-        f" bars: {PERCENT * LEVEL:g} % intervals from the scatter of packings of all candidates together",
+        + (
+            f" bars: {PERCENT * LEVEL:g} % intervals from the scatter of packings of all candidates together"
+            if table["ratio_low"].notna().any()
+            else " the scatter of packings is not known"
+        ),
         f"made by benchmarks/critical_scale.py, {date.today():%Y-%m-%d}",
     ]
 

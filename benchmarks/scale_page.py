@@ -85,6 +85,18 @@ def conclusion(rows: pd.DataFrame) -> str:
     )
 
 
+def scatter_words(table: pd.DataFrame) -> str:
+    """Return what the intervals rest on, or why there are none."""
+    freedom = int(table["packings"].sum() - len(table))
+    if not freedom:
+        return "Every line is one packing, convex and plain sample in the same bed: the scatter is not known."
+    return (
+        "Low and high are 95 % intervals: what is repeated is the packing, convex and plain sample in the same bed; its"
+        f" scatter, {100.0 * table['scatter'].max():.1f} % of the ratio, is pooled over all candidates ({freedom}"
+        " degrees of freedom). A candidate of one packing has its interval by the scatter of the others."
+    )
+
+
 def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
     """Return the page; table: as from `critical_scale.comparison`, runs: what it was made from."""
     ratio = ["kind", "packings", "wear_over_plain", "ratio_low", "ratio_high", "over_reference"]
@@ -93,8 +105,8 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
     parts_of += ["share_of_bumps_percent", "force_over_plain", "slip_percent_convex", "slip_percent_plain"]
     parts_of += ["velocity_percent_convex", "velocity_percent_plain"]
     names = ["particle_scale", "candidate"]
-    freedom, scatter = int(table["packings"].sum() - len(table)), table["scatter"].max()
-    said = pd.DataFrame([{"candidate": name, "kind": told.kind, "what": told.why} for name, told in CANDIDATES.items()])
+    here = [(name, told) for name, told in CANDIDATES.items() if name in set(table["candidate"])]
+    said = pd.DataFrame([{"candidate": name, "kind": told.kind, "what": told.why} for name, told in here])
     parts = [
         "# Why the critical particle scale differs: candidates",
         prose(
@@ -105,11 +117,8 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
         "## Wear of the convex sample over the plain one's",
         *(prose(conclusion(rows)) for _, rows in table.groupby("particle_scale", sort=False)),
         prose(
-            "Low and high are 95 % intervals: what is repeated is the packing, convex and plain sample in the same"
-            f" bed; its scatter, {100.0 * scatter:.1f} % of the ratio, is pooled over all candidates ({freedom}"
-            " degrees of freedom). A candidate of one packing has its interval by the scatter of the others."
-            " Kind: what the source leaves open; what is a choice of this simulation (ours); what it publishes, changed"
-            " only to see how much hangs on it."
+            f"{scatter_words(table)} Kind: what the source leaves open; what is a choice of this simulation (ours);"
+            " what it publishes, changed only to see how much hangs on it."
         ),
         markdown(table[[*names, *ratio]]),
         "![Wear, convex over plain, of every candidate](critical_scale.png)",

@@ -109,8 +109,9 @@ def test_the_sources_ratio_is_that_of_its_lines():
     assert needed_factor(reference, 6) == pytest.approx((1.48 / 0.998 - 0.5) / 0.5)
 
 
-def test_page_and_figure(tmp_path):
+def test_page_and_figure(tmp_path, monkeypatch):
     """A row per candidate, what moved the ratio most, and a picture; one packing alone has no interval."""
+    monkeypatch.setattr(scale_page, "SPHERES", 20)
     page = publish(tmp_path, rows())
     assert (tmp_path / "critical_scale_results.md").read_text() == page
     assert (tmp_path / "critical_scale.png").stat().st_size > 10_000
@@ -119,7 +120,9 @@ def test_page_and_figure(tmp_path):
     table = comparison(single)
     assert table["ratio_low"].isna().all()
     assert f"reached by {OTHER}" in conclusion(table)
-    assert "1 packings of the study's runs" in " ".join(remarks(single, table))
+    said = " ".join(remarks(single, table))
+    assert "1 packings of the study's runs" in said and "not known" in said
+    assert "not known" in scale_page.scatter_words(table) and "bumps turned" not in page
 
 
 def test_large_particles_touch_more_triangles(monkeypatch):
