@@ -18,7 +18,7 @@ import pytest
 from tiny import tiny_chain, tiny_study
 
 from postproc.analysis.summary import run_summary
-from postproc.mesh import areas, read_stl, read_surface
+from postproc.mesh import areas, read_stl, read_surface, stl_corners
 from postproc.wear.update import BALANCE_TOLERANCE
 from workflows import cycles, state, wear_step
 from workflows.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
@@ -180,7 +180,7 @@ def test_worn_surface_goes_back_into_the_solver(finished):
     """The solver's mesh in cycle 2 is the surface that cycle 1 left."""
     facets = read_stl(state.cycle_folder(finished.folder, 2) / "surface.stl")
     surface = read_surface(state.cycle_folder(finished.folder, 1) / "surface.vtu")
-    np.testing.assert_allclose(facets, surface.points[surface.triangles], atol=STL_ROUNDING)
+    np.testing.assert_allclose(facets, stl_corners(surface.points, surface.triangles), atol=STL_ROUNDING)
     assert not np.array_equal(surface.points, read_surface(finished.surface).points)
 
 

@@ -14,6 +14,7 @@ from tiny import tiny_chain, tiny_study
 
 from postproc.mesh import read_surface
 from postproc.readers.cycle_folders import PACKING
+from postproc.readers.load_ledger import read_load_ledger
 from postproc.readers.solver_log import exchanges, thermo_table
 from workflows import cycles, deck
 from workflows.cases.sliding_sample import SlidingSample, exchanged_particles, front_lag
@@ -39,7 +40,9 @@ FRONT_LAG = 0.1  # -, 160 mm ahead of a small sample in a bed of two layers; see
 PRINTED = 2e-6  # m, of places that the solver prints with six digits
 UNDISTURBED = 0.02  # m/s, of nine tenths of fresh bed against its floor; seen 0.005
 LOOSE = 0.5  # m/s, of the rest, a grain on top that tumbles down; seen 0.1, and 6 where the bed enters 1 mm too low
-RANKS_PART = 1e-5  # relative, work of two ranks against one, that sums in another order: seen 3e-9, grows with travel
+# Relative, work of two ranks against one, that sums in another order: in a bed the difference grows some 300 times per
+# fifth of the cycle, from 6e-16 to 4e-11 at the look taken here; at its end one contact more or less is 2e-5.
+RANKS_PART = 1e-8
 UNDISTURBED_STEPS = 500  # since an exchange, in which the sample has not come near
 
 
@@ -338,7 +341,7 @@ def test_a_run_in_pieces_exchanges_as_often(run, tmp_path):
 @pytest.mark.parametrize(("asked", "grid"), [("2 1 1", (2, 1)), ("* * 1", (1, 2))])
 def test_two_ranks_exchange_as_one_does(run, asked, grid):
     """Split across, and as the solver chooses for the deck, which is along the travel: the same exchanges of as many
-    particles at the same steps, none lost, and the same work but for the rounding of sums.
+    particles at the same steps, none lost, and up to a late look the same work but for the rounding of sums.
     """
     chain, whole = run
     span = first_span(chain.parameters)
@@ -354,8 +357,9 @@ def test_two_ranks_exchange_as_one_does(run, asked, grid):
     for column, values in alone.items():
         np.testing.assert_array_equal(shared[column], values, column)
     assert exchanged_particles(folder)["missing_particles"] == 0
+    look = sorted(int(path.suffix[1:]) for path in whole.glob("load_ledger.bin.*"))[-2]
+    assert look > alone["step"][0]  # after fresh bed has come
     work = [
-        summed_by_solver(chain, span, place, read_surface(chain.surface))["sliding_work_J"].sum()
-        for place in (whole, folder)
+        read_load_ledger(place / f"load_ledger.bin.{look}").columns["sliding_work_J"].sum() for place in (whole, folder)
     ]
     assert work[1] == pytest.approx(work[0], rel=RANKS_PART)
