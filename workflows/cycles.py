@@ -37,7 +37,7 @@ from workflows.chain import (
 from workflows.ledgers import producer
 from workflows.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
 from workflows.progress import Progress
-from workflows.schedule import Span, first_span
+from workflows.schedule import Span, first_span, known_spans
 from workflows.solver import (
     CYCLE_EXECUTABLES,
     EXECUTABLE,
@@ -71,6 +71,8 @@ def run_chain(chain: Chain) -> None:
         inputs = inputs_digest(chain)
         if moved := state.set_aside_others(chain.folder, inputs):
             announce(moved)
+        if moved := state.fit_length(chain.folder, inputs, cycles_of(chain)):
+            announce(moved)
         if chain.same_as and (shared := state.share_cycles(chain.folder, chain.same_as, inputs)):
             announce(f"is the same simulation as {chain.same_as.name} and shares {shared} cycles with it")
         finished = state.finished_cycles(chain.folder, inputs, needed=(RESTART, SURFACE))
@@ -94,12 +96,22 @@ def run_chain(chain: Chain) -> None:
 
 
 def inputs_digest(chain: Chain) -> str:
-    """Return the hash of all that a run's results depend on: parameters, decks, surface and bed."""
-    solver = {key: value for key, value in chain.parameters["solver"].items() if key != "ranks"}
+    """Return the hash of all that the cycles of a run depend on: parameters, decks, surface and bed.
+
+    How many cycles there are is left out where the case says that it changes none of them.
+    """
+    left_out = {("solver", "ranks"), *CASES[chain.case].length}
+    parameters = dict(chain.parameters)
+    for section in {section for section, _ in left_out}:
+        values = chain.parameters[section].items()
+        parameters[section] = {key: value for key, value in values if (section, key) not in left_out}
     files = [path for path in (chain.surface, chain.bed_restart) if path]
-    return state.digest(
-        {**chain.parameters, "solver": solver}, *decks_without_paths(chain), *map(state.file_digest, files)
-    )
+    return state.digest(parameters, *decks_without_paths(chain), *map(state.file_digest, files))
+
+
+def cycles_of(chain: Chain) -> int | None:
+    """Return how many cycles a run has, cycle 0 included, where the case lets it be lengthened; else None."""
+    return len(known_spans(chain.parameters)) + 1 if CASES[chain.case].length else None
 
 
 def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:

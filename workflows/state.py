@@ -162,12 +162,33 @@ def set_aside_others(run_folder: Path, inputs: str) -> str | None:
         target = run_folder / "superseded" / other[:DIGEST_LETTERS]
         for part in run_folder.glob("cycle_*.part"):
             shutil.rmtree(part)
-        _move_cycles(run_folder, target)
+        _move(reversed(cycle_folders(run_folder)), target)
         said.append(f"its inputs changed, earlier cycles are kept in {target}")
     stored = run_folder / "superseded" / inputs[:DIGEST_LETTERS]
     if stored.exists() and not first.exists():
-        _move_cycles(stored, run_folder)
+        _move(reversed(cycle_folders(stored)), run_folder)
         said.append(f"cycles of the same inputs were brought back from {stored}")
+    return "; ".join(said) or None
+
+
+def fit_length(run_folder: Path, inputs: str, cycles: int | None) -> str | None:
+    """Move what a run that became shorter has too much to superseded/<digest>; bring back what a longer one has there.
+
+    cycles: how many the run has, cycle 0 included; None where a run of another length shares none with it.
+    Returns a sentence about what was moved, or None.
+    """
+    if cycles is None:
+        return None
+    stored = run_folder / "superseded" / inputs[:DIGEST_LETTERS]
+    kept = {cycle_folder(run_folder, cycle) for cycle in range(cycles)}
+    surplus = [folder for folder in cycle_folders(run_folder) if folder not in kept]
+    count, back = finished_cycles(run_folder, inputs), []
+    while count + len(back) < cycles and _holds(found := cycle_folder(stored, count + len(back)), inputs):
+        back.append(found)
+    _move(reversed(surplus), stored)  # the last one first: those that are left have no gap, whenever it ends
+    _move(back, run_folder)
+    said = [f"the run is shorter now, later cycles are kept in {stored}"] if surplus else []
+    said += [f"{len(back)} cycles of it were brought back from {stored}"] if back else []
     return "; ".join(said) or None
 
 
@@ -178,10 +199,10 @@ def _inputs_of(folder: Path) -> str:
         return "damaged_state"
 
 
-def _move_cycles(source: Path, target: Path) -> None:
-    """Move all cycles, the first one last: it tells whose cycles a folder holds, also when the move is interrupted."""
-    target.mkdir(parents=True, exist_ok=True)
-    for folder in reversed(cycle_folders(source)):
+def _move(folders: Iterable[Path], target: Path) -> None:
+    """Move cycles one by one; of all of a run the first one goes last, it tells whose cycles a folder holds."""
+    for folder in folders:
+        target.mkdir(parents=True, exist_ok=True)
         shutil.rmtree(target / folder.name, ignore_errors=True)
         os.replace(folder, target / folder.name)
 

@@ -318,7 +318,9 @@ def draw_worn_out(job: Drawing) -> None:
     ends = tester_comparison.worn_out_at(left)
     beside = fits[fits["particle_scale"].isin(scales) & (fits["surface"] == "plain")]["run"].iloc[0]
     rate = float(tester_volume.chosen_fit(fits, beside)[0])
-    job.write("tester_worn_out", comparison_plots.worn_out(left, ends, rate, job.remarks), left)
+    patches = "; ".join(f"{run.name}: {run.patch}" for run in job.runs if run.name in set(left["run"]))
+    remarks = [*job.remarks, f"a contact wears over: {patches}"]
+    job.write("tester_worn_out", comparison_plots.worn_out(left, ends, rate, remarks), left)
 
 
 JOBS = {  # name of a rule -> what draws its figures

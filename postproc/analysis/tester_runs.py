@@ -34,7 +34,8 @@ class TesterRun:
     bed_revolution_steps, revolution_steps: time steps of a revolution of bed and run; revolution_s: s
     bed_revolutions, run_in_revolutions: of the bed alone, and with the sample before wear is counted
     width, length, layer_height: m, of the sample and of the lowest layer over it; rotation: (3, 3) of the sample
-    coefficient: 1/Pa; distance_per_revolution: m of the bed past the sample's middle
+    coefficient: 1/Pa; patch: over what a contact wears, in words
+    distance_per_revolution: m of the bed past the sample's middle
     """
 
     name: str
@@ -44,6 +45,7 @@ class TesterRun:
     particle_scale: float
     element_size_mm: float
     coefficient: float
+    patch: str
     folder: Path
     bed_folder: Path
     bed_revolution_steps: int

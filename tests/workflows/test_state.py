@@ -28,6 +28,25 @@ def test_unfinished_cycles_of_other_inputs_are_removed(tmp_path):
     assert sorted(path.name for path in tmp_path.glob("cycle_*")) == ["cycle_000", "cycle_001"]
 
 
+def test_a_run_that_becomes_shorter_and_longer_again_loses_no_cycle(tmp_path):
+    """Cycles beyond a shorter run's end wait aside, come back for a longer one, and do not for other inputs."""
+    for cycle in range(12):
+        finished_cycle(tmp_path, cycle, "same")
+    assert state.fit_length(tmp_path, "same", None) is state.fit_length(tmp_path, "same", 12) is None
+    assert "is shorter now" in state.fit_length(tmp_path, "same", 3)
+    assert [path.name for path in sorted(tmp_path.glob("cycle_*"))] == ["cycle_000", "cycle_001", "cycle_002"]
+    assert "9 cycles of it were brought back" in state.fit_length(tmp_path, "same", 20)
+    assert state.finished_cycles(tmp_path, "same") == 12
+    state.fit_length(tmp_path, "same", 3)
+    state.set_aside_others(tmp_path, "new")
+    finished_cycle(tmp_path, 0, "new")
+    assert state.fit_length(tmp_path, "new", 12) is None
+    assert state.finished_cycles(tmp_path, "new") == 1
+    assert "brought back" in state.set_aside_others(tmp_path, "same")
+    assert "later cycles are kept" in state.fit_length(tmp_path, "same", 11)
+    assert state.finished_cycles(tmp_path, "same") == 11
+
+
 @pytest.mark.parametrize(
     "text", ["", '{"inputs": "sa', "null", "[]", '{"inputs": "same", "files": null}', '{"files": {}}']
 )

@@ -1,5 +1,7 @@
 """Two runs of a tiny circular wear tester with LIGGGHTS, and the tables and figures that are made of them."""
 
+import shutil
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -58,6 +60,23 @@ def test_no_particle_is_lost_and_revolutions_are_counted(finished, run):
     assert (bed["x_m"].abs() < tester_deck.half_width(chain.bed)).all()
     assert (bed["y_m"].abs() < 0.5 * tester_deck.channel_length(chain.bed) + skin).all()
     assert (bed["z_m"] > tester_deck.floor(chain.bed)).all()
+
+
+def test_a_longer_run_goes_on_from_a_shorter_one(finished, tmp_path):
+    """Shortened, a run keeps its first cycles, without the solver; lengthened again, also from nothing but those, it
+    ends in the very table of the run that was that long from the start.
+    """
+    whole = finished.chains["plain"]
+    folder = shutil.copytree(whole.folder, tmp_path / "plain")
+    half = replace(whole, folder=folder, parameters=tiny_tester(sliding={"revolutions": 1}).run("plain").parameters)
+    cycles.run_chain(half)
+    expected = pd.read_csv(whole.folder / "wear.csv")
+    pd.testing.assert_frame_equal(pd.read_csv(folder / "wear.csv"), expected.iloc[:2])
+    cost = (folder / "cycle_002" / "state.json").read_bytes()
+    shutil.rmtree(folder / "superseded")
+    cycles.run_chain(replace(whole, folder=folder))
+    pd.testing.assert_frame_equal(pd.read_csv(folder / "wear.csv"), expected)
+    assert (folder / "cycle_002" / "state.json").read_bytes() == cost
 
 
 def test_the_trough_takes_the_bed_along(finished):

@@ -50,6 +50,8 @@ class Case:
     run_templates: names of the templates of a run's decks
     alternatives: two settings of which exactly one is given; the stronger layer's replaces the other
     geometry: sections of a run's parameters that its pristine surface depends on
+    length: (section, key) of a run's parameters that only say after how many of its equal cycles it ends; a longer run
+        goes on from the cycles of a shorter one
     first_title: what people call cycle 0
     leftovers: files that a wear cycle's solver leaves and nobody needs once the cycle is accounted
     kept: files that `reduce` leaves, without which a wear cycle is not whole
@@ -60,6 +62,7 @@ class Case:
     run_templates: tuple[str, ...] = ()
     alternatives: tuple[tuple[str, str], ...] = ()
     geometry: tuple[str, ...] = ()
+    length: tuple[tuple[str, str], ...] = ()
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)
     kept: tuple[str, ...] = ()

@@ -46,6 +46,7 @@ class CircularTester(Case):
     checks = TESTER_CHECKS
     run_templates = ("tester_run_in", "circular_tester")
     geometry = ("sample", "pattern")
+    length = (("sliding", "revolutions"), ("sliding", "cycles"), ("derived", "travel_steps"))
     first_title = "run-in"
     leftovers = (SETUP_LOADS, SETUP_BED)
     kept = (LAYER_TABLE,)

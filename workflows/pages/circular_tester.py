@@ -79,6 +79,7 @@ def run_values(study: Study, run: Run) -> dict[str, Any]:
         "particle_scale": parameters["particle"]["scale"],
         "element_size_mm": 1e3 * sample["element_size_m"],
         "coefficient": parameters["wear"]["accelerated_wear_coefficient_per_pa"],
+        "patch": patch_words(parameters["wear"]),
         "bed_revolution_steps": round(bed["revolution_s"] / bed["time_step_s"]),
         "revolution_steps": derived["revolution_steps"],
         "revolution_s": derived["revolution_s"],
@@ -90,6 +91,16 @@ def run_values(study: Study, run: Run) -> dict[str, Any]:
         "rotation": tester_deck.pose(parameters["tester"]).tolist(),
         "distance_per_revolution": sliding["velocity_m_per_s"] * derived["revolution_s"],
     }
+
+
+def patch_words(wear: Mapping[str, Any]) -> str:
+    """Return over what a contact wears."""
+    return {
+        "none": "single elements",
+        "simulated": "its Hertz patch in the solver",
+        "physical": "the Hertz patch of the real material",
+        "radius": f"{1e3 * wear.get('patch_radius_m', 0.0):g} mm round it",
+    }[wear["patch"]]
 
 
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:

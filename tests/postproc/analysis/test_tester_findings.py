@@ -6,21 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from postproc.analysis import tester_volume
 from postproc.analysis.findings import CONFIRMED, REFUTED, UNSAID
 from postproc.analysis.tester_comparison import ratios_by_revolution
 from postproc.analysis.tester_distribution import mesh_size_effect
 from postproc.analysis.tester_findings import TESTS, Evidence, findings_table
 from postproc.analysis.tester_flow import revolution_means, steady_revolutions
-from postproc.analysis.tester_volume import (
-    chosen_fit,
-    crossing,
-    predictions,
-    published_terms,
-    rate_crossing,
-    time_scale,
-    volume_at,
-    volume_fits,
-)
 from tests.postproc import tester_study as study
 
 FINDINGS = pd.read_csv(study.ROOT / "config/published/circular_tester_findings.csv")
@@ -42,9 +33,9 @@ def volumes(laws):
     x = np.arange(18.0)
     return pd.concat(
         [
-            pd.DataFrame({"revolution": x, "volume_m3": 1e-9 * volume_at(np.array(terms), x), "elements": 10}).assign(
-                run=f"{surface}{scale:g}", surface=surface, particle_scale=scale
-            )
+            pd.DataFrame(
+                {"revolution": x, "volume_m3": 1e-9 * tester_volume.volume_at(np.array(terms), x), "elements": 10}
+            ).assign(run=f"{surface}{scale:g}", surface=surface, particle_scale=scale)
             for (surface, scale), terms in laws.items()
         ],
         ignore_index=True,
@@ -64,11 +55,15 @@ def flow(measures):
 
 
 def evidence(laws=THESIS, measures=FLOW):
-    fits = volume_fits(volumes(laws))
-    scale = time_scale(chosen_fit(fits, "plain1"), 5e-9, study.PUBLISHED, 1.071, 0.01)
+    fits = tester_volume.volume_fits(volumes(laws))
+    scale = tester_volume.time_scale(tester_volume.chosen_fit(fits, "plain1"), 5e-9, study.PUBLISHED, 1.071, 0.01)
     terms = {each: [np.array(laws[surface, each]) for surface in ("plain", "convex")] for each in (1.0, 4.0)}
     crossings = [
-        {"particle_scale": each, "rate_crossing": rate_crossing(*both), "crossing": crossing(*both)}
+        {
+            "particle_scale": each,
+            "rate_crossing": tester_volume.rate_crossing(*both),
+            "crossing": tester_volume.crossing(*both),
+        }
         for each, both in terms.items()
     ]
     machines = {("plain", 6.0): (80.0, 0.0), ("convex", 6.0): (50.0, 0.2)}
@@ -84,7 +79,7 @@ def evidence(laws=THESIS, measures=FLOW):
     meshes = pd.DataFrame({"surface": ["plain", "plain", "convex", "convex"], "element_size_mm": [0.5, 1.0] * 2})
     return Evidence(
         fits=fits,
-        predictions=predictions(fits, scale, [56.0, 184.0]),
+        predictions=tester_volume.predictions(fits, scale, [56.0, 184.0]),
         crossings=pd.DataFrame(crossings),
         ratios=ratios_by_revolution(machine),
         columns=columns,
@@ -167,12 +162,14 @@ def test_what_the_sources_own_equations_say():
     """After two revolutions particles of scale 4 wear less than those of scale 3. Convex of scale 4 wears faster than
     Eq 6.2 from revolution 10 on, not 15: its increments are means over elements, of which a convex sample has more.
     """
-    terms = {scale: published_terms(study.PUBLISHED_FITS, "convex", scale) for scale in (1.0, 2.0, 3.0, 4.0)}
-    after = {scale: float(volume_at(each, 2.0)) for scale, each in terms.items()}
+    terms = {
+        scale: tester_volume.published_terms(study.PUBLISHED_FITS, "convex", scale) for scale in (1.0, 2.0, 3.0, 4.0)
+    }
+    after = {scale: float(tester_volume.volume_at(each, 2.0)) for scale, each in terms.items()}
     assert after[4.0] < after[3.0] and sorted(after.values()) != list(after.values())
-    plain = published_terms(study.PUBLISHED_FITS, "plain", 1.0)
-    assert rate_crossing(plain, terms[4.0]) == pytest.approx(10.2, abs=0.05)
-    assert 100.0 * (1.0 - after[1.0] / volume_at(plain, 2.0)) == pytest.approx(58.0, abs=0.1)
+    plain = tester_volume.published_terms(study.PUBLISHED_FITS, "plain", 1.0)
+    assert tester_volume.rate_crossing(plain, terms[4.0]) == pytest.approx(10.2, abs=0.05)
+    assert 100.0 * (1.0 - after[1.0] / tester_volume.volume_at(plain, 2.0)) == pytest.approx(58.0, abs=0.1)
 
 
 def test_means_of_the_flow_are_those_of_its_series():
