@@ -33,6 +33,7 @@ from workflows.schedule import Span
 
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J")
 SUMS = (*SUMMED, "finnie_volume_m3", "worn_volume_m3")  # cell data of the surface, over all cycles so far
+CAP_SHARES = (1.0, 0.5, 0.25, 0.1)  # of the cap on a step, one after the other while the worn surface is beyond repair
 MEANS = ("contact_position", "contact_radius")  # columns of a ledger that are no sums: nothing where nothing touched
 LEAST_SOLVER_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 TOTALS = {  # columns of wear.csv that are sums over all cycles -> what each cycle adds
@@ -60,22 +61,41 @@ def wear(
     if TARGET_EDGE not in surface.point_data:  # the first cycle: the elements as built are what remeshing aims at
         surface = with_target_edges(surface)
     volume = law_volume(parameters, ledger)
-    limit = node_limits(case, parameters, surface, span)
-    patch = contact_patch(parameters, ledger)
-    worn, update = wear_update(surface, volume, limit, patch=patch, scheme=parameters["wear"]["scheme"])
-    asked = {"step_limit_m": float(limit.max()), **planned(case, parameters, span, surface, worn)}
-    asked |= case.geometry_columns(surface, worn, volume > 0.0)
-    worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume), surface)
+    worn, update, asked = moved(chain, span, surface, ledger, volume)
     if fault := case.worn_through(worn):
         raise WearError(
             f"{chain.name}, cycle {span.cycle}: {fault}; wear is accelerated too much, or the travel too long."
         )
     write_surface(folder / SURFACE, worn)
-    row = wear_row(chain, span, surface, ledger, volume) | update_row(chain, span, update) | asked | remeshing
+    row = wear_row(chain, span, surface, ledger, volume) | update_row(chain, span, update) | asked
     lost, rounding = lost_volume(pristine, worn)
     due = lost - row["total_excess_volume_m3"]
     error = volume_balance(due, row["carried_volume_m3"], row["total_archard_volume_m3"], rounding)
     return {**row, "balance_error": error}
+
+
+def moved(
+    chain: Chain, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray
+) -> tuple[SurfaceMesh, dict[str, float], dict[str, float | int]]:
+    """Return the surface after a cycle's wear, remeshed, the record of the update, and what caps and remeshing tell.
+
+    A surface that cannot be repaired is worn again with a smaller cap; what it does not lose now is carried. Raises
+    WearError when the smallest one does not help.
+    """
+    parameters, case = chain.parameters, CASES[chain.case]
+    limit, patch = node_limits(case, parameters, surface, span), contact_patch(parameters, ledger)
+    for share in CAP_SHARES:
+        cap = share * limit
+        worn, update = wear_update(surface, volume, cap, patch=patch, scheme=parameters["wear"]["scheme"])
+        asked = {"step_limit_m": float(cap.max()), **planned(case, parameters, span, surface, worn)}
+        asked |= case.geometry_columns(surface, worn, volume > 0.0)
+        try:
+            worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume), surface)
+            break
+        except WearError:
+            if share == CAP_SHARES[-1]:
+                raise
+    return worn, update, asked | remeshing
 
 
 def remeshed(
@@ -88,8 +108,8 @@ def remeshed(
     place and cause.
     """
     try:
-        moved = (worn.points != before.points).any(axis=1)[worn.triangles].any(axis=1) if span.cycle > 1 else None
-        outcome = remesh(as_densities(worn), bounds(chain.parameters), moved)
+        apart = (worn.points != before.points).any(axis=1)[worn.triangles].any(axis=1) if span.cycle > 1 else None
+        outcome = remesh(as_densities(worn), bounds(chain.parameters), apart)
     except RemeshError as fault:
         raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}") from fault
     mesh = as_sums(outcome.mesh, worn) if outcome.faces_changed else worn

@@ -83,6 +83,25 @@ def test_a_surface_beyond_repair_stops_with_run_and_cycle(chain, monkeypatch):
     assert not (chain.folder / FOLDER / "surface.vtu").exists()
 
 
+def test_a_surface_beyond_repair_is_worn_by_less(chain, monkeypatch):
+    """The cap is halved until the surface can be repaired; what is not applied is carried, and the balance closes."""
+    mesh, span = read_surface(chain.surface), first_span(chain.parameters)
+    whole = wear_step.wear(chain, span, chain.folder / FOLDER, mesh, ledger_of(mesh, 1e3))
+    repair, refused = wear_step.remesh, iter((True, True, False))
+
+    def refuses_twice(*of_remesh):
+        if next(refused):
+            raise RemeshError("faces cut one another at (1, 2, 3) mm")
+        return repair(*of_remesh)
+
+    monkeypatch.setattr(wear_step, "remesh", refuses_twice)
+    less = wear_step.wear(chain, span, chain.folder / FOLDER, mesh, ledger_of(mesh, 1e3))
+    assert less["step_limit_m"] == 0.25 * whole["step_limit_m"]
+    assert 0.0 < less["applied_volume_m3"] < 0.5 * whole["applied_volume_m3"]
+    due = [row["applied_volume_m3"] + row["carried_volume_m3"] for row in (less, whole)]
+    assert due == pytest.approx([whole["archard_volume_m3"]] * 2, rel=EXACT)
+
+
 def test_a_sliver_stops_before_the_solver_refuses_it(chain, monkeypatch):
     """A triangle flatter than the solver takes is named with its place; one that is merely acute is not."""
     mesh = read_surface(chain.surface)
