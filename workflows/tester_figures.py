@@ -36,6 +36,7 @@ from postproc.analysis.tester_runs import (
     mean_force_by_column,
     outlines,
     series,
+    surfaces_alike,
     top_of,
     volumes,
     whole_revolutions,
@@ -170,12 +171,12 @@ def evidence(
 ) -> tester_findings.Evidence:
     """Return what findings are judged by; tables: those of `write_tables`; hours: of the short and the long test."""
     main, meshes = main_runs(runs), volumes_of_meshes(tables["lost_volumes"])
-    worn = {run.surface: read_surface(run.folder / WORN_SURFACE) for run in main}
-    columns = tester_distribution.wear_by_column(worn)
+    _, worn = surfaces_alike(main)
+    columns = tester_distribution.wear_by_column({run.surface: worn[run.name] for run in main})
     return tester_findings.Evidence(
         **{name: tables[name] for name in ("fits", "predictions", "crossings", "ratios")},
         columns=columns.assign(surface=columns["run"]),
-        bumps=tester_distribution.wear_by_bump(worn["convex"]),
+        bumps=tester_distribution.wear_by_bump(read_surface(main[0].folder / WORN_SURFACE)),
         means=flow_means(tables["series"]),
         steady=tester_flow.steady_revolutions(tables["series"]),
         meshes=None if meshes is None else tester_distribution.mesh_size_effect(meshes),
@@ -262,15 +263,16 @@ def draw_distribution(job: Drawing) -> None:
     """Draw where the samples wear and are loaded: Fig 6.13, 6.14, 6.16, 6.22."""
     published, _ = published_tables(job.paths)
     main = main_runs(job.runs)
-    worn = {run.name: read_surface(run.folder / WORN_SURFACE) for run in main}
+    shared, worn = surfaces_alike(main)
     table = tester_distribution.wear_by_column(worn)
-    figure = tester.by_column(table, "mm3", "Worn volume (mm³)", published, job.remarks)
+    remarks = [f"after {shared:g} revolutions", *job.remarks]
+    figure = tester.by_column(table, "mm3", "Worn volume (mm³)", published, remarks)
     job.write("tester_columns", figure, table)
     forces = pd.concat([mean_force_by_column(run) for run in main], ignore_index=True)
     figure = tester.by_column(forces, "N", "Normal force (N)", published, job.remarks)
     job.write("tester_force_columns", figure, forces)
     convex = main[0]
-    bumps = tester_distribution.wear_by_bump(worn[convex.name])
+    bumps = tester_distribution.wear_by_bump(read_surface(convex.folder / WORN_SURFACE))
     last = job.table("lost_volumes").groupby("run")["revolution"].max()[convex.name]
     theirs = published_value(published, "last_revolution", "simulation")
     said = f"ours after {last:.3g} revolutions, Yan 2022 after {theirs:g}"

@@ -182,6 +182,12 @@ def cycle_surfaces(run: TesterRun, revolutions: Sequence[float] | None = None) -
     }
 
 
+def surfaces_alike(runs: Sequence[TesterRun]) -> tuple[float, dict[str, SurfaceMesh]]:
+    """The revolution of wear that all runs have reached, and their worn tops after it, by run."""
+    last = min(float(pd.read_csv(run.folder / "wear.csv", usecols=["revolution"]).iloc[-1, 0]) for run in runs)
+    return last, {run.name: next(iter(cycle_surfaces(run, [last]).values())) for run in runs}
+
+
 def layer_particles(run: TesterRun, revolution: float) -> pd.DataFrame:
     """Particles of the lowest layer at the end of the wear cycle nearest to a revolution, as `relative_motion` wants
     them: surface, x_m, y_m, radius_m, vx_m_per_s, vy_m_per_s, angular_speed_rad_per_s.

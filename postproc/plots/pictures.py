@@ -79,21 +79,22 @@ def _small_multiples(
     depths: pd.DataFrame,
 ) -> None:
     """Draw all runs from above without skirt, those of a design row below each other on a scale of their own."""
-    rows, surfaces = list(dict.fromkeys(runs["row"])), list(dict.fromkeys(runs["surface"]))
+    rows, lines = list(dict.fromkeys(runs["row"])), runs.groupby("row").cumcount()
+    deep = int(lines.max()) + 1
     blocks = math.ceil(len(rows) / ROWS_PER_LINE)
     columns = math.ceil(len(rows) / blocks)
-    grid = figure.subplots(blocks * len(surfaces), columns, squeeze=False)
+    grid = figure.subplots(blocks * deep, columns, squeeze=False)
     scales = {row: colour_limits(depths[depths["run"].isin(found["run"])]) for row, found in runs.groupby("row")}
     unit, ticks = scaled("µm", max(top for _, top in scales.values()))
     for axes in grid.ravel():
         axes.set_axis_off()
-    for run in runs.itertuples():
+    for run, line in zip(runs.itertuples(), lines, strict=True):
         block, column = divmod(rows.index(run.row), columns)
-        axes = grid[block * len(surfaces) + surfaces.index(run.surface), column]
+        axes = grid[block * deep + line, column]
         picture(axes, surface_plan(meshes[run.run], deformed, scales[run.row], 300, skirt=False)[0])
-        if run.surface == surfaces[0]:
+        if line == 0:
             axes.set_title(f"{run.row}: {ticks(float(f'{scales[run.row][1]:.2g}'), 0)}", fontsize=SMALLEST_FONT, pad=3)
-        if column == 0:
+        if column == 0 and deep > 1:
             place = {"rotation": 90, "va": "center", "ha": "right", "fontsize": SMALLEST_FONT}
             axes.text(-0.06, 0.5, run.surface, transform=axes.transAxes, **place)
     label = f"Depth over the scale of its row (-)\nnumbers at the rows: their scales ({unit})"

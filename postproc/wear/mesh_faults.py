@@ -248,14 +248,14 @@ def _cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray) -> np
     rows = np.flatnonzero(equal.sum(axis=(1, 2)) < 2)
     rows = rows[_planes_cross(points, first[rows], second[rows])]
     result = np.zeros(len(pairs), dtype=bool)
-    for ours, theirs, shared in (
-        (first[rows], second[rows], equal[rows].any(axis=2)),
-        (second[rows], first[rows], equal[rows].any(axis=1)),
-    ):
-        for k in range(3):
-            free = ~(shared[:, k] | shared[:, (k + 1) % 3])
-            hit = _segment_hits(points[ours[:, k]], points[ours[:, (k + 1) % 3]], points[theirs])
-            result[rows[free & hit]] = True
+    if not len(rows):
+        return result
+    ours, theirs = np.vstack([first[rows], second[rows]]), np.vstack([second[rows], first[rows]])
+    shared = np.vstack([equal[rows].any(axis=2), equal[rows].any(axis=1)])
+    ends = np.roll(ours, -1, axis=1)
+    pair, edge = np.nonzero(~(shared | np.roll(shared, -1, axis=1)))  # edges without a node of the other face
+    hit = _segment_hits(points[ours[pair, edge]], points[ends[pair, edge]], points[theirs[pair]])
+    result[np.tile(rows, 2)[pair[hit]]] = True
     return result
 
 

@@ -181,10 +181,11 @@ def _flips(patch: Patch, bounds: Bounds) -> list[Patch]:
 
 def _cost(before: Patch, after: Patch, old: OldSurface, bounds: Bounds) -> tuple[float, bool, float]:
     """(tangled faces, is one very acute, change of volume in m3); infinite where it stands outside the old surface."""
+    if old.range_over_faces(after.points, after.triangles, after.size)[:, 1].max(initial=0.0) > OUTWARD_BY_OPERATIONS:
+        return np.inf, True, np.inf
     origin = before.points[0]
     change = six_volumes(after.points, after.triangles, origin).sum()
     change -= six_volumes(before.points, before.triangles, origin).sum()
     count = float(_tangled(after, bounds).sum())
     acute = bool(smallest_angles(after.points, after.triangles).min() < ACUTE_DEG)
-    reach = old.range_over_faces(after.points, after.triangles, after.size)[:, 1].max(initial=0.0)
-    return (count if reach <= OUTWARD_BY_OPERATIONS else np.inf), acute, abs(float(change))
+    return count, acute, abs(float(change))
