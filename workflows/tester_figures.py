@@ -316,13 +316,13 @@ def draw_worn_out(job: Drawing) -> None:
     lost, fits = job.table("lost_volumes"), job.table("fits")
     scales = chosen(lost, WORN_OUT)["particle_scale"].unique()
     shown = chosen(lost, VOLUME, SIZE, WORN_OUT)
-    left = tester_comparison.pattern_left(shown[shown["particle_scale"].isin(scales)], plain.coefficient)
-    ends = tester_comparison.worn_out_at(left)
     beside = fits[fits["particle_scale"].isin(scales) & (fits["surface"] == "plain")]["run"].iloc[0]
     rate = float(tester_volume.chosen_fit(fits, beside)[0])
+    left = tester_comparison.pattern_left(shown[shown["particle_scale"].isin(scales)], plain.coefficient, rate)
+    ends = tester_comparison.worn_out_at(left)
     patches = "; ".join(f"{run.name}: {run.patch}" for run in job.runs if run.name in set(left["run"]))
     remarks = [*job.remarks, f"a contact wears over: {patches}"]
-    job.write("tester_worn_out", comparison_plots.worn_out(left, ends, rate, remarks), left)
+    job.write("tester_worn_out", comparison_plots.worn_out(left, ends, remarks), left)
 
 
 JOBS = {  # name of a rule -> what draws its figures

@@ -11,6 +11,7 @@ from postproc.analysis.tester_volume import CONVEX, element_increments
 
 MACHINE = ["shape", "particle_scale"]
 WORN_OUT_SHARE = 0.05  # of the pattern's volume: what is left of it then counts as nothing
+MEAN_SHARE = 20  # of a run's cycles: a twentieth of them is averaged where rates are compared
 
 
 def ratios_by_revolution(volumes: pd.DataFrame) -> pd.DataFrame:
@@ -51,12 +52,13 @@ def mean_ratios(ratios: pd.DataFrame, shared: bool) -> pd.DataFrame:
     return table.assign(reduction_percent=100.0 * (1.0 - table["ratio"])).reset_index()
 
 
-def pattern_left(volumes: pd.DataFrame, coefficient: float) -> pd.DataFrame:
+def pattern_left(volumes: pd.DataFrame, coefficient: float, plain_per_revolution: float) -> pd.DataFrame:
     """How much of the pattern is left against revolutions at one coefficient (1/Pa), of convex runs.
 
     Archard's volume is coefficient times work: a revolution at a coefficient k times as large wears like k of them.
-    Columns: run, particle_scale, coefficient, revolution (as if at `coefficient`), pattern_share (-), lost_mm3,
-    lost_per_revolution_mm3 (since the row before, per revolution as if at `coefficient`).
+    plain_per_revolution: mm3 that the plain sample loses at it. Columns: run, particle_scale, coefficient, revolution
+    (as if at `coefficient`), pattern_share (-), lost_mm3, lost_per_revolution_mm3 (since the row before, per revolution
+    as if at `coefficient`), mean_per_revolution_mm3 (of it, over a MEAN_SHARE of the rows), plain_per_revolution_mm3.
     """
     convex = volumes[volumes["surface"] == CONVEX]
     parts = []
@@ -66,19 +68,38 @@ def pattern_left(volumes: pd.DataFrame, coefficient: float) -> pd.DataFrame:
         table = pd.DataFrame({"revolution": revolution, "lost_mm3": lost})
         table["pattern_share"] = rows["pattern_volume_m3"] / rows["pattern_volume_m3"].iloc[0]
         table["lost_per_revolution_mm3"] = lost.diff() / revolution.diff()
+        window = table["lost_per_revolution_mm3"].rolling(max(len(rows) // MEAN_SHARE, 1), center=True, min_periods=1)
+        table["mean_per_revolution_mm3"] = window.mean()
+        table["plain_per_revolution_mm3"] = plain_per_revolution
         same = {"run": run, "particle_scale": rows["particle_scale"], "coefficient": rows["coefficient"]}
         parts.append(table.assign(**same)[[*same, *table.columns]])
     return pd.concat(parts, ignore_index=True)
 
 
 def worn_out_at(left: pd.DataFrame) -> pd.DataFrame:
-    """Revolution of each run at which less than WORN_OUT_SHARE of its pattern is left, NaN where it never is.
+    """When patterns are gone, and when their samples lose more than the plain one; NaN where that never happens.
 
-    left: as from `pattern_left`. Columns: run, last_share, worn_out_revolution.
+    left: as from `pattern_left`. Columns: run, last_share (-), worn_out_revolution (less than WORN_OUT_SHARE is left),
+    faster_revolution, faster_share (the mean loss per revolution first exceeds the plain sample's; what is left of the
+    pattern then, -), lost_over_plain (all that is lost at the end over what the plain sample loses till then, -).
     """
     rows = []
     for run, of_run in left.groupby("run", sort=False):
-        gone = of_run[of_run["pattern_share"] < WORN_OUT_SHARE]["revolution"]
-        at = float(gone.iloc[0]) if len(gone) else float("nan")
-        rows.append({"run": run, "last_share": of_run["pattern_share"].iloc[-1], "worn_out_revolution": at})
+        gone = of_run[of_run["pattern_share"] < WORN_OUT_SHARE]
+        faster = of_run[of_run["mean_per_revolution_mm3"] > of_run["plain_per_revolution_mm3"]]
+        last = of_run.iloc[-1]
+        rows.append(
+            {
+                "run": run,
+                "last_share": last["pattern_share"],
+                "worn_out_revolution": _first(gone["revolution"]),
+                "faster_revolution": _first(faster["revolution"]),
+                "faster_share": _first(faster["pattern_share"]),
+                "lost_over_plain": last["lost_mm3"] / (last["revolution"] * last["plain_per_revolution_mm3"]),
+            }
+        )
     return pd.DataFrame(rows)
+
+
+def _first(values: pd.Series) -> float:
+    return float(values.iloc[0]) if len(values) else float("nan")

@@ -47,10 +47,10 @@ def channel_and_ring(
     return figure
 
 
-def worn_out(left_of: pd.DataFrame, ends: pd.DataFrame, plain_per_revolution: float, remarks: Sequence[str]) -> Figure:
+def worn_out(left_of: pd.DataFrame, ends: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw what is left of the pattern, and what the sample loses per revolution, until the pattern is gone.
 
-    left_of, ends: as from `analysis.tester_comparison.pattern_left` and `worn_out_at`; plain_per_revolution: mm3.
+    left_of, ends: as from `analysis.tester_comparison.pattern_left` and `worn_out_at`.
     """
     figure = new_figure(remarks, 4.4)
     share, rate = figure.subplots(1, 2, sharex=True)
@@ -61,13 +61,13 @@ def worn_out(left_of: pd.DataFrame, ends: pd.DataFrame, plain_per_revolution: fl
         name = f"{run.replace('_', ' ')}{f', coefficient x {times:g}' if times > 1.0 else ''}"
         look = {"color": COLOURS["convex"], "linestyle": styles[run], "linewidth": 1.2}
         share.plot(rows["revolution"], 100.0 * rows["pattern_share"], label=name, **look)
-        smooth = rows["lost_per_revolution_mm3"].rolling(_window(rows), center=True, min_periods=1).mean()
-        rate.plot(rows["revolution"], smooth, label=name, **look)
+        rate.plot(rows["revolution"], rows["mean_per_revolution_mm3"], label=name, **look)
         if np.isfinite(end["worn_out_revolution"]):
             share.axvline(end["worn_out_revolution"], color=OTHER_COLOUR, linewidth=0.8, linestyle=styles[run])
     share.axhline(100.0 * WORN_OUT_SHARE, color="black", linewidth=0.8, label=f"{100.0 * WORN_OUT_SHARE:g} %")
-    rate.axhline(plain_per_revolution, color=COLOURS[PLAIN], linewidth=1.2, label="plain sample")
+    rate.axhline(left_of["plain_per_revolution_mm3"].iloc[0], color=COLOURS[PLAIN], linewidth=1.2, label="plain sample")
     share.set_title("\n".join(map(_end_words, ends.itertuples())), loc="left", fontsize=SMALLEST_FONT)
+    rate.set_title("\n".join(_faster_words(row) for row in ends.itertuples()), loc="left", fontsize=SMALLEST_FONT)
     words = "Revolutions at the study's coefficient"
     share.set(xlabel=words, ylabel="Pattern left (% of its volume)", ylim=(0.0, None), xlim=(0.0, None))
     rate.set(xlabel=words, ylabel="Lost per revolution (mm³)", ylim=(0.0, None))
@@ -75,13 +75,15 @@ def worn_out(left_of: pd.DataFrame, ends: pd.DataFrame, plain_per_revolution: fl
     return figure
 
 
-def _window(rows: pd.DataFrame) -> int:
-    """Rows that are averaged: about a revolution as it was simulated."""
-    return max(len(rows) // 20, 1)
-
-
 def _end_words(row: tuple) -> str:
     name = row.run.replace("_", " ")
     if np.isfinite(row.worn_out_revolution):
         return f"{name}: gone at {row.worn_out_revolution:.3g}"
     return f"{name}: {100.0 * row.last_share:.3g} % left"
+
+
+def _faster_words(row: tuple) -> str:
+    name = row.run.replace("_", " ")
+    if not np.isfinite(row.faster_revolution):
+        return f"{name}: slower than plain throughout"
+    return f"{name}: faster than plain from {row.faster_revolution:.3g} on, {100.0 * row.faster_share:.2g} % left"

@@ -45,12 +45,24 @@ def test_a_larger_coefficient_is_told_in_revolutions_of_the_study():
     x = np.arange(7.0)
     rows = pd.DataFrame({"revolution": x, "law_volume_m3": 4e-7 * x, "pattern_volume_m3": 1e-6 * (1.0 - x / 6.0)})
     rows = rows.assign(run="worn-out", surface="convex", particle_scale=6.0, coefficient=5e-8)
-    left = pattern_left(rows, 5e-9)
+    left = pattern_left(rows, 5e-9, 45.0)
     half = left[np.isclose(left["pattern_share"], 0.5)].iloc[0]
     assert half["revolution"] == pytest.approx(30.0, rel=EXACT)
     assert half["lost_per_revolution_mm3"] == pytest.approx(40.0, rel=EXACT)
     assert worn_out_at(left)["worn_out_revolution"].tolist() == pytest.approx([60.0], rel=EXACT)
     assert worn_out_at(left[left["revolution"] < 50.0])["worn_out_revolution"].isna().all()
+    assert worn_out_at(left)["lost_over_plain"].tolist() == pytest.approx([40.0 / 45.0], rel=EXACT)
+    assert worn_out_at(left)["faster_revolution"].isna().all()
+
+
+def test_when_a_pattern_that_wears_off_loses_more_than_plain():
+    """A loss per revolution that grows like the revolutions passes the plain sample's where they say so."""
+    x = np.arange(101.0)
+    rows = pd.DataFrame({"revolution": x, "law_volume_m3": 1e-9 * x**2, "pattern_volume_m3": 1e-6 * (1.0 - x / 100.0)})
+    left = pattern_left(rows.assign(run="a", surface="convex", particle_scale=6.0, coefficient=5e-9), 5e-9, 120.0)
+    end = worn_out_at(left).iloc[0]  # increments 2 x - 1, means of five of them the same
+    assert end["faster_revolution"] == 61.0 and end["faster_share"] == pytest.approx(0.39, rel=EXACT)
+    assert end["lost_over_plain"] == pytest.approx(100.0 / 120.0, rel=EXACT)
 
 
 def test_the_layer_is_that_of_the_inclined_sample():

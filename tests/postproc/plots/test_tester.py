@@ -174,9 +174,10 @@ def test_worn_out(tmp_path):
         .assign(run=run, surface="convex", particle_scale=6.0)
         for run, each in (("convex", 1.0), ("worn-out", 40.0))
     ]
-    left = pattern_left(pd.concat(parts, ignore_index=True), 5e-9)
-    figure = worn_out(left, worn_out_at(left), 45.0, REMARKS)
+    left = pattern_left(pd.concat(parts, ignore_index=True), 5e-9, 45.0)
+    figure = worn_out(left, worn_out_at(left), REMARKS)
     words = ["worn-out, coefficient x 40", "worn-out: gone at 320", "convex: 94.3 % left", "plain sample"]
+    words += ["convex: slower than plain throughout"]
     assert missing_words(figure, tmp_path / "a.png", words) == []
 
 
