@@ -100,6 +100,19 @@ def volumes_of_meshes(lost: pd.DataFrame) -> pd.DataFrame | None:
     return at.sort_values("element_size_mm")
 
 
+def patterns_left(lost: pd.DataFrame, fits: pd.DataFrame, coefficient: float) -> pd.DataFrame | None:
+    """Return what is left of patterns that are worn right off, and of others in equal beds, against revolutions at
+    `coefficient` (1/Pa), as from `tester_comparison.pattern_left`; None without a run for that.
+    """
+    scales = chosen(lost, WORN_OUT)["particle_scale"].unique()
+    beside = fits[fits["particle_scale"].isin(scales) & (fits["surface"] == "plain")]["run"]
+    if beside.empty:
+        return None
+    shown = chosen(lost, VOLUME, SIZE, WORN_OUT)
+    rate = float(tester_volume.chosen_fit(fits, beside.iloc[0])[0])
+    return tester_comparison.pattern_left(shown[shown["particle_scale"].isin(scales)], coefficient, rate)
+
+
 def published_tables(paths: Mapping[str, str]) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return published values and fits."""
     return pd.read_csv(paths["published"]), pd.read_csv(paths["published_fits"])
@@ -171,6 +184,7 @@ def evidence(
 ) -> tester_findings.Evidence:
     """Return what findings are judged by; tables: those of `write_tables`; hours: of the short and the long test."""
     main, meshes = main_runs(runs), volumes_of_meshes(tables["lost_volumes"])
+    left = patterns_left(tables["lost_volumes"], tables["fits"], main_plain(runs).coefficient)
     _, worn = surfaces_alike(main)
     columns = tester_distribution.wear_by_column({run.surface: worn[run.name] for run in main})
     return tester_findings.Evidence(
@@ -180,6 +194,7 @@ def evidence(
         means=flow_means(tables["series"]),
         steady=tester_flow.steady_revolutions(tables["series"]),
         meshes=None if meshes is None else tester_distribution.mesh_size_effect(meshes),
+        worn_out=None if left is None else tester_comparison.worn_out_at(left),
         main=main_plain(runs).particle_scale,
         short=hours[0],
         long=hours[-1],
@@ -312,13 +327,7 @@ def draw_ring(job: Drawing) -> None:
 
 def draw_worn_out(job: Drawing) -> None:
     """Draw a pattern that is worn right off, beside the one of the study's coefficient."""
-    plain = main_plain(job.runs)
-    lost, fits = job.table("lost_volumes"), job.table("fits")
-    scales = chosen(lost, WORN_OUT)["particle_scale"].unique()
-    shown = chosen(lost, VOLUME, SIZE, WORN_OUT)
-    beside = fits[fits["particle_scale"].isin(scales) & (fits["surface"] == "plain")]["run"].iloc[0]
-    rate = float(tester_volume.chosen_fit(fits, beside)[0])
-    left = tester_comparison.pattern_left(shown[shown["particle_scale"].isin(scales)], plain.coefficient, rate)
+    left = patterns_left(job.table("lost_volumes"), job.table("fits"), main_plain(job.runs).coefficient)
     ends = tester_comparison.worn_out_at(left)
     patches = "; ".join(f"{run.name}: {run.patch}" for run in job.runs if run.name in set(left["run"]))
     remarks = [*job.remarks, f"a contact wears over: {patches}"]

@@ -34,6 +34,7 @@ class Evidence:
     means: of spin, velocity and force per revolution of wear of the main runs, see `tester_flow.revolution_means`
     steady: of them, as from `tester_flow.steady_revolutions`
     meshes: as from `tester_distribution.mesh_size_effect`, None without a series of meshes
+    worn_out: as from `tester_comparison.worn_out_at`, None without a pattern that is worn right off
     main: particle scale of the main runs; short, long: hours of the tests
     """
 
@@ -46,6 +47,7 @@ class Evidence:
     means: pd.DataFrame
     steady: pd.DataFrame
     meshes: pd.DataFrame | None
+    worn_out: pd.DataFrame | None
     main: float
     short: float
     long: float
@@ -130,6 +132,11 @@ def _overtakes(evidence: Evidence) -> Verdict:
     )
     first, last = table["rate_crossing"].min(), evidence.fits["revolutions"].max()
     reserve = "beyond the simulated revolutions" if last < first < np.inf else ""
+    late = None if evidence.worn_out is None else evidence.worn_out.dropna(subset="faster_revolution")
+    if late is not None and len(late) and not np.isfinite(first):
+        row = late.loc[late["faster_revolution"].idxmin()]
+        found += f"; worn right off, faster from revolution {row['faster_revolution']:.3g}"
+        return Verdict(found, CONFIRMED, f"only when {100.0 * row['faster_share']:.2g} % of the pattern are left")
     return Verdict(found, CONFIRMED if np.isfinite(first) else REFUTED, reserve)
 
 

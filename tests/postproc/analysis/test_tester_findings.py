@@ -87,6 +87,7 @@ def evidence(laws=THESIS, measures=FLOW):
         means=flow(measures),
         steady=steady_revolutions(study.series(revolutions=12)),
         meshes=mesh_size_effect(meshes.assign(volume_m3=[1.0, 0.98, 0.57, 0.56])),
+        worn_out=None,
         main=1.0,
         short=56.0,
         long=184.0,
@@ -175,3 +176,15 @@ def test_what_the_sources_own_equations_say():
 def test_means_of_the_flow_are_those_of_its_series():
     """The measures of findings are those of a series of a run."""
     assert set(FLOW) <= set(revolution_means(study.series(), list(FLOW))["measure"])
+
+
+def test_a_pattern_worn_right_off_may_overtake_where_no_fit_does(theirs):
+    """Fits without curvature never cross; a run that wears the pattern off says when it is faster, or never."""
+    straight = replace(theirs, crossings=theirs.crossings.assign(rate_crossing=np.inf))
+    assert verdicts(straight).loc["overtakes", "verdict"] == REFUTED
+    end = pd.DataFrame({"run": ["worn-out"], "faster_revolution": [760.0], "faster_share": [0.15]})
+    told = verdicts(replace(straight, worn_out=end)).loc["overtakes"]
+    assert told["verdict"] == CONFIRMED
+    assert told["reason"] == "only when 15 % of the pattern are left" and "revolution 760" in told["found"]
+    never = verdicts(replace(straight, worn_out=end.assign(faster_revolution=np.nan)))
+    assert never.loc["overtakes", "verdict"] == REFUTED
