@@ -19,6 +19,7 @@ from workflows import cycles, tester_deck, tester_figures, tester_results
 from workflows.cases import CASES
 from workflows.derived import neighbour_skin
 from workflows.pages.circular_tester import run_values
+from workflows.pages.tester_numbers import result_table
 from workflows.state import read_state
 from workflows.tables import write_table
 
@@ -197,6 +198,8 @@ def test_figures_and_page_are_made_of_the_tables(finished, tables, tmp_path):
     write_table(folder / "design.csv", finished.study.design_table())
     wear = [chain.folder / "wear.csv" for chain in finished.chains.values()]
     case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
+    told = result_table(pd.read_csv(folder / "summary.csv"), tables.table("fits"))
+    assert told["sliding_over_travel"].between(0.0, 1.0, inclusive="neither").all()  # contacts never outrun the trough
     jobs = [*(f"worn_run_{run}" for run in ROWS), "settled_bed_bed_1"]
     pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(folder / "forecast.csv", index=False)
     tester_results.write_results(folder, tmp_path, finished.study)

@@ -37,7 +37,10 @@ def findings_table(folder: Path) -> pd.DataFrame:
 
 
 def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
-    """Return the key numbers of each run in display units."""
+    """Return the key numbers of each run in display units.
+
+    sliding_over_travel (-): how far contacts slide over how far the trough goes, from sliding work and normal force
+    """
     names = ["run", "series", "surface", "shape", "particle_scale", "element_size_mm", "wear_coefficient_per_pa"]
     volume = summary["archard_volume_m3"]
     linear = fits[fits["fit"] == "linear"].set_index("run")["r_squared"]
@@ -46,6 +49,7 @@ def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
         lost_per_revolution_mm3=volume * CUBIC_MILLIMETRES / summary["revolutions"],
         bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
         mean_normal_force_N=summary["mean_normal_force_N"],
+        sliding_over_travel=summary["sliding_work_J"] / (summary["mean_normal_force_N"] * summary["travel_m"]),
         bed_over_floor_velocity=summary["bed_over_floor_velocity"],
         linear_r_squared=summary["run"].map(linear),
         carried_share_percent=100.0 * (summary["carried_volume_m3"] / volume).abs(),
