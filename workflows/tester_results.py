@@ -17,6 +17,7 @@ from postproc.analysis.tester_flow import steady_revolutions
 from postproc.analysis.tester_volume import TERMS
 from workflows.design import REPOSITORY, Study
 from workflows.figures import figures_of, page_parameters
+from workflows.page_text import UNDEFINED
 from workflows.pages.tester_numbers import findings_table, result_table
 from workflows.results_page import copy_pictures, markdown, picture, prose, write_page_of_rows
 from workflows.screening_results import durations, provenance
@@ -108,7 +109,7 @@ def fit_text(folder: Path) -> str:
     theirs = pd.read_csv(PUBLISHED_FITS)[[*columns, "source"]]
     crossing = of_tester(folder, "crossings")
     never = np.isinf(crossing[["rate_crossing", "crossing"]]).any(axis=None)
-    words = "No crossing (inf) means never by the fits.\n\n" if never else ""
+    words = f"No crossing ({UNDEFINED}) means never by the fits.\n\n" if never else ""
     return (
         f"{markdown(ours[['run', 'fit', *columns, *errors, 'curved']], 5)}\n{markdown(theirs, 5)}\n"
         f"Convex faster, and more in sum, from revolution:\n\n{words}{markdown(crossing)}"

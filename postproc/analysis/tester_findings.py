@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from scipy.stats import linregress
 
 from postproc.analysis.comparison import PLAIN
 from postproc.analysis.findings import CONFIRMED, REFUTED, UNSAID, Verdict
@@ -183,7 +184,7 @@ def _steady(evidence: Evidence) -> Verdict:
 
 
 def _flow(evidence: Evidence, measure: str, above: bool, falls: bool) -> Verdict:
-    """Whether convex lies above (or below) plain in the mean, and falls from its first to its last third."""
+    """Whether convex lies above (or below) plain in the mean, and falls, surely by a straight line."""
     table = evidence.means[evidence.means["measure"] == measure].sort_values("revolution")
     of = {surface: table[table["surface"] == surface]["mean"].to_numpy() for surface in (PLAIN, CONVEX)}
     ratio = of[CONVEX].mean() / of[PLAIN].mean()
@@ -191,11 +192,13 @@ def _flow(evidence: Evidence, measure: str, above: bool, falls: bool) -> Verdict
     holds = (ratio > 1.0) == above
     if not falls:
         return _verdict(found, holds)
-    third = max(len(of[CONVEX]) // 3, 1)
-    change = of[CONVEX][-third:].mean() / of[CONVEX][:third].mean()
-    few = f"at least {FEW_REVOLUTIONS} revolutions are needed" if len(of[CONVEX]) < FEW_REVOLUTIONS else ""
-    found += f"; last over first third of the convex sample's revolutions {change:.3g}"
-    return _verdict(found, holds and change < 1.0, few)
+    if len(of[CONVEX]) < FEW_REVOLUTIONS:
+        return _verdict(found, holds, f"at least {FEW_REVOLUTIONS} revolutions are needed")
+    revolution = table[table["surface"] == CONVEX]["revolution"].to_numpy()
+    line = linregress(revolution, of[CONVEX])
+    change, error = (100.0 * each * np.ptp(revolution) / of[CONVEX].mean() for each in (line.slope, line.stderr))
+    found += f"; convex over its revolutions {change:+.2g} ± {error:.2g} %"
+    return _verdict(found, holds and change < -SURE * error)
 
 
 def _mesh_size(evidence: Evidence) -> Verdict:

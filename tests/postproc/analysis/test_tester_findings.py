@@ -188,3 +188,12 @@ def test_a_pattern_worn_right_off_may_overtake_where_no_fit_does(theirs):
     assert told["reason"] == "only when 15 % of the pattern are left" and "revolution 760" in told["found"]
     never = verdicts(replace(straight, worn_out=end.assign(faster_revolution=np.nan)))
     assert never.loc["overtakes", "verdict"] == REFUTED
+
+
+def test_a_force_that_wavers_does_not_fall(theirs):
+    """Ups and downs that end a little lower than they began are no fall; the force is still higher than on plain."""
+    means = theirs.means.copy()
+    convex = (means["measure"] == "normal_force_N") & (means["surface"] == "convex")
+    means.loc[convex, "mean"] = 20.0 + 0.1 * (-1.0) ** np.arange(convex.sum())
+    found = verdicts(replace(theirs, means=means)).loc["force"]
+    assert found["verdict"] == REFUTED and verdicts(theirs).loc["force", "verdict"] == CONFIRMED
