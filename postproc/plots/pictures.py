@@ -18,6 +18,7 @@ from postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface
 from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
 
 ROWS_PER_LINE = 7  # design rows side by side in small multiples
+SINGLES_PER_LINE = 3  # of them where each has one run
 MAPS_HEIGHT = 4.4  # inches, of a figure with maps side by side
 TOP_SHARE = 0.99  # of the worn area: deeper spots share the top colour
 
@@ -81,7 +82,7 @@ def _small_multiples(
     """Draw all runs from above without skirt, those of a design row below each other on a scale of their own."""
     rows, lines = list(dict.fromkeys(runs["row"])), runs.groupby("row").cumcount()
     deep = int(lines.max()) + 1
-    blocks = math.ceil(len(rows) / ROWS_PER_LINE)
+    blocks = math.ceil(len(rows) / (ROWS_PER_LINE if deep > 1 else SINGLES_PER_LINE))
     columns = math.ceil(len(rows) / blocks)
     grid = figure.subplots(blocks * deep, columns, squeeze=False)
     scales = {row: colour_limits(depths[depths["run"].isin(found["run"])]) for row, found in runs.groupby("row")}

@@ -84,7 +84,7 @@ def test_many_rows_have_a_scale_each(mesh):
     """Of several design rows each has its own colour scale, written above it; pictures end at the sample's edge."""
     shallow = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, dict(mesh.point_data))
     shallow.point_data["removed_thickness_m"] = 0.5 * mesh.point_data["removed_thickness_m"]
-    runs = pd.DataFrame({"run": ["A_plain", "B_plain"], "row": ["A", "B"], "surface": "plain"})
+    runs = pd.DataFrame({"run": ["A_plain", "B_plain"], "row": ["A", "B"], "surface": ["plain", "convex"]})
     meshes = {"A_plain": mesh, "B_plain": shallow}
     figure = pictures.worn_surface(meshes, runs, True, depth_table(meshes, True), "Removed thickness", REMARKS)
     assert [axes.get_title() for axes in figure.axes[:2]] == ["A: 2", "B: 1"]
