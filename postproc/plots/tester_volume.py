@@ -54,15 +54,10 @@ def volume_by_revolution(
     for (run, surface, scale), of_run in volumes.groupby(["run", "surface", "particle_scale"], sort=False):
         ours.add((surface, scale))
         look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
-        axes.plot(
-            of_run["revolution"],
-            CUBIC_MILLIMETRES * of_run["volume_m3"],
-            MARKERS.get(surface, "^"),
-            color=look["color"],
-            markersize=4,
-            label=_case_name(surface, scale),
-        )
-        axes.plot(x, volume_at(chosen_fit(fits, run), x), linewidth=1.0, **look)
+        mark, look["linewidth"] = {"marker": MARKERS.get(surface, "^"), "markersize": 4}, 1.0
+        axes.plot(of_run["revolution"], CUBIC_MILLIMETRES * of_run["volume_m3"], **mark, **look | {"linestyle": "none"})
+        axes.plot(x, volume_at(chosen_fit(fits, run), x), **look)
+        axes.plot([], [], label=_case_name(surface, scale), **mark, **look)  # points and fit together in the legend
     for row in published.itertuples():
         same = (row.surface, row.particle_scale) in ours
         look = PUBLISHED if same else PUBLISHED | {"color": "#999999", "linewidth": 0.7}
