@@ -136,7 +136,7 @@ def _overtakes(evidence: Evidence) -> Verdict:
     late = None if evidence.worn_out is None else evidence.worn_out.dropna(subset="faster_revolution")
     if late is not None and len(late) and not np.isfinite(first):
         row = late.loc[late["faster_revolution"].idxmin()]
-        found += f"; worn right off, faster from revolution {row['faster_revolution']:.3g}"
+        found += f"; worn right off, first faster at revolution {row['faster_revolution']:.3g}"
         return Verdict(found, CONFIRMED, f"only when {100.0 * row['faster_share']:.2g} % of the pattern are left")
     return Verdict(found, CONFIRMED if np.isfinite(first) else REFUTED, reserve)
 
