@@ -15,7 +15,7 @@ PROFILE := workflows/profiles/default
 SNAKEMAKE := .venv/bin/snakemake --workflow-profile $(PROFILE) --cores $(CORES)
 # one file's tests stay on one process, so that what they share (a solver run) is made once
 PYTEST := .venv/bin/pytest --numprocesses $(CORES) --maxprocesses 8 --dist loadfile
-SMK_FILES = Snakefile $(wildcard workflows/*.smk)
+SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 

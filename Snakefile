@@ -8,16 +8,14 @@ Snakemake finds profiles/default by itself, the choices for one machine; docs/cl
 
 
 include: "workflows/common.smk"
-include: "workflows/forecast.smk"
-include: "workflows/mesh.smk"
-include: "workflows/solve.smk"
-include: "workflows/analyse.smk"
-include: "workflows/report.smk"
-include: "workflows/screening.smk"
-include: "workflows/particle_size.smk"
-include: "workflows/pin_on_disc.smk"
-include: "workflows/circular_tester.smk"
-include: "workflows/calibration.smk"
+include: "workflows/forecast/rules.smk"
+include: "workflows/engine/rules.smk"
+include: "workflows/report/rules.smk"
+include: "workflows/cases/sliding_sample/screening/rules.smk"
+include: "workflows/cases/sliding_sample/particle_size/rules.smk"
+include: "workflows/cases/pin_on_disc/rules.smk"
+include: "workflows/cases/circular_tester/rules.smk"
+include: "workflows/cases/calibration/rules.smk"
 include: "workflows/submissions.smk"
 
 

@@ -6,14 +6,14 @@ from pathlib import Path
 
 from postproc.mesh import SurfaceMesh, read_surface, write_surface
 from postproc.readers.solver_log import thermo_table
-from workflows import state
-from workflows.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
-from workflows.cycles import fill_bed, inputs_digest, run_cycle
-from workflows.design import Study, load_study
-from workflows.geometry import sample_surface
-from workflows.progress import Progress
-from workflows.schedule import first_span
-from workflows.solver import LOG
+from workflows.config.design import Study, load_study
+from workflows.engine import state
+from workflows.engine.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
+from workflows.engine.cycles import fill_bed, inputs_digest, run_cycle
+from workflows.engine.geometry import sample_surface
+from workflows.engine.progress import Progress
+from workflows.engine.schedule import first_span
+from workflows.engine.solver import LOG
 
 STUDY, RUN = "demo", "R9_convex"
 
@@ -27,7 +27,7 @@ def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain
     parameters, bed_name = study.run(RUN).parameters, study.bed_of(RUN)
     bed_folder, surface = folder / "bed", folder / RUN / "surface.vtu"
     if not (bed_folder / "bed.restart").exists():
-        fill_bed(bed_name, study.beds[bed_name], bed_folder, ranks=wider)
+        fill_bed(study.case, bed_name, study.beds[bed_name], bed_folder, ranks=wider)
     if not surface.exists():
         surface.parent.mkdir(parents=True, exist_ok=True)
         write_surface(surface, sample_surface(parameters["sample"], parameters["pattern"]))

@@ -24,19 +24,25 @@ from typing import Any
 
 import pandas as pd
 
+from benchmarks.plots.critical_scale import ratio_by_candidate
 from benchmarks.runs import simulated_run, with_bed
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
 from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
-from postproc.analysis.flow_history import RunFlow, along_travel, run_bins, settled_value, undisturbed_particles
-from postproc.analysis.replicates import ratio_intervals
-from postproc.analysis.summary import run_summary
-from postproc.plots.critical_scale import ratio_by_candidate
 from postproc.plots.style import save
-from workflows.chain import Chain
-from workflows.derived import flow_measures
-from workflows.solver import SolverError, die_with
-from workflows.state import StateError
+from postproc.tables.summary import run_summary
+from workflows.cases.sliding_sample.flow_history import (
+    RunFlow,
+    along_travel,
+    run_bins,
+    settled_value,
+    undisturbed_particles,
+)
+from workflows.cases.sliding_sample.replicates import ratio_intervals
+from workflows.engine.chain import Chain
+from workflows.engine.derived import flow_measures
+from workflows.engine.solver import SolverError, die_with
+from workflows.engine.state import StateError
 
 FAILED = "failed.txt"  # in the folder of a run whose simulation failed, with the reason
 SCALES, PACKINGS, OF_REFERENCE = (6,), 1, 3

@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.analysis.groove import largest_differences, section_profile, stroke_table
-from postproc.plots.groove import groove_convergence
+from benchmarks.plots.groove import groove_convergence
 from postproc.plots.style import save
 from tests.verification.groove_cases import (
     DEPTH,
@@ -32,6 +31,7 @@ from tests.verification.groove_cases import (
     worn_groove,
 )
 from tests.verification.ledger_cases import LOAD, PARTICLE_MODULUS, RADIUS, hertz_overlap
+from workflows.cases.pin_on_disc.groove import largest_differences, section_profile, stroke_table
 
 PLACES = np.linspace(-0.45, 0.45, 361) * PLATE[0]  # m, of the profiles in the table
 

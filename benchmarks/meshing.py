@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from benchmarks.measure import Measure, measured, processor_times
-from workflows.cases import CASES
-from workflows.design import load_study
+from workflows.config.design import load_study
 
 SURFACES = (("demo", "R9_convex"), ("demo", "R9_plain"), ("pin_on_disc", "c17-conserving"))
 REPEATS, QUICK_REPEATS = 3, 1
@@ -20,7 +19,7 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
         parameters, count = study.run(run).parameters, []
         times = processor_times(
             lambda study=study, parameters=parameters, count=count: count.append(
-                len(CASES[study.case].surface_mesh(parameters).triangles)
+                len(study.case.surface_mesh(parameters).triangles)
             ),
             QUICK_REPEATS if quick else REPEATS,
         )

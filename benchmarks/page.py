@@ -35,7 +35,7 @@ def page(table: pd.DataFrame, machine: Mapping[str, Any]) -> str:
 
 def scaling_section(cost: float) -> list[str]:
     """Return the paragraphs of the model of more ranks."""
-    import postproc.analysis.scaling as model
+    import benchmarks.scaling_model as model
 
     rows = [
         [

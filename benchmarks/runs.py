@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import Any
 
 from postproc.mesh import write_surface
-from workflows.chain import Chain
-from workflows.config_files import merge
-from workflows.cycles import fill_bed, run_chain
-from workflows.derived import derived_parameters
-from workflows.design import Run
-from workflows.geometry import sample_surface
+from workflows.config.design import Run
+from workflows.config.layers import merge
+from workflows.engine.chain import Chain
+from workflows.engine.cycles import fill_bed, run_chain
+from workflows.engine.derived import derived_parameters
+from workflows.engine.geometry import sample_surface
 
 
 def changed(run: Run, change: Mapping[str, Any]) -> Run:
@@ -29,7 +29,7 @@ def changed(run: Run, change: Mapping[str, Any]) -> Run:
 def with_bed(chain: Chain, bed_name: str) -> Chain:
     """Return the chain, its bed filled unless it is there."""
     if not chain.bed_restart.with_name("cost.csv").exists():
-        fill_bed(bed_name, chain.bed, chain.bed_restart.parent)
+        fill_bed(chain.case, bed_name, chain.bed, chain.bed_restart.parent)
     return chain
 
 

@@ -17,16 +17,16 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.bed_case import cycle_deck, prepared_chain
-from postproc.analysis.sampling import sampling_errors
+from benchmarks.sampling import sampling_errors
 from postproc.plots.curves import sampling_error
 from postproc.plots.style import save
 from postproc.readers.contacts import read_contact_batches
 from postproc.readers.load_ledger import read_load_ledger
 from postproc.wear.ledger import LedgerBuilder
-from workflows.chain import Chain, deck_text
-from workflows.ledgers import CONTACTS, LOAD_LEDGER, SAMPLE_MESH, SPINS, effective_modulus
-from workflows.schedule import first_span
-from workflows.solver import LEDGER_EXECUTABLE, run_deck
+from workflows.engine.chain import Chain, deck_text
+from workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, SAMPLE_MESH, SPINS, effective_modulus
+from workflows.engine.schedule import first_span
+from workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
 
 PARTICLE_SCALE = 2.0  # of the demo at its quick fidelity
 STRIDES = (1, 5, 10, 50, 100)  # steps between two samples

@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.runs import changed
-from postproc.analysis.comparison import PLAIN
-from workflows import state
-from workflows.cases import CASES
-from workflows.cases.sliding_work import settled_particles
-from workflows.chain import Chain, total_steps
-from workflows.derived import WALLS
-from workflows.design import Run, load_study
-from workflows.screening_design import FIRST_SEED, SEED_STEP
+from postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
+from workflows.cases.sliding_sample.comparison import PLAIN
+from workflows.cases.sliding_sample.work import settled_particles
+from workflows.config.design import Run, load_study
+from workflows.engine import state
+from workflows.engine.chain import Chain, total_steps
+from workflows.engine.derived import WALLS
 
 STUDY, SURFACES = "particle_size", (PLAIN, "convex")
 SETTINGS: dict[str, Any] = {"fidelity": "quick"}
@@ -156,7 +155,7 @@ def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
     study = load_study(STUDY, overrides={**settings, "rows": [row]})
     candidate = CANDIDATES[case.candidate]
     runs = [with_change(run, candidate.change, case.seed) for run in study.runs]
-    beds, bed_of = CASES[study.case].beds(runs)
+    beds, bed_of = study.case.beds(runs)
     (run,) = (run for run in runs if run.surface == case.surface)
     bed, place = beds[bed_of[run.name]], folder / case.folder
     place.mkdir(parents=True, exist_ok=True)

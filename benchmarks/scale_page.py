@@ -7,15 +7,15 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks.scale_case import CANDIDATES, REFERENCE
+from benchmarks.touched import mean_touched, mean_touched_on_flat, met_from_above, met_from_the_front
 from meshes.bump import bump_shell
 from meshes.sample import sample_top
-from postproc.analysis.touched import mean_touched, mean_touched_on_flat, met_from_above, met_from_the_front
 from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN
 from postproc.reference.sphere_contact import effective_modulus, hertz_overlap
 from postproc.wear.caps import GRAVITY
-from workflows.derived import youngs_modulus
-from workflows.design import REPOSITORY
-from workflows.results_page import markdown, prose
+from workflows.config.design import REPOSITORY
+from workflows.engine.derived import youngs_modulus
+from workflows.report.markdown import markdown, prose
 
 LINES = Path("config/published/particle_size_lines.csv")
 SCALES = (1, 2, 4, 6, 8)

@@ -11,12 +11,12 @@ import pandas as pd
 from benchmarks.bed_case import RUN, case_study
 from benchmarks.ledger_overhead import PARTICLE_SCALE
 from benchmarks.ranks import ACROSS
-from postproc.analysis.cost_model import SOLVER_TERMS, seconds
-from postproc.analysis.scaling import Bed, best_grid, deck_grid, efficiency, ghost_cost
-from workflows.derived import neighbour_skin
-from workflows.design import Run, Study, load_study
-from workflows.forecast import work_of
-from workflows.rates import rates_file, read_rates
+from benchmarks.scaling_model import Bed, best_grid, deck_grid, efficiency, ghost_cost
+from workflows.config.design import Run, Study, load_study
+from workflows.engine.derived import neighbour_skin
+from workflows.forecast.cost_model import SOLVER_TERMS, seconds
+from workflows.forecast.forecast import work_of
+from workflows.forecast.rates import rates_file, read_rates
 
 ROOT = Path(__file__).resolve().parents[1]
 RANKS = (2, 4, 8, 16, 32, 64)

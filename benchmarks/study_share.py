@@ -15,11 +15,11 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.measure import Measure, measured
-from postproc.analysis.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs
-from workflows import state
-from workflows.calibration import SIMULATIONS
-from workflows.results_page import markdown
-from workflows.study_report import FORECAST, FURTHER_COSTS, cost_totals
+from workflows.cases.calibration.driver import SIMULATIONS
+from workflows.engine import state
+from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs
+from workflows.report.markdown import markdown
+from workflows.report.page import FORECAST, FURTHER_COSTS, cost_totals
 
 RESULTS = Path("results")
 SECONDS_PER_HOUR = 3600.0

@@ -21,18 +21,17 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from benchmarks.deviation import BEYOND, FAILED, WITHIN, changes
+from benchmarks.plots.deviation import Panel, deviation_figure
 from benchmarks.runs import changed
-from postproc.analysis.deviation import BEYOND, FAILED, WITHIN, changes
 from postproc.mesh import write_surface
-from postproc.plots.deviation import Panel, deviation_figure
 from postproc.plots.style import save
-from workflows.cases import CASES
-from workflows.chain import Chain
-from workflows.cycles import fill_bed, run_chain
-from workflows.design import Run, load_study
-from workflows.results_page import bullet, prose
-from workflows.screening_design import FIRST_SEED, SEED_STEP
-from workflows.solver import SolverError
+from postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
+from workflows.config.design import Run, load_study
+from workflows.engine.chain import Chain
+from workflows.engine.cycles import fill_bed, run_chain
+from workflows.engine.solver import SolverError
+from workflows.report.markdown import bullet, prose
 
 STUDY, RUN = "demo", "R9_plain"
 CASE = {
@@ -111,13 +110,13 @@ def chain_of(variant: Variant, folder: Path) -> Chain:
     study = load_study(STUDY, overrides=CASE)
     run = with_derived(study.run(RUN), variant.fraction, variant.modulus, variant.seed)
     at_rest = with_derived(study.run(RUN), FRACTION, MODULUS, variant.seed)
-    (bed,) = CASES[study.case].beds([at_rest])[0].values()
+    (bed,) = study.case.beds([at_rest])[0].values()
     bed_folder = folder / f"seed_{variant.seed}" / "bed"
     if not (bed_folder / "cost.csv").exists():
-        fill_bed("bed", bed, bed_folder)
+        fill_bed(study.case, "bed", bed, bed_folder)
     surface = folder / "surface.vtu"
     if not surface.exists():
-        write_surface(surface, CASES[study.case].surface_mesh(run.parameters))
+        write_surface(surface, study.case.surface_mesh(run.parameters))
     place = folder / variant.folder
     place.mkdir(parents=True, exist_ok=True)
     return Chain(variant.folder, place, study.case, run.parameters, surface, bed, bed_folder / "bed.restart")

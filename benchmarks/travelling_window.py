@@ -25,6 +25,7 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.measure import Measure, measured
+from benchmarks.plots.window import wear_side_by_side
 from benchmarks.window_case import (
     BEDS,
     BUMPS,
@@ -40,19 +41,18 @@ from benchmarks.window_case import (
     said_beforehand,
     simulated,
 )
-from postproc.analysis.replicates import ratio_intervals
 from postproc.plots.style import save
-from postproc.plots.window import wear_side_by_side
 from postproc.readers.cycle_folders import cycle_files, cycle_folders
-from workflows import state
-from workflows.accounting import HISTORY
-from workflows.chain import Chain
-from workflows.derived import WALLS
-from workflows.design import REPOSITORY, load_study
-from workflows.forecast import forecast_table, work_of
-from workflows.rates import DEFAULT, read_rates
-from workflows.results_page import bullet, markdown, prose
-from workflows.solver import die_with
+from workflows.cases.sliding_sample.replicates import ratio_intervals
+from workflows.config.design import REPOSITORY, load_study
+from workflows.engine import state
+from workflows.engine.accounting import HISTORY
+from workflows.engine.chain import Chain
+from workflows.engine.derived import WALLS
+from workflows.engine.solver import die_with
+from workflows.forecast.forecast import forecast_table, work_of
+from workflows.forecast.rates import DEFAULT, read_rates
+from workflows.report.markdown import bullet, markdown, prose
 
 PLACE = "travelling_window"  # of the runs, in the folder of simulations of all benchmarks
 PACKINGS, QUICK_PACKINGS = 3, 2

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.runs import changed, simulated_run
-from workflows.cases import CASES
-from workflows.cases.sliding_work import settled_particles
-from workflows.chain import Chain, total_steps
-from workflows.derived import WALLS, WINDOW
-from workflows.design import Run, load_study
-from workflows.screening_design import FIRST_SEED, SEED_STEP
+from postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
+from workflows.cases.sliding_sample.work import settled_particles
+from workflows.config.design import Run, load_study
+from workflows.engine.chain import Chain, total_steps
+from workflows.engine.derived import WALLS, WINDOW
 
 STUDY, ROW, SURFACES = "demo", "R9", ("plain", "convex")
 # -, of the Rayleigh time: the source's 5e-6 s, between, and what the screening takes
@@ -94,7 +93,7 @@ def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
     solver = {**settings["solver"], "rayleigh_fraction": given["fraction"]}
     study = load_study(STUDY, overrides={**settings, "bed": bed, "solver": solver})
     runs = [coarser(run) for run in study.runs]
-    beds, bed_of = CASES[study.case].beds(runs)
+    beds, bed_of = study.case.beds(runs)
     place = folder / case.folder
     place.mkdir(parents=True, exist_ok=True)
     (run,) = (run for run in runs if (run.row, run.surface) == (ROW, case.surface))

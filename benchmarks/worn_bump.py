@@ -13,13 +13,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.depth import depth_quantity
-from postproc.analysis.display import in_display_units
-from postproc.analysis.film import film_frames, film_surfaces, frame_table
 from postproc.plots.film import film_pictures, save_film
-from workflows.design import load_study
-from workflows.remarks import figure_remarks
-from workflows.state import read_state
+from postproc.tables.depths import depth_quantity
+from postproc.tables.display import in_display_units
+from postproc.tables.film import film_frames, film_surfaces, frame_table
+from workflows.config.design import load_study
+from workflows.engine.state import read_state
+from workflows.report.remarks import figure_remarks
 
 STUDY, RUN = "worn_bump", "bump_convex"
 FRAMES = 24  # of the small film

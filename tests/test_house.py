@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+from tests import REPOSITORY
 
 # Limits of the house style: what a reader can still take in at once.
 LONGEST_SNAKEFILE = 60
@@ -24,13 +24,13 @@ LAYERS = {
     "postproc.readers": ("postproc.mesh", "postproc.readers"),
     "postproc.wear": ("postproc.mesh", "postproc.wear"),
     "postproc.reference": ("postproc.reference",),
-    "postproc.calibration": ("postproc.calibration",),
+    "postproc.inference": ("postproc.inference",),
     "postproc.analysis": (
         "postproc.mesh",
         "postproc.readers",
         "postproc.wear",
         "postproc.reference",
-        "postproc.calibration",
+        "postproc.inference",
         "postproc.analysis",
     ),
     "postproc.plots": ("postproc",),

@@ -7,14 +7,13 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
-from workflows.cases import CASES
-from workflows.chain import bed_template
-from workflows.deck import template_sources
-from workflows.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
-from workflows.figures import plain_runs
-from workflows.job import let_jobs_import
-from workflows.rates import rates_file
-from workflows.solver import CYCLE_EXECUTABLES, LAUNCHER, missing_program
+from workflows.engine.case import find_case
+from workflows.engine.decks import template_sources
+from workflows.config.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
+from workflows.report.figures import plain_runs
+from workflows.engine.job import let_jobs_import
+from workflows.forecast.rates import rates_file
+from workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, missing_program
 
 min_version("9.0")
 
@@ -82,7 +81,7 @@ def jobs_by_study(jobs):
 
 def announce_cost(study, jobs):
     """Say in one line what those jobs of a study will cost."""
-    from workflows.forecast import announcement  # slow to import, and jobs need none
+    from workflows.forecast.forecast import announcement  # slow to import, and jobs need none
 
     logger.info(announcement(STUDIES[study], jobs, ROOT, CORES))
 
@@ -100,12 +99,12 @@ def run_parameters(wildcards):
 
 
 def case_of(wildcards):
-    return study_of(wildcards).case
+    return study_of(wildcards).case.name
 
 
 def run_geometry(wildcards):
     """The sections of a run's parameters that its surface depends on."""
-    return {name: run_parameters(wildcards)[name] for name in CASES[case_of(wildcards)].geometry}
+    return {name: run_parameters(wildcards)[name] for name in study_of(wildcards).case.geometry}
 
 
 def bed_parameters(wildcards):
@@ -114,7 +113,7 @@ def bed_parameters(wildcards):
 
 def bed_templates(wildcards):
     """The sources of the templates of a bed's deck: a bed is filled again when one changes."""
-    return template_sources(bed_template(bed_parameters(wildcards)))
+    return template_sources(study_of(wildcards).case.bed_template)
 
 
 def bed_parameters_of_run(wildcards):
@@ -145,7 +144,7 @@ def same_run(wildcards):
 
 def run_templates(wildcards):
     """The sources of the templates of a run's decks: a run is done again when one changes."""
-    return [template_sources(name) for name in CASES[case_of(wildcards)].run_templates]
+    return [template_sources(name) for name in study_of(wildcards).case.run_templates]
 
 
 def of_every_run(pattern):
@@ -164,8 +163,8 @@ def regimes_of_study(wildcards):
 
 def study_decks(study):
     """The decks of a study: of its beds and its runs, or of its tests."""
-    if STUDIES[study].case == "calibration":
-        return [f"results/{study}/decks/{test}/deck.in" for test in CASES["calibration"].run_templates]
+    if STUDIES[study].case.name == "calibration":
+        return [f"results/{study}/decks/{test}/deck.in" for test in find_case("calibration").run_templates]
     names = [f"beds/{bed}" for bed in STUDIES[study].beds] + [run.name for run in STUDIES[study].runs]
     return [f"results/{study}/decks/{name}/cycle_000/deck.in" for name in names if "/" not in name] + [
         f"results/{study}/decks/{name}/deck.in" for name in names if "/" in name
@@ -196,7 +195,7 @@ def solver_work(study):
     """A function of wildcards: the jobs of a study that call the solver, with their sizes."""
 
     def work(wildcards):
-        from workflows.forecast import work_of  # slow to import, and most jobs ask for no forecast
+        from workflows.forecast.forecast import work_of  # slow to import, and most jobs ask for no forecast
 
         return work_of(STUDIES[study])
 
@@ -214,7 +213,7 @@ def launcher_of(wildcards):
 
 @cache
 def demands_of(study):
-    from workflows.resources import demands  # slow to import, and few jobs ask for it
+    from workflows.forecast.resources import demands  # slow to import, and few jobs ask for it
 
     return demands(STUDIES[study], ROOT)
 

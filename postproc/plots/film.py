@@ -17,13 +17,13 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from PIL import Image
 
-from postproc.analysis.depth import area_quantile, face_depth
-from postproc.analysis.display import MICROMETRES, MILLIMETRES
-from postproc.analysis.film import section, section_place
 from postproc.mesh import SurfaceMesh, areas
 from postproc.plots.pictures import TOP_SHARE
 from postproc.plots.scene import WHITE, common_bounds, surface_oblique, trimmed
 from postproc.plots.style import BUMP_COLOUR, LARGEST_HEIGHT, MAP, OTHER_COLOUR, WIDTH, new_figure, picture, scaled
+from postproc.tables.depths import area_quantile, face_depth
+from postproc.tables.display import MICROMETRES, MILLIMETRES
+from postproc.tables.film import section, section_place
 from postproc.wear.update import worn_faces
 
 FRAME_RESOLUTION = 100  # dots per inch: 800 pixels wide

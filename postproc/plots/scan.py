@@ -9,8 +9,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.analysis.comparison import PLAIN
-from postproc.analysis.scan_comparison import STEEPEST, depth_of_faces
 from postproc.mesh import SurfaceMesh
 from postproc.plots.scene import common_bounds, depth_oblique
 from postproc.plots.style import (
@@ -22,6 +20,8 @@ from postproc.plots.style import (
     new_figure,
     picture,
 )
+from postproc.scans.comparison import STEEPEST, depth_of_faces
+from workflows.cases.sliding_sample.comparison import PLAIN
 
 DEVIATION_MAP = "RdBu_r"
 TOP_SHARE = 0.99  # of the cells: deeper ones share the top colour

@@ -9,10 +9,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
-from postproc.analysis.depth import face_depth
-from postproc.analysis.display import MICROMETRES, MILLIMETRES
 from postproc.mesh import SurfaceMesh, boundary_edges
 from postproc.plots.style import MAP, SKIRT_COLOUR
+from postproc.tables.depths import face_depth
+from postproc.tables.display import MICROMETRES, MILLIMETRES
 from postproc.wear.update import worn_faces
 
 OBLIQUE = (0.55, -1.0, 0.75)  # from upstream, above: the bed comes towards the back

@@ -96,6 +96,13 @@ def thermo_table(path: Path | str) -> dict[str, np.ndarray]:
     return {**table, "run": np.array([row["run"] for row in rows], np.int64)}
 
 
+def thermo_rows(path: Path) -> dict[str, np.ndarray]:
+    """Return the thermo table without the set-up row of each run, which holds no force."""
+    thermo = thermo_table(path)
+    told = np.diff(thermo["run"], prepend=-1) == 0
+    return {name: values[told] for name, values in thermo.items()}
+
+
 def exchanges(path: Path | str) -> dict[str, np.ndarray]:
     """Exchanges of bed of a travelling window, as its deck tells them in a log file.
 

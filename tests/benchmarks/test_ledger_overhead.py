@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import pytest
-from tiny import tiny_study
 
 from benchmarks.bed_case import RUN, case_study
 from benchmarks.ledger_overhead import variants
 from benchmarks.ranks import GRIDS, PROCESSORS
-from workflows.chain import Chain
+from tests.support.tiny import tiny_study
+from workflows.engine.chain import Chain
 
 STEPS = 100
 

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from benchmarks.deviation import BEYOND, FAILED, WITHIN
 from benchmarks.time_step_and_stiffness import (
     CASE,
     FRACTION,
@@ -18,8 +19,7 @@ from benchmarks.time_step_and_stiffness import (
     variants,
     with_derived,
 )
-from postproc.analysis.deviation import BEYOND, FAILED, WITHIN
-from workflows.design import load_study
+from workflows.config.design import load_study
 
 SEEDS = (1, 1001, 2001)
 

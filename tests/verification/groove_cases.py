@@ -12,7 +12,6 @@ from unittest import mock
 import numpy as np
 
 from meshes.sample import sample_top
-from postproc.analysis.groove import mean_section
 from postproc.mesh import SurfaceMesh, unit_normals
 from postproc.readers.load_ledger import RADIUS as CONTACT_RADIUS
 from postproc.readers.load_ledger import WEIGHTS, LoadLedger
@@ -22,6 +21,7 @@ from postproc.wear.laws import worn_volume
 from postproc.wear.patch import ContactPatch, hertz_disc
 from postproc.wear.update import CARRIED_VOLUME, lost_volume, wear_update
 from tests.verification.ledger_cases import LOAD, PIN_MOTION, RADIUS, hertz_overlap, pin, run_case
+from workflows.cases.pin_on_disc.groove import mean_section
 
 EDGES_PER_WIDTH = (5, 10, 20)
 GROOVE_WIDTH = 2.1e-3  # m, width that holds 95 % of the section of a groove of radius RADIUS, DEPTH deep, rounded

@@ -13,8 +13,8 @@ from postproc.mesh import SurfaceMesh, write_stl
 from postproc.readers.contacts import read_contact_batches
 from postproc.readers.load_ledger import LoadLedger, read_load_ledger
 from postproc.wear.ledger import LedgerBuilder
+from tests import REPOSITORY
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 BUILT = REPOSITORY / "solver" / "build" / "liggghts-ledger"  # by `make -C solver`
 SOLVER = Path(os.environ.get("LIGGGHTS_LEDGER", BUILT))
 FRAME = REPOSITORY / "tests" / "data" / "ledger_case.in"

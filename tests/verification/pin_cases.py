@@ -16,8 +16,8 @@ from postproc.readers.solver_log import thermo_table
 from postproc.reference.sphere_contact import stable_time_step, touching_reach
 from tests.verification.groove_cases import touching_height
 from tests.verification.ledger_cases import DENSITY, LOAD, MASS, RADIUS, effective_modulus, hertz_overlap, run
-from workflows import deck
-from workflows.derived import rayleigh_time, youngs_modulus
+from workflows.engine import decks as deck
+from workflows.engine.derived import rayleigh_time, youngs_modulus
 
 TRACK_RADIUS = 0.022  # m; this and what follows: Yan 2022, Table 5.2 and section 5.4.1
 DISC_RADIUS, INNER_RADIUS = 0.024, 0.020  # m; nothing inside the inner one is touched

@@ -4,13 +4,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.calibration.loop import packing_seed
-from postproc.calibration.posterior import densest, interval
-from workflows.bulk_simulations import simulate_all
-from workflows.calibration import compared_pairs, read_posterior, run_calibration
-from workflows.calibration import test_of as bulk_test_of
-from workflows.cases.calibration import PUBLISHED
-from workflows.design import load_study
+from postproc.inference.loop import packing_seed
+from postproc.inference.posterior import densest, interval
+from workflows.cases.calibration.case import PUBLISHED
+from workflows.cases.calibration.driver import compared_pairs, read_posterior, run_calibration
+from workflows.cases.calibration.driver import test_of as bulk_test_of
+from workflows.config.design import load_study
+from workflows.engine.bulk_simulations import simulate_all
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 

@@ -6,12 +6,13 @@ Takes some two minutes.
 import numpy as np
 import pandas as pd
 import pytest
-from tiny import tiny_chain
-from tiny_tester import tiny_tester
 
-from postproc.analysis.bed import last_snapshot, read_snapshot
+from postproc.flow.bed import last_snapshot, read_snapshot
 from postproc.readers.solver_log import thermo_table
-from workflows import cycles, tester_deck
+from tests.support.tiny import tiny_chain
+from tests.support.tiny_tester import tiny_tester
+from workflows.cases.circular_tester import decks as tester_deck
+from workflows.engine import cycles
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 

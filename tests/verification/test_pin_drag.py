@@ -13,10 +13,11 @@ from postproc.readers.contacts import read_contact_batches
 from postproc.wear.laws import worn_volume
 from postproc.wear.ledger import LedgerBuilder
 from postproc.wear.update import wear_update
+from tests import DATA
 
 pytestmark = pytest.mark.solver
 
-DECK = Path(__file__).parents[1] / "data" / "sphere_on_plate.in"
+DECK = DATA / "sphere_on_plate.in"
 LOAD, SPEED, TIME_STEP, STEPS, STRIDE = 5.0, 0.5, 2e-6, 4000, 10  # N, m/s, s, -, -
 SETTLED = 4000  # steps before the sampled ones
 WEAR_COEFFICIENT = 1e-11  # 1/Pa

@@ -9,7 +9,7 @@ import pytest
 from meshes.disc import track_disc
 from tests.verification.ledger_cases import total
 from tests.verification.pin_cases import PIN, RAYLEIGH_FRACTION, PinCase, arc, set_down
-from workflows.derived import rayleigh_time
+from workflows.engine.derived import rayleigh_time
 
 pytestmark = pytest.mark.solver
 

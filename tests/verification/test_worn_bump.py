@@ -5,10 +5,10 @@ import pytest
 
 from meshes.pattern import ConvexPattern
 from meshes.sample import sample_top
-from postproc.analysis.bump import bump_volume
 from postproc.mesh import areas, centroids, unit_normals, volume_above_plane
 from postproc.wear.caps import step_limit
 from postproc.wear.mesh_faults import intersecting_faces, mesh_faults, with_target_edges
+from postproc.wear.pattern_left import bump_volume
 from postproc.wear.remesh import remesh
 from postproc.wear.remesh_patch import neighbours
 from postproc.wear.update import wear_update

@@ -8,16 +8,16 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 import pytest
-from tiny import tiny_chain
 
-from postproc.analysis.bump import bump_volume
 from postproc.mesh import read_surface
 from postproc.readers.solver_log import thermo_table
 from postproc.wear.mesh_faults import TARGET_EDGE, folded_faces, intersecting_faces, with_target_edges
+from postproc.wear.pattern_left import bump_volume
 from postproc.wear.remesh_patch import OldSurface
 from postproc.wear.update import lost_volume
-from workflows.cycles import run_chain
-from workflows.design import load_study
+from tests.support.tiny import tiny_chain
+from workflows.config.design import load_study
+from workflows.engine.cycles import run_chain
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 

@@ -9,16 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from slurm import Slurm, missing_programs
-from test_cycles import solver_processes
 from test_snakemake import REPOSITORY, TINY, workspace
-from tiny import tiny_chain
 
-from workflows import cycles
-from workflows.design import load_study
+from tests.support.slurm import Slurm, missing_programs
+from tests.support.tiny import tiny_chain
+from tests.workflows.engine.test_cycles import solver_processes
+from workflows.config.design import load_study
+from workflows.engine import cycles
+from workflows.engine.pieces import PIECES
+from workflows.engine.solver import DECK
 from workflows.environment.doctor import MPI_PROBE_DECK
-from workflows.pieces import PIECES
-from workflows.solver import DECK
 
 ABSENT = missing_programs()
 pytestmark = [

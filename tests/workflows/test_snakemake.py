@@ -12,9 +12,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from workflows.design import load_study
+from tests import REPOSITORY
+from workflows.config.design import load_study
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
 TIMEOUT = 300.0  # s, for a study that takes about 20 s on an idle machine
 TINY = """\

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.display import MILLIMETRES, in_display_units
-from postproc.analysis.flow_history import RunFlow, spin_profiles
-from postproc.plots.particle_size import spider_charts
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.display import MILLIMETRES, in_display_units
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.flow_history import RunFlow, spin_profiles
+from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+from workflows.engine.job import job_log
 
 LABELS = ("angular speed of the lowest layer (°/s)", "distance behind the front edge (mm)")
 

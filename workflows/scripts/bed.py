@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from postproc.analysis.bed import shown_particles
-from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_rows
-from postproc.analysis.depth import read_worn_surfaces
+from postproc.flow.bed import shown_particles
 from postproc.plots.pictures import bed, bed_table
 from postproc.plots.style import save
-from workflows.job import job_log
-from workflows.pages.sliding_sample import ROWS_IN_DETAIL
+from postproc.tables.depths import read_worn_surfaces
+from workflows.cases.sliding_sample.comparison import read_summary, rows_to_show, runs_of_rows
+from workflows.cases.sliding_sample.page import ROWS_IN_DETAIL
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     summary = read_summary(snakemake.input.summary)

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from workflows.chain import write_bed
-from workflows.job import job_log
+from workflows.engine.case import find_case
+from workflows.engine.chain import write_bed
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
-    write_bed(snakemake.params.bed, Path(snakemake.output[0]).parent)
+    write_bed(find_case(snakemake.params.case), snakemake.params.bed, Path(snakemake.output[0]).parent)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.plots.packing import bed_packing
 from postproc.plots.style import save
-from workflows.job import job_log
-from workflows.packings import bed_packing_table
+from workflows.cases.sliding_sample.particle_size.packings import bed_packing_table
+from workflows.cases.sliding_sample.particle_size.plots.packing import bed_packing
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files, given = snakemake.input, snakemake.params

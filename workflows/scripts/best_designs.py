@@ -1,9 +1,9 @@
 """Write the best design of each flow regime as a design table, and what is predicted of it."""
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.confirmation import best_of_regimes, design_of
-from postproc.analysis.screening_tables import screen_summary
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.screening.confirmation import best_of_regimes, design_of
+from workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     given = snakemake.params

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from workflows.calibration import run_box_sizes
-from workflows.job import job_log
+from workflows.cases.calibration.driver import run_box_sizes
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     table = run_box_sizes(

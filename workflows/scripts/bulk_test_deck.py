@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from workflows.bulk_tests import write_test
-from workflows.calibration import test_of
-from workflows.job import job_log
+from workflows.cases.calibration.driver import test_of
+from workflows.engine.bulk_tests import write_test
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     run = snakemake.params.run

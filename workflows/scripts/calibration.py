@@ -2,14 +2,14 @@
 
 import pandas as pd
 
-from postproc.analysis.coefficient import laboratory_coefficient, scaling_limits, step_cap_limits
-from postproc.analysis.pin_figures import calibrated, laboratory_volume, only_reference
-from postproc.analysis.pin_runs import REFERENCE, of_runs, pin_runs, reference_remark
-from postproc.analysis.pin_series import published_value
-from postproc.analysis.run_in import run_in_table
-from postproc.plots.pin_volume import calibration
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.coefficient import laboratory_coefficient, scaling_limits, step_cap_limits
+from workflows.cases.pin_on_disc.figure_tables import calibrated, laboratory_volume, only_reference
+from workflows.cases.pin_on_disc.plots.volume import calibration
+from workflows.cases.pin_on_disc.run_in import run_in_table
+from workflows.cases.pin_on_disc.runs import REFERENCE, of_runs, pin_runs, reference_remark
+from workflows.cases.pin_on_disc.series import published_value
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

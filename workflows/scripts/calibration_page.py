@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from workflows.calibration_page import write_page
-from workflows.job import job_log
+from workflows.cases.calibration.html_page import write_page
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     write_page(

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from workflows.calibration_tables import calibrated_materials, draw_all, read_calibrated
-from workflows.job import job_log
+from workflows.cases.calibration.tables import calibrated_materials, draw_all, read_calibrated
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files, told = snakemake.input, snakemake.params

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from postproc.analysis.collision import dimensionless, spread_over_scales
-from postproc.plots.collision import collisions
 from postproc.plots.style import save
-from workflows.collision_tests import spheres_of
-from workflows.job import job_log
-from workflows.packings import COLLISION, collision_tables, collision_tests
+from workflows.cases.sliding_sample.particle_size.collision import dimensionless, spread_over_scales
+from workflows.cases.sliding_sample.particle_size.collision_tests import spheres_of
+from workflows.cases.sliding_sample.particle_size.packings import COLLISION, collision_tables, collision_tests
+from workflows.cases.sliding_sample.particle_size.plots.collision import collisions
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, folder = snakemake.params.runs, Path(snakemake.output.measures).parent

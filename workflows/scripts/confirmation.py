@@ -2,11 +2,15 @@
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.confirmation import check_fidelity, confirmation_remarks, confirmation_table
-from postproc.plots import confirmation as figures
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.screening.confirmation import (
+    check_fidelity,
+    confirmation_remarks,
+    confirmation_table,
+)
+from workflows.cases.sliding_sample.screening.plots import confirmation as figures
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files = snakemake.input

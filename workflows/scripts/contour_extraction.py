@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.contours import section_table
-from postproc.analysis.pin_figures import MESH_ANGLE
-from postproc.analysis.pin_runs import REFERENCE, coefficient_remark, pin_runs, reference_runs
 from postproc.mesh import read_surface
-from postproc.plots.disc import contour_extraction
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.contours import section_table
+from workflows.cases.pin_on_disc.figure_tables import MESH_ANGLE
+from workflows.cases.pin_on_disc.plots.disc import contour_extraction
+from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, pin_runs, reference_runs
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

@@ -3,10 +3,10 @@
 import tempfile
 from pathlib import Path
 
-from workflows.job import job_log
-from workflows.progress import Progress
-from workflows.rate_benchmark import measured_rates
-from workflows.rates import write_rates
+from workflows.engine.job import job_log
+from workflows.engine.progress import Progress
+from workflows.forecast.rate_benchmark import measured_rates
+from workflows.forecast.rates import write_rates
 
 with job_log(snakemake.log[0]), tempfile.TemporaryDirectory() as folder:
     say = Progress("rates", 1).say

@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from postproc.analysis.depth import depth_distribution, depth_quantity
-from postproc.analysis.history import runs_of
 from postproc.plots import curves
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.depths import depth_distribution, depth_quantity
+from postproc.tables.history import runs_of
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     shares = depth_distribution(pd.read_csv(snakemake.input.depths, usecols=["run", "depth_um", "area_mm2"]))

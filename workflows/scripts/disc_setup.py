@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.pin_runs import REFERENCE, pin_runs, reference_runs
 from postproc.mesh import read_surface
-from postproc.plots.disc import disc_setup
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.plots.disc import disc_setup
+from workflows.cases.pin_on_disc.runs import REFERENCE, pin_runs, reference_runs
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

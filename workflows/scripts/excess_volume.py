@@ -2,10 +2,10 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_figures import groove_remark, shown_factors
-from postproc.plots.pin_volume import excess_volume
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.figure_tables import groove_remark, shown_factors
+from workflows.cases.pin_on_disc.plots.volume import excess_volume
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     published = pd.read_csv(snakemake.input.published)

@@ -2,12 +2,12 @@
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.finding_tests import findings_table
-from postproc.analysis.findings import gather, runs_beside_source
-from postproc.analysis.published_model import published_wear_by_row
-from postproc.analysis.screening_tables import screen_summary
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.screening.finding_tests import findings_table
+from workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source
+from workflows.cases.sliding_sample.screening.published_model import published_wear_by_row
+from workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+from workflows.engine.job import job_log
 
 OF_RUNS = ("summary", "regimes", "profiles", "gradients", "steady")  # tables whose names are text
 

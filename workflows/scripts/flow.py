@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.flow_history import RunFlow, flow_tables, published_window
-from postproc.analysis.history import runs_of
-from postproc.analysis.regime_groups import regime_remarks
-from postproc.plots.flow import along_travel
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.history import runs_of
+from workflows.cases.sliding_sample.flow_history import RunFlow, flow_tables, published_window
+from workflows.cases.sliding_sample.plots.flow import along_travel
+from workflows.cases.sliding_sample.screening.regime_groups import regime_remarks
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     names = runs_of(snakemake.input.design)

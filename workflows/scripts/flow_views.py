@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-from postproc.analysis.bed import last_snapshot, read_snapshot
-from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_rows
-from postproc.analysis.depth import read_worn_surfaces
-from postproc.analysis.flow_views import flow_views, sample_lines
-from postproc.analysis.regime_groups import published_rows_in_detail, rows_in_detail
-from postproc.plots import flow_views as figures
+from postproc.flow.bed import last_snapshot, read_snapshot
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.depths import read_worn_surfaces
+from workflows.cases.sliding_sample.comparison import read_summary, rows_to_show, runs_of_rows
+from workflows.cases.sliding_sample.flow_views import flow_views, sample_lines
+from workflows.cases.sliding_sample.plots import flow_views as figures
+from workflows.cases.sliding_sample.screening.regime_groups import published_rows_in_detail, rows_in_detail
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     summary, place = read_summary(snakemake.input.summary), snakemake.params.place

@@ -2,10 +2,10 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_volume import excess_factors
-from postproc.plots.pin_volume import force_rise
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.plots.volume import force_rise
+from workflows.cases.pin_on_disc.volume import excess_factors
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     factors = excess_factors(pd.read_csv(snakemake.input.volumes), pd.read_csv(snakemake.input.fits))

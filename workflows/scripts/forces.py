@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
-from postproc.analysis.history import force_history, force_summary
-from postproc.plots import bars, curves
+from postproc.plots import curves
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.history import force_history, force_summary
+from workflows.cases.sliding_sample.plots import bars
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     table = force_history(snakemake.input.design, [Path(path).parent for path in snakemake.input.wear])

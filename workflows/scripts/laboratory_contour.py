@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.pin_figures import (
+from postproc.plots.style import save
+from workflows.cases.pin_on_disc.figure_tables import (
     compared_runs,
     laboratory_boxes,
     laboratory_sections,
     laboratory_segment,
 )
-from postproc.analysis.pin_runs import CALIBRATED, pin_runs, reference_remark
-from postproc.plots.contours import laboratory_contour
-from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.plots.contours import laboratory_contour
+from workflows.cases.pin_on_disc.runs import CALIBRATED, pin_runs, reference_remark
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

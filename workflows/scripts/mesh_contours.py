@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.pin_figures import mesh_sections
-from postproc.analysis.pin_runs import REFERENCE, coefficient_remark, pin_runs
-from postproc.plots.contours import mesh_contours
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.figure_tables import mesh_sections
+from workflows.cases.pin_on_disc.plots.contours import mesh_contours
+from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, pin_runs
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, series = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.series)

@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_runs import REFERENCE, coefficient_remark, pin_runs
-from postproc.analysis.pin_series import mesh_series, mesh_stability
-from postproc.plots import contours
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.plots import contours
+from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, pin_runs
+from workflows.cases.pin_on_disc.series import mesh_series, mesh_stability
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs = pin_runs(snakemake.input.design)

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.pin_runs import (
+from postproc.plots.style import save
+from workflows.cases.pin_on_disc.plots.contours import normal_force
+from workflows.cases.pin_on_disc.runs import (
     REFERENCE,
     force_boxes,
     pin_runs,
@@ -12,9 +14,7 @@ from postproc.analysis.pin_runs import (
     reference_runs,
     window_forces,
 )
-from postproc.plots.contours import normal_force
-from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

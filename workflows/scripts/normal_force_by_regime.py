@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.regime_groups import force_by_group, force_remarks, regime_remarks
-from postproc.analysis.replicates import mean_of_replicates
-from postproc.plots.regimes import normal_force_by_regime
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.replicates import mean_of_replicates
+from workflows.cases.sliding_sample.screening.plots.regimes import normal_force_by_regime
+from workflows.cases.sliding_sample.screening.regime_groups import force_by_group, force_remarks, regime_remarks
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files = snakemake.input

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.packing import slabs_remark
-from postproc.plots.packing import packing_profiles
+from postproc.flow.packing import slabs_remark
 from postproc.plots.style import save
-from workflows.job import job_log
-from workflows.packings import packing_costs, packing_table
+from workflows.cases.sliding_sample.particle_size.packings import packing_costs, packing_table
+from workflows.cases.sliding_sample.particle_size.plots.packing import packing_profiles
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     packing, folder = snakemake.params.packing, Path(snakemake.output.cost).parent

@@ -2,12 +2,16 @@
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.flow_history import row_profiles
-from postproc.analysis.regime_groups import of_published_rows, published_rows_in_detail, rows_in_detail
-from postproc.plots.flow import angular_velocity_profiles, velocity_profiles
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.flow_history import row_profiles
+from workflows.cases.sliding_sample.plots.flow import angular_velocity_profiles, velocity_profiles
+from workflows.cases.sliding_sample.screening.regime_groups import (
+    of_published_rows,
+    published_rows_in_detail,
+    rows_in_detail,
+)
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files, drawn = snakemake.input, snakemake.output

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.screening_tables import regression_tables, screen_summary
-from postproc.analysis.screening_warnings import warnings_for_figures
-from postproc.plots.regression import DRAWN, regression_figures
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.screening.plots.regression import DRAWN, regression_figures
+from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
+from workflows.cases.sliding_sample.screening.regression_warnings import warnings_for_figures
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     study = screen_summary(read_summary(snakemake.input.summary), snakemake.params.factors)

@@ -2,12 +2,12 @@
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_history, read_summary, relative_wear_table
-from postproc.analysis.regime_groups import published_relative_wear
-from postproc.analysis.replicates import by_setting, replicate_remark
-from postproc.plots.bars import relative_wear
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_history, read_summary, relative_wear_table
+from workflows.cases.sliding_sample.plots.bars import relative_wear
+from workflows.cases.sliding_sample.replicates import by_setting, replicate_remark
+from workflows.cases.sliding_sample.screening.regime_groups import published_relative_wear
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     given = snakemake.params

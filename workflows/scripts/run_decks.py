@@ -2,15 +2,16 @@
 
 from pathlib import Path
 
-from workflows.chain import Chain, write_decks
-from workflows.job import job_log
+from workflows.engine.case import find_case
+from workflows.engine.chain import Chain, write_decks
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     write_decks(
         Chain(
             name=snakemake.wildcards.run,
             folder=Path(snakemake.output[0]).parents[1],
-            case=snakemake.params.case,
+            case=find_case(snakemake.params.case),
             parameters=snakemake.params.run,
             surface=Path(snakemake.input[0]),
             bed=snakemake.params.bed,

@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_figures import only_reference, run_in_words, statistics_of
-from postproc.analysis.pin_runs import REFERENCE, of_runs, pin_runs, reference_remark
-from postproc.plots.contours import run_in
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.figure_tables import only_reference, run_in_words, statistics_of
+from workflows.cases.pin_on_disc.plots.contours import run_in
+from workflows.cases.pin_on_disc.runs import REFERENCE, of_runs, pin_runs, reference_remark
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

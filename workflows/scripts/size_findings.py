@@ -2,11 +2,15 @@
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.particle_size import read_critical_scale
-from postproc.analysis.published_sizes import beside_the_source, critical_sentences, packing_beside_the_source
 from postproc.reference.size_ratios import PUBLISHED_CRITICAL_SCALE
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.particle_size.published_sizes import (
+    beside_the_source,
+    critical_sentences,
+    packing_beside_the_source,
+)
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import read_critical_scale
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files = snakemake.input

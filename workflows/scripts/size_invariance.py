@@ -2,12 +2,12 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_figures import size_cases
-from postproc.analysis.pin_runs import of_runs, pin_runs
-from postproc.analysis.pin_series import published_value, size_invariance
-from postproc.plots import pin_volume
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.figure_tables import size_cases
+from workflows.cases.pin_on_disc.plots import volume as pin_volume
+from workflows.cases.pin_on_disc.runs import of_runs, pin_runs
+from workflows.cases.pin_on_disc.series import published_value, size_invariance
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

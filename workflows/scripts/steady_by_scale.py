@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.published_sizes import steady_by_scale
-from postproc.plots.particle_size import steady_by_scale as drawn
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import steady_by_scale as drawn
+from workflows.cases.sliding_sample.particle_size.published_sizes import steady_by_scale
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     scales = read_summary(snakemake.input.summary).set_index("run")["particle_scale"].to_dict()

@@ -1,9 +1,9 @@
 """Write the summary of a study: one row per run."""
 
-from workflows.cases import CASES
-from workflows.job import job_log
+from workflows.engine.case import find_case
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files = snakemake.input
-    table = CASES[snakemake.params.case].summary(files.design, files.wear, files.pristine, files.worn)
+    table = find_case(snakemake.params.case).summary(files.design, files.wear, files.pristine, files.worn)
     table.to_csv(snakemake.output[0], index=False)

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from workflows.job import job_log
-from workflows.tester_figures import JOBS, Drawing, tester_runs
+from workflows.cases.circular_tester.figures import JOBS, Drawing, tester_runs
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     tables = Path(snakemake.input.tables).parent

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from workflows.job import job_log
-from workflows.tester_figures import tester_runs, write_tables
+from workflows.cases.circular_tester.figures import tester_runs, write_tables
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     folder = Path(snakemake.output.volumes).parent

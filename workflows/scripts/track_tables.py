@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from postproc.analysis.pin_runs import pin_runs
-from postproc.analysis.pin_volume import volumes_of_run
-from postproc.analysis.run_in import contours_of_run
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.run_in import contours_of_run
+from workflows.cases.pin_on_disc.runs import pin_runs
+from workflows.cases.pin_on_disc.volume import volumes_of_run
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     folder = Path(snakemake.input.wear).parent

@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.particle_size import over_the_sample, velocity_bounds
-from postproc.plots.particle_size import spider_charts
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import over_the_sample, velocity_bounds
+from workflows.engine.job import job_log
 
 NAMES = {"velocity_m_per_s": "velocity with the sample", "upward_m_per_s": "velocity upwards"}
 NAMES |= {"sideways_m_per_s": "velocity sideways"}

@@ -4,17 +4,17 @@ from dataclasses import asdict
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.particle_size import (
+from postproc.plots.style import save
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import wear_against_scale
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     beside_published,
     critical_scale,
     critical_scale_text,
     wear_by_scale,
     wear_lines,
 )
-from postproc.plots.particle_size import wear_against_scale
-from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     wear, published = wear_by_scale(read_summary(snakemake.input.summary)), pd.read_csv(snakemake.input.published)

@@ -3,12 +3,12 @@
 import numpy as np
 import pandas as pd
 
-from postproc.analysis.guidance import Particles, Pattern, guidance_table
-from postproc.analysis.particle_size import published_by_size_ratio, wear_by_size_ratio
-from postproc.plots.particle_size import wear_against_size_ratios
 from postproc.plots.style import save
 from postproc.reference.size_ratios import size_ratios
-from workflows.job import job_log
+from workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance_table
+from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import wear_against_size_ratios
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import published_by_size_ratio, wear_by_size_ratio
+from workflows.engine.job import job_log
 
 PUBLISHED_SCALES = np.linspace(1.0, 8.0, 71)  # of the source
 

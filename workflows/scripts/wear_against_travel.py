@@ -1,9 +1,9 @@
 """Draw cumulative wear against travel."""
 
-from postproc.analysis.history import wear_history
 from postproc.plots.curves import wear_against_travel
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.history import wear_history
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     history = wear_history(snakemake.input.design, snakemake.input.wear)

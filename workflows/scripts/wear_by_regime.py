@@ -1,11 +1,11 @@
 """Draw the relative wear of all runs by regime."""
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.regime_groups import regime_remarks, wear_by_group, with_wear_rates
-from postproc.analysis.replicates import replicate_remark, with_intervals
-from postproc.plots.regimes import wear_by_regime
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.replicates import replicate_remark, with_intervals
+from workflows.cases.sliding_sample.screening.plots.regimes import wear_by_regime
+from workflows.cases.sliding_sample.screening.regime_groups import regime_remarks, wear_by_group, with_wear_rates
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     regimes = read_summary(snakemake.input.regimes)

@@ -4,14 +4,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.flow_history import published_window
-from postproc.analysis.history import wear_within_cycles
-from postproc.analysis.regime_groups import gradients_by_group, regime_remarks
-from postproc.analysis.steady_table import steady_table
-from postproc.plots.flow import along_travel
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.history import wear_within_cycles
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.flow_history import published_window
+from workflows.cases.sliding_sample.plots.flow import along_travel
+from workflows.cases.sliding_sample.screening.regime_groups import gradients_by_group, regime_remarks
+from workflows.cases.sliding_sample.steady_table import steady_table
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     regimes = read_summary(snakemake.input.regimes)

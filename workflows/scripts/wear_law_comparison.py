@@ -1,9 +1,9 @@
 """Draw Archard's and Finnie's volumes."""
 
-from postproc.analysis.comparison import law_comparison, read_summary
-from postproc.plots.bars import wear_law_comparison
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import law_comparison, read_summary
+from workflows.cases.sliding_sample.plots.bars import wear_law_comparison
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     table = law_comparison(read_summary(snakemake.input[0]))

@@ -1,11 +1,11 @@
 """Draw the worn surfaces of the smallest and the largest particle scale side by side."""
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.depth import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-from postproc.analysis.particle_size import smallest_and_largest
 from postproc.plots.pictures import wear_maps
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import smallest_and_largest
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     summary, deformed = read_summary(snakemake.input.summary), snakemake.params.deformed

@@ -1,9 +1,9 @@
 """Draw the wear of base and bumps."""
 
-from postproc.analysis.comparison import read_summary, wear_split
-from postproc.plots import bars
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.sliding_sample.comparison import read_summary, wear_split
+from workflows.cases.sliding_sample.plots import bars
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     split = wear_split(read_summary(snakemake.input[0]))

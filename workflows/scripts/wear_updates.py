@@ -1,9 +1,9 @@
 """Draw what each wear update did: along the travel, or the worst per run where there are many design rows."""
 
-from postproc.analysis.updates import update_summary, wear_updates
 from postproc.plots import curves, updates
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.updates import update_summary, wear_updates
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     table, draw = wear_updates(snakemake.input.design, snakemake.input.wear), updates.wear_updates

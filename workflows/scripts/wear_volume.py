@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from postproc.analysis.pin_runs import of_runs, pin_runs
-from postproc.analysis.pin_volume import volume_fits
-from postproc.plots.pin_volume import wear_volume
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.plots.volume import wear_volume
+from workflows.cases.pin_on_disc.runs import of_runs, pin_runs
+from workflows.cases.pin_on_disc.volume import volume_fits
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, fits = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.fits)

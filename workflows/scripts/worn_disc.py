@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.pin_figures import reference_discs
-from postproc.analysis.pin_runs import CALIBRATED, pin_runs, reference_remark
-from postproc.plots.disc import worn_disc
 from postproc.plots.style import save
-from workflows.job import job_log
+from workflows.cases.pin_on_disc.figure_tables import reference_discs
+from workflows.cases.pin_on_disc.plots.disc import worn_disc
+from workflows.cases.pin_on_disc.runs import CALIBRATED, pin_runs, reference_remark
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, published = pin_runs(snakemake.input.design), pd.read_csv(snakemake.input.published)

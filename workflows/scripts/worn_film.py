@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.analysis.comparison import read_summary
-from postproc.analysis.depth import depth_quantity
-from postproc.analysis.film import film_frames, film_run, film_surfaces, frame_table
 from postproc.plots.film import film_pictures, save_film
-from workflows.job import job_log
+from postproc.tables.depths import depth_quantity
+from postproc.tables.film import film_frames, film_run, film_surfaces, frame_table
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     summary = read_summary(snakemake.input.summary)

@@ -2,17 +2,18 @@
 
 from pathlib import Path
 
-from workflows.chain import Chain
-from workflows.cycles import run_chain
-from workflows.job import job_log
-from workflows.solver import LAUNCHER, ranks_here
+from workflows.engine.case import find_case
+from workflows.engine.chain import Chain
+from workflows.engine.cycles import run_chain
+from workflows.engine.job import job_log
+from workflows.engine.solver import LAUNCHER, ranks_here
 
 with job_log(snakemake.log[0]):
     run_chain(
         Chain(
             name=snakemake.wildcards.run,
             folder=Path(snakemake.output.wear).parent,
-            case=snakemake.params.case,
+            case=find_case(snakemake.params.case),
             parameters=snakemake.params.run,
             surface=Path(snakemake.input.surface),
             bed=snakemake.params.bed,

@@ -1,10 +1,10 @@
 """Draw the worn surfaces of a study."""
 
-from postproc.analysis.depth import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-from postproc.analysis.history import runs_of
 from postproc.plots.pictures import worn_surface
 from postproc.plots.style import save
-from workflows.job import job_log
+from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+from postproc.tables.history import runs_of
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     runs, deformed = runs_of(snakemake.input.design), snakemake.params.deformed

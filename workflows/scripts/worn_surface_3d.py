@@ -1,11 +1,11 @@
 """Write the interactive page of worn surfaces: all runs of the rows that are shown in detail."""
 
-from postproc.analysis.comparison import read_summary, rows_to_show, runs_of_rows
-from postproc.analysis.depth import carried_remark, depth_quantity, depth_table, read_worn_surfaces
 from postproc.plots.page import surfaces_page
 from postproc.plots.pictures import colour_limits
-from workflows.job import job_log
-from workflows.pages.sliding_sample import ROWS_IN_DETAIL
+from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+from workflows.cases.sliding_sample.comparison import read_summary, rows_to_show, runs_of_rows
+from workflows.cases.sliding_sample.page import ROWS_IN_DETAIL
+from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     summary, deformed = read_summary(snakemake.input.summary), snakemake.params.deformed

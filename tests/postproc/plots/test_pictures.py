@@ -8,12 +8,12 @@ import pytest
 from matplotlib import colormaps
 
 from meshes.sample import sliding_sample
-from postproc.analysis.depth import depth_table
 from postproc.mesh import SurfaceMesh
 from postproc.plots import pictures
 from postproc.plots.page import surfaces_page
 from postproc.plots.scene import surface_plan, trimmed
 from postproc.plots.style import MAP, remarks_of
+from postproc.tables.depths import depth_table
 
 REMARKS = ["particles at scale 4", "sample 40 x 40 mm of 200 x 200 mm"]
 WIDTH = 0.04  # m

@@ -2,7 +2,6 @@
 
 import subprocess
 import tracemalloc
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,8 +14,8 @@ from postproc.readers.contacts import (
 )
 from postproc.readers.dump_text import read_frames
 from postproc.wear.ledger import LedgerBuilder
+from tests import DATA
 
-DATA = Path(__file__).parents[2] / "data"
 LAST_DIGIT = 2.3e-16  # one unit in the last place between this parser and Python's float
 SIX_DIGITS = 1e-5  # of a number: what the dump's format %g keeps, after a difference of two of them
 WORK_TOLERANCE = 1e-4  # of F L: brief of the reader; the dump's six digits and the discrete time are far below

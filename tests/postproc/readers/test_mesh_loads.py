@@ -2,15 +2,14 @@
 
 import os
 import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from postproc.readers.contacts import read_contacts
 from postproc.readers.mesh_loads import MeshLoadsError, read_mesh_loads
+from tests import DATA
 
-DATA = Path(__file__).parents[2] / "data"
 SIX_DIGITS = 1e-5  # of a number in a dump
 TRIANGLES, AREA = 24, 0.005 * 0.005 / 2  # m2, plate.stl
 LOAD = 5.0  # N, sphere_on_plate.in

@@ -2,7 +2,6 @@
 
 import re
 import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,8 +16,8 @@ from postproc.readers.solver_log import (
     thermo_table,
     warnings,
 )
+from tests import DATA
 
-DATA = Path(__file__).parents[2] / "data"
 LOG, SCREEN = DATA / "bed_log.txt", DATA / "bed_screen.txt"
 MESSAGES = dict(
     re.findall(r"^=== (\w+)\n(.*?)(?=^===|\Z)", (DATA / "solver_failures.txt").read_text(), re.MULTILINE | re.DOTALL)

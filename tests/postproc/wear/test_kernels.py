@@ -1,7 +1,6 @@
 """Contact kernels against closed forms."""
 
 import re
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 
 from postproc.wear.kernels import KERNELS, finnie_work, kernel_column
 from postproc.wear.ledger import LedgerBuilder
+from tests import REPOSITORY
 
 ROUND_OFF = 1e-12  # a few products in float64
 CONTINUITY = 1e-4  # relative; 0.33333 of the solver is not 1/3
@@ -95,7 +95,7 @@ def test_every_kernel_has_a_column_and_takes_no_contacts():
 
 def test_the_solver_has_the_same_kernels():
     """Names and columns of solver/kernels.h and of the registry here are the same, so either producer serves a law."""
-    source = (Path(__file__).parents[3] / "solver" / "kernels.h").read_text()
+    source = (REPOSITORY / "solver" / "kernels.h").read_text()
     listed = re.search(r"KERNELS\[\] = \{(.*?)^\};", source, re.DOTALL | re.MULTILINE)[1]
     found = dict(re.findall(r'\{"(\w+)", "(\w+)"', listed))
     assert found == {name: kernel_column(name) for name in KERNELS}

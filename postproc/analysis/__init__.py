@@ -1,1 +1,0 @@
-"""What a study says: tables from the files of its runs."""

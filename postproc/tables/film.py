@@ -1,0 +1,98 @@
+"""The worn surface of one run cycle by cycle, for a film: which run, which cycles, a section through a bump."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.mesh import SurfaceMesh, read_surface
+from postproc.tables.display import in_display_units
+from postproc.wear.pattern_left import bump_volume
+from postproc.wear.update import REMOVED_THICKNESS, worn_faces
+from workflows.cases.sliding_sample.comparison import PLAIN, rows_to_show, runs_of_rows
+
+MOST_FRAMES = 60  # of a film: more would make its file large, and not easier to see
+ON_PLANE = 1e-9  # -, of the mesh's size: a node so near to the plane of a section counts as beside it
+
+
+def film_run(summary: pd.DataFrame) -> str:
+    """Return the run that is filmed: of the row shown in detail the one with a pattern, else its first."""
+    runs = runs_of_rows(summary, rows_to_show(summary))
+    surfaces = summary.set_index("run")["surface"]
+    return next((run for run in runs if surfaces[run] != PLAIN), runs[0])
+
+
+def film_frames(wear: pd.DataFrame, most: int = MOST_FRAMES) -> pd.DataFrame:
+    """Return the frames of a film, from the unworn surface on: cycle, travel_m, applied_volume_m3 (in all so far).
+
+    wear: wear.csv of the run. Of more cycles than frames, evenly spaced ones, the last one among them.
+    """
+    start = pd.DataFrame({"cycle": [0], "travel_m": [0.0], "total_applied_volume_m3": [0.0]})
+    table = pd.concat([start, wear[list(start)]], ignore_index=True)
+    shown = np.unique(np.linspace(0, len(table) - 1, min(len(table), most)).round().astype(int))
+    return table.iloc[shown].rename(columns={"total_applied_volume_m3": "applied_volume_m3"}).reset_index(drop=True)
+
+
+def film_surfaces(run_folder: str | Path, frames: pd.DataFrame) -> list[SurfaceMesh]:
+    """Return the surface of each frame without skirt; cycle 0 is the pristine one, which has lost nothing.
+
+    Raises FileNotFoundError when the surface of a cycle is missing.
+    """
+    folder = Path(run_folder)
+    files = [folder / (f"cycle_{cycle:03d}" if cycle else "") / "surface.vtu" for cycle in frames["cycle"]]
+    if missing := [path for path in files if not path.is_file()]:
+        raise FileNotFoundError(f"{missing[0]}: not found, the film needs the surface of every cycle in wear.csv.")
+    pristine, *worn = (without_skirt(read_surface(path)) for path in files)
+    unworn = {REMOVED_THICKNESS: np.zeros(len(pristine.points))}
+    return [replace(pristine, point_data={**pristine.point_data, **unworn}), *worn]
+
+
+def without_skirt(mesh: SurfaceMesh) -> SurfaceMesh:
+    """Return the faces of a surface that wear, with their nodes and data alone: a film's sample is then larger."""
+    worn = worn_faces(mesh)
+    nodes, triangles = np.unique(mesh.triangles[worn], return_inverse=True)
+    cells = {name: values[worn] for name, values in mesh.cell_data.items()}
+    data = {name: values[nodes] for name, values in mesh.point_data.items()}
+    return SurfaceMesh(mesh.points[nodes], triangles.reshape(-1, 3), cells, data)
+
+
+def frame_table(frames: pd.DataFrame, surfaces: list[SurfaceMesh]) -> pd.DataFrame:
+    """Return the frames in display units with what is seen on them: largest removed thickness, highest point, and how
+    much of the bumps is left (percent of their volume; NaN without bumps).
+    """
+    deepest = [mesh.point_data[REMOVED_THICKNESS].max() for mesh in surfaces]
+    highest = [mesh.points[:, 2].max() for mesh in surfaces]
+    bumps = np.array([bump_volume(mesh) for mesh in surfaces])
+    left = np.divide(100.0 * bumps, bumps[0], out=np.full(len(bumps), np.nan), where=bumps[0] > 0.0)
+    shown = frames.assign(largest_depth_m=deepest, highest_point_m=highest, bumps_left_percent=left)
+    return in_display_units(shown)
+
+
+def section_place(pristine: SurfaceMesh, last: SurfaceMesh) -> float:
+    """Return x (m) of the section that a film shows: through the bump that has lost most, else through the middle."""
+    points, part = last.points[last.triangles], last.cell_data["part"]
+    thickness = last.point_data[REMOVED_THICKNESS][last.triangles].mean(axis=1)
+    area = np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1)
+    lost = np.bincount(np.maximum(part, 0), thickness * area * (part > 0))
+    bump = pristine.cell_data["part"] == lost.argmax()
+    if not lost.any() or not bump.any():
+        return float(pristine.points[:, 0].mean())
+    x = pristine.points[np.unique(pristine.triangles[bump]), 0]
+    return float((x.min() + x.max()) / 2.0)
+
+
+def section(mesh: SurfaceMesh, x: float) -> np.ndarray:
+    """Return the lines (k, 2, 2) in which the plane at x (m) cuts the triangles of a surface: y and z (m) of ends."""
+    beside = mesh.points[:, 0] - x
+    least = ON_PLANE * float(np.ptp(mesh.points[:, 0]))
+    beside = np.where(np.abs(beside) < least, least, beside)
+    first, second = mesh.triangles, np.roll(mesh.triangles, -1, axis=1)
+    crossed = beside[first] * beside[second] < 0.0
+    cut = crossed.any(axis=1)  # then two of its three edges are crossed
+    ends = np.stack([first[cut][crossed[cut]], second[cut][crossed[cut]]])
+    share = beside[ends[0]] / (beside[ends[0]] - beside[ends[1]])
+    place = mesh.points[ends[0]] + share[:, None] * (mesh.points[ends[1]] - mesh.points[ends[0]])
+    return place[:, 1:].reshape(-1, 2, 2)

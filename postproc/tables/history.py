@@ -1,0 +1,117 @@
+"""What happens along the travel of the runs of a study: wear and forces, in tidy tables for figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.readers.cycle_folders import cycle_files
+from postproc.tables.display import in_display_units
+
+ROWS_PER_RUN = 400  # forces drawn per run; more would not show in a figure
+
+
+def runs_of(design: str | Path) -> pd.DataFrame:
+    """Return run, row and surface of every run of a design table, as text."""
+    return pd.read_csv(design, dtype={"run": str, "row": str, "surface": str})[["run", "row", "surface"]]
+
+
+def wear_history(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
+    """Return cumulative wear after each cycle of each run, from zero: run, row, surface, cycle, travel_mm,
+    archard_volume_mm3 (what the law takes), applied_volume_mm3 (what the surface has lost),
+    carried_volume_mm3.
+
+    wear_files: wear.csv of the runs, in the order of the design.
+    """
+    runs = runs_of(design).to_dict("records")
+    tables = [_run_history(run, pd.read_csv(path)) for run, path in zip(runs, wear_files, strict=True)]
+    return in_display_units(pd.concat(tables, ignore_index=True))
+
+
+def _run_history(run: dict[str, str], wear: pd.DataFrame) -> pd.DataFrame:
+    table = pd.DataFrame(
+        {
+            "cycle": wear["cycle"],
+            "travel_m": wear["travel_m"],
+            "archard_volume_m3": wear["total_archard_volume_m3"],
+            "applied_volume_m3": wear["total_applied_volume_m3"],
+            "carried_volume_m3": wear["carried_volume_m3"],
+        }
+    )
+    return _from_zero(run, table)
+
+
+def _from_zero(run: dict[str, str], table: pd.DataFrame) -> pd.DataFrame:
+    """The table with the start, where all is zero, as its first row and with the columns of the run in front."""
+    start = pd.DataFrame({name: [0] if name == "cycle" else [0.0] for name in table})
+    return pd.concat([start, table], ignore_index=True).assign(**run)[[*run, *table]]
+
+
+def _rows_of_cycles(folder: Path, name: str) -> pd.DataFrame:
+    """The rows of a table that every wear cycle of a run has left, one cycle after the other."""
+    files = cycle_files(folder, name)
+    if not files:
+        raise FileNotFoundError(f"{folder}: no cycle_*/{name} found, at least one wear cycle must have been run.")
+    return pd.concat([pd.read_csv(path) for path in files], ignore_index=True)
+
+
+def wear_within_cycles(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
+    """Return cumulative wear along the travel of each run, from zero: run, row, surface, cycle, travel_mm,
+    archard_volume_mm3, base_archard_volume_mm3, bump_archard_volume_mm3 (what the law takes).
+
+    Finer than `wear_history` where cycles were looked into: about every solver.wear_interval_mm of travel.
+    run_folders: folders of the runs, in the order of the design, with cycle_*/wear_history.csv.
+    Raises FileNotFoundError when a run has none.
+    """
+    runs = runs_of(design).to_dict("records")
+    tables = [_run_stretches(run, Path(folder)) for run, folder in zip(runs, run_folders, strict=True)]
+    return in_display_units(pd.concat(tables, ignore_index=True))
+
+
+def _run_stretches(run: dict[str, str], folder: Path) -> pd.DataFrame:
+    stretches = _rows_of_cycles(folder, "wear_history.csv")
+    volumes = stretches[["archard_volume_m3", "base_archard_volume_m3", "bump_archard_volume_m3"]].cumsum()
+    table = stretches[["cycle", "travel_m"]].join(volumes)
+    return _from_zero(run, table)
+
+
+def force_history(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
+    """Return the bed's force on the whole mesh along the travel: run, row, surface, travel_mm, vertical_force_N
+    (down), drag_force_N (along the bed's motion), side_force_N; at most about `ROWS_PER_RUN` evenly spaced
+    rows per run, each the mean over its stretch of travel.
+
+    run_folders: folders of the runs, in the order of the design, with cycle_*/forces.csv.
+    Raises FileNotFoundError when a run has no forces.
+    """
+    runs = runs_of(design).to_dict("records")
+    tables = [_run_forces(run, Path(folder)) for run, folder in zip(runs, run_folders, strict=True)]
+    return in_display_units(pd.concat(tables, ignore_index=True))
+
+
+def _run_forces(run: dict[str, str], folder: Path) -> pd.DataFrame:
+    forces = _rows_of_cycles(folder, "forces.csv")
+    table = pd.DataFrame(
+        {
+            "travel_m": forces["travel_m"],
+            "vertical_force_N": -forces["force_z_N"],
+            "drag_force_N": forces["force_y_N"],
+            "side_force_N": forces["force_x_N"],
+        }
+    )
+    stretch = np.arange(len(table)) // max(-(-len(table) // ROWS_PER_RUN), 1)
+    return table.groupby(stretch).mean().assign(**run)[[*run, *table]]
+
+
+def force_summary(forces: pd.DataFrame) -> pd.DataFrame:
+    """Return mean, 10th and 90th percentile of vertical and drag force (N) of each run along its travel."""
+    names = ("vertical_force_N", "drag_force_N")
+    grouped = forces.groupby(["run", "row", "surface"], sort=False)
+    columns = {}
+    for name in names:
+        columns[f"mean_{name}"] = grouped[name].mean()
+        columns[f"low_{name}"] = grouped[name].quantile(0.1)
+        columns[f"high_{name}"] = grouped[name].quantile(0.9)
+    return pd.DataFrame(columns).reset_index()

@@ -1,0 +1,213 @@
+"""The circular wear tester: its decks, what is refused before the solver starts, where everything lies."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from meshes.tester import placed
+from postproc.mesh import area_vectors, edge_lengths_per_triangle
+from tests import DATA
+from tests.support.tiny_tester import ROWS, TINY, tiny_tester
+from workflows.cases.circular_tester import decks as tester_deck
+from workflows.cases.circular_tester.work import surface_triangles
+from workflows.config.design import ConfigError, load_study
+from workflows.engine.case import find_case
+from workflows.engine.chain import Chain, deck_text, write_bed
+from workflows.engine.decks import render
+from workflows.engine.schedule import known_spans
+from workflows.forecast.forecast import work_of
+
+GOLDEN = DATA / "golden_circular_tester.in"
+ROUND_OFF = 1e-9
+TRIANGLES = 0.12  # relative; the estimate of a sample's triangles, its holder included; seen 0.06
+
+
+def chain_of(study, run, folder):
+    parameters = study.run(run).parameters
+    return Chain(run, folder, study.case, parameters, folder / "surface.vtu", study.beds[study.bed_of(run)])
+
+
+@pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
+def test_every_deck_of_every_fidelity_renders(fidelity, tmp_path):
+    """Bed, run-in and first cycle of every run, with nothing left open; a ring has a trough, a channel has walls."""
+    study = load_study("circular_tester", overrides={"fidelity": fidelity})
+    texts = {name: render(study.case.bed_template, study.case.bed_deck(bed)) for name, bed in study.beds.items()}
+    for run in study.runs:
+        chain = chain_of(study, run.name, tmp_path)
+        for span in (None, known_spans(run.parameters)[0]):
+            texts[run.name, span] = deck_text(chain, span)
+        ring = run.parameters["tester"]["shape"] == "ring"
+        assert ("surface_ang_vel" in texts[run.name, None]) == ring
+        assert ("shear y" in texts[run.name, None]) != ring
+    for text in texts.values():
+        assert not re.search(r"\{\{|\}\}|\{%|%\}|\t|\bNone\b|\bnan\b", text)
+
+
+def test_golden_deck(tmp_path):
+    """The deck of the tiny channel's second cycle, word for word; a change of it is a decision."""
+    study = tiny_tester()
+    chain = chain_of(study, "convex", tmp_path)
+    assert deck_text(chain, known_spans(chain.parameters)[1]) == GOLDEN.read_text()
+
+
+def test_no_mesh_of_a_run_has_the_fix_id_of_its_bed(tmp_path):
+    """Under an id of the restart file the solver would silently take the old mesh: ids differ from deck to deck."""
+    study = tiny_tester(tester={"shape": "ring"})
+    chain = chain_of(study, "convex", tmp_path)
+    spans = known_spans(chain.parameters)[:2]
+    bed = render(chain.case.bed_template, chain.case.bed_deck(chain.bed))
+    texts = [bed, *(deck_text(chain, span) for span in (None, *spans))]
+    ids = [set(re.findall(r"^fix +(\w+) +all mesh/surface", text, re.MULTILINE)) for text in texts]
+    assert [len(found) for found in ids] == [3] * 4
+    assert len(set().union(*ids)) == 12
+
+
+def test_one_bed_serves_all_samples():
+    """Plain and convex samples and other elements start from one bed, whose block is as high as the highest bump."""
+    study = load_study("circular_tester", overrides={"fidelity": "quick"})
+    of_scale = {}
+    for run in study.runs:
+        key = run.parameters["particle"]["scale"], run.parameters["tester"]["shape"]
+        of_scale.setdefault(key, set()).add(study.bed_of(run.name))
+        headroom = study.beds[study.bed_of(run.name)]["headroom_m"]
+        assert headroom >= run.parameters["derived"]["headroom_m"]
+    assert all(len(beds) == 1 for beds in of_scale.values())
+    assert len(study.beds) == len(of_scale)
+
+
+@pytest.mark.parametrize("shape", ["channel", "ring"])
+def test_everything_lies_in_the_domain(shape):
+    """Sample, block, consolidator and trough; the block encloses the sample; the consolidator faces the bed below."""
+    study = tiny_tester(tester={"shape": shape})
+    bed = study.beds["bed_1"]
+    low, high = np.array(tester_deck.domain(bed)).reshape(3, 2).T
+    meshes = {"block": tester_deck.block_mesh(bed), "consolidator": tester_deck.consolidator_mesh(bed)}
+    if shape == "ring":
+        meshes["trough"] = tester_deck.trough_mesh(bed)
+    for mesh in meshes.values():
+        assert (mesh.points > low).all() and (mesh.points < high).all()
+    plate = meshes["consolidator"]
+    assert (area_vectors(plate.points, plate.triangles)[:, 2] < 0.0).all()
+    assert plate.points[:, 2].min() == pytest.approx(bed["depth_m"], abs=ROUND_OFF)  # here the level of the bed
+    away = np.linalg.norm(plate.points[:, :2] - np.mean(meshes["block"].points[:, :2], axis=0), axis=1)
+    assert away.min() > 0.5 * bed["sample_length_m"]
+    parameters = study.run("convex").parameters
+    sample = study.case.surface_mesh(parameters)
+    there = study.case.piece(parameters, None, sample).mesh
+    assert there.points[:, 2].max() < meshes["block"].points[:, 2].max()
+    assert np.linalg.norm(there.points.mean(axis=0) - meshes["block"].points.mean(axis=0)) < bed["headroom_m"]
+
+
+def test_the_sample_faces_the_flow():
+    """Its trailing edge is higher, by its length times the sine of 2 degrees; the ledger comes back to its frame."""
+    import pandas as pd
+
+    study = tiny_tester()
+    parameters, case = study.run("plain").parameters, study.case
+    sample = case.surface_mesh(parameters)
+    there = case.piece(parameters, None, sample).mesh
+    top = np.abs(sample.points[:, 2]) < ROUND_OFF
+    back, front = (there.points[top][np.isclose(sample.points[top, 1], side)] for side in (0.02, -0.02))
+    rise = back[:, 2].mean() - front[:, 2].mean()
+    assert rise == pytest.approx(0.04 * math.sin(math.radians(2.0)), rel=ROUND_OFF)
+    ledger = pd.DataFrame(there.points, columns=[f"contact_position_{axis}_m" for axis in "xyz"])
+    np.testing.assert_allclose(case.on_surface(parameters, ledger).to_numpy(), sample.points, atol=ROUND_OFF)
+
+
+def test_a_ring_turns_as_fast_as_a_channel_goes():
+    """At the middle of the sample the trough has the same velocity; a revolution takes as long."""
+    channel, ring = (tiny_tester(tester={"shape": shape}) for shape in ("channel", "ring"))
+    decks = [study.case.bed_deck(study.beds["bed_1"]) for study in (channel, ring)]
+    assert decks[0]["velocity_m_per_s"] == decks[1]["velocity_m_per_s"]
+    speed = decks[1]["angular_speed_rad_per_s"]
+    assert speed == pytest.approx(math.radians(235.0), rel=ROUND_OFF)
+    assert speed * decks[1]["radius_m"] == pytest.approx(decks[1]["velocity_m_per_s"], rel=ROUND_OFF)
+    times = [study.run("plain").parameters["derived"] for study in (channel, ring)]
+    assert times[0]["revolution_s"] == times[1]["revolution_s"] == pytest.approx(30.0 / 235.0)
+    for derived in times:
+        assert derived["revolution_steps"] * derived["time_step_s"] == pytest.approx(derived["revolution_s"])
+        assert derived["travel_steps"] == 2 * derived["revolution_steps"]
+
+
+def test_the_trough_is_closed_and_holds_the_bed(tmp_path):
+    """Chords are no longer than an element; files are where decks read them."""
+    study = tiny_tester(tester={"shape": "ring"})
+    mesh = tester_deck.trough_mesh(study.beds["bed_1"])
+    edges = np.sort(edge_lengths_per_triangle(mesh.points, mesh.triangles), axis=1)
+    assert edges[:, 1].max() <= tester_deck.TROUGH_ELEMENT * (1.0 + ROUND_OFF)
+    write_bed(study.case, study.beds["bed_1"], tmp_path)
+    named = set(re.findall(r"file (\S+\.stl)", (tmp_path / "deck.in").read_text()))
+    assert named == {"block.stl", "consolidator.stl", "trough.stl"}
+    assert all((tmp_path / name).is_file() for name in named)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"ledger": "dumps"}, "ledger is 'dumps' for row plain, allowed is solver for a circular wear tester"),
+        ({"tester": {"outer_radius_mm": 90}}, "tester.outer_radius_mm is 90 for row plain, allowed is above 100 mm"),
+        (
+            {"sample": {"width_mm": 60}},
+            "sample.width_mm is 60 for row plain, allowed is at most 45.12 mm, so that two of",
+        ),
+        ({"tester": {"channel_deg": 40}}, "tester.channel_deg is 40 for row plain, allowed is at least 54.2 degrees"),
+        (
+            {"tester": {"depth_mm": 30}},
+            "tester.depth_mm is 30 for row plain, allowed is at least 31.8 mm, three layers",
+        ),
+        (
+            {"tester": {"bed_height_mm": 70}},
+            "tester.bed_height_mm is 70 for row plain, allowed is at least 71.8 mm, three",
+        ),
+        (
+            {"tester": {"consolidator_level_mm": 37}},
+            "consolidator_level_mm is 37 for row plain, allowed is above 38.272 mm",
+        ),
+        ({"sample": {"element_size_mm": 3}}, "sample.element_size_mm is 3 for row convex, allowed is at most 2 mm"),
+        ({"sliding": {"revolutions": 1.3}}, "revolutions is 1.3 for row plain, allowed is a multiple of 1/2"),
+        (
+            {"sliding": {"cycles_per_revolution": 200}},
+            "cycles_per_revolution is 200 for row plain, allowed is at most 37",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_sentence(changes, sentence, monkeypatch):
+    """Key, what was found, row, what is allowed."""
+    with pytest.raises(ConfigError) as fault:
+        tiny_tester(**changes)
+    assert sentence in str(fault.value)
+
+
+def test_a_ring_has_less_room_for_corners():
+    """The outer corners of a sample are farther out than its side."""
+    with pytest.raises(ConfigError, match=r"sample.width_mm is 40 .* allowed is at most 37"):
+        tiny_tester(tester={"shape": "ring", "outer_radius_mm": 191})
+
+
+def test_a_design_needs_a_pair_of_one_particle_scale():
+    """Without a plain and a convex row of series volume nothing sets the scale of time."""
+    case = find_case("circular_tester")
+    rows = [{"row": "a", "series": "volume", "surface": "convex"}, {"row": "b", "series": "mesh", "surface": "plain"}]
+    assert "series volume" in case.design_fault(rows)
+    rows[1]["series"] = "volume"
+    assert case.design_fault(rows) is None
+    rows[1]["particle_scale"] = 4
+    assert "differ in particle_scale, allowed are equal ones" in case.design_fault(rows)
+
+
+def test_work_is_that_of_beds_and_runs():
+    """Runs wait for their bed; steps are those of the decks; triangles are about those of the mesh."""
+    study = tiny_tester()
+    work = work_of(study)
+    assert [job.name for job in work] == ["settled_bed_bed_1", "worn_run_plain", "worn_run_convex"]
+    assert {job.needs for job in work[1:]} == {"settled_bed_bed_1"}
+    derived = study.run("plain").parameters["derived"]
+    assert sum(stage.steps for stage in work[1].stages) == derived["run_in_steps"] + derived["travel_steps"]
+    for run in ROWS:
+        parameters = study.run(run).parameters
+        mesh = study.case.surface_mesh(parameters)
+        assert surface_triangles(parameters) == pytest.approx(len(mesh.triangles), rel=TRIANGLES)
+    assert placed(mesh, np.eye(3), np.zeros(3)).points == pytest.approx(mesh.points)
+    assert TINY["sample"]["width_mm"] == 40

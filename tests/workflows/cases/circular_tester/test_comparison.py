@@ -1,0 +1,84 @@
+"""Convex over plain by revolution, and patterns that wear off: known laws come back."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from meshes.tester import submerged_pose
+from postproc.mesh import SurfaceMesh
+from workflows.cases.circular_tester.comparison import mean_ratios, pattern_left, ratios_by_revolution, worn_out_at
+from workflows.cases.circular_tester.layer import LayerOverSample
+from workflows.cases.circular_tester.runs import outlines, whole_revolutions
+
+EXACT = 1e-9
+
+
+def volumes(machines):
+    """Volumes by {(shape, scale): (plain, convex) mm3 per revolution}, three revolutions in halves."""
+    x = np.arange(0.0, 3.25, 0.5)
+    parts = []
+    for (shape, scale), rates in machines.items():
+        for surface, rate in zip(("plain", "convex"), rates, strict=True):
+            case = {"run": f"{shape}{scale}{surface}", "surface": surface, "shape": shape, "particle_scale": scale}
+            parts.append(pd.DataFrame({"revolution": x, "volume_m3": 1e-9 * rate * x, "elements": 10}).assign(**case))
+    return pd.concat(parts, ignore_index=True)
+
+
+def test_ratios_are_those_of_equal_machines():
+    """Each pair has its own ratio; a machine without a pair has none; deviations of constant rates are zero."""
+    table = volumes({("channel", 6.0): (80.0, 60.0), ("ring", 6.0): (80.0, 56.0)})
+    table = table[~((table["shape"] == "ring") & (table["revolution"] > 2.0))]
+    whole = whole_revolutions(table)
+    assert set(whole["revolution"]) == {0.0, 1.0, 2.0, 3.0}
+    ratios = ratios_by_revolution(whole)
+    assert ratios.groupby("shape").size().to_dict() == {"channel": 3, "ring": 2}
+    means = mean_ratios(ratios, shared=True).set_index("shape")
+    assert means["ratio"].to_dict() == pytest.approx({"channel": 0.75, "ring": 0.7}, rel=EXACT)
+    assert (means["revolutions"] == 2).all() and means["deviation"].abs().max() < EXACT
+    assert mean_ratios(ratios, shared=False)["revolutions"].tolist() == [3, 2]
+    alone = whole[~((whole["shape"] == "ring") & (whole["surface"] == "plain"))]
+    assert set(ratios_by_revolution(alone)["shape"]) == {"channel"}
+
+
+def test_a_larger_coefficient_is_told_in_revolutions_of_the_study():
+    """Half the pattern gone after three revolutions at ten times the coefficient is half of it after thirty."""
+    x = np.arange(7.0)
+    rows = pd.DataFrame({"revolution": x, "law_volume_m3": 4e-7 * x, "pattern_volume_m3": 1e-6 * (1.0 - x / 6.0)})
+    rows = rows.assign(run="worn-out", surface="convex", particle_scale=6.0, coefficient=5e-8)
+    left = pattern_left(rows, 5e-9, 45.0)
+    half = left[np.isclose(left["pattern_share"], 0.5)].iloc[0]
+    assert half["revolution"] == pytest.approx(30.0, rel=EXACT)
+    assert half["lost_per_revolution_mm3"] == pytest.approx(40.0, rel=EXACT)
+    assert worn_out_at(left)["worn_out_revolution"].tolist() == pytest.approx([60.0], rel=EXACT)
+    assert worn_out_at(left[left["revolution"] < 50.0])["worn_out_revolution"].isna().all()
+    assert worn_out_at(left)["lost_over_plain"].tolist() == pytest.approx([40.0 / 45.0], rel=EXACT)
+    assert worn_out_at(left)["faster_revolution"].isna().all()
+
+
+def test_when_a_pattern_that_wears_off_loses_more_than_plain():
+    """A loss per revolution that grows like the revolutions passes the plain sample's where they say so."""
+    x = np.arange(101.0)
+    rows = pd.DataFrame({"revolution": x, "law_volume_m3": 1e-9 * x**2, "pattern_volume_m3": 1e-6 * (1.0 - x / 100.0)})
+    left = pattern_left(rows.assign(run="a", surface="convex", particle_scale=6.0, coefficient=5e-9), 5e-9, 120.0)
+    end = worn_out_at(left).iloc[0]  # increments 2 x - 1, means of five of them the same
+    assert end["faster_revolution"] == 61.0 and end["faster_share"] == pytest.approx(0.39, rel=EXACT)
+    assert end["lost_over_plain"] == pytest.approx(100.0 / 120.0, rel=EXACT)
+
+
+def test_the_layer_is_that_of_the_inclined_sample():
+    """A centre is inside by its place in the sample's own frame."""
+    turn = submerged_pose(0.0, 0.15, 0.09, np.radians(20.0))[0]
+    layer = LayerOverSample(0.1, 0.1, 0.016, turn)
+    own = np.array([[0, 0.049, 0.015], [0, 0.051, 0.008], [0, 0, 0.017], [0, 0, -0.001], [0.049, -0.049, 0.001]])
+    assert layer.inside(own @ turn.T).tolist() == [True, False, False, False, True]
+
+
+def test_outlines_are_rim_and_feet():
+    """Of a square of two parts: its four sides and the line between them."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    mesh = SurfaceMesh(points, np.array([[0, 1, 2], [0, 2, 3]]), {"part": np.array([0, 1])})
+    found = {tuple(sorted(map(tuple, line))) for line in outlines(mesh)}
+    assert len(found) == 5
+    assert ((0.0, 0.0), (1.0, 1.0)) in found
+    same = SurfaceMesh(points, mesh.triangles, {"part": np.array([0, 0])})
+    assert len(outlines(same)) == 4

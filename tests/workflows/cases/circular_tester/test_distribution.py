@@ -1,0 +1,125 @@
+"""Wear by column and bump, forces by column, mesh size: sums are kept and land where they belong."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from meshes.pattern import ConvexPattern
+from meshes.plate import flat_plate
+from meshes.sample import sample_top
+from postproc.mesh import SurfaceMesh, areas, centroids
+from postproc.tables.depths import WORN_VOLUME
+from workflows.cases.circular_tester.distribution import (
+    column_numbers,
+    contour_losses,
+    force_by_column,
+    mesh_size_effect,
+    share_of_bumps,
+    wear_by_bump,
+    wear_by_column,
+    worn_contours,
+)
+
+PATTERN = ConvexPattern(8e-3, 2e-3, 6e-3, 20e-3, 20e-3)  # of R9; rows 20 mm apart (Fig 6.1)
+SIDE, ELEMENT = 0.1, 4e-3  # m
+ROUNDING = 1e-12
+
+
+def with_volume(mesh, volume):
+    return SurfaceMesh(mesh.points, mesh.triangles, {**mesh.cell_data, WORN_VOLUME: volume})
+
+
+@pytest.fixture(scope="module")
+def convex():
+    mesh = sample_top(SIDE, SIDE, ELEMENT, PATTERN)
+    return with_volume(mesh, 1e-9 * (1.0 + (mesh.cell_data["part"] > 0) * mesh.cell_data["row"]))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    """Each strip of 20 mm wears its number times as deep as the first."""
+    mesh = flat_plate(SIDE, SIDE, 5e-3)
+    strip = np.floor((centroids(mesh.points, mesh.triangles)[:, 1] + 0.05) / 0.02) + 1.0
+    return with_volume(mesh, 1e-6 * strip * areas(mesh.points, mesh.triangles))
+
+
+def test_strips_of_a_plain_sample(plain):
+    """2000 mm2 times depth of 1, 2 ... 5 um."""
+    table = wear_by_column({"plain": plain})
+    assert table["column"].tolist() == [1, 2, 3, 4, 5]
+    assert table["base_mm3"].to_numpy() == pytest.approx(2.0 * np.arange(1, 6))
+    assert (table["bumps_mm3"] == 0.0).all()
+
+
+def test_nothing_is_lost_between_columns(convex):
+    """Columns add up to the sample; bumps stay whole in their column: 5 + 4 + 5 + 4 + 5."""
+    table = wear_by_column({"convex": convex})
+    total = 1e9 * convex.cell_data[WORN_VOLUME].sum()
+    assert table[["base_mm3", "bumps_mm3"]].to_numpy().sum() == pytest.approx(total, rel=ROUNDING)
+    per_bump = (convex.cell_data["part"] == 1).sum()
+    expected = per_bump * np.array([5, 4, 5, 4, 5]) * (1.0 + np.arange(1, 6))
+    assert table["bumps_mm3"].to_numpy() == pytest.approx(expected)
+    assert share_of_bumps(table)["convex"] == pytest.approx(expected.sum() / total)
+
+
+def test_columns_follow_labels_on_bumps(convex):
+    number, row = column_numbers(convex), convex.cell_data["row"]
+    assert (number[row > 0] == row[row > 0]).all()
+    assert number.min() == 1
+
+
+def test_the_holder_is_in_no_column(convex):
+    part = np.where(centroids(convex.points, convex.triangles)[:, 1] > 0.045, -1, convex.cell_data["part"])
+    mesh = SurfaceMesh(convex.points, convex.triangles, {**convex.cell_data, "part": part})
+    assert (column_numbers(mesh)[part == -1] == 0).all()
+
+
+def test_volume_of_every_bump(convex):
+    table = wear_by_bump(convex)
+    assert table["bump"].tolist()[:6] == ["C11", "C12", "C13", "C14", "C15", "C21"]
+    assert len(table) == 23
+    per_bump = (convex.cell_data["part"] == 1).sum()
+    assert table["volume_mm3"].to_numpy() == pytest.approx(per_bump * (1.0 + table["row"].to_numpy(float)))
+
+
+def test_force_is_impulse_over_time(convex):
+    """The columns' forces add up to the whole impulse over the duration."""
+    impulse = np.random.default_rng(1).uniform(0.0, 1e-3, len(convex.triangles))
+    table = force_by_column(convex, impulse, 0.5)
+    assert table[["base_N", "bumps_N"]].to_numpy().sum() == pytest.approx(impulse.sum() / 0.5, rel=ROUNDING)
+
+
+def test_mesh_size_effect():
+    """Over the plain sample on the finest mesh; mean and deviation over the meshes."""
+    volumes = pd.DataFrame(
+        {
+            "surface": ["plain"] * 3 + ["convex"] * 2,
+            "element_size_mm": [1.0, 0.5, 0.1, 1.0, 0.1],
+            "volume_m3": [0.96e-7, 0.98e-7, 1e-7, 0.5e-7, 0.6e-7],
+        }
+    )
+    table = mesh_size_effect(volumes)
+    assert table["relative_percent"].tolist() == pytest.approx([96.0, 98.0, 100.0, 50.0, 60.0])
+    assert table["mean_percent"].tolist() == pytest.approx([98.0] * 3 + [55.0] * 2)
+    assert table["deviation_percent"].iloc[0] == pytest.approx(2.0)
+    with pytest.raises(ValueError, match="plain"):
+        mesh_size_effect(volumes[volumes["surface"] == "convex"])
+
+
+def test_contours_without_a_scan(convex):
+    """Sections of the surfaces themselves: a sample lowered by 0.2 mm lies 0.2 mm lower everywhere."""
+    lower = SurfaceMesh(convex.points - (0.0, 0.0, 2e-4), convex.triangles, convex.cell_data)
+    table = worn_contours(convex, {"17": lower}, ["C11", "C15"])
+    assert list(dict.fromkeys(table["name"])) == ["pristine", "17"]
+    assert set(table["bump"]) == {"C11", "C15"}
+    heights = table.pivot(index=["bump", "view", "along_mm"], columns="name", values="height_mm").dropna()
+    assert len(heights) > 100
+    assert (heights["pristine"] - heights["17"]).to_numpy() == pytest.approx(np.full(len(heights), 0.2))
+    assert heights["pristine"].max() == pytest.approx(6.0, abs=0.15)
+
+
+def test_losses_of_contours(convex):
+    """A sample lowered by 0.2 mm has lost that everywhere; bumps that it does not have are left out."""
+    lower = SurfaceMesh(convex.points - (0.0, 0.0, 2e-4), convex.triangles, convex.cell_data)
+    losses = contour_losses(convex, lower, ["C11", "C15", "C99"])
+    assert losses.to_dict() == pytest.approx({"C11": 0.2, "C15": 0.2})

@@ -1,0 +1,74 @@
+"""Steadiness and flow of the circular wear tester per revolution."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tests.support import tester_study as study
+from workflows.cases.circular_tester.flow import (
+    STEADINESS,
+    relative_motion,
+    revolution_means,
+    revolution_numbers,
+    steady_revolutions,
+)
+
+
+def test_variation_of_a_known_wave():
+    """Eq 6.1: the deviation of whole waves over their mean is what they were made with, in every settled revolution."""
+    table = revolution_means(study.series(settled_after=1e-3), ["velocity_m_per_s"])
+    assert sorted(table["revolution"].unique()) == list(range(1, 11))
+    later = table[table["revolution"] > 1]
+    sample = np.sqrt(40 / 39)  # the deviation is that of a sample
+    assert later["variation"].to_numpy() == pytest.approx(np.full(len(later), 0.05 * sample), rel=1e-6)
+    plain = later[later["surface"] == "plain"]
+    assert plain["mean"].to_numpy() == pytest.approx(np.full(len(plain), 0.52))
+    assert (table["instants"] == 40).all()
+
+
+def test_the_start_varies_more():
+    """The transient is seen in the first revolution, as in Fig 6.7."""
+    table = revolution_means(study.series(), list(STEADINESS))
+    first = table[table["revolution"] == 1].set_index(["run", "measure"])["variation"]
+    last = table[table["revolution"] == 10].set_index(["run", "measure"])["variation"]
+    assert (first > 2.0 * last).all()
+
+
+def test_an_instant_on_a_whole_revolution_begins_the_next():
+    assert revolution_numbers(np.array([0.0, 0.999, 1.0, 2.0 - 1e-9, 2.5])).tolist() == [1, 1, 2, 3, 3]
+
+
+def test_a_revolution_of_few_instants_is_left_out():
+    series = study.series().query("revolution < 1.04")
+    assert revolution_means(series, ["normal_force_N"])["revolution"].unique().tolist() == [1]
+
+
+def test_steady_from():
+    """Steady where the transient has died away; a flow that drifts on is not."""
+    table = steady_revolutions(study.series(revolutions=12)).set_index(["run", "measure"])
+    assert table.loc[("plain", "all"), "steady"]
+    assert 0.5 < table.loc[("plain", "all"), "start"] < 5.0
+    drifting = study.series(revolutions=12)
+    drifting["bed_height_m"] *= 1.0 + 0.05 * drifting["revolution"]
+    table = steady_revolutions(drifting).set_index(["run", "measure"])
+    assert not table.loc[("plain", "bed_height_m"), "steady"]
+    assert np.isnan(table.loc[("plain", "all"), "start"])
+    with pytest.raises(ValueError, match="5 instants"):
+        steady_revolutions(drifting.groupby("run").head(5))
+
+
+def test_relative_motion():
+    """Over the plain sample's mean, which is then 1."""
+    particles = pd.DataFrame(
+        {
+            "surface": ["plain", "plain", "convex"],
+            "vx_m_per_s": [0.3, 0.0, 0.0],
+            "vy_m_per_s": [0.4, 0.3, 0.2],
+            "angular_speed_rad_per_s": [1.0, 3.0, 4.0],
+        }
+    )
+    table = relative_motion(particles)
+    assert table["relative_speed"].tolist() == pytest.approx([1.25, 0.75, 0.5])
+    assert table["relative_angular_speed"].tolist() == pytest.approx([0.5, 1.5, 2.0])
+    with pytest.raises(ValueError, match="plain"):
+        relative_motion(particles[particles["surface"] == "convex"])

@@ -1,0 +1,81 @@
+"""Calibration of the wear coefficient against hand numbers of the laboratory's test."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from workflows.cases.pin_on_disc.coefficient import (
+    calibration_table,
+    coefficient_of_volume,
+    laboratory_coefficient,
+    scaling_factor,
+    scaling_limits,
+    step_cap_limits,
+)
+
+VOLUME, ERROR, LOAD, DISTANCE, REVOLUTIONS = 0.565e-9, 0.089e-9, 5.0, 180.0, 1302.5  # m3, m3, N, m, -
+CIRCLE = DISTANCE / REVOLUTIONS  # m
+
+
+def test_laboratory_coefficient():
+    """0.565 mm3 over 900 J are 6.28e-13 1/Pa, +- 0.99e-13: the thesis' (6.3 +- 1)e-13."""
+    found, error = laboratory_coefficient(VOLUME, ERROR, LOAD, DISTANCE)
+    assert found == pytest.approx(6.278e-13, rel=1e-3)
+    assert error == pytest.approx(0.989e-13, rel=1e-3)
+    assert error / found == pytest.approx(ERROR / VOLUME)
+
+
+def test_scaling_factors():
+    """1302.5 revolutions by 8 are 162.8, by 12 they are 108.5."""
+    np.testing.assert_allclose(scaling_factor(REVOLUTIONS, [8, 12]), [162.8, 108.5], atol=0.05)
+
+
+def test_power_law_is_met_between_and_proportion_beyond():
+    """V = c alpha^1.5 is met exactly between simulated coefficients; beyond them the volume goes on in proportion."""
+    alpha = np.array([5e-11, 1e-11, 2e-11])
+    volumes = alpha**1.5
+    assert coefficient_of_volume(alpha, volumes, 3e-11**1.5) == (pytest.approx(3e-11), True)
+    assert coefficient_of_volume(alpha, volumes, 2.0 * volumes[0]) == (pytest.approx(1e-10), False)
+    assert coefficient_of_volume(alpha, volumes, 0.5 * volumes[1]) == (pytest.approx(0.5e-11), False)
+
+
+def test_one_coefficient_gives_the_proportion():
+    assert coefficient_of_volume([1e-11], [1e-10], 3e-10) == (pytest.approx(3e-11), False)
+
+
+def test_volumes_that_do_not_grow_are_refused():
+    with pytest.raises(ValueError, match="do not grow"):
+        coefficient_of_volume([1e-11, 2e-11], [2e-10, 1e-10], 1.5e-10)
+
+
+def test_calibration_by_archard_alone():
+    """Where the volume is alpha F L, N revolutions need the laboratory's coefficient times the scaling factor."""
+    simulated = pd.DataFrame(
+        [
+            {"scheme": "conserving", "revolution": n, "wear_coefficient_per_pa": alpha}
+            | {"volume_m3": alpha * LOAD * CIRCLE * n}
+            for n in (8, 12)
+            for alpha in (1e-11, 5e-11, 2e-10)
+        ]
+    )
+    table = calibration_table(simulated, VOLUME, ERROR, REVOLUTIONS)
+    law, error = laboratory_coefficient(VOLUME, ERROR, LOAD, DISTANCE)
+    for column, value in (("", law), ("least_", law - error), ("largest_", law + error)):
+        found = table[f"{column}wear_coefficient_per_pa"]
+        np.testing.assert_allclose(found, value * table["scaling_factor"], rtol=1e-12)
+    assert table["interpolated"].all()
+    assert table.loc[1, "wear_coefficient_per_pa"] == pytest.approx(6.81e-11, rel=1e-3)
+
+
+def test_limit_of_the_scaling_factor():
+    """Eight revolutions of run-in allow 162.8; a run-in that has not ended allows no factor yet."""
+    run_in = pd.DataFrame({"run": ["a", "b"], "run_in_revolution": [8.0, np.nan]})
+    np.testing.assert_allclose(scaling_limits(run_in, REVOLUTIONS)["largest_factor"], [162.8125, np.nan])
+
+
+def test_limit_by_the_cap_of_steps():
+    """Steps at a hundredth of their cap in the last revolution allow a hundred times the coefficient's own factor."""
+    volumes = pd.DataFrame(
+        {"run": "a", "revolution": [1, 2], "wear_coefficient_per_pa": 6.0e-11, "step_demand": [0.005, 0.01]}
+    )
+    assert step_cap_limits(volumes, 6.0e-13)["largest_factor_by_step_cap"].tolist() == [pytest.approx(1e4)]

@@ -1,0 +1,148 @@
+"""Volumes of a pin on a disc: exact fits, factors that multiply to the whole, published fits as printed."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tests import PUBLISHED
+from workflows.cases.pin_on_disc.volume import (
+    CANDIDATES,
+    excess_factors,
+    groove_volume,
+    law_volume,
+    polynomial_fit,
+    published_volume,
+    volume_fits,
+    volumes_of_run,
+)
+
+PUBLISHED = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
+LOAD, TRACK = 5.0, 22e-3  # N, m
+ROUNDING = 1e-9  # -, of a least-squares fit of ten points
+
+
+def test_law_volume_of_one_revolution():
+    """alpha F L at 1e-11 1/Pa: 1e-11 * 5 N * 2 pi 22 mm = 0.00691 mm3 per revolution."""
+    np.testing.assert_allclose(law_volume(1e-11, LOAD, TRACK, [1, 2]), [6.9115e-12, 13.823e-12], rtol=1e-4)
+
+
+def test_fit_of_a_parabola_is_the_parabola():
+    """A quadratic fit of exact values gives them back with R2 = 1; the linear one explains less."""
+    x = np.arange(1.0, 11.0)
+    y = 0.006 + 0.03 * x + 0.001 * x**2
+    found, r_squared = polynomial_fit(x, y, 2)
+    np.testing.assert_allclose(found, [0.006, 0.03, 0.001], rtol=ROUNDING)
+    assert r_squared == pytest.approx(1.0, abs=ROUNDING)
+    assert 0.9 < polynomial_fit(x, y, 1)[1] < 1.0 - 1e-4
+
+
+def test_r_squared_by_hand():
+    """y = 0, 1, 0, 1 over x = 0..3: slope 0.2, residual sum 0.8 of a variance of 1: R2 = 0.2."""
+    found, r_squared = polynomial_fit(np.arange(4.0), np.array([0.0, 1.0, 0.0, 1.0]), 1)
+    np.testing.assert_allclose(found, [0.2, 0.2])
+    assert r_squared == pytest.approx(0.2)
+
+
+def test_too_few_points_have_no_fit():
+    found, r_squared = polynomial_fit(np.array([1.0]), np.array([2.0]), 1)
+    assert np.isnan(found).all()
+    assert np.isnan(r_squared)
+
+
+@pytest.mark.parametrize(
+    ("coefficient", "at_first", "at_twelfth"),
+    [(1e-11, 0.0138, 0.2602), (1.7e-11, 0.037, 0.51), (5e-11, 0.189, 2.84)],
+)
+def test_published_fits_as_printed(coefficient, at_first, at_twelfth):
+    """Eq 5.11, 5.13 and 5.15 at 1 and 12 revolutions (mm3), added up by hand; no fit, no value."""
+    np.testing.assert_allclose(1e9 * published_volume(PUBLISHED, coefficient, [1, 12]), [at_first, at_twelfth])
+    assert np.isnan(published_volume(PUBLISHED, 3e-11, [1, 12])).all()
+
+
+def test_published_volumes_exceed_the_law():
+    """2.0, 3.1 and 5.5 times alpha F L in the first revolution, 3.6 times over twelve at 1.7e-11."""
+    for coefficient, revolutions, factor in ((1e-11, 1, 2.0), (1.7e-11, 1, 3.1), (5e-11, 1, 5.5), (1.7e-11, 12, 3.6)):
+        ratio = published_volume(PUBLISHED, coefficient, revolutions) / law_volume(
+            coefficient, LOAD, TRACK, revolutions
+        )
+        assert ratio == pytest.approx(factor, abs=0.05)
+
+
+def run_folder(folder):
+    """A run of four half revolutions: Eq 5.9 counts twice the law's volume, the force rises by 1 N each."""
+    cycle = np.arange(1, 5)
+    pd.DataFrame(
+        {
+            "cycle": cycle,
+            "time_s": 1.0 * cycle,
+            "revolution": 0.5 * cycle,
+            "total_archard_volume_m3": 0.5e-12 * cycle,
+            "total_applied_volume_m3": 0.9e-12 * cycle,
+            "carried_volume_m3": 0.0,
+            "step_demand": 0.1,
+            "centroid_path_volume_m3": 1e-12,
+            "touched_centroid_path_volume_m3": 0.4e-12,
+            "mean_normal_force_N": LOAD + cycle,
+            "mean_vertical_force_N": -LOAD,
+            "contacts_per_step": 2.0,
+        }
+    ).to_csv(folder / "wear.csv", index=False)
+
+
+def test_volumes_after_whole_revolutions(tmp_path):
+    """Totals of the second and fourth cycle, centroid paths added up, forces averaged since the start."""
+    run_folder(tmp_path)
+    table = volumes_of_run(tmp_path)
+    assert table["revolution"].tolist() == [1, 2]
+    np.testing.assert_allclose(table["centroid_path_volume_m3"], [2e-12, 4e-12])
+    np.testing.assert_allclose(table["removed_volume_m3"], [1.8e-12, 3.6e-12])
+    np.testing.assert_allclose(table["mean_normal_force_N"], [6.5, 7.5])
+
+
+def two_revolutions(tmp_path):
+    """Volumes of the run above with what a design says of it."""
+    run_folder(tmp_path)
+    return volumes_of_run(tmp_path).assign(
+        run="a", scheme="per_triangle", wear_coefficient_per_pa=1e-11, load_n=LOAD, track_radius_m=TRACK
+    )
+
+
+def test_factors_multiply_to_the_whole(tmp_path):
+    """Rise, slip, share taken up, displacement rule and summing rule multiply to the volume by Eq 5.9 over touched
+    triangles over alpha F L, exactly; the published volume over that product is left."""
+    volumes = two_revolutions(tmp_path)
+    factors = excess_factors(volumes, PUBLISHED)
+    law = law_volume(1e-11, LOAD, TRACK, [1, 2])
+    np.testing.assert_allclose(factors["product"], volumes["touched_centroid_path_volume_m3"] / law, rtol=1e-12)
+    np.testing.assert_allclose(factors[list(CANDIDATES)].prod(axis=1), factors["product"], rtol=1e-12)
+    np.testing.assert_allclose(factors["force_rise"], [1.3, 1.5])
+    np.testing.assert_allclose(factors["displacement_rule"], 1.8)
+    np.testing.assert_allclose(factors["summing_over_all"], 2.0 / 1.8)
+    np.testing.assert_allclose(factors["vertical_force_over_load"], 1.0)
+    np.testing.assert_allclose(factors["published"], [0.0138e-9, 0.0282e-9] / law, rtol=1e-9)
+    np.testing.assert_allclose(factors["unexplained"] * factors["product"], factors["published"], rtol=1e-12)
+
+
+def test_carried_wear_is_a_factor_of_its_own(tmp_path):
+    """A fifth of the law's wear carried: the share 0.8 is taken up, which the rule turns into 1.8 / 0.8 of it; the
+    product stays."""
+    volumes = two_revolutions(tmp_path)
+    carried = volumes.assign(carried_volume_m3=0.2 * volumes["archard_volume_m3"])
+    factors, without = (excess_factors(each, PUBLISHED) for each in (carried, volumes))
+    np.testing.assert_allclose(factors["taken_up"], 0.8)
+    np.testing.assert_allclose(without["taken_up"], 1.0)
+    np.testing.assert_allclose(factors["displacement_rule"], 1.8 / 0.8)
+    np.testing.assert_allclose(factors["product"], without["product"], rtol=1e-12)
+
+
+def test_fits_of_every_volume(tmp_path):
+    """One row per volume and order; three points are too few for nothing, two for a parabola."""
+    fits = volume_fits(two_revolutions(tmp_path)).set_index(["volume", "fit"])
+    assert len(fits) == 4 * 2
+    assert fits.loc[("removed", "linear"), "linear_mm3_per_revolution"] == pytest.approx(1.8e-3)
+    assert np.isnan(fits.loc[("removed", "quadratic"), "r_squared"])
+
+
+def test_volume_of_a_published_groove():
+    """The published 19 um and 1.07 mm hold 1.87 mm3, 3.5 times the published 0.532 mm3."""
+    assert groove_volume(19e-6, 1.07e-3, TRACK) == pytest.approx(1.873e-9, rel=1e-3)

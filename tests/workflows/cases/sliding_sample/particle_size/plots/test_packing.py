@@ -1,0 +1,58 @@
+"""Figures of packings show every scale, both rules of porosity, and what is published."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.plots.style import remarks_of
+from tests import PUBLISHED
+from workflows.cases.sliding_sample.particle_size.plots.packing import RANGE_COLOUR, bed_packing, packing_profiles
+
+PUBLISHED = pd.read_csv(PUBLISHED / "packing.csv")
+SCALES = [1.0, 4.0, 8.0]
+
+
+def profiles():
+    tables = []
+    for scale in SCALES:
+        for state, contacts, pores in (("loose", 5.2, 0.41), ("dense", 5.4, 0.39), ("difference", 0.2, -0.02)):
+            height = 10.0 * scale * np.arange(1, 4)
+            table = pd.DataFrame({"height_mm": height, "coordination_number": contacts, "porosity": pores})
+            tables.append(table.assign(porosity_whole_particles=pores + 0.01, state=state, particle_scale=scale))
+    return pd.concat(tables, ignore_index=True)
+
+
+def test_profiles_show_scales_rules_and_ranges():
+    """Three curves per panel, three more by the source's rule of porosity; ranges where both bounds are published."""
+    figure = packing_profiles(profiles(), PUBLISHED[PUBLISHED["case"] == "container"], ["scaled"])
+    panels = figure.axes
+    assert [len(axes.lines) for axes in panels] == [3, 3, 3, 6, 6, 6]
+    assert [len(axes.patches) for axes in panels] == [1, 0, 1, 0, 0, 1]
+    low, high = panels[0].patches[0].get_x(), panels[0].patches[0].get_x() + panels[0].patches[0].get_width()
+    assert (low, high) == pytest.approx((5.0, 5.6))
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names == ["scale 1", "scale 4", "scale 8", "particles whole", "Yan 2022"]
+    assert figure.legends[0].get_lines()[-1].get_color() == RANGE_COLOUR
+    assert "scaled" in remarks_of(figure)
+
+
+def test_without_published_values_nothing_is_shaded():
+    """An empty table leaves the panels white and the legend without a source."""
+    figure = packing_profiles(profiles(), PUBLISHED.iloc[:0], [])
+    assert all(not axes.patches for axes in figure.axes)
+    assert len(figure.legends[0].get_texts()) == len(SCALES) + 1
+
+
+def test_a_bed_is_shown_by_scale_before_and_after():
+    """Two curves of contacts, four of porosity; published bounds stand over the scales that they hold for."""
+    rows = [
+        {"particle_scale": scale, "state": state, "coordination_number": contacts, "porosity": pores}
+        for scale in SCALES
+        for state, contacts, pores in (("before", 5.1, 0.40), ("after", 4.8, 0.42))
+    ]
+    table = pd.DataFrame(rows).assign(porosity_whole_particles=0.41)
+    figure = bed_packing(table, PUBLISHED[PUBLISHED["case"] == "bed"], [])
+    contacts, pores = figure.axes
+    assert len(contacts.lines) == 4 and len(pores.lines) == 4
+    bounds = [line for line in contacts.lines if line.get_label() == "_bound"]
+    assert [list(line.get_xdata()) for line in bounds] == [[1, 5], [6, 8]]

@@ -1,0 +1,130 @@
+"""Figures of wear against particle scale and of motion round a circle."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.plots.style import remarks_of
+from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
+from postproc.statistics.lines import Crossing
+from tests.workflows.cases.sliding_sample.particle_size.test_published_sizes import RESULTS, profiles, steady_rows
+from tests.workflows.cases.sliding_sample.particle_size.test_wear_by_scale import LINES, SCALES, TRUTH, summary
+from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import (
+    spider_charts,
+    steady_by_scale,
+    wear_against_scale,
+    wear_against_size_ratios,
+)
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+    critical_scale,
+    published_by_size_ratio,
+    velocity_bounds,
+    wear_by_scale,
+    wear_by_size_ratio,
+)
+
+
+def labels_of(axes):
+    return [line.get_label() for line in axes.lines]
+
+
+def test_wear_has_points_lines_and_published_lines_for_every_curve():
+    """Four curves, each with its points, its line and the published line; the critical scale is marked."""
+    wear = wear_by_scale(summary(noise=0.02))
+    figure = wear_against_scale(wear, LINES, critical_scale(wear), ["shrunk"])
+    axes = figure.axes[0]
+    for curve in ("plain", "convex", "base", "bumps"):
+        assert {curve, f"{curve} line", f"{curve} published"} <= set(labels_of(axes))
+    critical = next(line for line in axes.lines if line.get_label() == "critical")
+    assert critical.get_xdata()[0] == pytest.approx(TRUTH, rel=0.05)
+    assert "shrunk" in remarks_of(figure)
+
+
+def test_two_scales_show_points_only():
+    """No line and no critical scale is drawn through two points; the published lines stay."""
+    figure = wear_against_scale(wear_by_scale(summary([4.0, 8.0])), LINES, None, [])
+    names = labels_of(figure.axes[0])
+    assert "convex" in names and "convex line" not in names and "critical" not in names and "convex published" in names
+
+
+def test_an_interval_beyond_the_axis_is_cut():
+    """An interval that reaches further than the scales does not stretch the axis."""
+    wear = wear_by_scale(summary([4.0, 6.0, 8.0]))
+    figure = wear_against_scale(wear, LINES, Crossing(4.2, -30.0, 90.0, True), [])
+    assert figure.axes[0].get_xlim() == pytest.approx((3.68, 8.32))
+
+
+def test_wear_is_shown_against_four_ratios():
+    """A panel per ratio with our points on the published curve, where the study follows it."""
+    ratios = {f"S{scale:g}": size_ratios(scale * PUBLISHED_DIAMETER, *PUBLISHED_PATTERN) for scale in SCALES}
+    table = wear_by_size_ratio(wear_by_scale(summary()), ratios)
+    figure = wear_against_size_ratios(table, published_by_size_ratio(LINES, SCALES), [])
+    assert len(figure.axes) == 4
+    for axes in figure.axes:
+        published, ours = axes.lines[:2]
+        assert np.allclose(np.array(published.get_xydata()), np.array(ours.get_xydata()))
+
+
+def spins():
+    tables = []
+    for surface, level in (("convex", 300.0), ("plain", 120.0)):
+        for scale in (1.0, 4.0, 8.0):
+            count = round(200.0 / (5.0 * scale))
+            along = (np.arange(count) + 0.5) * 200.0 / count
+            table = {"surface": surface, "particle_scale": scale, "along_mm": along}
+            tables.append(pd.DataFrame({**table, "angular_speed_deg_per_s": level / np.sqrt(scale)}))
+    return pd.concat(tables, ignore_index=True)
+
+
+def test_spider_charts_share_circle_and_radius():
+    """A chart per surface, a curve per scale; the same place has the same angle at every scale, and no curve closes."""
+    labels = ("angular speed (°/s)", "distance behind the front edge (mm)")
+    figure = spider_charts(spins(), "angular_speed_deg_per_s", "along_mm", labels, ["a remark"])
+    assert len(figure.axes) == 2
+    assert [len(axes.lines) for axes in figure.axes] == [3, 3]
+    assert len({axes.get_rmax() for axes in figure.axes}) == 1
+    turn = {}
+    for line, scale in zip(figure.axes[0].lines, (1.0, 4.0, 8.0), strict=True):
+        angle = line.get_xdata()
+        assert (np.diff(angle) > 0.0).all() and angle[-1] < 2.0 * np.pi
+        along = spins().query("surface == 'convex' and particle_scale == @scale")["along_mm"].to_numpy()
+        turn[scale] = angle / along
+    assert np.ptp(np.concatenate(list(turn.values()))) < 1e-12
+
+
+def test_negative_velocities_lie_inside_a_zero_circle():
+    """The radius begins below the lowest value, and zero is drawn in every chart."""
+    figure = spider_charts(profiles(), "sideways_m_per_s", "height_mm", ("sideways (m/s)", "height (mm)"), [])
+    for axes in figure.axes:
+        assert axes.get_rmin() < profiles()["sideways_m_per_s"].min() and axes.get_rmax() >= 0.0
+        assert any(np.all(line.get_ydata() == 0.0) for line in axes.lines)
+
+
+def test_published_bounds_are_arcs():
+    """Over the plain sample up to the highest layer, over the convex one up to the lowest; both in the legend."""
+    table = profiles()
+    labels = ("velocity (m/s)", "height (mm)")
+    figure = spider_charts(table, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, table))
+    ends = {}
+    for axes, surface in zip(figure.axes, dict.fromkeys(table["surface"]), strict=True):
+        arc = next(line for line in axes.lines if line.get_label().startswith("Yan 2022"))
+        ends[surface] = (arc.get_ydata()[0], arc.get_xdata()[-1])
+    assert ends["plain"][0] == 0.35 and ends["convex"][0] == 0.9
+    slow = table.assign(velocity_m_per_s=0.1 * table["velocity_m_per_s"])
+    figure = spider_charts(slow, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, slow))
+    assert all(axes.get_rmax() > 0.9 for axes in figure.axes)  # also a bound that ours stay far below is seen
+    assert ends["plain"][1] == pytest.approx(3.0 * ends["convex"][1])  # 30 mm over 10 mm
+    told = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"Yan 2022: below 0.35", "Yan 2022: above 0.9"} <= set(told)
+
+
+def test_means_by_scale_show_deviations_and_published_values():
+    """A panel per measure; windows that are not steady are hollow; published marks stand on their measure only."""
+    figure = steady_by_scale(steady_rows(), RESULTS, ["shrunk"])
+    velocity, rate = figure.axes
+    assert len([line for line in velocity.lines if line.get_label() == "published"]) == 5
+    assert not [line for line in rate.lines if line.get_label() == "published"]
+    assert all(
+        np.allclose(points.get_facecolors()[:, :3], 1.0) for points in rate.collections if len(points.get_facecolors())
+    )
+    assert len(velocity.containers) == 2 and "shrunk" in remarks_of(figure)

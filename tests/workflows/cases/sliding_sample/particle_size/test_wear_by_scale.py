@@ -1,0 +1,107 @@
+"""Wear against particle scale, on made-up studies whose lines and crossing are known."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
+from tests import PUBLISHED
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+    CURVES,
+    RATIOS,
+    beside_published,
+    critical_scale,
+    critical_scale_text,
+    published_by_size_ratio,
+    wear_by_scale,
+    wear_by_size_ratio,
+    wear_lines,
+)
+
+LINES = pd.read_csv(PUBLISHED / "particle_size_lines.csv")
+SCALES = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])
+TRUTH = 1.09 / 0.262  # where Eq 4.14 and 4.15 cross
+ROUNDING = 1e-9  # relative
+
+
+def summary(scales=SCALES, noise=0.0, volume=4e-9):
+    """A study's summary that follows the published lines; volume: m3, of the plain sample at wear 1."""
+    random, rows = np.random.default_rng(7), []
+    value = {row["curve"]: row["intercept"] + row["slope"] * np.asarray(scales) for _, row in LINES.iterrows()}
+    for k, scale in enumerate(scales):
+        for surface in ("convex", "plain"):
+            whole = volume * (value[surface][k] + noise * random.normal())
+            parts = {"base": whole, "bumps": 0.0}
+            if surface == "convex":
+                parts = {"base": volume * value["base"][k], "bumps": whole - volume * value["base"][k]}
+            rows.append(
+                {
+                    "row": f"S{scale:g}",
+                    "surface": surface,
+                    "particle_scale": scale,
+                    "archard_volume_m3": whole,
+                    "base_archard_volume_m3": parts["base"],
+                    "bump_archard_volume_m3": parts["bumps"],
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def test_wear_is_relative_to_the_plain_sample_with_the_smallest_particles():
+    """The plain sample at scale 1 is 1 itself, whatever the volumes; base and bumps of the convex one add up."""
+    wear = wear_by_scale(summary())
+    assert set(wear["curve"]) == set(CURVES) and set(wear["reference_scale"]) == {1.0}
+    table = wear.pivot(index="particle_scale", columns="curve", values="relative_wear")
+    assert table.loc[1.0, "plain"] == pytest.approx(1.0, rel=ROUNDING)
+    assert np.allclose(table["base"] + table["bumps"], table["convex"], rtol=ROUNDING)
+    assert np.allclose(table["convex"], (-0.08 + 0.26 * SCALES) / 1.008, rtol=ROUNDING)
+    assert np.allclose(wear_by_scale(summary(volume=1.0))["relative_wear"], wear["relative_wear"], rtol=ROUNDING)
+
+
+def test_a_study_without_scale_one_says_what_it_is_relative_to():
+    """Quick scales: the plain sample at scale 4 is the reference, and stands in the table."""
+    assert set(wear_by_scale(summary([4.0, 6.0, 8.0]))["reference_scale"]) == {4.0}
+
+
+def test_published_lines_come_back():
+    """Each curve has its published intercept and slope, but for the reference's 1.008, beside the published ones."""
+    lines = beside_published(wear_lines(wear_by_scale(summary())), LINES)
+    assert np.allclose(lines["slope"] * 1.008, lines["published_slope"], atol=1e-9)
+    assert np.allclose(lines["intercept"] * 1.008, lines["published_intercept"], atol=1e-9)
+    assert (lines["points"] == len(SCALES)).all() and lines["source"].str.startswith("Yan 2022, Eq 4.1").all()
+
+
+def test_two_scales_make_no_line():
+    """Two points are not fitted; the critical scale is left open."""
+    wear = wear_by_scale(summary([4.0, 8.0]))
+    assert wear_lines(wear)["slope"].isna().all()
+    assert critical_scale(wear) is None
+    assert critical_scale_text(None) == "too few scales for a critical one"
+
+
+def test_the_critical_scale_is_where_the_lines_cross():
+    """Exactly, without scatter; with some, within an interval that holds it."""
+    exact = critical_scale(wear_by_scale(summary()))
+    assert exact.value == pytest.approx(TRUTH, rel=ROUNDING)
+    found = critical_scale(wear_by_scale(summary(noise=0.1)))
+    assert found.low < TRUTH < found.high and found.high - found.low > 0.1
+    assert critical_scale_text(found).startswith(f"critical scale {found.value:.2g}, 95 % interval")
+
+
+def test_parallel_wear_has_no_critical_scale():
+    """Where convex wear does not depend on scale, the phrase says that nothing is told."""
+    table = summary(noise=0.1)
+    convex = table["surface"] == "convex"
+    table.loc[convex, "archard_volume_m3"] = 3e-9 + 1e-9 * np.random.default_rng(1).normal(size=convex.sum())
+    found = critical_scale(wear_by_scale(table))
+    assert not found.bounded and "do not tell" in critical_scale_text(found)
+
+
+def test_ratios_stand_beside_convex_over_plain_wear():
+    """Row by row the ratios of the scaled particles; on the published lines the points lie on the published curve."""
+    ratios = {f"S{scale:g}": size_ratios(scale * PUBLISHED_DIAMETER, *PUBLISHED_PATTERN) for scale in SCALES}
+    ours = wear_by_size_ratio(wear_by_scale(summary()), ratios)
+    theirs = published_by_size_ratio(LINES, SCALES)
+    assert list(ours["particle_scale"]) == list(SCALES)
+    for column in (*RATIOS, "wear_over_plain"):
+        assert np.allclose(ours[column], theirs[column], rtol=ROUNDING), column

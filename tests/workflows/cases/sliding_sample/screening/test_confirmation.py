@@ -1,0 +1,106 @@
+"""Best designs by regime and their confirmation, on wear that follows a known model."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tests import REPOSITORY as ROOT
+from tests.support.screening_study import FACTORS
+from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS
+from workflows.cases.sliding_sample.screening.confirmation import (
+    best_of_regimes,
+    check_fidelity,
+    confirmation_remarks,
+    confirmation_table,
+    design_of,
+)
+from workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+
+CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")
+NOISE = 0.02  # of ln(wear): small beside effects of 0.45 to 1.4 per coded unit
+
+
+@pytest.fixture(scope="module")
+def design():
+    """Table 3.8."""
+    return pd.read_csv(ROOT / "config/designs/screening.csv")
+
+
+@pytest.fixture(scope="module")
+def summary(design):
+    """Wear that grows with a, v and t, and is least with b and d both low or both high."""
+    a, b, v, t = (np.log2(design[FACTORS[name]] / design[FACTORS[name]].median()) for name in "abvt")
+    d = (design["column_spacing_mm"] - 40.0) / 20.0
+    noise = np.random.default_rng(7).normal(0.0, NOISE, len(design))
+    wear = 1e-9 * np.exp(0.449 * a + 0.650 * v + 1.425 * t - 0.629 * b * d + noise)
+    convex = design.assign(surface="convex", particle_scale=1.0, archard_volume_per_metre_m3_per_m=wear)
+    plain = convex.assign(surface="plain", archard_volume_per_metre_m3_per_m=2.0 * wear)
+    return pd.concat([convex, plain], ignore_index=True)
+
+
+@pytest.fixture(scope="module")
+def regimes(design):
+    """Thick beds flow continuously, all others do not; plain runs do not count."""
+    regime = np.where(design["bed_thickness_mm"] == 40.0, CONTINUOUS, DISCONTINUOUS)
+    convex = design[["row"]].assign(surface="convex", regime=regime)
+    return pd.concat([convex, convex.assign(surface="plain", regime=CONTINUOUS)], ignore_index=True)
+
+
+@pytest.fixture(scope="module")
+def predictions(summary, regimes):
+    """The best designs of both regimes."""
+    return best_of_regimes(screen_summary(summary, FACTORS), summary, regimes, FACTORS, CONDITIONS)
+
+
+def test_best_designs_of_a_known_model(predictions):
+    """Smallest a; b and d both low or both high; v and t the least of the pairs at which the regime was seen."""
+    table = predictions.set_index("row")
+    assert table.index.tolist() == [CONTINUOUS, DISCONTINUOUS]
+    assert table["major_radius_mm"].tolist() == [2.0, 2.0]
+    assert table.loc[CONTINUOUS, list(CONDITIONS)].tolist() == [0.5, 40.0]
+    assert table.loc[DISCONTINUOUS, list(CONDITIONS)].tolist() == [0.5, 10.0]
+    corners = {(2.0, 20.0), (8.0, 60.0)}
+    assert {tuple(pair) for pair in table[["minor_radius_mm", "column_spacing_mm"]].to_numpy()} <= corners
+    expected = 1e-9 * np.exp(-0.449 - 0.650 + 1.425 - 0.629)
+    assert table.loc[CONTINUOUS, "run_low_m3_per_m"] < expected < table.loc[CONTINUOUS, "run_high_m3_per_m"]
+    assert "h" in table.loc[CONTINUOUS, "not_in_model"].split()
+    assert table["height_mm"].tolist() == [3.0, 3.0]  # the model says nothing about it
+
+
+def test_the_design_can_be_a_study(predictions, summary):
+    """Row and the six columns of a design, columns that are no factor at their only value."""
+    columns = list(FACTORS.values())
+    assert design_of(predictions, summary, columns).columns.tolist() == ["row", *columns]
+    constant = predictions.drop(columns="height_mm")
+    assert design_of(constant, summary.assign(height_mm=4.5), columns)["height_mm"].tolist() == [4.5, 4.5]
+    with pytest.raises(ValueError, match="column height_mm is no factor and has 3 values"):
+        design_of(constant, summary, columns)
+
+
+def test_only_regimes_that_were_seen_have_a_design(summary, regimes):
+    """Where all runs flow continuously there is one design, of the thinnest bed."""
+    study = screen_summary(summary, FACTORS)
+    table = best_of_regimes(study, summary, regimes.assign(regime=CONTINUOUS), FACTORS, CONDITIONS)
+    assert table[["row", "bed_thickness_mm"]].to_numpy().tolist() == [[CONTINUOUS, 10.0]]
+
+
+def test_simulated_runs_against_their_intervals(predictions):
+    """A run of the predicted wear is inside, one of ten times as much outside; another regime is said."""
+    wear = predictions["predicted_m3_per_m"].to_numpy() * [1.0, 10.0]
+    runs = pd.DataFrame({"row": predictions["row"], "surface": "convex", "archard_volume_per_metre_m3_per_m": wear})
+    plain = runs.assign(surface="plain", archard_volume_per_metre_m3_per_m=5e-9)
+    regimes = runs[["row", "surface"]].assign(regime=CONTINUOUS)
+    table = confirmation_table(predictions, pd.concat([runs, plain], ignore_index=True), regimes)
+    assert table["inside"].tolist() == [True, False]
+    assert table["over_predicted"].tolist() == pytest.approx([1.0, 10.0])
+    assert table["simulated_mm3_per_m"].tolist() == pytest.approx(1e9 * wear)
+    assert table["plain_mm3_per_m"].tolist() == pytest.approx([5.0, 5.0])
+    assert confirmation_remarks(table) == ["the run for discontinuous flow is found continuous"]
+
+
+def test_another_fidelity_confirms_nothing(predictions):
+    """Runs of another fidelity than the prediction's are refused, in one sentence."""
+    made = predictions.assign(fidelity="quick")
+    check_fidelity(made, "quick", "prediction.csv")
+    with pytest.raises(ValueError, match=r"prediction\.csv: predicted at fidelity quick, the runs are at standard"):
+        check_fidelity(made, "standard", "prediction.csv")

@@ -1,0 +1,136 @@
+"""Runs by flow regime: groups of rows, relative wear, deviation of forces, rows in detail, published rows."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED
+from workflows.cases.sliding_sample.screening.regime_groups import (
+    by_group,
+    force_by_group,
+    force_remarks,
+    gradients_by_group,
+    of_published_rows,
+    published_rows_in_detail,
+    regime_remarks,
+    rows_in_detail,
+    wear_by_group,
+    with_wear_rates,
+)
+
+ROUNDING = 1e-12
+
+
+@pytest.fixture
+def regimes():
+    """R1 and R3 are continuous, R2 is discontinuous over its convex sample although not over the plain one."""
+    rows = [("R1", CONTINUOUS, CONTINUOUS), ("R2", DISCONTINUOUS, CONTINUOUS), ("R3", CONTINUOUS, CONTINUOUS)]
+    return pd.DataFrame(
+        [
+            {"run": f"{row}_{surface}", "row": row, "surface": surface, "regime": regime, "steady": surface == "plain"}
+            for row, *found in rows
+            for surface, regime in zip(("convex", "plain"), found, strict=True)
+        ]
+    )
+
+
+@pytest.fixture
+def summary(regimes):
+    """Wear per metre 1, 2, 4, 8, 2, 4 e-9 m3/m over different travels; a quarter of it on bumps of convex runs."""
+    travel = np.array([1.0, 1.0, 0.5, 0.5, 1.0, 1.0])
+    volume = 1e-9 * np.array([1.0, 2.0, 4.0, 8.0, 2.0, 4.0]) * travel
+    bumps = np.where(regimes["surface"] == "convex", 0.25, 0.0) * volume
+    return regimes[["run", "row", "surface"]].assign(
+        travel_m=travel,
+        archard_volume_m3=volume,
+        base_archard_volume_m3=volume - bumps,
+        bump_archard_volume_m3=bumps,
+        mean_normal_force_N=5.0,
+        wear_over_plain=[0.5, 1.0, 0.5, 1.0, 0.5, 1.0],
+    )
+
+
+def test_a_row_is_in_the_group_of_its_convex_run(regimes, summary):
+    """The plain twin goes with its row, and a row without a patterned run is undecided; continuous rows come first."""
+    table = by_group(summary, regimes)
+    assert table["row"].tolist() == ["R1", "R1", "R3", "R3", "R2", "R2"]
+    assert table["regime"].tolist() == [CONTINUOUS] * 4 + [DISCONTINUOUS] * 2
+    plain = regimes[regimes["surface"] == "plain"]
+    assert set(by_group(summary, plain)["regime"]) == {UNDECIDED}
+
+
+def test_relative_wear_is_per_length_within_the_group(regimes, summary):
+    """The largest of each group has 1 whatever its travel, and base and bumps add up (Eq 3.10)."""
+    table = wear_by_group(summary, regimes).set_index("run")
+    expected = {
+        "R1_convex": 0.25,
+        "R1_plain": 0.5,
+        "R3_convex": 0.5,
+        "R3_plain": 1.0,
+        "R2_convex": 0.5,
+        "R2_plain": 1.0,
+    }
+    assert table["relative_wear"].to_dict() == pytest.approx(expected, rel=ROUNDING)
+    np.testing.assert_allclose(
+        table["base_relative_wear"] + table["bump_relative_wear"], table["relative_wear"], rtol=ROUNDING
+    )
+    assert table.loc["R2_convex", "bump_relative_wear"] == pytest.approx(0.125, rel=ROUNDING)
+
+
+def test_wear_rates_are_per_mass_flow(regimes, summary):
+    """1e-9 m3 worn while 2 kg/s pass are 0.5 mm3 s/kg, whatever the order of the runs (Eq 3.11)."""
+    bed = {"velocity": 0.5, "thickness": 0.02, "width": 0.1, "bulk_density": 2000.0}
+    beds = dict.fromkeys(summary["run"], bed)
+    table = with_wear_rates(wear_by_group(summary, regimes), summary, beds).set_index("run")
+    assert table.loc["R1_convex", "wear_rate_mm3_s_per_kg"] == pytest.approx(0.5, rel=ROUNDING)
+    assert table.loc["R2_plain", "wear_rate_mm3_s_per_kg"] == pytest.approx(2.0, rel=ROUNDING)
+
+
+def test_gradients_have_the_group_of_their_row(regimes):
+    """Runs that wear evenly have one gradient all along, and the regime of their row's convex run."""
+    tables = [
+        pd.DataFrame({**run, "travel_mm": [0.0, 10.0, 20.0], "archard_volume_mm3": np.array([0.0, 1.0, 2.0]) * (k + 1)})
+        for k, run in enumerate(regimes[["run", "row", "surface"]].to_dict("records"))
+    ]
+    table = gradients_by_group(pd.concat(tables, ignore_index=True), regimes)
+    np.testing.assert_allclose(table.loc[table["run"] == "R2_plain", "relative_gradient"], 4.0 / 6.0, rtol=ROUNDING)
+    assert table.groupby("row")["regime"].first().to_dict() == {"R1": CONTINUOUS, "R2": DISCONTINUOUS, "R3": CONTINUOUS}
+
+
+def test_deviation_needs_three_stretches(regimes, summary, tmp_path):
+    """Forces of 4, 5 and 6 N over stretches of two cycles deviate by 1 N; two stretches have no deviation."""
+    folders = [tmp_path / run for run in summary["run"]]
+    for k, folder in enumerate(folders):
+        for cycle, forces in ((1, [4.0, 5.0] if k == 0 else [4.0]), (2, [6.0])):
+            (folder / f"cycle_{cycle:03d}").mkdir(parents=True)
+            table = pd.DataFrame({"mean_normal_force_N": forces})
+            table.to_csv(folder / f"cycle_{cycle:03d}" / "wear_history.csv", index=False)
+    table = force_by_group(summary, folders, regimes)
+    assert table.set_index("run").loc["R1_convex", "deviation_N"] == pytest.approx(1.0)
+    assert table["deviation_N"].isna().sum() == 5
+    assert force_remarks(table) == ["5 of 6 runs do not have the 3 stretches of travel that a deviation needs"]
+    assert force_remarks(table.assign(deviation_N=1.0)) == []
+    assert force_remarks(table.assign(deviation_N=np.nan))[0].startswith("no run has")
+
+
+def test_rows_in_detail(regimes, summary):
+    """Preferred rows first if the study has them, then the lowest relative wear of each regime."""
+    lower = summary.assign(wear_over_plain=[0.9, 1.0, 0.8, 1.0, 0.3, 1.0])
+    assert rows_in_detail(lower, regimes) == ["R3", "R2"]
+    assert rows_in_detail(lower, regimes, ["R1"]) == ["R1", "R3"]
+    assert rows_in_detail(lower, regimes, ["R9"], most=3) == ["R3", "R2", "R1"]
+
+
+def test_published_rows_under_own_names():
+    """A published row stands under every row of the same factors; rows that the study does not have are left out."""
+    published = pd.DataFrame({"row": ["R5", "R5", "R2"], "value": [1.0, 2.0, 3.0]})
+    table = of_published_rows(published, {"A": "R5", "B": "R5"})
+    assert table["row"].tolist() == ["A", "A", "B", "B"]
+    assert of_published_rows(published, {}).empty
+    assert published_rows_in_detail({"x": "R2", "y": "R7", "z": "R5"}) == ["z", "x"]
+
+
+def test_unsteady_flow_is_said(regimes):
+    """Figures by regime tell how many runs are not shown to be steady, and nothing where all are."""
+    assert regime_remarks(regimes) == ["regimes of 3 of 6 runs are of a flow not shown to be steady"]
+    assert regime_remarks(regimes.assign(steady=True)) == []

@@ -1,0 +1,98 @@
+"""A simulation in pieces: where they end, and that a killed one goes on where its newest whole piece ended."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from workflows.engine.pieces import CHECKPOINT, PIECES, finished_pieces, forget_pieces, piece_ends, simulate_in_pieces
+from workflows.engine.solver import LOG, SCREEN, SolverError
+
+ENDS = [100, 200, 300, 340]
+
+
+@given(st.integers(0, 1000), st.integers(1, 5000), st.integers(1, 1000))
+def test_pieces_end_with_the_cycle(first, steps, interval):
+    """Pieces end in order, the last with the cycle; all before it are one interval long, it is half to one and a half,
+    unless there is one piece."""
+    ends = piece_ends(first, first + steps, interval)
+    assert ends[-1] == first + steps
+    lengths = [end - begin for begin, end in zip([first, *ends], ends, strict=False)]
+    assert all(length == interval for length in lengths[:-1])
+    assert len(ends) == 1 or interval / 2 <= lengths[-1] < 1.5 * interval
+
+
+class Solver:
+    """Writes what a piece of the solver writes, or fails on its way."""
+
+    def __init__(self, folder, fails_at=None):
+        self.folder, self.fails_at, self.calls = folder, fails_at, []
+
+    def __call__(self, variables):
+        self.calls.append(variables)
+        begin = int(variables.get("begin_step", 0))
+        if begin:
+            assert (self.folder / variables["begin"]).read_text() == f"at {begin}"
+        for name in (LOG, SCREEN):
+            (self.folder / name).write_text(f"{begin} to\n{variables['stop']} 1.0\n")
+        if int(variables["stop"]) == self.fails_at:
+            raise SolverError("killed")
+        if int(variables["stop"]) < ENDS[-1]:
+            (self.folder / CHECKPOINT).write_text(f"at {variables['stop']}")
+        return 1.0
+
+
+@pytest.mark.parametrize("fails_at", ENDS)
+def test_a_killed_simulation_goes_on_after_its_newest_piece(tmp_path, fails_at):
+    """Every piece is simulated once but the one that was killed, and the log is that of an undisturbed simulation; it
+    can be joined again until the pieces are forgotten."""
+    with pytest.raises(SolverError):
+        simulate_in_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, fails_at))
+    (tmp_path / "checkpoint_0.restart").touch()  # killed before it was removed
+    solver, missing = Solver(tmp_path), ENDS[ENDS.index(fails_at) :]
+    done = simulate_in_pieces(tmp_path, "inputs", ENDS, solver)
+    assert [variables["stop"] for variables in solver.calls] == [str(end) for end in missing]
+    assert [piece.end for piece in done] == ENDS
+    assert sum(piece.wall_s for piece in done) == len(ENDS)
+    repeated = simulate_in_pieces(tmp_path, "inputs", ENDS, lambda variables: pytest.fail("the solver was started"))
+    assert repeated == done
+    forget_pieces(tmp_path)
+    assert finished_pieces(tmp_path, "inputs") == []
+    lines = "".join(f"{begin} to\n{end} 1.0\n" for begin, end in zip([0, *ENDS], ENDS, strict=False))
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {LOG: lines, SCREEN: lines}
+
+
+def test_pieces_of_another_start_do_not_count(tmp_path):
+    """What was begun from other inputs is not taken up."""
+    with pytest.raises(SolverError):
+        simulate_in_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, 300))
+    assert [piece.end for piece in finished_pieces(tmp_path, "inputs")] == [100, 200]
+    assert finished_pieces(tmp_path, "other inputs") == []
+
+
+@pytest.mark.parametrize(
+    "text", ["", '{"origin": "inp', "[]", '{"origin": "inputs"}', '{"origin": "inputs", "pieces": [{}]}']
+)
+def test_a_torn_list_of_pieces_is_none(tmp_path, text):
+    """A list that a full disk or a lost machine left unfinished counts no piece and stops no run."""
+    (tmp_path / PIECES).write_text(text)
+    assert finished_pieces(tmp_path, "inputs") == []
+
+
+def test_a_short_cycle_is_one_piece_that_is_told_nothing(tmp_path):
+    """A cycle below the interval runs as its deck stands."""
+    (tmp_path / SCREEN).write_text("40 1.0\n")
+    calls = []
+    simulate_in_pieces(tmp_path, "inputs", [40], lambda variables: calls.append(variables) or 1.0)
+    assert calls == [{}]
+    assert [path.name for path in tmp_path.iterdir()] == [SCREEN]
+
+
+def test_a_solver_that_was_asked_to_end_has_finished_no_piece(tmp_path):
+    """LIGGGHTS ends well when it is asked to end; its step tells, and the restart file that it leaves is nobody's."""
+    (tmp_path / SCREEN).write_text("39 1.0\n")
+    with pytest.raises(SolverError, match=r"screen.txt: LIGGGHTS ended at step 39, allowed is 40; it was asked to end"):
+        simulate_in_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
+    (tmp_path / "restart_forced_39").touch()
+    (tmp_path / SCREEN).write_text("40 1.0\n")
+    simulate_in_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
+    assert [path.name for path in tmp_path.iterdir()] == [SCREEN]

@@ -1,0 +1,231 @@
+"""Forecasts: jobs and their sizes, seconds, memory and disk, and how jobs fill cores."""
+
+import time
+from itertools import pairwise
+
+import pandas as pd
+import pytest
+
+from workflows.cases.sliding_sample.particle_size.packings import by_scale, container, packed_runs
+from workflows.cases.sliding_sample.work import cycles, settled_particles
+from workflows.config.design import list_studies, load_study
+from workflows.config.units import to_si
+from workflows.engine.bulk_tests import time_step
+from workflows.engine.progress import duration_text
+from workflows.engine.work import Stage, Work
+from workflows.forecast.cost_model import TERMS
+from workflows.forecast.forecast import (
+    DRIVER_MEMORY,
+    SOLVER_MEMORY,
+    announcement,
+    forecast_table,
+    forecast_text,
+    memory,
+    totals,
+    wall_hours,
+    work_of,
+)
+from workflows.forecast.rates import DEFAULT, read_rates
+
+EXACT = 1e-12  # relative; rounding of a few sums
+PARTICLES = 0.02  # relative; of the three beds of the screening and of the demo's, as the solver counted them
+LONGEST = 15.0  # s, of all studies at all fidelities together; it takes about one
+RATES = dict.fromkeys(TERMS, 0.0) | {"particle_steps": 1e-6, "triangle_steps": 1e-7, "cycles": 2.0, "jobs": 1.0}
+# Particles that LIGGGHTS 3.8.0 counted in levelled beds at quick fidelity: settings, and number by bed.
+SEVERAL_SCALES = {"particle_scale": 2.0, "bed": {"least_layers": 3.0, "width_mm": 100, "ahead_mm": 100}}
+COUNTED = {
+    "demo": ({}, {"bed_1": 16045}),
+    "screening": (SEVERAL_SCALES, {"bed_1": 9575, "bed_2": 8196, "bed_3": 4302}),
+}
+
+
+def job(name="a", **changes):
+    """A job of one stage: a thousand particles and steps, ten triangles, four wear cycles."""
+    stage = Stage(4, 1000, 1000.0, 10.0, surface_triangles=20.0)
+    return Work("worn_run", (name,), **{"stages": (stage,), **changes})
+
+
+@pytest.fixture(scope="module")
+def forecasts(repository):
+    """Tables of every study at every fidelity by the default rates, and how long that took."""
+    started, rates = time.process_time(), read_rates(repository / DEFAULT).rates
+    found = {}
+    for name in list_studies(repository):
+        for fidelity in ("quick", "standard", "paper"):
+            study = load_study(name, repository, {"fidelity": fidelity})
+            found[name, fidelity] = forecast_table(work_of(study), rates)
+    return found, time.process_time() - started
+
+
+def test_every_study_at_every_fidelity(forecasts):
+    """Each has jobs that cost something, with names that differ, and each starts after jobs that are there."""
+    for table in forecasts[0].values():
+        first = table[table["steps"] > 0]
+        assert (first[["particles", "solver_s", "core_h", "wall_h", "memory_gb", "disk_gb"]] > 0.0).all().all()
+        assert (table["core_h"] > 0.0).all()
+        assert table["job"].is_unique
+        assert set(table["needs"]) - {""} <= set(table["job"])
+
+
+def test_nothing_is_meshed_or_simulated_for_it(forecasts):
+    """All of them together are forecast in seconds of processor time."""
+    assert forecasts[1] < LONGEST
+
+
+def test_fidelities_cost_more_and_more(forecasts):
+    """Of studies of samples and boxes; a pin's `paper` is its `standard`."""
+    for name in {name for name, _ in forecasts[0]}:
+        hours = [forecasts[0][name, fidelity]["core_h"].sum() for fidelity in ("quick", "standard", "paper")]
+        assert all(before <= after for before, after in pairwise(hours)), name
+        assert hours[0] < hours[2]
+
+
+def test_jobs_are_those_of_the_workflow(repository):
+    """Runs start after their bed, or after the run that simulates both, for nothing; a calibration has two jobs."""
+    study = load_study("screening", repository)
+    work = {each.name: each for each in work_of(study)}
+    assert len(work) == len(study.beds) + len(study.runs)
+    for run in study.runs:
+        found, same = work[f"worn_run_{run.name}"], study.same_as(run.name)
+        assert found.needs == (f"worn_run_{same}" if same else f"settled_bed_{study.bed_of(run.name)}")
+        assert bool(found.stages) is not bool(same)
+    assert [each.name for each in work_of(load_study("calibration", repository))] == [
+        "calibrated_parameters",
+        "box_sizes",
+    ]
+
+
+@pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
+def test_packings_are_a_job_of_the_study_of_particle_size(repository, fidelity):
+    """One job that waits for nothing, with a container per scale: filled, then shaken for as long as the study says."""
+    study = load_study("particle_size", repository, {"fidelity": fidelity})
+    first, *others = work_of(study)
+    assert (first.name, first.needs) == ("packing_profiles", "")
+    assert {each.rule for each in others} == {"settled_bed", "worn_run"}
+    runs = by_scale(packed_runs(study))
+    packing = to_si(study.settings)["packing"]
+    filled, shaken = first.stages[::2], first.stages[1::2]
+    assert len(filled) == len(shaken) == len(runs)
+    for run, poured, levelled in zip(runs.values(), filled, shaken, strict=True):
+        assert poured.decks == 1 and levelled.decks == 0 and levelled.moving
+        assert poured.particles > levelled.particles > packing["width_diameters"] ** 2
+        assert levelled.steps * time_step(container(run, packing)) > packing["shaking_s"]
+
+
+def test_packings_of_larger_and_of_fewer_particles_cost_less(repository):
+    """Rows left out take their containers with them, and a container of smaller particles costs more."""
+    rates = read_rates(repository / DEFAULT).rates
+    seconds = {}
+    for rows in (["S4"], ["S8"], ["S4", "S8"]):
+        work = work_of(load_study("particle_size", repository, {"rows": rows}))[:1]
+        seconds["".join(rows)] = forecast_table(work, rates)["solver_s"].iloc[0]
+    assert seconds["S4S8"] == pytest.approx(seconds["S4"] + seconds["S8"], rel=EXACT)
+    assert seconds["S4"] > 2.0 * seconds["S8"]
+
+
+def test_other_studies_have_no_packings(repository):
+    """A study whose rows are of one particle scale, or of another case, has none in its forecast."""
+    for name in ("demo", "screening", "pin_on_disc", "calibration", "circular_tester"):
+        assert "packing_profiles" not in {each.name for each in work_of(load_study(name, repository))}
+
+
+@pytest.mark.parametrize("name", COUNTED)
+def test_particles_of_levelled_beds(repository, name):
+    """Mass over volume, less what levelling takes off and the looser layer on the floor."""
+    settings, counts = COUNTED[name]
+    study = load_study(name, repository, settings)
+    for run in study.runs:
+        counted = counts[study.bed_of(run.name)]
+        assert settled_particles(run.parameters) == pytest.approx(counted, rel=PARTICLES)
+
+
+def test_adaptive_cycles_of_a_run_that_was_done(repository):
+    """The worn bump took 208 at quick fidelity, from which the number is scaled; twice the acceleration doubles it."""
+    run = load_study("worn_bump", repository).runs[0].parameters
+    twice = load_study("worn_bump", repository, {"wear": {"acceleration": 2.0e5}}).runs[0].parameters
+    assert cycles(run) == pytest.approx(208, abs=1)
+    assert cycles(twice) == pytest.approx(2 * 208, abs=1)
+
+
+def test_seconds_of_a_job():
+    """Particle steps, triangle steps, cycles and starts of jobs, the mesh's included; of a shared run its job alone."""
+    found = forecast_table([job(), job("b", stages=())], RATES).set_index("job")
+    assert found["solver_s"].tolist() == pytest.approx([1.0 + 0.001, 0.0], rel=EXACT)
+    assert found["outside_s"].tolist() == pytest.approx([4 * 2.0 + 2.0, 1.0], rel=EXACT)
+    assert found.loc["worn_run_a", "core_h"] == pytest.approx((1.001 + 10.0) / 3600.0, rel=EXACT)
+
+
+def test_stages_add_up():
+    """Two stages cost what both cost alone; sizes are the largest, steps and cycles the sum."""
+    stages = (Stage(1, 500, 2000.0, 10.0), Stage(3, 1500, 1000.0, 30.0, 7.0, True, 40.0))
+    both = forecast_table([job(stages=stages)], RATES).iloc[0]
+    parts = forecast_table([job(stages=(stage,)) for stage in stages], RATES)
+    assert both["solver_s"] == pytest.approx(parts["solver_s"].sum(), rel=EXACT)
+    assert (both["particles"], both["triangles"], both["steps"], both["cycles"]) == (2000, 30, 2000, 3)
+
+
+def test_ranks_and_simulations_side_by_side():
+    """They share the solver's work, take as many cores, and need no other core hours."""
+    one, two = (forecast_table([job(**more)], RATES).iloc[0] for more in ({}, {"ranks": 2, "parallel": 3}))
+    assert two["core_h"] == one["core_h"] and two["cores"] == 6
+    assert two["wall_h"] * 3600.0 == pytest.approx(one["solver_s"] / 6 + one["outside_s"], rel=EXACT)
+
+
+def test_memory_grows_with_what_is_simulated():
+    """An empty job needs driver and solver; three simulations side by side three solvers."""
+    empty = job(stages=(Stage(1, 1, 0.0),))
+    assert memory(empty) == DRIVER_MEMORY + SOLVER_MEMORY and memory(job(stages=())) == DRIVER_MEMORY
+    assert memory(job(stages=empty.stages, parallel=3)) == DRIVER_MEMORY + 3 * SOLVER_MEMORY
+    assert memory(job()) > memory(empty)
+
+
+def jobs_table(*rows):
+    """A table of jobs: name, wall hours, cores, need."""
+    return pd.DataFrame(rows, columns=["job", "wall_h", "cores", "needs"])
+
+
+@pytest.mark.parametrize(("cores", "hours"), [(1, 10.0), (2, 6.0), (3, 5.0), (64, 5.0)])
+def test_wall_time_of_a_bed_and_its_runs(cores, hours):
+    """A bed of 1 h, then runs of 4, 3 and 2 h: one after the other, two at a time, all at once."""
+    table = jobs_table(("bed", 1.0, 1, ""), ("a", 4.0, 1, "bed"), ("b", 3.0, 1, "bed"), ("c", 2.0, 1, "bed"))
+    assert wall_hours(table, cores) == pytest.approx(hours, rel=EXACT)
+
+
+def test_a_job_wider_than_the_machine_takes_longer():
+    """Four ranks on two cores take twice as long, and nothing runs beside them."""
+    assert wall_hours(jobs_table(("a", 1.0, 4, ""), ("b", 1.0, 1, "")), 2) == pytest.approx(3.0, rel=EXACT)
+
+
+def test_needs_that_are_done_already_are_not_waited_for():
+    """Of a study of which the beds are there only the runs are forecast."""
+    assert wall_hours(jobs_table(("a", 2.0, 1, "bed")), 1) == 2.0
+
+
+def test_the_text_has_a_line_per_job_the_totals_and_where_rates_come_from(repository):
+    """What a person reads: jobs, core hours, wall time on these and on more cores, whose rates they are."""
+    study, found = load_study("screening", repository, {"fidelity": "paper"}), read_rates(repository / DEFAULT)
+    table = forecast_table(work_of(study), found.rates)
+    text = forecast_text("screening, fidelity paper", study.name, table, 2, found.said())
+    assert all(f"\n{name} " in text for name in table["job"])
+    assert f"screening: {len(table)} jobs of the solver, about {table['core_h'].sum():,.0f} core hours" in text
+    assert "16: " in text and "256: " in text and "DEFAULT RATES OF ANOTHER MACHINE" in text
+
+
+def test_the_announcement_counts_what_is_left(repository, tmp_path, monkeypatch):
+    """Before a study runs its missing jobs are told in one line; the ones that are done do not count."""
+    monkeypatch.chdir(tmp_path)
+    study = load_study("demo", repository)
+    table = forecast_table(work_of(study), read_rates(repository / DEFAULT).rates)
+    last = table[table["job"] == "worn_run_R9_plain"]
+    said = announcement(study, {"worn_run_R9_plain"}, repository, 2)
+    assert said.startswith("Forecast of demo: 1 job of the solver") and "\n" not in said
+    assert duration_text(3600.0 * totals(last, 2)["wall_h"]) in said
+
+
+def test_damaged_rates_do_not_stop_a_study(repository, tmp_path, monkeypatch):
+    """The line says what is wrong instead of a forecast."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results/cost_rates.json").write_text("{")
+    said = announcement(load_study("demo", repository), {"worn_run_R9_plain"}, repository, 2)
+    assert said.startswith("No forecast: results/cost_rates.json: no file of rates")

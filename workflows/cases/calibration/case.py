@@ -1,0 +1,151 @@
+"""Contact parameters calibrated on a shear box and a draw-down test (Yan 2022, section 3.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from workflows.config.layers import ConfigError
+from workflows.config.run_checks import Check, CheckedRun, Fault
+from workflows.engine import bulk_tests
+from workflows.engine.case import Case, Parameters, Run, register
+from workflows.engine.sections import particle_section, wall_section
+from workflows.engine.work import Work
+
+PUBLISHED = Path(__file__).resolve().parents[3] / "config" / "published"
+LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
+LEAST_SLOT_DIAMETERS = 5.0  # -, of a slot as simulated. Measured: at 4.0 an arch blocked it, friction 0.32 and 0.37
+
+
+def published(name: str) -> pd.DataFrame:
+    """Return a table of config/published. Raises ConfigError when there is none of that name."""
+    if not (PUBLISHED / name).is_file():
+        there = ", ".join(sorted(path.name for path in PUBLISHED.glob("*.csv")))
+        raise ConfigError(f"config/published/{name}: there is no such file, found in its folder: {there or 'nothing'}.")
+    return pd.read_csv(PUBLISHED / name)
+
+
+# ---------------------------------------------------------------- checks
+
+
+def box_holds_particles(run: CheckedRun) -> Fault | None:
+    """A box is at least ten median diameters of its (coarse-grained) particles long and high."""
+    diameter = run.parameters["particle"]["median_diameter_m"]
+    for section in {"shear_box", *run.parameters["calibration"]["tests"]}:
+        for key in ("length", "fill_height"):
+            if run.parameters[section][f"{key}_m"] < LEAST_DIAMETERS * diameter:
+                return f"{section}.{key}_mm", f"at least {1e3 * LEAST_DIAMETERS * diameter:.4g}, ten particle diameters"
+    return None
+
+
+def slot_lets_particles_pass(run: CheckedRun) -> Fault | None:
+    """A draw-down test's slot is at least five median diameters long as simulated, and shorter than half the box."""
+    if "draw_down" not in run.parameters["calibration"]["tests"]:
+        return None
+    box, particle = run.parameters["draw_down"], run.parameters["particle"]
+    wider = bulk_tests.slot_length({"box": box, "particle": particle}) - box["opening_m"]
+    low = LEAST_SLOT_DIAMETERS * particle["median_diameter_m"] - wider
+    if not low <= box["opening_m"] < box["length_m"] / 2.0:
+        return "draw_down.opening_mm", (
+            f"from {1e3 * max(low, 0.0):.4g} (five particle diameters as simulated) to half the box's length"
+        )
+    return None
+
+
+def ranges_in_order(run: CheckedRun) -> Fault | None:
+    """A parameter's low is below its high, and each parameter stands once."""
+    parameters = run.settings["calibration"]["parameters"]
+    if any(each["low"] >= each["high"] for each in parameters):
+        return "calibration.parameters", "a low below the high of every parameter"
+    if len({each["name"] for each in parameters}) < len(parameters):
+        return "calibration.parameters", "each parameter once"
+    return None
+
+
+def pairs_are_known(run: CheckedRun) -> Fault | None:
+    """The compared pair and that of the sizes are rows of the table of pairs simulated before."""
+    calibration = run.settings["calibration"]
+    rows = list(published(calibration["simulated_before"])["row"])
+    for key in ("compared_pair", "sizes_pair"):
+        if calibration[key] not in rows:
+            return f"calibration.{key}", f"one of {', '.join(rows)}, the rows of {calibration['simulated_before']}"
+    return None
+
+
+def initial_below_most(run: CheckedRun) -> Fault | None:
+    """A test has at least as many simulations in all as before the acquisition rule."""
+    calibration = run.settings["calibration"]
+    for test in calibration["tests"]:
+        if calibration["initial"][test] > calibration["most"][test]:
+            return "calibration.most", f"for {test} at least calibration.initial.{test}, {calibration['initial'][test]}"
+    return None
+
+
+class Calibration(Case):
+    """Contact parameters from bulk tests: a driver simulates where a rule says; design rows are boxes of other sizes.
+
+    The calibration itself uses the box of the first row.
+    """
+
+    name = "calibration"
+    material_keys = (
+        ("bulk", "material", "particles"),
+        ("shear_box", "wall_material", "walls"),
+        ("shear_box", "floor_material", "walls"),
+        ("draw_down", "wall_material", "walls"),
+        ("draw_down", "front_material", "walls"),
+    )
+    checks: tuple[Check, ...] = (
+        box_holds_particles,
+        slot_lets_particles_pass,
+        ranges_in_order,
+        pairs_are_known,
+        initial_below_most,
+    )
+    run_templates = ("shear_box", "draw_down")
+
+    def run_parameters(
+        self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
+    ) -> dict[str, Any]:
+        """Return the settings of a box size with its materials: all that its simulations depend on besides the pair."""
+        sections = ("shear_box", "draw_down", "rest", "calibration")
+        solver = {key: settings["solver"][key] for key in ("rayleigh_fraction", "rolling_friction", "rolling_radius")}
+        return {
+            **{name: settings[name] for name in sections},
+            "solver": solver,
+            "particle": particle_section(settings["bulk"]["material"], materials, settings["particle_scale"]),
+            "walls": {name: wall_section(name, materials) for name in materials["walls"]},
+            "varied": factors["varied"],
+        }
+
+    def table_columns(self, parameters: Parameters) -> dict[str, Any]:
+        """Return particle scale, and the box's width as simulated."""
+        return {
+            "particle_scale": parameters["particle"]["scale"],
+            "simulated_width_m": bulk_tests.simulated_width(parameters["shear_box"], parameters["particle"]),
+        }
+
+    def work(
+        self, runs: Sequence[Run], beds: Mapping[str, Parameters], bed_of: Mapping[str, str], ranks: int
+    ) -> tuple[Work, ...]:
+        """Return the calibration with the first row's box and the boxes of all sizes: a job with many simulations each.
+
+        The calibration is that of `calibration.most` simulations; it may stop before.
+        """
+        from workflows.cases.calibration import work as found
+
+        parallel = runs[0].parameters["calibration"]["batch"]
+        jobs = {
+            "calibrated_parameters": found.calibration_stages(runs[0].parameters),
+            "box_sizes": found.sizes_stages([run.parameters for run in runs]),
+        }
+        return tuple(
+            Work(rule, (), stages, parallel=parallel, disk_bytes=found.simulation_bytes(stages))
+            for rule, stages in jobs.items()
+        )
+
+
+register(Calibration())

@@ -1,0 +1,76 @@
+"""Simulate a pair that a calibration found in a test, or at a particle scale, that the calibration did not use.
+
+python -m workflows.cases.calibration.checked_pairs [--study calibration] [--pair recommended]
+    [--test draw_down] [--fidelity standard] [--seeds 2]
+
+Reads the pair from results/<study>/repeats.csv and adds a row per packing to results/<study>/checked_pairs.csv; what is
+there already is not simulated again. The simulations lie beside those of the calibration.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import pandas as pd
+
+from postproc.flow.bulk_test import RESPONSES
+from workflows.cases.calibration.driver import SIMULATIONS, repeated
+from workflows.cases.calibration.responses import RECOMMENDED
+from workflows.config.design import load_study
+from workflows.engine import state
+from workflows.engine.bulk_tests import simulated_width
+from workflows.engine.case import Parameters
+from workflows.engine.progress import Progress
+
+CHECKED = "checked_pairs.csv"
+MARKS = [
+    "pair",
+    "test",
+    "seed",
+    "particle_scale",
+    "width_mm",
+]  # columns that tell one row from another, with the parameters
+
+
+def pair_found(repeats: pd.DataFrame, pair: str, names: list[str]) -> dict[str, float]:
+    """Return {parameter: value} of a pair in a calibration's table of repeats. Raises ValueError when it has none."""
+    rows = repeats[repeats["pair"] == pair]
+    if rows.empty:
+        there = ", ".join(dict.fromkeys(repeats["pair"]))
+        raise ValueError(f"repeats.csv has no pair {pair!r}, there are {there}.")
+    return {name: float(rows[name].iloc[0]) for name in names}
+
+
+def check_pair(parameters: Parameters, pair: str, folder: Path, workers: int) -> pd.DataFrame:
+    """Simulate a pair in the tests of `parameters`, add its rows to the table in the folder, and return the table."""
+    say = Progress("checked pairs", 1).say
+    names = [each["name"] for each in parameters["calibration"]["parameters"]]
+    values = pair_found(pd.read_csv(folder / "repeats.csv"), pair, names)
+    with state.only_driver(folder / SIMULATIONS, say):
+        rows = repeated(parameters, {pair: values}, folder, workers, say)
+    rows.insert(3, "particle_scale", parameters["particle"]["scale"])
+    widths = {kind: 1e3 * simulated_width(parameters[kind], parameters["particle"]) for kind in set(rows["test"])}
+    rows.insert(4, "width_mm", rows["test"].map(widths))
+    before = [pd.read_csv(folder / CHECKED)] if (folder / CHECKED).is_file() else []
+    table = pd.concat([*before, rows]).drop_duplicates([*MARKS, *names], keep="last", ignore_index=True)
+    table.to_csv(folder / CHECKED, index=False)
+    return table
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--study", default="calibration")
+    parser.add_argument("--pair", default=RECOMMENDED)
+    parser.add_argument("--test", default="draw_down", choices=RESPONSES)
+    parser.add_argument("--fidelity", default="standard")
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--workers", type=int, default=1, help="simulations at the same time")
+    given = parser.parse_args()
+    asked = {"fidelity": given.fidelity, "calibration": {"tests": [given.test], "repeats": given.seeds}}
+    run = load_study(given.study, overrides=asked).all_runs[0].parameters
+    print(check_pair(run, given.pair, Path("results") / given.study, given.workers).to_string(index=False))
+
+
+if __name__ == "__main__":
+    main()

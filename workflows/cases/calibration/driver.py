@@ -1,0 +1,204 @@
+"""Calibrate contact parameters on bulk tests: from a study's parameters to simulations, and from these to tables.
+
+Parameters are those of a run of `case: calibration` (cases/calibration.py), SI; the first run's box is the
+calibration's, all runs' are compared by size. One job each, resumable: a simulation that was done is not done again.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from postproc.flow.bulk_test import RESPONSES
+from postproc.inference.loop import Posterior, Request, calibrate, packing_seed, posterior
+from postproc.inference.problem import Experiment, Parameter, Problem
+from workflows.cases.calibration.responses import RECOMMENDED, read_measured
+from workflows.engine import state
+from workflows.engine.bulk_simulations import answer, simulate_all
+from workflows.engine.bulk_tests import simulated_width
+from workflows.engine.case import Parameters
+from workflows.engine.progress import Progress
+
+SIMULATIONS = "simulations"
+FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
+SHEAR_BOX, SHEAR_ANGLE = "shear_box", "shear_angle_deg"
+
+
+def problem_of(parameters: Parameters, measured: str | Path) -> Problem:
+    """Return the calibration that a study's parameters ask for; `measured` is the table of measured responses."""
+    asked = parameters["calibration"]
+    return Problem(
+        parameters=tuple(Parameter(each["name"], each["low"], each["high"]) for each in asked["parameters"]),
+        tests=tuple(
+            Experiment(kind, RESPONSES[kind], asked["initial"][kind], asked["most"][kind]) for kind in asked["tests"]
+        ),
+        measured=read_measured(measured),
+        parallel=asked["batch"],
+        surrogate_share=asked["surrogate_share"],
+        seed=asked["seed"],
+    )
+
+
+def test_of(parameters: Parameters, kind: str, values: Mapping[str, float], seed: int) -> dict[str, Any]:
+    """Return a bulk test (see bulk_tests.py) with values of the calibrated parameters, by dotted name."""
+    box, walls = dict(parameters[kind]), parameters["walls"]
+    second = box.pop("floor_material" if kind == SHEAR_BOX else "front_material")
+    test = {
+        "kind": kind,
+        "wall_material": walls[box.pop("wall_material")],
+        "floor_material": walls[second],
+        "box": {**box, "width_m": simulated_width(box, parameters["particle"])},
+        "rest": dict(parameters["rest"]),
+        "particle": parameters["particle"],
+        "solver": dict(parameters["solver"]),
+        "seed": seed,
+    }
+    return with_values(test, values)
+
+
+def with_values(test: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
+    """Return a test with other values at dotted names, e.g. particle.contact.sliding_friction."""
+    changed = copy.deepcopy(dict(test))
+    for name, value in values.items():
+        *sections, key = name.split(".")
+        target = changed
+        for section in sections:
+            target = target[section]
+        target[key] = value
+    return changed
+
+
+def pair_of(pairs: pd.DataFrame, row: str, names: Sequence[str], parameters: Parameters) -> dict[str, float]:
+    """Return the values of a row of a table of pairs; a parameter that it does not have keeps the material's value."""
+    found = pairs[pairs["row"] == row].iloc[0]
+    present = test_of(parameters, SHEAR_BOX, {}, 0)
+    return {name: float(found[name]) if name in found else _value_at(present, name) for name in names}
+
+
+def _value_at(test: Mapping[str, Any], name: str) -> float:
+    found: Any = test
+    for key in name.split("."):
+        found = found[key]
+    return float(found)
+
+
+# ---------------------------------------------------------------- jobs
+
+
+def run_calibration(
+    parameters: Parameters, measured: Path, pairs: Path, folder: Path, workers: int
+) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
+    """Calibrate, then simulate the recommended and the compared pair with several seeds.
+
+    workers: simulations at the same time. Returns the simulations, the looks at the surrogate and the repeats, one row
+    each. Raises SolverError; what was simulated is kept in the folder.
+    """
+    say = Progress("calibration", 1).say
+    problem = problem_of(parameters, measured)
+    with state.only_driver(folder / SIMULATIONS, say):
+
+        def simulate(requests: Sequence[Request]) -> list[dict[str, float]]:
+            tests = [test_of(parameters, each.test, each.values, each.seed) for each in requests]
+            return [answer(found) for found in simulate_all(tests, folder / SIMULATIONS, workers, say)]
+
+        result = calibrate(problem, simulate, say)
+        compared = compared_pairs(problem, result.posterior, parameters, pd.read_csv(pairs))
+        repeats = repeated(parameters, compared, folder, workers, say)
+    return result.simulations, result.shares, repeats
+
+
+def compared_pairs(
+    problem: Problem, known: Posterior, parameters: Parameters, pairs: pd.DataFrame
+) -> dict[str, dict[str, float]]:
+    """Return {name: values} of the recommended pair and of the one that it is compared with."""
+    values = problem.from_unit(known.points[known.recommended][None])[0]
+    other = parameters["calibration"]["compared_pair"]
+    return {
+        RECOMMENDED: dict(zip(problem.names, map(float, values), strict=True)),
+        other: pair_of(pairs, other, problem.names, parameters),
+    }
+
+
+def repeated(
+    parameters: Parameters,
+    pairs: Mapping[str, Mapping[str, float]],
+    folder: Path,
+    workers: int,
+    say: Callable[[str], None],
+) -> pd.DataFrame:
+    """Return one row per pair, test and seed: pair, test, seed, the parameters and the responses."""
+    asked = [
+        (name, kind, seed)
+        for kind in parameters["calibration"]["tests"]
+        for name in pairs
+        for seed in repeat_seeds(parameters)
+    ]
+    tests = [test_of(parameters, kind, pairs[name], seed) for name, kind, seed in asked]
+    found = simulate_all(tests, folder / SIMULATIONS, workers, say)
+    rows = [
+        {"pair": name, "test": kind, "seed": seed, **pairs[name], **answer(each)}
+        for (name, kind, seed), each in zip(asked, found, strict=True)
+    ]
+    return pd.DataFrame(rows)
+
+
+def repeat_seeds(parameters: Parameters) -> list[int]:
+    """Return the seeds of the packings that are repeated."""
+    asked = parameters["calibration"]
+    return [packing_seed(asked["seed"], FIRST_REPEAT + number) for number in range(asked["repeats"])]
+
+
+def run_box_sizes(runs: Mapping[str, Parameters], pairs: Path, folder: Path, workers: int) -> pd.DataFrame:
+    """Return one row per box size: the shear angle at the pair of the sizes, its mean and scatter over seeds."""
+    say = Progress("box sizes", 1).say
+    table = pd.read_csv(pairs)
+    asked = [(name, seed) for name, parameters in runs.items() for seed in repeat_seeds(parameters)]
+    tests = [test_of(runs[name], SHEAR_BOX, _pair_of_sizes(runs[name], table), seed) for name, seed in asked]
+    with state.only_driver(folder / SIMULATIONS, say):
+        found = simulate_all(tests, folder / SIMULATIONS, workers, say)
+    angles = [each.responses[SHEAR_ANGLE] for each in found]
+    return pd.DataFrame(
+        [
+            _size_row(name, parameters, [angle for (row, _), angle in zip(asked, angles, strict=True) if row == name])
+            for name, parameters in runs.items()
+        ]
+    )
+
+
+def _pair_of_sizes(parameters: Parameters, table: pd.DataFrame) -> dict[str, float]:
+    asked = parameters["calibration"]
+    return pair_of(table, asked["sizes_pair"], [each["name"] for each in asked["parameters"]], parameters)
+
+
+def _size_row(name: str, parameters: Parameters, angles: Sequence[float]) -> dict[str, Any]:
+    box, particle = parameters[SHEAR_BOX], parameters["particle"]
+    width = simulated_width(box, particle)
+    return {
+        "row": name,
+        "varied": parameters["varied"],
+        "length_mm": 1e3 * box["length_m"],
+        "width_mm": 1e3 * width,
+        "width_in_diameters": width / particle["median_diameter_m"],
+        "mean": float(np.mean(angles)),
+        "deviation": float(np.std(angles, ddof=1)) if len(angles) > 1 else np.nan,
+        "seeds": len(angles),
+    }
+
+
+def read_posterior(
+    parameters: Parameters, measured: Path, simulations: Path, repeats: Path
+) -> tuple[Problem, pd.DataFrame, Posterior]:
+    """Return the calibration, its simulations and the posterior of all of them, from finished tables.
+
+    The recommended pair is the one that the calibration found and repeated; its repeats then tell as much as any other
+    simulation, above all how far packings scatter.
+    """
+    problem, table = problem_of(parameters, measured), pd.read_csv(simulations)
+    everything = pd.concat([table, pd.read_csv(repeats)], ignore_index=True)
+    return problem, table, replace(posterior(problem, everything), chosen=posterior(problem, table).recommended)

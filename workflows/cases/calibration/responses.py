@@ -1,0 +1,207 @@
+"""Tables of a calibration: responses over the parameters, the family that fits, and what is said about pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from scipy.ndimage import gaussian_filter
+
+from postproc.inference.acquisition import expected_information
+from postproc.inference.loop import Posterior, posterior
+from postproc.inference.posterior import FAMILY_SHARE, densest, distance_from, interval
+from postproc.inference.problem import Measured, Problem
+
+GRID_POINTS = 41  # along each of the two parameters of a map
+PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior
+PICTURE_BINS = 40  # along each parameter
+RECOMMENDED, MEASURED = "recommended", "measured"
+BAND = 1.0  # -, standard deviations of the measurement: what counts as inside its band
+
+
+def read_measured(path: str) -> dict[str, Measured]:
+    """Return the measured responses of a table with the columns response, value, deviation."""
+    table = pd.read_csv(path)
+    return {row.response: Measured(float(row.value), float(row.deviation)) for row in table.itertuples()}
+
+
+def response_grid(problem: Problem, known: Posterior) -> pd.DataFrame:
+    """Return the responses over a grid of the first two parameters, the others at their recommended values.
+
+    Columns: the parameters; per response its mean and `<response>_doubt`, the surrogate's standard deviation.
+    """
+    line = np.linspace(0.0, 1.0, GRID_POINTS)
+    points = np.tile(known.points[known.recommended], (GRID_POINTS**2, 1))
+    points[:, :2] = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    table = pd.DataFrame(problem.from_unit(points), columns=problem.names)
+    for name, surrogate in known.surrogates.items():
+        mean, variance = surrogate.predict(points)
+        table[name], table[f"{name}_doubt"] = mean, np.sqrt(variance)
+    return table
+
+
+def family_table(problem: Problem, simulations: pd.DataFrame) -> pd.DataFrame:
+    """Return the posterior on bins of every two parameters: first, second, their values, density over its largest, and
+    denser_share, the share of the posterior in denser bins (at most 0.95 in the family)."""
+    fine = posterior(problem, simulations, PICTURE_POWER)
+    values = problem.from_unit(fine.points)
+    names = problem.names
+    tables = []
+    for i in range(len(names)):
+        for j in range(i + 1, len(names)):
+            ranges = [(problem.parameters[k].low, problem.parameters[k].high) for k in (i, j)]
+            counts, *edges = np.histogram2d(values[:, i], values[:, j], PICTURE_BINS, ranges, weights=fine.weights)
+            density = gaussian_filter(counts, 0.7, mode="nearest")
+            middles = [(edge[1:] + edge[:-1]) / 2.0 for edge in edges]
+            x, y = np.meshgrid(*middles, indexing="ij")
+            tables.append(
+                pd.DataFrame(
+                    {
+                        "first": names[i],
+                        "second": names[j],
+                        "first_value": x.ravel(),
+                        "second_value": y.ravel(),
+                        "density": (density / density.max()).ravel(),
+                        "denser_share": _denser_share(density).ravel(),
+                    }
+                )
+            )
+    return pd.concat(tables, ignore_index=True)
+
+
+def _denser_share(density: np.ndarray) -> np.ndarray:
+    """Return for every bin the share of all that lies in denser bins."""
+    flat = density.ravel()
+    order = np.argsort(flat)[::-1]
+    before = np.concatenate([[0.0], np.cumsum(flat[order])[:-1]]) / flat.sum()
+    shares = np.empty_like(flat)
+    shares[order] = before
+    return shares.reshape(density.shape)
+
+
+def interval_table(problem: Problem, known: Posterior, compared: Mapping[str, float]) -> pd.DataFrame:
+    """Return one row per parameter: its range, the recommended value, the interval with 95 % of the posterior, and the
+    value of the pair that ours is compared with."""
+    values = problem.from_unit(known.points)
+    rows = []
+    for column, parameter in enumerate(problem.parameters):
+        low, high = interval(values[:, column], known.weights)
+        rows.append(
+            {
+                "parameter": parameter.name,
+                "searched_from": parameter.low,
+                "searched_to": parameter.high,
+                "recommended": values[known.recommended, column],
+                "low": low,
+                "high": high,
+                "compared": compared.get(parameter.name, np.nan),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def statement_table(
+    problem: Problem, known: Posterior, repeats: pd.DataFrame, pairs: Mapping[str, Mapping[str, float]]
+) -> pd.DataFrame:
+    """Return one row per pair and response: what was measured, simulated and predicted, and how far apart they are.
+
+    repeats: as from `repeat_table`. deviations: simulated minus measured, over the measured standard deviation; inside:
+    at most one of these, or closer than the standard uncertainty of the simulated mean; denser_share: of the posterior
+    in pairs that fit better, at most 0.95 in the family.
+    """
+    rows = []
+    for pair, values in pairs.items():
+        index = nearest_point(problem, known, values)
+        share = distance_from(known.weights, known.predicted, problem.measured, index)["denser_share"]
+        for name, (mean, variance) in known.predicted.items():
+            found = repeats[(repeats["pair"] == pair) & (repeats["response"] == name)]
+            aim = problem.measured.get(name)
+            simulated = float(found["mean"].iloc[0]) if len(found) else np.nan
+            uncertainty = float(found["uncertainty"].iloc[0]) if len(found) else np.nan
+            rows.append(
+                {
+                    "pair": pair,
+                    **values,
+                    "response": name,
+                    "measured": aim.value if aim else np.nan,
+                    "measured_deviation": aim.deviation if aim else np.nan,
+                    "simulated": simulated,
+                    "simulated_uncertainty": uncertainty,
+                    "between_seeds": float(found["deviation"].iloc[0]) if len(found) else np.nan,
+                    "seeds": int(found["seeds"].iloc[0]) if len(found) else 0,
+                    "predicted": float(mean[index]),
+                    "predicted_deviation": float(np.sqrt(variance[index])),
+                    "deviations": (simulated - aim.value) / aim.deviation if aim else np.nan,
+                    "inside": _inside(simulated, uncertainty, aim) if aim else "",
+                    "denser_share": share,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def _inside(simulated: float, uncertainty: float, aim: Measured) -> str:
+    """Return inside, within uncertainty, outside, or not simulated."""
+    if np.isnan(simulated):
+        return "not simulated"
+    away = abs(simulated - aim.value)
+    if away <= BAND * aim.deviation:
+        return "inside"
+    return "within its uncertainty" if away <= BAND * np.hypot(aim.deviation, uncertainty) else "outside"
+
+
+def nearest_point(problem: Problem, known: Posterior, values: Mapping[str, float]) -> int:
+    """Return which point of a posterior is nearest to values of the parameters."""
+    point = problem.to_unit(np.array([[values[name] for name in problem.names]]))
+    return int(np.argmin(np.linalg.norm(known.points - point, axis=1)))
+
+
+def repeat_table(repeats: pd.DataFrame, responses: Sequence[str]) -> pd.DataFrame:
+    """Return mean and scatter between seeds of every response and pair.
+
+    repeats: a row per simulation with pair and responses. Columns: pair, response, seeds, mean, deviation (between
+    seeds; NaN with one), uncertainty (of the mean: a single one's is at least that of its measurement).
+    """
+    rows = []
+    for pair, table in repeats.groupby("pair", sort=False):
+        for name in (name for name in responses if name in table and table[name].notna().any()):
+            known = table[table[name].notna()]
+            values, several = known[name].to_numpy(float), len(known) > 1
+            deviation = float(np.std(values, ddof=1)) if several else np.nan
+            single = float(known[f"{name}_uncertainty"].mean())
+            uncertainty = max(deviation, single) / np.sqrt(len(values)) if several else single
+            head = {"pair": pair, "response": name, "seeds": len(values), "mean": float(values.mean())}
+            rows.append(head | {"deviation": deviation, "uncertainty": float(uncertainty)})
+    return pd.DataFrame(rows)
+
+
+def with_bands(repeats: pd.DataFrame, measured: Mapping[str, Measured]) -> pd.DataFrame:
+    """Return a table as from `repeat_table` with measured, measured_deviation, deviations and inside, as in
+    `statement_table`; only the responses that were measured."""
+    table = repeats[repeats["response"].isin(measured)].reset_index(drop=True)
+    aims = [measured[name] for name in table["response"]]
+    table["measured"], table["measured_deviation"] = [aim.value for aim in aims], [aim.deviation for aim in aims]
+    table["deviations"] = (table["mean"] - table["measured"]) / table["measured_deviation"]
+    each = zip(table["mean"], table["uncertainty"], aims, strict=True)
+    table["inside"] = [_inside(mean, uncertainty, aim) for mean, uncertainty, aim in each]
+    return table
+
+
+def information_table(problem: Problem, known: Posterior) -> pd.DataFrame:
+    """Return one row per measured response: the bits that measuring it once more is expected to tell about the
+    parameters, and its spread over the family, in the response's unit and in standard deviations of its measurement."""
+    bits = expected_information(known.weights, known.predicted, problem.measured, problem.seed)
+    family = densest(known.weights, FAMILY_SHARE)
+    rows = []
+    for name, value in bits.items():
+        mean = known.predicted[name][0][family]
+        spread = float(np.ptp(mean))
+        rows.append(
+            {
+                "response": name,
+                "information_bits": value,
+                "spread_over_family": spread,
+                "spread_in_deviations": spread / problem.measured[name].deviation,
+            }
+        )
+    return pd.DataFrame(rows).sort_values("information_bits", ascending=False, ignore_index=True)

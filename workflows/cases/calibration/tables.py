@@ -1,0 +1,193 @@
+"""Tables, figures and materials of a finished calibration, from the tables that its simulations left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import yaml
+
+from postproc.flow.bed import read_snapshot
+from postproc.flow.bulk_test import HEAP, slope_table
+from postproc.inference.loop import Posterior
+from postproc.inference.problem import Problem
+from postproc.plots.style import save
+from workflows.cases.calibration.driver import SIMULATIONS, compared_pairs, read_posterior, repeat_seeds, test_of
+from workflows.cases.calibration.plots import responses as plots
+from workflows.cases.calibration.plots.heaps import heaps
+from workflows.cases.calibration.responses import (
+    RECOMMENDED,
+    family_table,
+    information_table,
+    interval_table,
+    repeat_table,
+    response_grid,
+    statement_table,
+)
+from workflows.engine.bulk_simulations import flowing
+from workflows.engine.bulk_tests import slot_length
+from workflows.engine.case import Parameters
+from workflows.report.figures import OF_CALIBRATIONS
+
+TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test"}
+
+
+@dataclass(frozen=True, eq=False)
+class Calibrated:
+    """A finished calibration as its tables and figures need it."""
+
+    parameters: Parameters
+    folder: Path
+    problem: Problem
+    simulations: pd.DataFrame
+    known: Posterior
+    repeats: pd.DataFrame
+    pairs: Mapping[str, Mapping[str, float]]
+    published: pd.DataFrame
+
+    @property
+    def repeat_means(self) -> pd.DataFrame:
+        """Mean and scatter of every response of the pairs that were repeated."""
+        return repeat_table(self.repeats, [name for test in self.problem.tests for name in test.responses])
+
+    @property
+    def statements(self) -> pd.DataFrame:
+        """What is said about each pair and response."""
+        return statement_table(self.problem, self.known, self.repeat_means, self.pairs)
+
+    @property
+    def everything(self) -> pd.DataFrame:
+        """All simulations of the calibration, those of the pairs that were repeated too."""
+        return pd.concat([self.simulations, self.repeats], ignore_index=True)
+
+    @property
+    def compared(self) -> str:
+        """Name of the pair that the recommended one is compared with."""
+        return self.parameters["calibration"]["compared_pair"]
+
+
+def read_calibrated(parameters: Parameters, measured_file: Path, pairs_file: Path, folder: Path) -> Calibrated:
+    """Return a finished calibration from simulations.csv and repeats.csv in the study's folder."""
+    problem, table, known = read_posterior(
+        parameters, measured_file, folder / "simulations.csv", folder / "repeats.csv"
+    )
+    published = pd.read_csv(pairs_file)
+    pairs = compared_pairs(problem, known, parameters, published)
+    repeats = pd.read_csv(folder / "repeats.csv")
+    return Calibrated(parameters, folder, problem, table, known, repeats, pairs, published)
+
+
+# ---------------------------------------------------------------- figures
+
+
+def draw_all(
+    done: Calibrated, looks: pd.DataFrame, sizes: pd.DataFrame, sizes_before: pd.DataFrame, remarks: Sequence[str]
+) -> None:
+    """Draw every figure into the study's folder, each with its table beside it."""
+    grid, fits = response_grid(done.problem, done.known), family_table(done.problem, done.simulations)
+    information = information_table(done.problem, done.known)
+    other = done.published[done.published["row"] == done.compared].iloc[0]
+    pictures, slopes = heap_pictures(done)
+    drawn = {
+        "heaps": (heaps(pictures, remarks), slopes),
+        "response_maps": (
+            plots.response_maps(
+                grid, done.everything, done.problem.measured, done.published, done.problem.names, remarks
+            ),
+            grid,
+        ),
+        "family": (plots.family(fits, done.simulations, done.pairs, remarks), fits),
+        "pairs_against_bands": (plots.pairs_against_bands(done.statements, other, remarks), done.statements),
+        "box_sizes": (plots.box_sizes(sizes, sizes_before, remarks), sizes),
+        "calibration_progress": (
+            plots.progress_and_information(looks, done.problem.surrogate_share, information, remarks),
+            pd.concat([looks, information]),
+        ),
+    }
+    for name in OF_CALIBRATIONS:
+        figure, table = drawn[name]
+        save(figure, done.folder / "figures" / f"{name}.png")
+        table.to_csv(done.folder / "figures" / f"{name}.csv", index=False, float_format="%.6g")
+
+
+def heap_pictures(done: Calibrated) -> tuple[list[dict[str, Any]], pd.DataFrame]:
+    """Return the heaps of the recommended pair, one per test, as `heaps` wants them, and a table of slopes."""
+    pictures, tables = [], []
+    values = done.pairs[RECOMMENDED]
+    for experiment in done.problem.tests:
+        test = test_of(done.parameters, experiment.name, values, repeat_seeds(done.parameters)[0])
+        found, folder = flowing(test, done.folder / SIMULATIONS, print)
+        pair = ", ".join(f"{value:.2f}" for value in values.values())
+        pictures.append(
+            {
+                "title": f"{TITLES[experiment.name]}, ({pair})",
+                "particles": read_snapshot(folder / HEAP),
+                "slopes": [slope for slopes in found.slopes.values() for slope in slopes],
+                "walls": walls_of(test),
+            }
+        )
+        tables.append(pd.DataFrame(slope_table(found)).assign(test=experiment.name))
+    return pictures, pd.concat(tables, ignore_index=True)
+
+
+def walls_of(test: Mapping[str, Any]) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+    """Return the walls of a test that stand when it is over, as lines ((y, z), (y, z)) in m."""
+    length, height = test["box"]["length_m"], test["box"]["fill_height_m"]
+    if test["kind"] == "shear_box":
+        return [((0.0, 0.0), (0.0, height)), ((0.0, 0.0), (length, 0.0))]
+    low, slot = -test["box"]["lower_height_m"], slot_length(test)
+    return [
+        ((0.0, low), (0.0, height)),
+        ((length, low), (length, height)),
+        ((0.0, low), (length, low)),
+        ((0.0, 0.0), ((length - slot) / 2.0, 0.0)),
+        (((length + slot) / 2.0, 0.0), (length, 0.0)),
+    ]
+
+
+# ---------------------------------------------------------------- materials
+
+
+def calibrated_materials(done: Calibrated, materials: Mapping[str, Any], study: str) -> str:
+    """Return a materials file with the recommended values in it and, above them, where they come from.
+
+    materials: the content of the file that the study used, in its units
+    """
+    intervals = interval_table(done.problem, done.known, done.pairs[done.compared])
+    written = yaml.safe_load(yaml.safe_dump(dict(materials)))
+    bulk = done.parameters["particle"]["name"]
+    walls = [done.parameters[test.name]["wall_material"] for test in done.problem.tests]
+    for row in intervals.itertuples():
+        section, *path, key = row.parameter.split(".")
+        for target in [written["particles"][bulk]] if section == "particle" else [written["walls"][w] for w in walls]:
+            for name in path:
+                target = target[name]
+            target[key] = round(float(row.recommended), 4)
+    written["particles"][bulk]["calibrated"] = _provenance(done, intervals, study)
+    head = (
+        f"# Written by the study {study}: contact parameters of {bulk}, calibrated on"
+        f" {' and '.join(TITLES[test.name].lower() for test in done.problem.tests)} with"
+        f" {len(done.simulations)} simulations.\n# Everything else is as in the materials file that the study used.\n\n"
+    )
+    return head + yaml.safe_dump(written, sort_keys=False, allow_unicode=True)
+
+
+def _provenance(done: Calibrated, intervals: pd.DataFrame, study: str) -> dict[str, Any]:
+    """Return what the materials file tells about the values calibrated: valid in this convention and model only."""
+    solver = done.parameters["solver"]
+    used = {name: aim for name, aim in done.problem.measured.items() if name in done.known.predicted}
+    aims = ", ".join(f"{name} {aim.value:g} +- {aim.deviation:g}" for name, aim in used.items())
+    return {
+        "study": study,
+        "rolling_radius": solver["rolling_radius"],
+        "rolling_friction": solver["rolling_friction"],
+        "particle_scale": float(done.parameters["particle"]["scale"]),
+        "measured": aims,
+        "intervals": "; ".join(
+            f"{row.parameter} {row.recommended:.3f}, 95 % between {row.low:.3f} and {row.high:.3f}"
+            for row in intervals.itertuples()
+        ),
+    }

@@ -1,0 +1,124 @@
+"""Checks of one run of the circular wear tester, before any solver starts."""
+
+from __future__ import annotations
+
+import math
+
+from workflows.cases.circular_tester.decks import CHANNEL, channel_length, half_width, mean_radius
+from workflows.config.run_checks import (
+    CheckedRun,
+    Fault,
+    element_resolves_bump,
+    element_resolves_sample,
+    millimetres,
+    pattern_fits,
+    physical_modulus_known,
+)
+from workflows.engine.schedule import LEAST_CYCLE_STEPS
+
+LEAST_LAYERS = 3.0  # of particles over the sample and under it: fewer are no bed
+SIDE_DIAMETERS = 2.0  # -, room between sample and side walls, in largest diameters: particles pass there without a jam
+ROUNDING = 1e-9  # relative; of revolutions times cycles
+
+
+def summed_by_the_solver(run: CheckedRun) -> Fault | None:
+    """The ledger is the solver's, which is what the decks are written for."""
+    return None if run.settings["ledger"] == "solver" else ("ledger", "solver for a circular wear tester")
+
+
+def radii_in_order(run: CheckedRun) -> Fault | None:
+    """The outer radius of the trough is the larger one."""
+    tester = run.parameters["tester"]
+    if tester["outer_radius_m"] > tester["inner_radius_m"]:
+        return None
+    return "tester.outer_radius_mm", f"above {millimetres(tester['inner_radius_m'])}, tester.inner_radius_mm"
+
+
+def sample_between_walls(run: CheckedRun) -> Fault | None:
+    """Particles pass between the sample and the side walls of the trough; in a ring the sample's corners count."""
+    tester, sample = run.parameters["tester"], run.parameters["sample"]
+    room = SIDE_DIAMETERS * max(run.parameters["particle"]["diameters_m"])
+    largest = 2.0 * (half_width(tester) - room)
+    if tester["shape"] != CHANNEL:
+        outer, mean = tester["outer_radius_m"] - room, mean_radius(tester)
+        corner = math.sqrt(max(outer**2 - (0.5 * sample["length_m"]) ** 2, 0.0)) - mean
+        largest = min(largest, 2.0 * corner)
+    if sample["width_m"] <= largest:
+        return None
+    return (
+        "sample.width_mm",
+        f"at most {millimetres(largest)}, so that two of the largest particles ({millimetres(0.5 * room)}) pass "
+        "between sample and wall",
+    )
+
+
+def sample_in_channel(run: CheckedRun) -> Fault | None:
+    """A channel is longer than the sample and the consolidator, with room for the bed to close again between them."""
+    tester, sample = run.parameters["tester"], run.parameters["sample"]
+    least = 2.0 * (sample["length_m"] + tester["consolidator_ramp_m"] + tester["consolidator_flat_m"])
+    if tester["shape"] != CHANNEL or channel_length(tester) >= least:
+        return None
+    angle = math.degrees(least / mean_radius(tester))
+    return "tester.channel_deg", f"at least {angle:.4g} degrees, twice the length of sample and consolidator"
+
+
+def enough_layers_over(run: CheckedRun) -> Fault | None:
+    """The bed over the sample has three layers of particles."""
+    if run.parameters["derived"]["layers"] >= LEAST_LAYERS:
+        return None
+    least = LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"]
+    return "tester.depth_mm", f"at least {millimetres(least)}, three layers of particles over the sample"
+
+
+def enough_layers_under(run: CheckedRun) -> Fault | None:
+    """The bed under the sample has three layers of particles, so that it flows there too."""
+    if run.parameters["derived"]["layers_below"] >= LEAST_LAYERS:
+        return None
+    tester, sample = run.parameters["tester"], run.parameters["sample"]
+    least = tester["depth_m"] + sample["thickness_m"] + LEAST_LAYERS * run.parameters["particle"]["median_diameter_m"]
+    return "tester.bed_height_mm", f"at least {millimetres(least)}, three layers of particles under the sample"
+
+
+def consolidator_on_bed(run: CheckedRun) -> Fault | None:
+    """The consolidator levels above the sample's bumps."""
+    tester = run.parameters["tester"]
+    least = tester["bed_height_m"] - tester["depth_m"] + run.parameters["derived"]["headroom_m"]
+    if tester["consolidator_level_m"] > least:
+        return None
+    return "tester.consolidator_level_mm", f"above {millimetres(least)}, the highest bump"
+
+
+def whole_cycles(run: CheckedRun) -> Fault | None:
+    """The revolutions are a whole number of wear cycles."""
+    sliding = run.settings["sliding"]
+    cycles = sliding["revolutions"] * sliding["cycles_per_revolution"]
+    if cycles >= 1.0 - ROUNDING and abs(cycles - round(cycles)) <= ROUNDING * cycles:
+        return None
+    return "sliding.revolutions", f"a multiple of 1/{sliding['cycles_per_revolution']}, so that wear cycles are whole"
+
+
+def cycle_long_enough(run: CheckedRun) -> Fault | None:
+    """A wear cycle has at least a hundred time steps."""
+    derived = run.parameters["derived"]
+    steps = derived["revolution_s"] / derived["largest_time_step_s"]
+    most = int(steps / LEAST_CYCLE_STEPS)
+    if run.settings["sliding"]["cycles_per_revolution"] <= most:
+        return None
+    return "sliding.cycles_per_revolution", f"at most {most}, so that a cycle has {LEAST_CYCLE_STEPS} time steps"
+
+
+TESTER_CHECKS = (
+    summed_by_the_solver,
+    radii_in_order,
+    sample_between_walls,
+    sample_in_channel,
+    enough_layers_over,
+    enough_layers_under,
+    consolidator_on_bed,
+    element_resolves_sample,
+    element_resolves_bump,
+    pattern_fits,
+    whole_cycles,
+    cycle_long_enough,
+    physical_modulus_known,
+)

@@ -1,0 +1,236 @@
+"""Figures of the circular wear tester's volumes: against revolutions and hours, beside experiment and thesis."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from postproc.plots.style import COLOURS, LARGEST_HEIGHT, MARKERS, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.tables.display import CUBIC_MILLIMETRES
+from workflows.cases.circular_tester.volume import (
+    CONVEX,
+    LABORATORY,
+    OURS,
+    TERMS,
+    THESIS,
+    THESIS_ALIKE,
+    chosen_fit,
+    fit_at,
+    published_terms,
+    volume_at,
+)
+from workflows.cases.pin_on_disc.plots.style import PUBLISHED, named_once, printed_table
+from workflows.cases.pin_on_disc.series import published_value
+from workflows.cases.sliding_sample.comparison import PLAIN
+
+CURVE_POINTS = 101
+NOTE_CHARACTERS = 105  # of a line over a printed table
+SCALE_STYLES = {1: "-", 2: "--", 3: "-.", 4: ":"}
+LABORATORY_COLOUR = "#CC79A7"
+BARS = 0.8  # of the space of a case
+
+
+def _case_name(surface: str, scale: float) -> str:
+    return f"{surface}, particle scale {scale:g}"
+
+
+def volume_by_revolution(
+    volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
+) -> Figure:
+    """Draw lost volume (mm3) against revolutions with fits, the published ones beside, numbers below (Fig 6.11).
+
+    volumes, fits: as from `analysis.tester_volume`; published: Eq 6.2 to 6.6. Published cases that no run has are drawn
+    thin and grey.
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    axes, printed = figure.subplots(2, 1)
+    x = np.linspace(0.0, volumes["revolution"].max(), CURVE_POINTS)
+    ours = set()
+    for (run, surface, scale), of_run in volumes.groupby(["run", "surface", "particle_scale"], sort=False):
+        ours.add((surface, scale))
+        look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
+        mark, look["linewidth"] = {"marker": MARKERS.get(surface, "^"), "markersize": 4}, 1.0
+        axes.plot(of_run["revolution"], CUBIC_MILLIMETRES * of_run["volume_m3"], **mark, **look | {"linestyle": "none"})
+        axes.plot(x, volume_at(chosen_fit(fits, run), x), **look)
+        axes.plot([], [], label=_case_name(surface, scale), **mark, **look)  # points and fit together in the legend
+    for row in published.itertuples():
+        same = (row.surface, row.particle_scale) in ours
+        look = PUBLISHED if same else PUBLISHED | {"color": "#999999", "linewidth": 0.7}
+        name = row.source.partition(" (")[0] if same else "Yan 2022, other cases"
+        axes.plot(x, volume_at(np.array([getattr(row, term) for term in TERMS]), x), label=name, **look)
+    axes.set(xlabel="Revolutions", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
+    figure.legend(*named_once([axes]), loc="outside upper center", ncols=3)
+    _fit_table(printed, fits, published)
+    return figure
+
+
+def _fit_table(axes: Axes, fits: pd.DataFrame, published: pd.DataFrame) -> None:
+    """Print a line per run: its linear and its quadratic fit, and the published one of its case."""
+    head = ["", "a x: a (mm³)", "R²", "a x + b x²: a (mm³)", "b (mm³)", "R²", "Yan 2022: a, b (mm³)"]
+    cells = []
+    for _, of_run in fits.groupby("run", sort=False):
+        rows = of_run.set_index("fit")
+        line, curve = rows.loc["linear"], rows.loc["quadratic"]
+        shown = [_with_error(line, TERMS[0]), f"{line['r_squared']:.5f}"]
+        shown += [*(_with_error(curve, term) for term in TERMS), f"{curve['r_squared']:.5f}"]
+        theirs = published_terms(published, line["surface"], line["particle_scale"])
+        known = "" if np.isnan(theirs).any() else ", ".join(f"{term:g}" for term in theirs)
+        cells.append([f"{line['surface']}, scale {line['particle_scale']:g}", *shown, known])
+    printed_table(axes, head, cells)
+
+
+def _with_error(row: pd.Series, term: str) -> str:
+    return f"{row[term]:.3g} ± {row[f'{term}_error']:.2g}"
+
+
+def element_increments(
+    increments: pd.DataFrame, crossings: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
+) -> Figure:
+    """Draw what an element and what the sample lose per revolution (Eq 6.7, Fig 6.12).
+
+    increments: as from `analysis.tester_volume.element_increments`; crossings: particle_scale, rate_crossing and
+    crossing (revolutions), drawn as lines where they are inside; published: circular_tester.csv.
+    """
+    figure = new_figure(remarks, 4.4)
+    left, right = figure.subplots(1, 2)
+    for (_, surface, scale), of_run in increments.groupby(["run", "surface", "particle_scale"], sort=False):
+        look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
+        look |= {"marker": MARKERS.get(surface, "^"), "markersize": 3.5, "linewidth": 1.0}
+        name = _case_name(surface, scale)
+        left.plot(of_run["revolution"], of_run["element_increment_mm3"], label=name, **look)
+        right.plot(of_run["revolution"], of_run["increment_mm3"], label=name, **look)
+    ends = [published_value(published, f"plain_{which}_increment", "simulation") for which in ("first", "last")]
+    last = published_value(published, "last_revolution", "simulation")
+    left.plot([1.0, last], ends, label="Yan 2022, Fig 6.12, plain", **PUBLISHED)
+    theirs = published_value(published, "increments_cross_at", "simulation")
+    words = "Yan 2022, convex of scale 4 overtakes plain"
+    left.axvline(theirs, color="black", linewidth=0.8, linestyle=SCALE_STYLES[4], label=words)
+    largest = increments["revolution"].max()
+    for row in crossings.itertuples():
+        if row.rate_crossing <= largest:
+            right.axvline(
+                row.rate_crossing,
+                color=OTHER_COLOUR,
+                linewidth=0.8,
+                linestyle=SCALE_STYLES.get(round(row.particle_scale), "-"),
+            )
+    right.set_title("\n".join(map(crossing_words, crossings.itertuples())), loc="left", fontsize=SMALLEST_FONT)
+    left.set(xlabel="Revolution", ylabel="Lost per revolution by an element (mm³)", ylim=(0.0, None))
+    right.set(xlabel="Revolution", ylabel="Lost per revolution by the sample (mm³)", ylim=(0.0, None))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    return figure
+
+
+def crossing_words(row: tuple) -> str:
+    """Say when convex overtakes plain, in rate and in sum."""
+    if not np.isfinite(row.rate_crossing):
+        return f"scale {row.particle_scale:g}: convex never wears faster"
+    words = f"convex faster from {row.rate_crossing:.3g}, more in sum from {row.crossing:.3g}"
+    return f"scale {row.particle_scale:g}: {words}"
+
+
+def benchmark(
+    predicted: pd.DataFrame, published: pd.DataFrame, published_fits: pd.DataFrame, remarks: Sequence[str]
+) -> Figure:
+    """Draw volumes (mm3) after 56 hours: experiment, thesis and ours by particle scale (Fig 6.10).
+
+    predicted: as from `analysis.tester_volume.predictions`; published: circular_tester.csv; published_fits: Eq 6.2 to
+    6.6 at the thesis' two revolutions.
+    """
+    hours = published_value(published, "short_test", "laboratory")
+    theirs_at = published_value(published, "revolutions_of_short_test", "simulation")
+    chosen = predicted[np.isclose(predicted["hours"], hours)]
+    scales = sorted({*chosen["particle_scale"], *published_fits["particle_scale"]})
+    figure = new_figure(remarks, 4.4)
+    axes = figure.subplots()
+    kinds = [(source, surface) for source in (THESIS, OURS) for surface in (PLAIN, CONVEX)]
+    for index, (source, surface) in enumerate(kinds):
+        values = []
+        for scale in scales:
+            ours = chosen[(chosen["surface"] == surface) & (chosen["particle_scale"] == scale)]["volume_mm3"]
+            theirs = volume_at(published_terms(published_fits, surface, scale), theirs_at)
+            values.append(theirs if source == THESIS else (ours.mean() if len(ours) else np.nan))
+        places = np.arange(1, len(scales) + 1) + BARS * ((index + 0.5) / len(kinds) - 0.5)
+        look = {"color": COLOURS[surface], "hatch": "///" if source == THESIS else None, "edgecolor": "white"}
+        axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look)
+    for place, surface in zip((-0.2, 0.2), (PLAIN, CONVEX), strict=True):
+        value = published_value(published, f"{surface}_volume_56_h", "laboratory")
+        axes.bar(place, value, 0.35, color=COLOURS[surface], alpha=0.5)
+        axes.axhline(value, color=COLOURS[surface], linewidth=0.8, linestyle=":")
+    axes.set_xticks(range(len(scales) + 1), [LABORATORY, *(f"particle scale {scale:g}" for scale in scales)])
+    axes.set_ylabel(f"Volume after {hours:g} h (mm³)")
+    figure.legend(loc="outside upper center", ncols=4)
+    return figure
+
+
+def volume_by_hours(
+    fits: pd.DataFrame,
+    hours_per_revolution: float,
+    table: pd.DataFrame,
+    published: pd.DataFrame,
+    remarks: Sequence[str],
+) -> Figure:
+    """Draw lost volume (mm3) against hours: measured points and rates, our fits, and the table below (Fig 6.4).
+
+    fits: of the runs to draw, as from `analysis.tester_volume.volume_fits`; table: as from `comparison_table`.
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    axes, printed = figure.subplots(2, 1, height_ratios=(3, 2))
+    longest = published_value(published, "long_test", "laboratory")
+    hours = np.linspace(0.0, longest, CURVE_POINTS)
+    interval = published_value(published, "interval", "laboratory")
+    for surface in (PLAIN, CONVEX):
+        rate = published[published["quantity"] == f"{surface}_volume_per_interval"].iloc[0]
+        low, high = ((rate["value"] + sign * rate["uncertainty"]) / interval * hours for sign in (-1.0, 1.0))
+        words = f"{surface}, measured per {interval:g} h"
+        axes.fill_between(hours, low, high, color=COLOURS[surface], alpha=0.15, linewidth=0.0, label=words)
+        for length in ("short", "long"):
+            end = published_value(published, f"{length}_test", "laboratory")
+            value = published_value(published, f"{surface}_volume_{end:g}_h", "laboratory")
+            extrapolated = surface == PLAIN and length == "long"
+            fill = "none" if extrapolated else COLOURS[surface]
+            axes.plot(
+                end,
+                value,
+                MARKERS[surface],
+                color=COLOURS[surface],
+                markerfacecolor=fill,
+                markersize=7,
+                label=f"{surface}, measured" if length == "short" else None,
+            )
+    for (run, surface, scale), _ in fits.groupby(["run", "surface", "particle_scale"], sort=False):
+        curve = [volume_at(fit_at(fits, run, each), each) for each in hours / hours_per_revolution]
+        look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
+        axes.plot(hours, curve, label=f"{_case_name(surface, scale)}, ours", **look)
+    axes.set_title(
+        "open mark: extrapolated, plain was tested for 56 h; the plain sample sets our hours",
+        loc="left",
+        fontsize=SMALLEST_FONT,
+    )
+    axes.set(xlabel="Hours of the test", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
+    figure.legend(*named_once([axes]), loc="outside upper center", ncols=3)
+    _numbers(printed, table)
+    return figure
+
+
+def _numbers(axes: Axes, table: pd.DataFrame) -> None:
+    """Print the volumes compared; numbers in brackets lead to the notes in its title."""
+    columns = [LABORATORY, THESIS, THESIS_ALIKE, OURS]
+    shown = table[table["unit"] != "mm"]
+    notes = list(dict.fromkeys(note for words in shown["note"] if words for note in words.split("; ")))
+    cells = []
+    for _, row in shown.iterrows():
+        marks = ", ".join(str(notes.index(note) + 1) for note in row["note"].split("; ") if note)
+        words = f"{row['quantity']} ({row['unit'].replace('mm3', 'mm³')}){f' [{marks}]' if marks else ''}"
+        values = ["" if np.isnan(row[name]) else f"{row[name]:.4g}" for name in columns]
+        cells.append([f"{row['hours']:g} h", words, *values])
+    said = "\n".join(
+        textwrap.wrap("; ".join(f"[{k}] {note}" for k, note in enumerate(notes, start=1)), NOTE_CHARACTERS)
+    )
+    axes.set_title(said, loc="left", fontsize=SMALLEST_FONT)
+    printed_table(axes, ["", "", *columns], cells)

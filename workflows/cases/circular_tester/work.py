@@ -1,0 +1,108 @@
+"""What beds and runs of the circular wear tester will cost the solver, see `workflows.engine.work`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from meshes.estimate import sample_triangles
+from workflows.cases.circular_tester import decks as tester_deck
+from workflows.cases.circular_tester.decks import HOLDER_SIZE
+from workflows.cases.sliding_sample.work import EMPTY_DIAMETERS
+from workflows.engine import decks as deck
+from workflows.engine.geometry import convex_pattern
+from workflows.engine.work import (
+    CYCLE_BYTES,
+    LEDGER_TRIANGLE,
+    PICTURE_PARTICLE,
+    RESTART_PARTICLE,
+    RESTART_TRIANGLE,
+    RUN_TRIANGLE,
+    SOLVER_TRIANGLE,
+    SURFACE_TRIANGLE,
+    Stage,
+)
+
+# Median diameters of the trough's width in which no particle's centre is: particles lie looser along its side walls.
+# Measured on beds of 9 and 13 diameters, within 1 % in particles; the bed's height is that of all beds.
+EMPTY_BESIDE_WALLS = 1.9
+
+Parameters = Mapping[str, Any]
+
+
+def settled_particles(run: Parameters) -> float:
+    """Return about how many particles are left of a run's bed when it is levelled."""
+    tester, diameter = run["tester"], run["particle"]["median_diameter_m"]
+    height = 1.0 - EMPTY_DIAMETERS * diameter / tester["bed_height_m"]
+    width = 1.0 - EMPTY_BESIDE_WALLS * diameter / (2.0 * tester_deck.half_width(tester))
+    return run["derived"]["bed_particles"] * height * width
+
+
+def surface_triangles(run: Parameters) -> float:
+    """Return about how many triangles a run's sample has: its top, and the coarse holder."""
+    sample = run["sample"]
+    lengths = (sample["width_m"], sample["length_m"], sample["element_size_m"])
+    top = sample_triangles(*lengths, convex_pattern(run["pattern"]), 0.0, math.pi / 4.0)
+    bottom = sample_triangles(*lengths[:2], HOLDER_SIZE, None, 0.0, math.pi / 4.0)
+    rim = 2.0 * (sample["width_m"] + sample["length_m"])
+    sides = rim / sample["element_size_m"] + 2.0 * rim / HOLDER_SIZE * (sample["thickness_m"] / HOLDER_SIZE)
+    return top + bottom + sides
+
+
+def trough_triangles(run: Parameters) -> float:
+    """Return about how many triangles the trough of a ring has; a channel has none."""
+    tester = run["tester"]
+    if tester["shape"] == tester_deck.CHANNEL:
+        return 0.0
+    edge = tester_deck.TROUGH_ELEMENT
+    height = (1.0 + tester_deck.FREEBOARD) * tester["bed_height_m"]
+    around = 2.0 * math.pi * tester["outer_radius_m"] / edge
+    return 2.0 * around * (2.0 * tester_deck.half_width(tester) + 2.0 * height) / edge
+
+
+def triangles(run: Parameters) -> float:
+    """Return about how many triangles the solver has."""
+    return surface_triangles(run) + trough_triangles(run)
+
+
+def builds_per_step(run: Parameters) -> float:
+    """Return the builds of the neighbour list per time step (-): one when particles have moved by half its skin."""
+    derived, particle = run["derived"], run["particle"]
+    skin = deck.integration(run["solver"], derived["time_step_s"], particle, 1)["skin_m"]
+    return 2.0 * run["sliding"]["velocity_m_per_s"] * derived["time_step_s"] / skin
+
+
+def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
+    """Return the stages of filling the trough and of turning it until the flow is steady."""
+    parameters = tester_deck.tester_bed(bed)
+    particles, steady = settled_particles(run), bed["steady_steps"]
+    meshes = trough_triangles(run)
+    return (
+        Stage(1, parameters["settling_steps"], particles * deck.FILL_EXCESS, meshes),
+        Stage(0, parameters["relaxing_steps"], particles, meshes),
+        Stage(0, steady, particles, meshes, builds_per_step(run) * steady, True),
+    )
+
+
+def run_stages(run: Parameters) -> tuple[Stage, ...]:
+    """Return the stages of a run: run-in and wear cycles."""
+    derived, particles, number = run["derived"], settled_particles(run), triangles(run)
+    travel, run_in, often = derived["travel_steps"], derived["run_in_steps"], builds_per_step(run)
+    return (
+        Stage(1, run_in, particles, number, often * run_in, True),
+        Stage(run["sliding"]["cycles"], travel, particles, number, often * travel, True, surface_triangles(run)),
+    )
+
+
+def bed_bytes(run: Parameters) -> float:
+    """Return what a bed leaves on disk."""
+    return RESTART_PARTICLE * settled_particles(run) + CYCLE_BYTES
+
+
+def run_bytes(run: Parameters) -> float:
+    """Return what a run leaves on disk: restart file, surface and last picture of the bed of every cycle."""
+    particles, number, surface = settled_particles(run), triangles(run), surface_triangles(run)
+    restart = RESTART_PARTICLE * particles + RESTART_TRIANGLE * number + CYCLE_BYTES
+    cycle = restart + (SOLVER_TRIANGLE + LEDGER_TRIANGLE + SURFACE_TRIANGLE) * surface + PICTURE_PARTICLE * particles
+    return restart + (SOLVER_TRIANGLE + RUN_TRIANGLE) * surface + run["sliding"]["cycles"] * cycle

@@ -1,0 +1,94 @@
+"""Parameters of the two decks of a pin on a disc; see deck.py for how they are rendered."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from workflows.cases.pin_on_disc.parameters import PIN_RADII_BESIDE_TRACK, REST_OSCILLATIONS, SETTLING_OSCILLATIONS
+from workflows.engine.decks import REPORTS_PER_RUN, STEP_CHECK_MARGIN, exact_ledger, steps
+from workflows.engine.schedule import Span
+
+SKIN_OVER_RADIUS = 0.2  # -, neighbour skin over the pin's radius
+Parameters = Mapping[str, Any]
+
+
+def pin_set_down(run: Parameters) -> dict[str, Any]:
+    """Return the parameters of the deck that sets the pin down on the flat disc; `run` is Run.parameters."""
+    radius, settling = run["pin"]["radius_m"], settling_steps(run)
+    return {
+        **_both(run, cycle=0),
+        "report_steps": max(settling // REPORTS_PER_RUN, 1),
+        "settling_steps": settling,
+        "pin_radius_m": radius,
+        "pin_height_m": radius,
+        "density_kg_per_m3": run["particle"]["density_kg_per_m3"],
+        "domain_half_width_m": run["disc"]["track_radius_m"] + PIN_RADII_BESIDE_TRACK * radius,
+        "domain_bottom_m": -radius,
+        "domain_top_m": PIN_RADII_BESIDE_TRACK * radius,
+    }
+
+
+def pin_on_disc(run: Parameters, span: Span, restart: str) -> dict[str, Any]:
+    """Return the parameters of the deck of one wear cycle. A line of progress per window of the forces."""
+    derived = run["derived"]
+    window, time_step = derived["force_interval_steps"] * span.substeps, derived["time_step_s"] / span.substeps
+    return {
+        **_both(run, span.cycle),
+        "time_step_s": time_step,
+        "rayleigh_fraction": run["solver"]["rayleigh_fraction"] / span.substeps,
+        "report_steps": window,
+        "force_interval_steps": window,
+        "run_restart": restart,
+        "rest_steps": steps(REST_OSCILLATIONS * derived["pin_oscillation_s"], time_step),
+        "cycle_steps": span.solver_steps,
+        "start_angle_rad": angle(run, span.first_step),
+        "angular_velocity_rad_per_s": run["sliding"]["angular_speed_rad_per_s"],
+        "ledger": run["ledger"],
+        **exact_ledger(run),
+    }
+
+
+def settling_steps(run: Parameters) -> int:
+    """Return the time steps until the pin rests on the flat disc."""
+    derived = run["derived"]
+    return steps(SETTLING_OSCILLATIONS * derived["pin_oscillation_s"], derived["time_step_s"])
+
+
+def angle(run: Parameters, steps_done: int) -> float:
+    """Return how far (rad) the pin has gone round after that many time steps of the wear cycles."""
+    return run["sliding"]["angular_speed_rad_per_s"] * run["derived"]["time_step_s"] * steps_done
+
+
+def revolutions(run: Parameters, steps_done: int) -> float:
+    """Return the same in revolutions; rounding apart whole at the end of each."""
+    return steps_done / run["derived"]["first_cycle_steps"] / run["sliding"]["cycles_per_revolution"]
+
+
+def _both(run: Parameters, cycle: int) -> dict[str, Any]:
+    """Return what both decks need: time step, load, and the tables of the types pin and disc."""
+    pin, disc, moduli = run["particle"], run["sample_material"], run["derived"]["youngs_modulus_pa"]
+    contact, solver = disc["contact"], run["solver"]
+    return {
+        "time_step_s": run["derived"]["time_step_s"],
+        "rayleigh_fraction": solver["rayleigh_fraction"],
+        "largest_time_fraction": STEP_CHECK_MARGIN * solver["rayleigh_fraction"],
+        "skin_m": SKIN_OVER_RADIUS * run["pin"]["radius_m"],
+        "load_n": run["pin"]["load_n"],
+        "track_radius_m": run["disc"]["track_radius_m"],
+        "cycle": cycle,
+        "type_names": ["pin", "disc"],
+        "youngs_modulus_pa": [moduli["particle"], moduli["sample_material"]],
+        "poissons_ratio": [pin["poissons_ratio"], disc["poissons_ratio"]],
+        "restitution": _table(contact["restitution"]),
+        "sliding_friction": _table(contact["sliding_friction"]),
+        "rolling_friction_coefficient": _table(contact["rolling_friction"]),
+        "rolling_friction_model": solver["rolling_friction"],
+        "rolling_radius": solver["rolling_radius"],
+        "finnie_coefficient_per_pa": _table(run["wear"]["accelerated_wear_coefficient_per_pa"]),
+    }
+
+
+def _table(value: float) -> list[list[float]]:
+    """Return the table of a property of pin against disc; there is no other pair."""
+    return [[value] * 2] * 2

@@ -1,0 +1,100 @@
+"""Parameters of a pin on a disc, and what follows from them. SI throughout."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from postproc.reference.sphere_contact import effective_modulus, hertz_overlap
+from workflows.engine.derived import physical_patch_factor, rayleigh_time, whole_steps, youngs_modulus
+from workflows.engine.sections import solver_section, wall_section, wear_section
+
+FORCE_WINDOW = math.radians(0.25)  # rad of the track over which a row of forces.csv is a mean
+SETTLING_OSCILLATIONS = 60  # of the pin on its contact, until it rests on the flat disc; each leaves 0.83 at e = 0.9
+REST_OSCILLATIONS = 20  # until it rests on the surface that a wear update has lowered by less than the overlap
+PIN_RADII_BESIDE_TRACK = 4.0  # -, room in the domain
+WITHOUT_PATCH = "none"  # wear.patch of the per-triangle rule, which the source applies to single triangles
+
+
+def run_parameters(settings: Mapping[str, Any], materials: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of a run, derived ones included; settings of its row, SI."""
+    pin, disc, scale = settings["pin"], settings["disc"], settings["particle_scale"]
+    wear = dict(settings["wear"])
+    if wear["scheme"] == "per_triangle":
+        wear["patch"] = WITHOUT_PATCH
+    material = materials["pins"][pin["material"]]
+    speed = settings["sliding"]["angular_speed_rad_per_s"]
+    parameters = {
+        "ledger": settings["ledger"],
+        "pin": {**pin, "radius_m": scale * pin["radius_m"]},
+        "disc": {**disc, "inner_radius_m": 2.0 * disc["track_radius_m"] - disc["radius_m"]},
+        "sliding": {
+            **settings["sliding"],
+            "cycles": round(settings["sliding"]["revolutions"] * settings["sliding"]["cycles_per_revolution"]),
+            "velocity_m_per_s": speed * disc["track_radius_m"],
+        },
+        "wear": wear_section(wear, material),
+        "remeshing": settings["remeshing"],
+        "solver": solver_section(settings),
+        "particle": {
+            "name": pin["material"],
+            **{k: v for k, v in material.items() if k != "physical_shear_modulus_pa"},
+            "scale": scale,
+            "diameters_m": [2.0 * scale * pin["radius_m"]],
+        },
+        "sample_material": wall_section(disc["material"], materials),
+    }
+    return {**parameters, "derived": derived_parameters(parameters)}
+
+
+def derived_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what follows from the other sections: moduli, overlap, how the pin swings, time steps."""
+    particle, disc = parameters["particle"], parameters["sample_material"]
+    moduli = {
+        name: youngs_modulus(parameters[name]["shear_modulus_pa"], parameters[name]["poissons_ratio"])
+        for name in ("particle", "sample_material")
+    }
+    pair = effective_modulus(
+        moduli["particle"], particle["poissons_ratio"], moduli["sample_material"], disc["poissons_ratio"]
+    )
+    radius, load = parameters["pin"]["radius_m"], parameters["pin"]["load_n"]
+    overlap = hertz_overlap(load, radius, pair)
+    mass = 4.0 / 3.0 * math.pi * radius**3 * particle["density_kg_per_m3"]
+    return {
+        "youngs_modulus_pa": moduli,
+        "effective_modulus_pa": pair,
+        "physical_patch_factor": physical_patch_factor(parameters),
+        "overlap_m": overlap,
+        "pin_mass_kg": mass,
+        "pin_oscillation_s": 2.0 * math.pi * math.sqrt(mass * overlap / (1.5 * load)),
+        "sliding_distance_m": 2.0
+        * math.pi
+        * parameters["disc"]["track_radius_m"]
+        * parameters["sliding"]["revolutions"],
+        **_derived_times(parameters),
+    }
+
+
+def _derived_times(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return time steps (s) and numbers of steps; a cycle has whole windows of forces, a revolution whole cycles."""
+    particle, sliding = parameters["particle"], parameters["sliding"]
+    rayleigh = rayleigh_time(
+        parameters["pin"]["radius_m"],
+        particle["density_kg_per_m3"],
+        particle["shear_modulus_pa"],
+        particle["poissons_ratio"],
+    )
+    largest = parameters["solver"]["rayleigh_fraction"] * rayleigh
+    arc = 2.0 * math.pi / sliding["cycles_per_revolution"]
+    windows = max(round(arc / FORCE_WINDOW), 1)
+    steps, time_step = whole_steps(arc / sliding["angular_speed_rad_per_s"], largest, windows)
+    return {
+        "rayleigh_time_s": rayleigh,
+        "largest_time_step_s": largest,
+        "time_step_s": time_step,
+        "arc_rad": arc,
+        "first_cycle_steps": steps,
+        "travel_steps": steps * sliding["cycles"],
+        "force_interval_steps": steps // windows,
+    }

@@ -1,0 +1,153 @@
+"""Volume worn by a pin on a disc, revolution by revolution: fits, and what a volume above alpha F L is made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from postproc.tables.display import CUBIC_MILLIMETRES
+from workflows.cases.pin_on_disc.run_in import whole_revolutions
+
+VOLUMES = {
+    "removed": "removed_volume_m3",
+    "Eq 5.9": "centroid_path_volume_m3",
+    "Eq 5.9, touched": "touched_centroid_path_volume_m3",
+    "alpha W": "archard_volume_m3",
+}
+SUMMED = ("centroid_path_volume_m3", "touched_centroid_path_volume_m3")  # per cycle in wear.csv
+ORDERS = {"linear": 1, "quadratic": 2}
+COEFFICIENT_TOLERANCE = 1e-6  # -, to which two wear coefficients are the same
+CONSERVING = "conserving"  # its patch moves triangles that nothing touches: Eq 5.9 can only be summed over all
+FIXED = ("wear_coefficient_per_pa", "load_n", "track_radius_m")  # of a run
+AVERAGED = ("mean_normal_force_N", "mean_vertical_force_N", "contacts_per_step")
+# what a published volume over alpha F L is made of, in the order in which the factors build on one another
+CANDIDATES = {
+    "force_rise": "summed normal force over load",
+    "slip": "path of the contact point over the track",
+    "taken_up": "wear taken up, the rest is carried",
+    "displacement_rule": "displacement rule",
+    "summing_rule": "Eq 5.9 over touched triangles",
+}
+
+
+def volumes_of_run(folder: str | Path) -> pd.DataFrame:
+    """Volumes and forces of a run after each whole revolution, from its wear.csv.
+
+    folder : of the run. Columns: revolution, archard_volume_m3 (alpha W), removed_volume_m3, carried_volume_m3,
+    centroid_path_volume_m3 (Eq 5.9 over all triangles), touched_centroid_path_volume_m3 (over those in contact during
+    the update), step_demand (largest so far, of a step over its cap) and, averaged over all cycles so far, those of
+    AVERAGED.
+    """
+    wear = pd.read_csv(Path(folder) / "wear.csv")
+    duration = np.diff(wear["time_s"], prepend=0.0)
+    means = {name: np.cumsum(wear[name] * duration) / np.cumsum(duration) for name in AVERAGED}
+    table = pd.DataFrame(
+        {
+            "revolution": wear["revolution"],
+            "archard_volume_m3": wear["total_archard_volume_m3"],
+            "removed_volume_m3": wear["total_applied_volume_m3"],
+            "carried_volume_m3": wear["carried_volume_m3"],
+            **{name: wear[name].cumsum() for name in SUMMED},
+            "step_demand": wear["step_demand"].cummax(),
+            **means,
+        }
+    )
+    return whole_revolutions(table).reset_index(drop=True)
+
+
+def law_volume(coefficient: float, load: float, track_radius: float, revolutions: np.ndarray) -> np.ndarray:
+    """Volume alpha F L (m3) of a load (N) that slides over whole circles; coefficient 1/Pa, track_radius m.
+
+    Source: J. F. Archard, J. Appl. Phys. 24 (1953) 981.
+    """
+    return coefficient * load * 2.0 * np.pi * track_radius * np.asarray(revolutions, dtype=float)
+
+
+def polynomial_fit(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, float]:
+    """Least-squares coefficients, constant first (order + 1,), and the share R2 (-) of the variance that they explain.
+
+    NaN where there are fewer points than coefficients. R2 is 1 for y without variance that is met.
+    """
+    if len(x) <= order:
+        return np.full(order + 1, np.nan), float("nan")
+    coefficients = np.polynomial.polynomial.polyfit(x, y, order)
+    left = y - np.polynomial.polynomial.polyval(x, coefficients)
+    variance = float(((y - y.mean()) ** 2).sum())
+    return coefficients, 1.0 - float(left @ left) / variance if variance > 0.0 else 1.0
+
+
+def volume_fits(volumes: pd.DataFrame) -> pd.DataFrame:
+    """Linear and quadratic fits of volume (mm3) against revolutions, one row per run, volume and order.
+
+    volumes : `run`, `scheme`, `wear_coefficient_per_pa` and as from `volumes_of_run`. Columns as in the published
+    table (`constant_mm3`, `linear_mm3_per_revolution`, `quadratic_mm3_per_revolution2`, `r_squared`).
+    """
+    rows = []
+    for (run, scheme, coefficient), of_run in volumes.groupby(["run", "scheme", "wear_coefficient_per_pa"], sort=False):
+        for volume, column in VOLUMES.items():
+            for name, order in ORDERS.items():
+                found, r_squared = polynomial_fit(
+                    of_run["revolution"].to_numpy(float), CUBIC_MILLIMETRES * of_run[column].to_numpy(), order
+                )
+                rows.append(
+                    {"run": run, "scheme": scheme, "wear_coefficient_per_pa": coefficient, "volume": volume}
+                    | {"fit": name, "constant_mm3": found[0], "linear_mm3_per_revolution": found[1]}
+                    | {"quadratic_mm3_per_revolution2": found[2] if order > 1 else 0.0, "r_squared": r_squared}
+                )
+    return pd.DataFrame(rows)
+
+
+def published_volume(published: pd.DataFrame, coefficient: float, revolutions: np.ndarray) -> np.ndarray:
+    """Volume (m3) by the published fit (Yan 2022, Eq 5.11-5.15) of a wear coefficient (1/Pa); NaN without one.
+
+    published : `wear_coefficient_per_pa`, `constant_mm3`, `linear_mm3_per_revolution`, `quadratic_mm3_per_revolution2`.
+    """
+    x = np.asarray(revolutions, dtype=float)
+    same = np.isclose(published["wear_coefficient_per_pa"], coefficient, rtol=COEFFICIENT_TOLERANCE, atol=0.0)
+    if not same.any():
+        return np.full_like(x, np.nan)
+    fit = published[same].iloc[0]
+    terms = (fit["constant_mm3"], fit["linear_mm3_per_revolution"], fit["quadratic_mm3_per_revolution2"])
+    return np.polynomial.polynomial.polyval(x, terms) / CUBIC_MILLIMETRES
+
+
+def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """What a volume over alpha F L is made of, per run and whole revolution, all summed since the start.
+
+    volumes : as from `volumes_of_run` with `run`, `scheme`, `wear_coefficient_per_pa`, `load_n`, `track_radius_m`.
+    The factors of CANDIDATES build on one another: their product is the volume by Eq 5.9, summed over the triangles in
+    contact (of a conserving run over all), over alpha F L, exactly. `unexplained` is the published volume over alpha
+    F L, over that product. Beside stand `summing_over_all`, the last factor if Eq 5.9 is summed over all triangles, and
+    `contacts`, the factor that would come of it if every contact were charged with the whole load.
+    """
+    parts = []
+    for _, row in volumes.groupby("run", sort=False):
+        coefficient, load, track = (row[name].iloc[0] for name in FIXED)
+        law = law_volume(coefficient, load, track, row["revolution"])
+        rise = row["mean_normal_force_N"] / load
+        taken_up = row["archard_volume_m3"] - row["carried_volume_m3"]
+        table = row[["run", "scheme", "wear_coefficient_per_pa", "revolution"]].assign(
+            force_rise=rise,
+            slip=row["archard_volume_m3"] / law / rise,
+            taken_up=taken_up / row["archard_volume_m3"],
+            displacement_rule=row["removed_volume_m3"] / taken_up,
+            summing_rule=row[SUMMED[row["scheme"].iloc[0] != CONSERVING]] / row["removed_volume_m3"],
+            summing_over_all=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
+            contacts=row["contacts_per_step"],
+            vertical_force_over_load=row["mean_vertical_force_N"].abs() / load,
+            published=published_volume(published, coefficient, row["revolution"].to_numpy()) / law,
+        )
+        product = table[list(CANDIDATES)].prod(axis=1, skipna=False)
+        parts.append(table.assign(product=product, unexplained=table["published"] / product))
+    return pd.concat(parts, ignore_index=True)
+
+
+def groove_volume(depth: float, width: float, track_radius: float) -> float:
+    """Volume (m3) of a shallow round groove along a whole track: two thirds of depth times width, times its length.
+
+    All in m. Two thirds is the segment of a circle whose radius is large against the depth. It says what a published
+    depth and width hold, whatever rule summed the published volume.
+    """
+    return 2.0 / 3.0 * depth * width * 2.0 * np.pi * track_radius

@@ -1,0 +1,129 @@
+"""Key numbers of a study of sliding samples, from its tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from postproc.tables.depths import depth_summary
+from postproc.tables.display import in_display_units
+from workflows.cases.sliding_sample.comparison import cycle_ratios, read_history, rows_to_show
+from workflows.cases.sliding_sample.page import ROWS_IN_DETAIL, SIZE_TABLES
+from workflows.cases.sliding_sample.replicates import relative_wear_intervals
+from workflows.cases.sliding_sample.screening.findings import UNSURE
+from workflows.report.text import data_uri, number
+
+TEXTS = ("model", "given", "not_in_model", "warning")  # columns of words, which may be empty
+REGRESSION_TABLES = ("models", "best_designs", "warnings")
+ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
+
+
+def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -> dict[str, Any]:
+    """Return what the template KEY_NUMBERS shows, `results` (a table for download), and the rows shown in detail."""
+    history = read_history(folder / "figures" / "wear_against_travel.csv")
+    depths = depth_summary(
+        pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=["run", "depth_um", "area_mm2"])
+    )
+    acceleration = study["settings"]["wear"]["acceleration"]
+    results = result_table(summary, depths, history, acceleration)
+    results = results.merge(relative_wear_intervals(summary, study["replicates"]), on="run", how="left")
+    return {
+        "results": results,
+        "repeated": bool(results["interval_low"].notna().any()),
+        "compared": len(study["design_rows"]) > 1,
+        "accelerated": acceleration != 1.0,
+        "deformed": bool(study["settings"]["wear"]["deform"]),
+        "cards": cards(results, acceleration),
+        "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
+        "regression": regression(folder) | {"factors": list(study["factors"])} if study["factors"] else None,
+        "findings": findings(folder / "findings") if study["findings"] else None,
+        "sizes": sizes(folder / "particle_size") if study["varies_scale"] else None,
+    }
+
+
+def regression(folder: Path) -> dict[str, Any]:
+    """Return models, best designs, those by regime and warnings of a study's regression, as lists of rows."""
+    tables = {name: read_with_texts(folder / "regression" / f"{name}.csv", TEXTS) for name in REGRESSION_TABLES}
+    by_regime = in_display_units(read_with_texts(folder / "confirmation" / "prediction.csv", TEXTS))
+    return {name: table.to_dict("records") for name, table in (tables | {"by_regime": by_regime}).items()}
+
+
+def read_with_texts(path: Path, texts: Sequence[str]) -> pd.DataFrame:
+    """Return a table in which empty cells of some columns are empty words, not missing numbers."""
+    table = pd.read_csv(path, dtype=dict.fromkeys(texts, object))
+    return table.assign(**{name: table[name].fillna("") for name in texts if name in table})
+
+
+def sizes(folder: Path) -> dict[str, Any]:
+    """Return what a study tells of its critical particle scale, its lines beside the source's, and the guidance."""
+    texts = dict.fromkeys(("row", "scales", "of_scales"), str)
+    tables = {name: pd.read_csv(folder / f"{name}.csv", dtype=texts) for name in SIZE_TABLES}
+    tables["guidance"] = in_display_units(tables["guidance"])
+    return {
+        **{name: table.to_dict("records") for name, table in tables.items() if name != "sentences"},
+        "sentences": tables["sentences"]["sentence"].tolist(),
+        "counts": tables["published"]["verdict"].value_counts().to_dict(),
+        "csv": data_uri(tables["published"].to_csv(index=False).encode(), "text/csv"),
+        "guidance_csv": data_uri(tables["guidance"].to_csv(index=False).encode(), "text/csv"),
+    }
+
+
+def findings(folder: Path) -> dict[str, Any]:
+    """Return the verdicts on the source's findings, their counts and its runs, as lists of rows and for download."""
+    files = {name: folder / f"{name}.csv" for name in ("findings", "runs")}
+    verdicts = pd.read_csv(files["findings"], keep_default_na=False)
+    runs = read_with_texts(files["runs"], ("published_regime", "published_wear_over_plain"))
+    return {
+        "verdicts": verdicts.to_dict("records"),
+        "counts": verdicts["verdict"].value_counts().to_dict(),
+        "runs": runs.to_dict("records"),
+        "csv": data_uri(files["findings"].read_bytes(), "text/csv"),
+        "runs_csv": data_uri(files["runs"].read_bytes(), "text/csv"),
+    }
+
+
+def result_table(
+    summary: pd.DataFrame, depths: pd.DataFrame, history: pd.DataFrame, acceleration: float
+) -> pd.DataFrame:
+    """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated
+    test, over plain with its range over the cycles, share of the bumps, carried share, forces and depths.
+    """
+    volume = summary["archard_volume_m3"]
+    table = summary[["run", "row", "surface", "travel_m", "archard_volume_m3"]].assign(
+        archard_volume_per_metre_m3_per_m=volume / summary["travel_m"],
+        real_volume_per_metre_m3_per_m=volume / summary["travel_m"] / acceleration,
+        wear_over_plain=summary["wear_over_plain"],
+        bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
+        carried_share_percent=(100.0 * summary["carried_volume_m3"] / volume).round(ROUNDING_DIGITS).abs(),
+        mean_normal_force_N=summary["mean_normal_force_N"],
+    )
+    ranges = cycle_ratios(history)
+    return in_display_units(table).merge(ranges, on=["row", "surface"], how="left").merge(depths, on="run", how="left")
+
+
+def cards(results: pd.DataFrame, acceleration: float) -> list[dict[str, str]]:
+    """Return the few numbers that answer the question, lowest relative wear first; none without a plain twin."""
+    convex = results[(results["surface"] != "plain") & results["wear_over_plain"].notna()]
+    if convex.empty:
+        return []
+    best = convex.sort_values("wear_over_plain", kind="stable").iloc[0]
+    plain = results[(results["row"] == best["row"]) & (results["surface"] == "plain")].iloc[0]
+    rate, unit = "archard_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
+    several = len(convex) > 1
+    which = f"{best['row']}, the lowest of {len(convex)} rows" if several else best["row"]
+    found = [
+        (f"{best['wear_over_plain']:.3f}", f"{best['surface']} over plain wear, {which}"),
+        (number(best[rate], 3), f"{unit}, {best['run'].replace('_', ' ')}"),
+        (number(plain[rate], 3), f"{unit}, {plain['run'].replace('_', ' ')}"),
+    ]
+    if several:
+        ratio = convex["wear_over_plain"]
+        near = int(((ratio < 1.0) & (ratio > 1.0 / (1.0 + UNSURE))).sum())
+        little = f", {near} of them by less than {100.0 * UNSURE:.0f} %" if near else ""
+        found.append((f"{(ratio < 1.0).sum()} of {len(convex)}", f"patterns wear less than their plain twin{little}"))
+    else:
+        found.append((f"{best['bump_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
+    return [{"value": value, "label": label} for value, label in found]

@@ -1,0 +1,181 @@
+"""The page of a study of sliding samples: table of runs, remarks, what is simplified."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from postproc.reference.size_ratios import LARGEST_RATIO
+from workflows.config.design import PARTICLE_SCALE
+from workflows.engine.derived import PERIODIC, WINDOW
+from workflows.report.text import range_text
+
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
+KEY_NUMBERS = "key_numbers_sliding_sample.html.j2"
+FURTHER_TEMPLATES = ("findings.html.j2", "particle_size.html.j2")  # that it includes
+RUNS_NOTE = (
+    "Layers: thickness of the bed over the median diameter of the (scaled) particles. Equivalent size ratio: particle "
+    "over bump (Yan 2022, Eq 4.18). Particles: estimate from mass; the solver's number is under Cost."
+)
+DECKS = (  # {bed} and {run} are those of the first run
+    ("Filling and settling the bed", "beds/{bed}/deck.in"),
+    ("Lowering and run-in", "{run}/cycle_000/deck.in"),
+    ("First wear cycle", "{run}/cycle_001/deck.in"),
+)
+SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/, of a study of particle size
+ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
+TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
+ALONG = {  # bed.ends -> what it makes of the packing along the travel
+    PERIODIC: " and along it, so that it passes the sample again and again",
+    WINDOW: " and along it: the same packing comes again, undisturbed, after each length of the window",
+}
+BEYOND_BUMPS = (
+    "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17), row with scale and limit"
+)
+REDUCED = (
+    ("bed", "width_mm", "bed width"),
+    ("bed", "ahead_mm", "bed ahead of the sample"),
+    ("sliding", "run_in_mm", "run-in"),
+)  # settings whose reduction every figure tells
+
+
+def remarks(study: Study) -> list[str]:
+    """Return what figures must say about particles, sample, bed and travel."""
+    now, full = study.settings, study.paper_settings
+    said = []
+    scales = sorted({round(run.parameters["particle"]["scale"], 3) for run in study.runs})
+    if scales[0] != scales[-1]:
+        said.append(f"particles at scale {scales[0]:g} to {scales[-1]:g}, different from row to row")
+    elif scales != [1.0]:
+        said.append(f"particles at scale {scales[0]:g}")
+    sizes, whole = (f"{s['sample']['width_mm']:g} x {s['sample']['length_mm']:g} mm" for s in (now, full))
+    if sizes != whole:
+        said.append(f"sample {sizes} of {whole}")
+    for section, key, words in REDUCED:
+        if now[section][key] < full[section][key]:
+            said.append(f"{words} {now[section][key]:g} mm of {full[section][key]:g} mm")
+    (kind, length), (full_kind, full_length) = (travel_words(settings["sliding"]) for settings in (now, full))
+    if (kind, length) != (full_kind, full_length):
+        said.append(f"{kind} {length} {'of' if kind == full_kind else f'instead of a {full_kind} of'} {full_length}")
+    if now["bed"]["ends"] == PERIODIC:
+        length = study.runs[0].parameters["derived"]["bed_length_m"]
+        said.append(f"bed in a channel of {1000.0 * length:g} mm that closes on itself")
+    if now["bed"]["ends"] == WINDOW:
+        lengths = sorted({f"{1000.0 * run.parameters['derived']['bed_length_m']:.0f}" for run in study.runs})
+        ends = " to ".join(lengths[:: max(len(lengths) - 1, 1)])
+        said.append(f"bed in a window of {ends} mm that travels with the sample")
+    layers = {run.row: run.parameters["derived"]["layers"] for run in study.runs}
+    if any(PARTICLE_SCALE in row for row in study.design_rows):
+        said.append(f"layers of particles in the bed: {', '.join(f'{row} {each:.1f}' for row, each in layers.items())}")
+    elif thin := {run.row: layers[run.row] for run in study.runs if run.parameters["derived"]["thin_bed"]}:
+        rows = ", ".join(f"{row} ({each:.1f})" for row, each in thin.items())
+        said.append(f"fewer than three layers of particles in the bed: {rows}")
+    if larger := _beyond_bumps(study):
+        rows = ", ".join(f"{row} ({scale:.3g}, {most:.2g})" for row, (scale, most) in larger.items())
+        said.append(f"{BEYOND_BUMPS}: {rows}")
+    hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
+    if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
+        said.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")
+    return said
+
+
+def _beyond_bumps(study: Study) -> dict[str, tuple[float, float]]:
+    """Return {row: (particle scale, largest scale)} of patterns whose bumps only scaled particles are larger than."""
+    found = {}
+    for run in study.runs:
+        ratio, scale = run.parameters["derived"]["equivalent_size_ratio"], run.parameters["particle"]["scale"]
+        if ratio is not None and ratio >= LARGEST_RATIO > ratio / scale:
+            found[run.row] = (scale, LARGEST_RATIO * scale / ratio)
+    return found
+
+
+def travel_words(sliding: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what says how long a study's runs are, and how long: travel in mm, or the duration of the real test."""
+    if "test_duration_h" in sliding:
+        return "test duration", f"{sliding['test_duration_h']:g} h"
+    return "travel", f"{sliding['travel_mm']:g} mm"
+
+
+def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the table of runs tells of a run's parameters."""
+    derived = run["derived"]
+    return {
+        "particle_scale": run["particle"]["scale"],
+        "layers": derived["layers"],
+        "equivalent_size_ratio": derived["equivalent_size_ratio"],
+        "particles_about": derived["bed_particles"],
+        "time_step_us": derived["time_step_s"] * 1e6,
+        "steps_of_first_cycle": derived["first_cycle_steps"],
+    }
+
+
+def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return (what, how) of what is simpler here than on a machine, besides scale, wear and comparison."""
+    settings = study["settings"]
+    return [
+        ("Particles", _particles(study)),
+        *_sampling(study),
+        (
+            "Skirt not counted",
+            f"{_ramp(settings['sample'])} leads from the floor on to the sample. It is not "
+            "worn and its wear is not counted, but it carries part of the bed: forces include it, wear does not.",
+        ),
+        (
+            "One packing",
+            f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel"
+            f"{ALONG.get(settings['bed']['ends'], '')}. "
+            "Runs of equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
+        ),
+    ]
+
+
+def further_cap(settings: Mapping[str, Any]) -> str:
+    """Return how far a node may move in one update, besides what its edges allow."""
+    return f"as far as particles fall in {settings['wear']['gap_closing_fraction']:g} of the cycle's duration"
+
+
+def _ramp(sample: Mapping[str, Any]) -> str:
+    """Return what the ramp up to a sample is like."""
+    slope, radius = (f"{sample[key]:g}" for key in ("skirt_slope_deg", "skirt_radius_mm"))
+    if not sample["skirt_radius_mm"]:
+        return f"A ramp of {slope}°"
+    return f"A ramp of at most {slope}°, curved by a radius of {radius} mm at top and foot,"
+
+
+def _sampling(study: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what sampled contacts leave out; nothing where the solver sums every step."""
+    settings = study["settings"]
+    if settings["ledger"] == "solver":
+        return []
+    how = (
+        f"Loads are summed from contacts sampled every {settings['solver']['sampling_interval_steps']} steps "
+        f"({_sampled_travel(study)} mm of travel), not from every step."
+    )
+    return [("Sampled contacts", how)]
+
+
+def _particles(study: Mapping[str, Any]) -> str:
+    """Return what the particles are made simpler in; ranges where the runs differ."""
+    particles = [run["particle"] for run in study["parameters"].values()]
+    diameters = [1e3 * diameter for particle in particles for diameter in particle["diameters_m"]]
+    scale = range_text([particle["scale"] for particle in particles])
+    moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
+    return (
+        f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real ones, in "
+        f"{len(particles[0]['diameters_m'])} sizes. Shape that is not round is represented by rolling friction "
+        f"({study['settings']['solver']['rolling_friction']}) alone. Contacts are softened: shear modulus {moduli} Pa."
+    )
+
+
+def _sampled_travel(study: Mapping[str, Any]) -> str:
+    """Return the travel (mm) between two samples of the contacts; a range where velocities differ."""
+    travels = [
+        1e3
+        * run["solver"]["sampling_interval_steps"]
+        * run["derived"]["time_step_s"]
+        * run["sliding"]["velocity_m_per_s"]
+        for run in study["parameters"].values()
+    ]
+    return range_text(travels)

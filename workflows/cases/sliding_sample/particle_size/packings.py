@@ -1,0 +1,184 @@
+"""Packings and single contacts at every particle scale of a study (Yan 2022, sections 4.2, 4.3.1 and 4.5.1.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from postproc.flow.bed import read_snapshot
+from postproc.flow.bulk_test import HEAP
+from postproc.flow.packing import MEASURES, loose_and_dense, packing_profile, within
+from postproc.readers.cycle_folders import cycle_files
+from postproc.tables.display import in_display_units
+from workflows.cases.sliding_sample.particle_size.collision import collision_measures, read_collisions
+from workflows.cases.sliding_sample.particle_size.collision_tests import simulate, spheres_of
+from workflows.engine import decks as deck
+from workflows.engine.bulk_simulations import FILLED, simulated, simulation_folder
+from workflows.engine.bulk_tests import time_step
+from workflows.engine.case import Parameters
+from workflows.engine.chain import RESTART
+from workflows.engine.derived import WINDOW
+from workflows.engine.solver import DECK, run_deck
+from workflows.engine.state import read_state
+
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
+MODELS = ("cdt", "epsd2")  # rolling types A and C
+COLLISION = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}  # before contact: of beds at rest and in motion
+EXACT_STEP = 0.002  # -, of the Rayleigh time: collisions are then within 0.1 % of the closed form
+DRAWN_POINTS = 400  # of a collision's history
+SOLVER_KEYS = ("rayleigh_fraction", "rolling_friction", "rolling_radius")
+REST_KEYS = ("energy_fraction", "check_interval_s", "calm_checks", "longest_s")
+END_DIAMETERS = 5.0  # -, of a bed next to its end walls, left out
+LEAVING_DIAMETERS = 2.0  # -, of the wake next to where it leaves a window, left out: it may slide into the room there
+AT_REST_BEHIND = 0.2  # m behind the sample's back edge the bed is at rest again; measured: 0.2 to 0.4
+LOOKED_AT = 0.75  # -, of the bed's thickness, from the floor: what lies above is disturbed by the surface
+
+
+def by_scale(runs: Mapping[str, Parameters]) -> dict[float, Parameters]:
+    """Return the parameters of the first run of every particle scale, smallest first."""
+    found: dict[float, Parameters] = {}
+    for run in runs.values():
+        found.setdefault(run["particle"]["scale"], run)
+    return dict(sorted(found.items()))
+
+
+def collision_tests(runs: Mapping[str, Parameters]) -> list[dict[str, Any]]:
+    """Return collisions of a study's particles with each other and its sample, of all scales and rolling types."""
+    return [
+        {
+            "particle": run["particle"],
+            "wall_material": run["sample_material"],
+            "solver": {
+                "rayleigh_fraction": EXACT_STEP,
+                "rolling_friction": model,
+                "rolling_radius": run["solver"]["rolling_radius"],
+            },
+            "collision": COLLISION,
+        }
+        for model in MODELS
+        for run in by_scale(runs).values()
+    ]
+
+
+def collision_tables(runs: Mapping[str, Parameters], folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Simulate all collisions of a study; return their histories, thinned out, and their measures."""
+    histories, measures = [], []
+    for test in collision_tests(runs):
+        model, scale = test["solver"]["rolling_friction"], test["particle"]["scale"]
+        names = {"rolling_friction": model, "particle_scale": scale}
+        dump = simulate(test, folder / f"{model}_{scale:g}")
+        found = read_collisions(dump, spheres_of(test), time_step(test))
+        dump.unlink()  # 10 MB, and one second makes it again
+        measures.append(collision_measures(found).assign(**names))
+        every = [one.iloc[:: max(len(one) // DRAWN_POINTS, 1)] for _, one in found.groupby("collision", sort=False)]
+        histories.append(pd.concat(every).assign(**names))
+    return pd.concat(histories, ignore_index=True), pd.concat(measures, ignore_index=True)
+
+
+def packed_runs(study: Study) -> dict[str, Parameters]:
+    """Return the runs whose particles are packed in containers: those chosen, or those of the whole design."""
+    runs = study.all_runs if study.settings["packing"]["every_scale"] else study.runs
+    return {run.name: run.parameters for run in runs}
+
+
+def container(run: Parameters, packing: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the bulk test of a container with a run's particles; packing: the study's settings of it, SI."""
+    diameter = run["particle"]["median_diameter_m"]
+    width = packing["width_diameters"] * diameter
+    height = min(packing["fill_height_m"], packing["most_fill_diameters"] * diameter)
+    return {
+        "kind": "packed_container",
+        "box": {"length_m": width, "width_m": width, "fill_height_m": height},
+        "shaking": {
+            "amplitude_m": packing["amplitude_diameters"] * diameter,
+            "frequency_rad_per_s": packing["frequency_rad_per_s"],
+            "duration_s": packing["shaking_s"],
+            "axis": packing["axis"],
+        },
+        "rest": {key: packing[f"rest_{key}"] for key in REST_KEYS},
+        "particle": run["particle"],
+        "wall_material": run["floor_material"],
+        "floor_material": run["floor_material"],
+        "solver": {key: run["solver"][key] for key in SOLVER_KEYS},
+        "seed": run["bed"]["seed"],
+    }
+
+
+def packing_table(runs: Mapping[str, Parameters], packing: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Simulate a container per particle scale; return its profiles loose and shaken, in display units."""
+    tables = []
+    for scale, run in by_scale(runs).items():
+        test = container(run, packing)
+        there = simulated(test, folder, alone=True)
+        loose, dense = (read_snapshot(there / name) for name in (FILLED, HEAP))
+        table = loose_and_dense(loose, dense, run["particle"]["median_diameter_m"], test["box"]["length_m"] ** 2)
+        tables.append(table.assign(particle_scale=scale))
+    return in_display_units(pd.concat(tables, ignore_index=True))
+
+
+def packing_costs(runs: Mapping[str, Parameters], packing: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Return what the simulations of `packing_table` took, a row per particle scale: solver_s, processor_s, steps and
+    particles. Without processor_s where one of them was recorded without it, by an earlier version.
+    """
+    tests = {scale: container(run, packing) for scale, run in by_scale(runs).items()}
+    costs = [read_state(simulation_folder(test, folder), 0)["cost"] for test in tests.values()]
+    return pd.DataFrame(costs, index=pd.Index(tests, name="particle_scale")).dropna(axis="columns").reset_index()
+
+
+def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:
+    """Return the particles of a restart file of a sliding sample with their contacts, as the solver counts them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / DECK).write_text(deck.render("bed_contacts", deck.bed_contacts(run, str(restart.resolve()))))
+    run_deck(folder)
+    return read_snapshot(folder / "bed.dump")
+
+
+def pieces(run: Parameters) -> dict[str, tuple[float, float, float]]:
+    """Return {state: (start, end, width) m}: of the settled bed, and of the bed that the sample has passed.
+
+    Behind the sample it is what lay ahead of its front when it started, as far as it is at rest again, over its width;
+    in a window that travels it ends short of where the wake leaves.
+    """
+    derived, sample = run["derived"], run["sample"]
+    start, end = derived["bed_start_m"], derived["bed_start_m"] + derived["bed_length_m"]
+    margin = END_DIAMETERS * run["particle"]["median_diameter_m"]
+    passed = run["sliding"]["run_in_m"] + run["sliding"]["travel_m"] - sample["length_m"] / 2.0
+    if run["bed"]["ends"] == WINDOW:
+        room = LEAVING_DIAMETERS * run["particle"]["median_diameter_m"]
+        passed = min(passed, sample["length_m"] / 2.0 + run["bed"]["behind_m"] - room)
+    return {
+        "before": (start + margin, end - margin, run["bed"]["width_m"]),
+        "after": (sample["length_m"] / 2.0 + AT_REST_BEHIND, passed, sample["width_m"]),
+    }
+
+
+def bed_packing_table(
+    runs: Mapping[str, Parameters],
+    run_folders: Mapping[str, Path],
+    beds: Mapping[str, tuple[Path, float]],
+    folder: Path,
+) -> pd.DataFrame:
+    """Return contacts and porosity of the beds of plain runs before and after the sample passed, by particle scale.
+
+    run_folders: of finished runs; beds: by run, the settled bed's restart file and the height (m) of its floor
+    Columns run, particle_scale, state (before, after), particles, and MEASURES, over three quarters of the thickness.
+    """
+    rows = []
+    for name, run in runs.items():
+        restarts = {"before": beds[name], "after": (cycle_files(run_folders[name], RESTART)[-1], 0.0)}
+        for state, (start, end, width) in pieces(run).items():
+            if end <= start:  # too short a travel for a bed at rest behind the sample
+                continue
+            restart, floor = restarts[state]
+            bed = within(counted(run, restart, folder / f"{name}_{state}"), start, end)
+            bed = bed[bed["x_m"].abs() < width / 2.0]
+            edges = floor + LOOKED_AT * run["bed"]["thickness_m"] * pd.Series([0.0, 1.0]).to_numpy()
+            found = packing_profile(bed, edges, width * (end - start)).iloc[0]
+            names = {"run": name, "particle_scale": run["particle"]["scale"], "state": state}
+            rows.append(names | {measure: found[measure] for measure in ("particles", *MEASURES)})
+    return pd.DataFrame(rows)

@@ -1,0 +1,212 @@
+"""Wear against particle scale and against ratios of size, and spider charts of motion (Yan 2022, section 4.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from postproc.plots.style import COLOURS, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.statistics.lines import FEWEST_POINTS, Crossing, fitted_line
+from workflows.cases.sliding_sample.particle_size.plots.packing import MARKERS, scale_colours
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS
+
+CURVES = {  # colour, marker and name
+    "plain": (COLOURS["plain"], "s", "plain sample"),
+    "convex": (COLOURS["convex"], "o", "convex sample"),
+    "base": ("#009E73", "^", "its base"),
+    "bumps": ("#CC79A7", "v", "its bumps"),
+}
+RATIO_NAMES = {
+    "equivalent_radius": "equivalent radius",
+    "projected_area": "projected area",
+    "surface_area": "surface area",
+    "volume": "volume",
+}
+MEASURE_NAMES = {
+    "relative_velocity": "Relative velocity of\nthe particles (%)",
+    "relative_wear_rate": "Wear rate over the\nlargest of all runs (%)",
+}
+PUBLISHED_MARKS = {"about": "D", "above": "^", "below": "v"}
+POINTS = 50  # of a drawn line
+ROOM = 0.08  # -, of the scales, beside them
+MOST_TICKS = 8  # round a spider chart
+
+
+def wear_against_scale(
+    wear: pd.DataFrame, published: pd.DataFrame, critical: Crossing | None, remarks: Sequence[str]
+) -> Figure:
+    """Draw relative wear (-) against particle scale with fitted lines, and the published lines beside them.
+
+    wear: as from `analysis.particle_size.wear_by_scale`; published: curve, intercept, slope, source
+    critical: where convex and plain meet, with its interval as a bar at the bottom; None where too few scales tell
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    axes = figure.subplots()
+    low, high = wear["particle_scale"].min(), wear["particle_scale"].max()
+    room = ROOM * max(high - low, 1.0)
+    places = np.linspace(low - room, high + room, POINTS)
+    for curve, (shade, marker, _) in CURVES.items():
+        one = wear[wear["curve"] == curve]
+        axes.plot(one["particle_scale"], one["relative_wear"], marker, color=shade, markersize=6, label=curve)
+        if len(one) >= FEWEST_POINTS and one["particle_scale"].nunique() > 1:
+            line = fitted_line(one["particle_scale"], one["relative_wear"])
+            axes.plot(places, line.at(places), color=shade, label=f"{curve} line")
+            error = line.error_at(places)
+            axes.fill_between(places, line.at(places) - error, line.at(places) + error, color=shade, alpha=0.15)
+        for _, line in published[published["curve"] == curve].iterrows():
+            drawn = {"color": shade, "linestyle": ":", "label": f"{curve} published"}
+            axes.plot(places, line["intercept"] + line["slope"] * places, **drawn)
+    _critical(axes, critical, (places[0], places[-1]))
+    axes.axhline(0.0, color="#888888", linewidth=0.6)
+    axes.set(xlabel="Particle scale (-)", ylabel="Wear over the plain sample's\nwith the smallest particles (-)")
+    axes.set_xlim(places[0], places[-1])
+    _scale_legend(figure, published, critical is not None and critical.bounded)
+    return figure
+
+
+def _critical(axes: Axes, critical: Crossing | None, ends: tuple[float, float]) -> None:
+    """Mark the critical scale and its interval, as far as the axis shows them."""
+    if critical is None or not critical.bounded:
+        return
+    axes.axvline(critical.value, color="black", linewidth=0.8, linestyle="--", label="critical")
+    axes.axvspan(max(critical.low, ends[0]), min(critical.high, ends[1]), color="#e5e5e5", zorder=0)
+
+
+def _scale_legend(figure: Figure, published: pd.DataFrame, critical: bool) -> None:
+    handles = [Line2D([], [], color=shade, marker=marker, label=name) for shade, marker, name in CURVES.values()]
+    if not published.empty:
+        source = published["source"].iloc[0].partition(",")[0]
+        handles.append(Line2D([], [], color="black", linestyle=":", label=source))
+    if critical:
+        handles.append(Line2D([], [], color="black", linestyle="--", linewidth=0.8, label="critical scale, 95 %"))
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), columnspacing=1.2)
+
+
+def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw convex over plain wear (-) against the four ratios of particle to bump, a panel each.
+
+    table, published: wear_over_plain and the four ratios; published ones are drawn as a line
+    """
+    figure = new_figure(remarks)
+    panels = figure.subplots(1, len(RATIOS), sharey=True)
+    for axes, ratio in zip(panels, RATIOS, strict=True):
+        axes.plot(published[ratio], published["wear_over_plain"], ":", color="black", label="published")
+        axes.plot(table[ratio], table["wear_over_plain"], "o", color=COLOURS["convex"], label="ours")
+        axes.axhline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
+        axes.axvline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
+        axes.set_xscale("log")
+        axes.minorticks_off()
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set_xlabel(f"Ratio of\n{RATIO_NAMES[ratio]} (-)")
+    panels[0].set_ylabel("Wear of the convex sample\nover the plain one's (-)")
+    handles = [
+        Line2D([], [], color=COLOURS["convex"], marker="o", linestyle="", label="simulated"),
+        Line2D([], [], color="black", linestyle=":", label="Yan 2022, Eq 4.14 and 4.15, pattern of run R5"),
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=2)
+    return figure
+
+
+def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw relative velocity and relative wear rate (%) in the steady window against particle scale, with deviations.
+
+    table: as from `analysis.published_sizes.steady_by_scale`; hollow where the window is not steady
+    published: quantity, surface, scale_from, scale_to, relation, value, source; of the two measures
+    """
+    figure = new_figure(remarks)
+    panels = figure.subplots(1, len(MEASURE_NAMES))
+    for axes, (measure, label) in zip(panels, MEASURE_NAMES.items(), strict=True):
+        for surface, one in table[table["measure"] == measure].groupby("surface", sort=False):
+            _with_deviation(axes, one.sort_values("particle_scale"), str(surface))
+        for each in published[published["quantity"] == measure].itertuples():
+            look = {"color": COLOURS[each.surface], "markerfacecolor": "white", "linestyle": ":", "label": "published"}
+            look["marker"] = PUBLISHED_MARKS[each.relation]
+            axes.plot([each.scale_from, each.scale_to], [each.value] * 2, linewidth=0.8, markersize=6, **look)
+        axes.set(xlabel="Particle scale (-)", ylabel=label)
+        axes.set_ylim(bottom=0.0)
+    shown = {name: CURVES[name][:2] for name in ("plain", "convex")}
+    handles = [Line2D([], [], color=each, marker=mark, label=f"{name} sample") for name, (each, mark) in shown.items()]
+    handles.append(Line2D([], [], color="black", marker="o", markerfacecolor="white", linestyle="", label="not steady"))
+    for relation in dict.fromkeys(published.loc[published["quantity"].isin(MEASURE_NAMES), "relation"]):
+        mark = {"marker": PUBLISHED_MARKS[relation], "markerfacecolor": "white", "linestyle": ":"}
+        handles.append(Line2D([], [], color=OTHER_COLOUR, label=f"Yan 2022: {relation}", **mark))
+    figure.legend(handles=handles, loc="outside upper center", ncols=3)
+    return figure
+
+
+def _with_deviation(axes: Axes, one: pd.DataFrame, surface: str) -> None:
+    """Draw means with their deviations along the travel, hollow where the window is not steady."""
+    shade, marker, _ = CURVES[surface]
+    bars = {"color": shade, "capsize": 3, "linewidth": 1.0, "label": surface}
+    axes.errorbar(one["particle_scale"], one["mean_percent"], one["deviation_percent"], **bars)
+    fill = [shade if steady else "white" for steady in one["steady"]]
+    axes.scatter(one["particle_scale"], one["mean_percent"], 36, fill, marker=marker, edgecolors=shade, zorder=3)
+
+
+def spider_charts(
+    table: pd.DataFrame,
+    value: str,
+    place: str,
+    labels: tuple[str, str],
+    remarks: Sequence[str],
+    bounds: pd.DataFrame | None = None,
+) -> Figure:
+    """Draw a quantity round a circle of places, a chart per surface, a curve per particle scale.
+
+    table: surface, particle_scale, `value` (the radius) and `place`, which begins at the top and runs clockwise; the
+    places of all scales share one circle, which ends short of its beginning. Negative values lie inside the zero circle
+    labels: of value and place, with their units
+    bounds: published ones of the value: surface, relation, value and place_to, as far as it holds; dotted
+    """
+    surfaces, scales = list(dict.fromkeys(table["surface"])), sorted(set(table["particle_scale"]))
+    colours = scale_colours(scales)
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    panels = figure.subplots(1, len(surfaces), subplot_kw={"projection": "polar"}, squeeze=False)[0]
+    whole = _circle(table, place, scales)
+    bounds = pd.DataFrame(columns=["surface", "relation", "value", "place_to"]) if bounds is None else bounds
+    lowest, largest = min(table[value].min(), 0.0), max([table[value].max(), *bounds["value"]])
+    for axes, surface in zip(panels, surfaces, strict=True):
+        axes.set_theta_zero_location("N")
+        axes.set_theta_direction(-1)
+        for k, scale in enumerate(scales):
+            one = table[(table["surface"] == surface) & (table["particle_scale"] == scale)].sort_values(place)
+            angle = 2.0 * np.pi * one[place] / whole
+            drawn = {"color": colours[scale], "marker": MARKERS[k % len(MARKERS)], "markersize": 3, "linewidth": 1.0}
+            axes.plot(angle, one[value], label=f"scale {scale:g}", **drawn)
+        for each in bounds[bounds["surface"] == surface].itertuples():
+            arc = np.linspace(0.0, min(each.place_to / whole, 1.0), POINTS) * 2.0 * np.pi
+            drawn = {"color": "black", "linestyle": ":", "linewidth": 1.2}
+            axes.plot(arc, np.full(POINTS, each.value), label=f"Yan 2022: {each.relation} {each.value:g}", **drawn)
+        if lowest < 0.0:
+            axes.plot(np.linspace(0.0, 2.0 * np.pi, POINTS), np.zeros(POINTS), color=OTHER_COLOUR, linewidth=0.8)
+        ticks = _ticks(whole)
+        axes.set_xticks(2.0 * np.pi * ticks / whole, [f"{tick:g}" for tick in ticks])
+        axes.set_rlim(1.05 * lowest, 1.05 * largest if largest > 0.0 else 0.0)
+        axes.set_rlabel_position(-0.5 * 360.0 * (1.0 - ticks[-1] / whole))
+        axes.set_title(f"{surface} sample", loc="left", fontsize=SMALLEST_FONT)
+        axes.set_xlabel(f"round: {labels[1]}")
+    named = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    handles = list(named.values())
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 6), title=f"radius: {labels[0]}")
+    return figure
+
+
+def _circle(table: pd.DataFrame, place: str, scales: Sequence[float]) -> float:
+    """Return the place that a whole circle stands for: the last one and the widest step between two of them."""
+    steps = [
+        np.diff(np.unique(table.loc[table["particle_scale"] == scale, place]), prepend=0.0).max() for scale in scales
+    ]
+    return float(table[place].max() + max(steps))
+
+
+def _ticks(whole: float) -> np.ndarray:
+    """Return round places for the circle's labels, fewer than eight or so."""
+    step = whole / MOST_TICKS
+    power = 10.0 ** np.floor(np.log10(step))
+    step = power * next(factor for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= step)
+    return np.arange(0.0, whole - 0.25 * step, step)

@@ -1,0 +1,77 @@
+"""The figure of the flow regimes: side view, bottom view and cross-section of beds, coloured by angular speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from postproc.plots.spheres import draw_circles
+from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure
+from postproc.tables.display import MILLIMETRES, in_display_units
+from workflows.cases.sliding_sample.flow_views import ACROSS, AXES, BOTTOM, SIDE
+
+TOP_SHARE = 0.98  # of the particles lie inside the colours
+LABELS = {
+    SIDE: ("", "z (mm)"),  # shares the axis of the view below it
+    BOTTOM: ("Along the travel, y (mm)", "x (mm)"),
+    ACROSS: ("Across the travel, x (mm)", "z (mm)"),
+}
+ROW_GAP = 0.09  # inches above and below every panel: titles clear the labels of the row above
+LEAST_SHARE = 0.25  # -, of the highest panel: what a flat one gets of the height of the figure
+
+
+def flow_views(
+    views: Mapping[str, pd.DataFrame], lines: Mapping[str, Mapping[str, np.ndarray]], remarks: Sequence[str]
+) -> Figure:
+    """Draw the three views of each run, a column per run; colour: angular speed (degrees per second).
+
+    views: by run, as from `analysis.flow_views.flow_views`; lines: by run, as from `sample_lines`. The bed moves to the
+    right past the sample, so the sample goes to the left through it.
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    tables = {run: in_display_units(table) for run, table in views.items()}
+    top = max(float(table["angular_speed_deg_per_s"].quantile(TOP_SHARE)) for table in tables.values())
+    norm = Normalize(0.0, top if top > 0.0 else 1.0)
+    limits = {view: _limits([table[table["view"] == view] for table in tables.values()]) for view in AXES}
+    heights = [np.ptp(vertical) / np.ptp(horizontal) for horizontal, vertical in limits.values()]
+    ratios = np.maximum(heights, LEAST_SHARE * max(heights))
+    figure.get_layout_engine().set(h_pad=ROW_GAP)
+    grid = figure.subplots(len(AXES), len(tables), squeeze=False, sharex="row", sharey="row", height_ratios=ratios)
+    for column, (run, table) in enumerate(tables.items()):
+        for axes, view in zip(grid[:, column], AXES, strict=True):
+            _draw(axes, table[table["view"] == view], lines[run][view] * MILLIMETRES, norm)
+            axes.set(xlim=limits[view][0], ylim=limits[view][1], xlabel=LABELS[view][0])
+            moves = ", bed →" if view == SIDE else ""
+            axes.set_title(f"{run.replace('_', ' ')}, {view}{moves}", loc="left", fontsize=SMALLEST_FONT, pad=2)
+    for axes, view in zip(grid[:, 0], AXES, strict=True):
+        axes.set_ylabel(LABELS[view][1])
+    bar = figure.colorbar(ScalarMappable(norm, MAP), ax=grid, extend="max", shrink=0.85, pad=0.02, aspect=30)
+    bar.set_label("Angular speed of particles (°/s)")
+    return figure
+
+
+def _limits(tables: Sequence[pd.DataFrame]) -> np.ndarray:
+    """Return from, to (mm) of the horizontal and of the vertical axis, (2, 2), that show all particles of a view."""
+    shown = pd.concat(tables)
+    places, reach = shown[["horizontal_mm", "vertical_mm"]].to_numpy(), shown["radius_mm"].max()
+    return np.stack([places.min(axis=0) - reach, places.max(axis=0) + reach], axis=1)
+
+
+def _draw(axes: Axes, table: pd.DataFrame, lines: np.ndarray, norm: Normalize) -> None:
+    places = table[["horizontal_mm", "vertical_mm"]].to_numpy()
+    draw_circles(axes, places, table["radius_mm"].to_numpy(), table["angular_speed_deg_per_s"].to_numpy(), norm, MAP)
+    axes.add_collection(LineCollection(lines, colors="black", linewidths=1.0))
+    axes.set_aspect("equal")
+    axes.grid(False)
+
+
+def flow_views_table(views: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Return the particles of the figure in display units: run, view, id, places and radius in mm, speed in deg/s."""
+    return in_display_units(pd.concat([table.assign(run=run) for run, table in views.items()], ignore_index=True))

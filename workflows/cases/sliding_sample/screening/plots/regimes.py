@@ -1,0 +1,100 @@
+"""Figures of a screening study that set convex runs beside their plain twins, a panel per flow regime."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from postproc.plots.style import BASE_COLOUR, BUMP_COLOUR, LARGEST_HEIGHT, SMALLEST_FONT, colour, new_figure
+from workflows.cases.sliding_sample.comparison import PLAIN
+
+BAR = 0.4  # -, width of a bar over the distance of rows
+PLAIN_FILL = "#f4c9a8"  # of the plain samples' bars
+ERROR_BARS = {"fmt": "none", "ecolor": "black", "elinewidth": 0.9, "capsize": 2}
+HEADROOM = 1.08  # -, of the highest bar
+
+
+def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw relative wear of convex (base and bumps, stacked) and plain samples, rows of least convex wear first.
+
+    table: as from `analysis.regime_groups.wear_by_group`, with interval_low and interval_high, NaN where not known.
+    """
+    highest = np.nanmax([1.0, *table["interval_high"]])
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    for axes, shown in _panels(figure, table, "relative_wear"):
+        convex, plain = shown[shown["surface"] != PLAIN], shown[shown["surface"] == PLAIN]
+        left = _places(convex) - 0.5 * BAR
+        axes.bar(left, convex["base_relative_wear"], BAR, color=BASE_COLOUR)
+        bumps = {"color": BUMP_COLOUR, "hatch": "//", "edgecolor": "white"}
+        axes.bar(left, convex["bump_relative_wear"], BAR, bottom=convex["base_relative_wear"], **bumps)
+        axes.bar(_places(plain) + 0.5 * BAR, plain["relative_wear"], BAR, color=PLAIN_FILL, edgecolor=colour(PLAIN))
+        for places, runs in ((left, convex), (_places(plain) + 0.5 * BAR, plain)):
+            reach = np.abs(runs[["interval_low", "interval_high"]].to_numpy().T - runs["relative_wear"].to_numpy())
+            known = np.isfinite(reach).all(axis=0)
+            axes.errorbar(places[known], runs["relative_wear"][known], reach[:, known], **ERROR_BARS)
+        axes.set_ylim(0.0, HEADROOM * highest)
+    figure.axes[0].set_ylabel("Wear over the largest of the regime (-)")
+    handles = [
+        Patch(color=BASE_COLOUR, label="convex, base"),
+        Patch(facecolor=BUMP_COLOUR, hatch="//", edgecolor="white", label="convex, bumps"),
+        Patch(facecolor=PLAIN_FILL, edgecolor=colour(PLAIN), label="plain"),
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=3)
+    return figure
+
+
+def normal_force_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw the mean normal force (N) on convex and plain samples with its deviation along the travel, if known.
+
+    table: as from `analysis.regime_groups.force_by_group`.
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    for axes, shown in _panels(figure, table, "mean_normal_force_N"):
+        for shift, (surface, runs) in zip((-0.5, 0.5), _by_surface(shown), strict=False):
+            known = runs["deviation_N"].notna()
+            places = _places(runs) + shift * BAR
+            axes.bar(places, runs["mean_normal_force_N"], BAR, color=colour(surface))
+            axes.errorbar(places[known], runs["mean_normal_force_N"][known], runs["deviation_N"][known], **ERROR_BARS)
+    highest = (table["mean_normal_force_N"] + table["deviation_N"].fillna(0.0)).max()
+    figure.axes[0].set_ylim(0.0, HEADROOM * highest)
+    figure.axes[0].set_ylabel("Normal force on the sample (N)")
+    handles = [Patch(color=colour(surface), label=surface) for surface in dict.fromkeys(table["surface"])]
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    return figure
+
+
+def _by_surface(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Return the runs of each surface, plain ones last."""
+    groups = list(table.groupby("surface", sort=False))
+    return sorted(groups, key=lambda group: group[0] == PLAIN)
+
+
+def _places(runs: pd.DataFrame) -> np.ndarray:
+    return runs["place"].to_numpy(dtype=float)
+
+
+def _panels(figure: Figure, table: pd.DataFrame, column: str) -> list[tuple[Axes, pd.DataFrame]]:
+    """Return axes and runs, with their `place` on the axis, of each regime; panels are as wide as they have rows.
+
+    Rows stand in the order of the column's values of their patterned runs.
+    """
+    regimes = list(dict.fromkeys(table["regime"]))
+    counts = [table.loc[table["regime"] == regime, "row"].nunique() for regime in regimes]
+    grid = figure.subplots(1, len(regimes), sharey=True, squeeze=False, width_ratios=np.maximum(counts, 2))[0]
+    panels = []
+    for axes, regime in zip(grid, regimes, strict=True):
+        shown = table[table["regime"] == regime]
+        patterned = shown[shown["surface"] != PLAIN].sort_values(column, kind="stable")["row"]
+        rows = list(dict.fromkeys([*patterned, *shown["row"]]))
+        axes.set_xticks(range(len(rows)), rows)
+        axes.set_xlim(-0.6, len(rows) - 0.4)
+        axes.grid(axis="x", visible=False)
+        axes.set_title(regime, loc="left", fontsize=SMALLEST_FONT)
+        axes.set_xlabel("Design row")
+        panels.append((axes, shown.assign(place=shown["row"].map(rows.index))))
+    return panels

@@ -1,0 +1,379 @@
+"""Turn a study's configuration into runs: merge, check, convert to SI, derive.
+
+    default.yaml <- case <- study <- fidelity block <- command line   settings, in the units that their keys spell
+    settings x design row x surface -> Run.parameters                 SI, JSON-able
+
+Configuration faults raise ConfigError, one sentence each.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
+from workflows.config.run_checks import CheckedRun, check_run
+from workflows.config.units import to_si
+from workflows.config.validation import (
+    case_schema,
+    check_alternatives,
+    check_calibrated_for,
+    check_layer,
+    check_material_names,
+    check_materials,
+    coerce_numbers,
+    joined,
+    leaves,
+    load_schema,
+    locate,
+    read_design,
+    unknown_name,
+    without_required,
+)
+from workflows.engine.case import DEFAULT_CASE, Case, Run, find_case
+
+__all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
+
+TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
+FACTORS = "factors"  # key of a study
+FEWEST_RUNS = 5  # for which a regression is made: AICc needs four more than a model has terms
+PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
+ROWS = "rows"  # key of the settings
+DESIGN = "design"  # key of a study, and of its fidelity blocks
+CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
+STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
+RULE_NAMES = frozenset(
+    found[1]
+    for path in Path(__file__).parents[1].rglob("*.smk")
+    for found in re.finditer(r"^rule (\w+):", path.read_text(encoding="utf-8"), re.MULTILINE)
+)
+MATERIALS = "materials.yaml"  # in config, where a study names no other
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True)
+class Study:
+    """A checked study. `settings` are merged, in the units that their keys spell; so are `design_rows`.
+
+    runs: those of its rows; all_runs: those of the whole design, where `rows` chooses some of it
+    factors: {short name: column of the design} of the regression of its results; empty without one
+    finds_regimes: whether the flow regimes of its runs are found
+    confirms: the study whose best designs this one simulates, "" for all others
+    """
+
+    name: str
+    case: Case
+    title: str
+    question: str
+    fidelity: str
+    settings: dict[str, Any]
+    runs: tuple[Run, ...]
+    all_runs: tuple[Run, ...]
+    design_rows: tuple[dict[str, Any], ...]
+    factors: dict[str, str]
+    paper_settings: dict[str, Any]
+    materials: dict[str, Any]
+    finds_regimes: bool = False
+    confirms: str = ""
+
+    def run(self, name: str) -> Run:
+        """Return the run of that name. Raises ConfigError naming the runs there are."""
+        found = next((run for run in self.runs if run.name == name), None)
+        if found is None:
+            raise ConfigError(unknown_name(f"study {self.name}", "run", name, [run.name for run in self.runs]))
+        return found
+
+    def same_as(self, run_name: str) -> str | None:
+        """Return the first run with the parameters of this one, which simulates both; None for that run itself.
+
+        So do plain samples of rows that differ in their pattern only. Raises ConfigError for an unknown run.
+        """
+        wanted = self.run(run_name).parameters
+        first = next(run.name for run in self.runs if run.parameters == wanted)
+        return first if first != run_name else None
+
+    def design_table(self) -> list[dict[str, Any]]:
+        """Return one row per run: run, row, surface where there are any, the factors with their units, and what follows
+        from them in this case.
+        """
+        factors = {str(row["row"]): {k: v for k, v in row.items() if k != "row"} for row in self.design_rows}
+        columns = dict.fromkeys(name for row in factors.values() for name in row)
+        return [
+            {"run": run.name, "row": run.row}
+            | ({"surface": run.surface} if run.surface else {})
+            | {name: factors[run.row].get(name, "") for name in columns}
+            | self.case.table_columns(run.parameters)
+            for run in self.runs
+        ]
+
+    @cached_property
+    def _beds(self) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
+        return self.case.beds(self.all_runs)
+
+    @property
+    def beds(self) -> dict[str, dict[str, Any]]:
+        """Return {bed id: parameters}; runs with equal parameters share a bed, and some cases have none.
+
+        A bed is that of the whole design, so that a run is the same whichever rows are chosen beside it.
+        """
+        beds, bed_of = self._beds
+        used = {bed_of[run.name] for run in self.runs if run.name in bed_of}
+        return {name: parameters for name, parameters in beds.items() if name in used}
+
+    def bed_of(self, run_name: str) -> str | None:
+        """Return the id of the bed that a run starts from, None without. Raises ConfigError for an unknown run."""
+        return self._beds[1].get(self.run(run_name).name)
+
+
+def list_studies(root: Path = REPOSITORY) -> list[str]:
+    """Return the names of the studies in config/studies."""
+    return sorted(path.stem for path in (Path(root) / "config" / "studies").glob("*.yaml"))
+
+
+def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | None = None) -> Study:
+    """Return a checked study with all its runs.
+
+    `overrides` are nested settings, as from the command line: {"fidelity": "standard", "particle_scale": 2}.
+    <name>_confirmation is the study with everything of <name> but its design, which is that of its best designs.
+    Raises ConfigError: one sentence with file, line, key or row, the value found and what is allowed.
+    """
+    root = Path(root)
+    if not STUDY_NAME.fullmatch(name) or name in RULE_NAMES or name.endswith(TARGETS):
+        raise ConfigError(
+            f"config/studies/{name}.yaml: a study cannot be called {name}, allowed are small letters, digits and"
+            f" underscores, not ending in {' or '.join(TARGETS)}, and none of {', '.join(sorted(RULE_NAMES))}."
+        )
+    written = list_studies(root)
+    confirms = name.removesuffix(CONFIRMATION) if name not in written and name.endswith(CONFIRMATION) else ""
+    if (confirms or name) not in written:
+        raise ConfigError(unknown_name("config/studies", "study", confirms or name, written))
+    sources = _read_sources(confirms or name, root, overrides)
+    fidelity = _fidelity(sources)
+    layers = sources.stack(fidelity)
+    settings = sources.merged(layers)
+    materials = check_materials(read_yaml(_materials_file(settings, root), root))
+    check_material_names(layers, settings, materials, sources.case.material_keys)
+    check_calibrated_for(layers, settings, materials, sources.case.material_keys)
+    head = sources.study.values
+    designed = _rows_to_confirm(sources, confirms, root) if confirms else _design_rows(sources, fidelity, root)
+    rows = designed if confirms else _chosen_rows(layers, settings, designed)
+    names = {row_layer.values["row"] for row_layer in rows}
+    all_runs = tuple(
+        _checked_run(sources, layers, settings, materials, row_layer, surface)
+        for row_layer in designed
+        for surface in sources.case.surfaces(head)
+    )
+    factors = {} if confirms else _factors(sources, designed)
+    return Study(
+        name=name,
+        case=sources.case,
+        title=f"{head['title']}: the best designs simulated" if confirms else head["title"],
+        question="Does one run of each best design wear what was predicted?" if confirms else head["question"],
+        fidelity=fidelity,
+        settings=settings,
+        runs=tuple(run for run in all_runs if run.row in names),
+        all_runs=all_runs,
+        design_rows=tuple(row_layer.values for row_layer in rows),
+        factors=factors if _can_tell(factors, rows) else {},
+        paper_settings=sources.merged(sources.stack("paper")[:-1]),
+        materials=materials,
+        finds_regimes=sources.case.name == "sliding_sample"
+        and bool(factors or confirms or any(PARTICLE_SCALE in row.values for row in rows)),
+        confirms=confirms,
+    )
+
+
+def confirmation_design(study: str) -> str:
+    """Return the path, from the repository, of the design table of a study's best designs."""
+    return f"results/{study}/confirmation/design.csv"
+
+
+def _rows_to_confirm(sources: _Sources, study: str, root: Path) -> list[Layer]:
+    """Return the checked rows of a study's best designs. Raises ConfigError where there are none (yet)."""
+    if not sources.study.values.get(FACTORS):
+        raise ConfigError(
+            f"{sources.study.source}: {study} has nothing to confirm, allowed is a study with factors, whose regression"
+            " finds a best design."
+        )
+    path = root / confirmation_design(study)
+    if not path.is_file():
+        raise ConfigError(f"{display_name(path, root)}: there is no such file yet, `snakemake {study}` writes it.")
+    return read_design(path, root, load_schema(f"cases/{sources.case.name}/design"))
+
+
+def _materials_file(settings: dict[str, Any], root: Path) -> Path:
+    """Return the path of a study's materials: a file in config, or any other one, as a calibration writes it."""
+    name = settings.get("materials", MATERIALS)
+    in_config, elsewhere = root / "config" / name, root / name
+    return elsewhere if elsewhere.is_file() and not in_config.is_file() else in_config
+
+
+@dataclass(frozen=True)
+class _Sources:
+    """Where settings come from; `study` also holds the keys that are the study's own."""
+
+    case: Case
+    default: Layer
+    of_case: Layer
+    study: Layer
+    command: Layer
+
+    @property
+    def study_settings(self) -> Layer:
+        return self.study.part(set(self.study.values) - set(case_schema(self.case.name, "study")["properties"]))
+
+    def block(self, fidelity: str) -> Layer:
+        return self.study.inner(("fidelities", fidelity), f"fidelity {fidelity}")
+
+    @property
+    def partial_layers(self) -> list[Layer]:
+        """All layers that override some keys: the study's, those of its fidelities and the command line."""
+        blocks = [self.block(fidelity) for fidelity in self.study.values.get("fidelities", {})]
+        return [self.study_settings, *blocks, self.command]
+
+    def stack(self, fidelity: str) -> tuple[Layer, ...]:
+        """Return the layers from the weakest to the strongest."""
+        block = self.block(fidelity)
+        return (
+            *(self.default, self.of_case, self.study_settings),
+            *(block.part(set(block.values) - {DESIGN}), self.command),
+        )
+
+    def merged(self, layers: tuple[Layer, ...]) -> dict[str, Any]:
+        """Return the settings of the layers, the last one strongest."""
+        settings: dict[str, Any] = {}
+        alternatives = self.case.alternatives
+        for layer in layers:
+            if any(layer.holds(path) for path in alternatives):
+                for section, key in alternatives:
+                    settings.get(section, {}).pop(key, None)
+            settings = merge(settings, layer.values)
+        return coerce_numbers(settings, case_schema(self.case.name, "settings"))
+
+
+def _read_sources(name: str, root: Path, overrides: dict[str, Any] | None) -> _Sources:
+    """Return the sources of a study, each checked by itself so that a fault is reported where it stands."""
+    study = read_yaml(root / "config" / "studies" / f"{name}.yaml", root)
+    named = study.part({"case"})
+    check_layer(named, without_required(load_schema("study")))
+    case = find_case(named.values.get("case", DEFAULT_CASE))
+    sources = _Sources(
+        case=case,
+        default=read_yaml(root / "config" / "default.yaml", root),
+        of_case=read_yaml(root / "config" / "cases" / f"{case.name}.yaml", root),
+        study=study,
+        command=command_line_layer(overrides),
+    )
+    shared, own = load_schema("settings"), load_schema(f"cases/{case.name}/settings")
+    of_study = case_schema(case.name, "study")
+    partial = without_required(joined(shared, own))
+    check_layer(sources.default, shared)
+    check_layer(sources.of_case, joined(without_required(shared), own))
+    check_layer(sources.study, {**of_study, "properties": of_study["properties"] | partial["properties"]})
+    offered = {k: v for k, v in partial["properties"].items() if k != "fidelity"}
+    within_block = {**partial, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
+    for fidelity in sources.study.values.get("fidelities", {}):
+        check_layer(sources.block(fidelity), within_block)
+    check_layer(sources.command, partial)
+    check_alternatives(sources.of_case, case.alternatives, required=True)
+    for layer in sources.partial_layers:
+        check_alternatives(layer, case.alternatives, required=False)
+    return sources
+
+
+def _design_rows(sources: _Sources, fidelity: str, root: Path) -> list[Layer]:
+    """Return the checked rows of the study's design table, or of the fidelity's own. Raises ConfigError."""
+    block = sources.block(fidelity)
+    source = block if DESIGN in block.values else sources.study
+    folder, name = root / "config" / "designs", source.values[DESIGN]
+    there = sorted(path.name for path in folder.glob("*.csv"))
+    if name not in there:
+        raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
+    rows = read_design(folder / name, root, load_schema(f"cases/{sources.case.name}/design"))
+    if fault := sources.case.design_fault([row.values for row in rows]):
+        raise ConfigError(f"{display_name(folder / name, root)}: {fault}.")
+    return rows
+
+
+def _chosen_rows(layers: tuple[Layer, ...], settings: dict[str, Any], rows: list[Layer]) -> list[Layer]:
+    """Return the rows of a design that the settings choose, all where they choose none. Raises ConfigError."""
+    known = [row.values["row"] for row in rows]
+    chosen = settings.get(ROWS, known)
+    for name in chosen:
+        if name not in known:
+            raise ConfigError(unknown_name(locate(layers, (ROWS,)), "row", name, known))
+    return [row for row in rows if row.values["row"] in chosen]
+
+
+def _can_tell(factors: dict[str, str], rows: list[Layer]) -> bool:
+    """Return whether the chosen rows are enough for a regression on the factors."""
+    return len(rows) >= FEWEST_RUNS and all(len({row.values[name] for row in rows}) > 1 for name in factors.values())
+
+
+def _factors(sources: _Sources, rows: list[Layer]) -> dict[str, str]:
+    """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError."""
+    factors = sources.study.values.get(FACTORS, {})
+    for name, column in factors.items():
+        levels = {row.values[column] for row in rows}
+        if len(levels) < 2:
+            raise ConfigError(
+                f"{sources.study.where((FACTORS, name))}: {FACTORS}.{name} is {column}, which is"
+                f" {levels.pop():g} in every row of the design, allowed are columns with two levels or more."
+            )
+    if factors and len(rows) < FEWEST_RUNS:
+        raise ConfigError(
+            f"{sources.study.where((FACTORS,))}: {FACTORS} ask for a regression, found a design of {len(rows)} rows,"
+            f" allowed are {FEWEST_RUNS} or more."
+        )
+    return dict(factors)
+
+
+def _fidelity(sources: _Sources) -> str:
+    """Return the fidelity asked for: command line, else study, else default; the study must offer it."""
+    layers = (sources.default, sources.study_settings, sources.command)
+    source = next(layer for layer in reversed(layers) if "fidelity" in layer.values)
+    fidelity = source.values["fidelity"]
+    offered = sources.study.values.get("fidelities")
+    if offered is not None and fidelity not in offered:
+        raise ConfigError(
+            f"{source.where(('fidelity',))}: fidelity is '{fidelity}',"
+            f" allowed is one of {', '.join(offered)}, the fidelities of {sources.study.source}."
+        )
+    return fidelity
+
+
+def _checked_run(
+    sources: _Sources,
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    materials: dict[str, Any],
+    row: Layer,
+    surface: str,
+) -> Run:
+    """Return one run after all checks that need no solver. Raises ConfigError."""
+    case = sources.case
+    columns = row_overrides(row, load_schema(f"cases/{sources.case.name}/design"))
+    of_row = with_row(settings, row, columns)
+    parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
+    check_run(CheckedRun(layers, of_row, row, parameters, columns), case.checks)
+    name = row.values["row"]
+    return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)
+
+
+def row_overrides(row: Layer, schema: dict[str, Any]) -> dict[str, str]:
+    """Return {setting: column} of the settings that a design row overrides: the schema of such a column names one."""
+    named = {inner["x-setting"]: column for (column,), inner in leaves(schema) if "x-setting" in inner}
+    return {setting: column for setting, column in named.items() if column in row.values}
+
+
+def with_row(settings: dict[str, Any], row: Layer, columns: dict[str, str]) -> dict[str, Any]:
+    """Return the settings of one design row."""
+    for setting, column in columns.items():
+        value = row.values[column]
+        for key in reversed(setting.split(".")):
+            value = {key: value}
+        settings = merge(settings, value)
+    return settings

@@ -1,0 +1,90 @@
+"""Write config/README.md from the schemas: every key with its unit, what is allowed and what it means.
+
+python -m workflows.config.readme
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from workflows.config.design import REPOSITORY
+from workflows.config.layers import dotted
+from workflows.config.validation import allowed_text, leaves, load_schema, schema_file
+from workflows.engine.case import case_names, find_case
+
+INTRODUCTION = """\
+# Configuration
+
+Generated from `workflows/schemas` by `python -m workflows.config.readme`; edit the schemas, not this page.
+
+* `default.yaml`: settings that all cases share.
+* `cases/<case>.yaml`: settings of one case, which stand above those.
+* `studies/<name>.yaml`: one study of a case; it overrides settings, and its `fidelities` blocks override them again.
+* The command line overrides all of them.
+* `designs/*.csv`: design tables; each row makes a run, or one with each surface (`R9_convex`). Columns are those of the
+  case; where they name a setting, the row overrides it.
+* `materials.yaml`: particles, walls and their contacts.
+
+Every key with a dimension ends in its unit; another unit is refused, and so is an unknown key. Numbers are
+written as in YAML 1.2: `6.3e-13`, `1e-9` and `.5` are numbers, `'80'` and `80 mm` are not.
+"""
+
+CHECKS = """\
+### Checks that compare values
+
+Done before any solver starts:
+
+"""
+
+TABLES = (
+    ("Settings", "settings", "of `default.yaml`, cases, studies, their fidelities and the command line"),
+    ("Study", "study", "of `studies/<name>.yaml` besides settings"),
+    ("Materials", "materials", "of `materials.yaml`"),
+)
+TABLES_OF_CASE = (
+    ("Settings", "settings", "of `cases/{case}.yaml`, studies, their fidelities and the command line"),
+    ("Study", "study", "of `studies/<name>.yaml` besides those of every study"),
+    ("Design table", "design", "are the columns of `designs/*.csv`"),
+)
+
+
+def _rows(schema: dict[str, Any]) -> Iterator[str]:
+    for path, inner in leaves(schema):
+        unit, meaning = inner.get("x-unit", "-"), inner.get("description")
+        if meaning is not None:
+            allowed = allowed_text(inner).removesuffix(f" {unit}")
+            overriding = f"; overrides `{inner['x-setting']}`" if "x-setting" in inner else ""
+            yield f"| `{dotted(path)}` | {unit} | {allowed} | {meaning}{overriding} |"
+
+
+def table(name: str) -> str:
+    """Return the Markdown table of one schema."""
+    return "\n".join(["| key | unit | allowed | meaning |", "|---|---|---|---|", *_rows(load_schema(name))])
+
+
+def sections_of_case(name: str) -> Iterator[str]:
+    """Yield the sections about one case."""
+    yield f"## Case `{name}`\n\n{(find_case(name).__doc__ or '').splitlines()[0]}\n"
+    for title, kind, where in TABLES_OF_CASE:
+        schema = f"cases/{name}/{kind}"
+        if schema_file(schema).is_file():
+            yield f"### {title}\n\nKeys {where.format(case=name)}.\n\n{table(schema)}\n"
+    yield CHECKS + "\n".join(f"* {(check.__doc__ or '').splitlines()[0]}" for check in find_case(name).checks) + "\n"
+
+
+def readme() -> str:
+    """Return the whole page."""
+    sections = [f"## {title}\n\nKeys {where}.\n\n{table(name)}\n" for title, name, where in TABLES]
+    cases = [section for name in case_names() for section in sections_of_case(name)]
+    return "\n".join([INTRODUCTION, *sections, *cases])
+
+
+def main(root: Path = REPOSITORY) -> None:
+    """Write config/README.md."""
+    (root / "config" / "README.md").write_text(readme(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,403 @@
+"""Check configuration against the schemas of workflows/schemas and say in one sentence what is wrong.
+
+Checks of one value (type, range, unit) come from the schemas; checks that compare values of a run are in
+run_checks.py. Nothing here needs the solver.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+
+from workflows.config.layers import (
+    INTEGER,
+    NUMBER,
+    ConfigError,
+    KeyPath,
+    Layer,
+    display_name,
+    dotted,
+    read_csv_rows,
+    read_yaml,
+)
+
+SCHEMA_FOLDER = Path(__file__).parent / "schemas"
+CASES_FOLDER = Path(__file__).parents[1] / "cases"
+CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
+
+# Suffix of a key -> unit as written in the schemas (x-unit); no suffix: "-".
+UNIT_OF_SUFFIX = {
+    "mm": "mm",
+    "deg": "deg",
+    "deg_per_s": "deg/s",
+    "n": "N",
+    "pa": "Pa",
+    "per_pa": "1/Pa",
+    "kg_per_m3": "kg/m3",
+    "m_per_s": "m/s",
+    "s": "s",
+    "steps": "steps",
+    "h": "h",
+}
+# Suffixes that people write instead; recognised only to explain the mistake.
+FOREIGN_SUFFIXES = (
+    *("nm", "um", "cm", "dm", "m", "km", "in", "inch", "ft", "kn", "rad_per_s", "rpm"),
+    *("rad", "degrees", "radians", "percent"),
+    *("kpa", "mpa", "gpa", "per_kpa", "per_mpa", "per_gpa"),
+    *("mm_per_s", "cm_per_s", "km_per_h", "g_per_cm3", "t_per_m3"),
+    *("ms", "min", "kg", "g"),
+)
+ALL_SUFFIXES = sorted([*UNIT_OF_SUFFIX, *FOREIGN_SUFFIXES], key=len, reverse=True)
+VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z")
+MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
+
+
+NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
+LONGEST_VALUE = 60  # characters of a value that a message shows
+
+
+def _is_number(_checker: Any, value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _is_integer(_checker: Any, value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+_TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
+_Validator = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=_TYPES)
+
+
+def schema_file(name: str) -> Path:
+    """Return the file of a schema, which of a case (cases/<case>/<kind>) lies in its folder."""
+    folder = CASES_FOLDER.parent if name.startswith("cases/") else SCHEMA_FOLDER
+    return folder / f"{name}.schema.yaml"
+
+
+@cache
+def load_schema(name: str) -> dict[str, Any]:
+    """Return the schema of that name. Raises jsonschema.SchemaError if it is no schema."""
+    schema = read_yaml(schema_file(name), SCHEMA_FOLDER).values
+    _Validator.check_schema(schema)
+    return schema
+
+
+def joined(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of blocks with the keys of both; a block that both have is joined in turn."""
+    properties = dict(first.get("properties", {}))
+    for key, inner in second["properties"].items():
+        properties[key] = joined(properties[key], inner) if key in properties else inner
+    required = list(dict.fromkeys([*first.get("required", []), *second.get("required", [])]))
+    return {**second, **first, "properties": properties, "required": required}
+
+
+@cache
+def case_schema(case: str, kind: str) -> dict[str, Any]:
+    """Return the schema of a case's settings or studies: what all cases share, and its own."""
+    own = f"cases/{case}/{kind}"
+    return joined(load_schema(kind), load_schema(own)) if schema_file(own).is_file() else load_schema(kind)
+
+
+def without_required(schema: Any) -> Any:
+    """Return the schema with nothing required: for a layer that overrides some keys."""
+    if isinstance(schema, dict):
+        return {key: without_required(value) for key, value in schema.items() if key != "required"}
+    return [without_required(value) for value in schema] if isinstance(schema, list) else schema
+
+
+def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
+    """Raise ConfigError for the first fault of a layer against a schema by lines, missing keys last."""
+    faults = [(path, text, False) for path, text in _faults(layer.values, schema)]
+    faults += [(path, text, True) for path, text in _missing(layer.values, schema)]
+    if faults:
+        path, text, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
+        raise ConfigError(f"{layer.where(path)}: {text}.")
+
+
+def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required: bool) -> None:
+    """Raise ConfigError for a layer with both of two alternatives, or with neither where one is `required`."""
+    given = [path for path in alternatives if layer.holds(path)]
+    both, neither = len(given) > 1, required and alternatives and not given
+    if both or neither:
+        names = " and ".join(map(dotted, alternatives))
+        found = "are both given" if both else "are both missing"
+        where = layer.where(given[-1] if given else alternatives[0])
+        raise ConfigError(f"{where}: {names} {found}, allowed is one of them.")
+
+
+def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
+    """Yield (key path, sentence without its end) for every value that is wrong and every unknown key."""
+    for error in _Validator(schema).iter_errors(values):
+        path = tuple(error.absolute_path)
+        if error.validator == "additionalProperties":
+            for key in [key for key in error.instance if key not in error.schema.get("properties", {})]:
+                yield (*path, key), unknown_key((*path, key), schema, found=show(error.instance[key]))
+        elif error.validator != "required":
+            yield path, wrong_value(path, error.instance, error.schema)
+
+
+def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
+    """Yield (path of the block, sentence without its end) for every block in which a key is missing."""
+    for error in _Validator(schema).iter_errors(values):
+        if error.validator == "required":
+            path = tuple(error.absolute_path)
+            key = next(key for key in error.validator_value if key not in error.instance)
+            allowed = allowed_text(error.schema["properties"][key])
+            yield path, f"{dotted((*path, key))} is missing, allowed is {allowed}"
+
+
+def _subschema(schema: dict[str, Any], path: KeyPath) -> dict[str, Any] | None:
+    """Return the schema of the key at a path, None where the schema does not know it."""
+    for key in path:
+        inner = schema.get("properties", {}).get(key, schema.get("additionalProperties"))
+        schema = schema.get("items") if isinstance(key, int) else inner
+        if not isinstance(schema, dict):
+            return None
+    return schema
+
+
+def allowed_text(schema: dict[str, Any]) -> str:
+    """Return in words what a schema allows: 'a number from 5 to 2000 mm', 'one of cdt, epsd2'."""
+    kind = schema.get("type")
+    if "x-allowed" in schema:
+        return schema["x-allowed"]
+    if "enum" in schema:
+        return "one of " + ", ".join(map(str, schema["enum"]))
+    if kind in NUMBERS:
+        return f"{'a number' if kind == 'number' else 'a whole number'} {_range_text(schema)}".rstrip()
+    return {"boolean": "true or false", "string": "text", "array": "a list"}.get(str(kind), "a block of keys")
+
+
+def _range_text(schema: dict[str, Any]) -> str:
+    unit = "" if schema.get("x-unit", "-") == "-" else f" {schema['x-unit']}"
+    inclusive = "minimum" in schema and "maximum" in schema
+    if inclusive:
+        return f"from {schema['minimum']:.10g} to {schema['maximum']:.10g}{unit}"
+    words = {
+        "exclusiveMinimum": "above",
+        "minimum": "at least",
+        "exclusiveMaximum": "below",
+        "maximum": "at most",
+    }
+    return " and ".join(f"{word} {schema[key]:.10g}" for key, word in words.items() if key in schema) + unit
+
+
+def wrong_value(path: KeyPath, value: Any, schema: dict[str, Any]) -> str:
+    """Return the fault of a value, with its key, what was found and what is allowed."""
+    name = dotted(path) or "the file"
+    if isinstance(value, str) and schema.get("type") in NUMBERS:
+        with_unit = VALUE_WITH_UNIT.match(value.strip())
+        if with_unit:
+            return _unit_in_value(path, with_unit["number"], with_unit["unit"], schema)
+        if NUMBER.match(value.strip()):
+            return f"{name} is the text {value!r}, allowed is {allowed_text(schema)}, without quotation marks"
+    whole = schema.get("type") == "integer" or "anyOf" in schema
+    found = repr(value) if isinstance(value, float) and whole else show(value)
+    return f"{name} is {found}, allowed is {allowed_text(schema)}"
+
+
+def _unit_in_value(path: KeyPath, number: str, unit: str, schema: dict[str, Any]) -> str:
+    name, expected = dotted(path), schema.get("x-unit", "-")
+    if unit == expected:
+        return f"{name} is '{number} {unit}', write the number alone: {path[-1]}: {number}"
+    stem = ".".join([*map(str, path[:-1]), _split_known(str(path[-1]), expected)])
+    allowed = allowed_text(schema)
+    return f"unit {unit} is not allowed for {stem}, write {name}, {allowed} (found '{number} {unit}')"
+
+
+def show(value: Any) -> str:
+    """Return a value as a message shows it."""
+    if value is None:
+        return "empty"
+    if isinstance(value, dict):
+        return "a block of keys"
+    if isinstance(value, bool):
+        return str(value).lower()
+    text = repr(value) if isinstance(value, str) else f"{value:.10g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= LONGEST_VALUE else text[:LONGEST_VALUE] + "..."
+
+
+def _split_known(key: str, unit: str) -> str:
+    """Return a known key without the suffix of its unit."""
+    suffixes = [suffix for suffix, name in UNIT_OF_SUFFIX.items() if name == unit]
+    return key.removesuffix(f"_{suffixes[0]}") if suffixes else key
+
+
+def _split_unknown(key: str) -> tuple[str, str]:
+    """Return (stem, suffix) of a key; the suffix is empty where it spells no unit."""
+    suffix = next((s for s in ALL_SUFFIXES if key.lower().endswith(f"_{s}")), "")
+    return (key[: -len(suffix) - 1], suffix) if suffix else (key, "")
+
+
+def unknown_key(path: KeyPath, schema: dict[str, Any], found: str = "", noun: str = "key") -> str:
+    """Return the fault of an unknown key: another unit of a known key, or the nearest known key."""
+    parent, key = path[:-1], str(path[-1])
+    known = (_subschema(schema, parent) or {}).get("properties", {})
+    stem, unit = _split_unknown(key)
+    found_key = f"(found {key}: {found})" if found else f"(found {key})"
+    for name, inner in known.items():
+        if stem in (_split_known(name, inner.get("x-unit", "-")), name) and inner.get("type") in NUMBERS:
+            written, right = dotted((*parent, stem)), dotted((*parent, name))
+            if unit:
+                return f"unit {unit} is not allowed for {written}, write {right} {found_key}"
+            return f"{written} has no unit, write {right} {found_key}"
+    value = f" ({found})" if found else ""
+    return f"{dotted(path)}{value} is no known {noun}, {_nearest(path, known, schema)}"
+
+
+def _nearest(path: KeyPath, known: dict[str, Any], schema: dict[str, Any]) -> str:
+    """Return the known key that resembles an unknown one, in its own block first, or all that are allowed."""
+    parent, key = path[:-1], str(path[-1])
+    near = [dotted((*parent, name)) for name in difflib.get_close_matches(key, known, n=1, cutoff=0.6)]
+    everywhere = {dotted(p): str(p[-1]) for p, _ in leaves(schema)}
+    near += [full for full, leaf in everywhere.items() if leaf == key]
+    near += difflib.get_close_matches(dotted(path), everywhere, n=1, cutoff=0.7)
+    return f"the nearest is {near[0]}" if near else f"allowed are {', '.join(known)}"
+
+
+def leaves(schema: dict[str, Any], path: KeyPath = ()) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
+    """Yield (key path, schema) of every key that holds a value; `<name>` stands for a free name."""
+    for key, inner in _children(schema):
+        if "x-allowed" not in inner and any(True for _ in _children(inner)):
+            yield from leaves(inner, (*path, key))
+        else:
+            yield (*path, key), inner
+
+
+def _children(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    yield from schema.get("properties", {}).items()
+    if isinstance(schema.get("additionalProperties"), dict):
+        yield "<name>", schema["additionalProperties"]
+
+
+def coerce_numbers(values: Any, schema: dict[str, Any] | None) -> Any:
+    """Return the values with every `number` as float, so that 2 and 2.0 give the same parameters."""
+    if schema is None:
+        return values
+    if isinstance(values, dict):
+        return {key: coerce_numbers(inner, _subschema(schema, (key,))) for key, inner in values.items()}
+    if isinstance(values, list):
+        return [coerce_numbers(inner, schema.get("items")) for inner in values]
+    return float(values) if schema.get("type") == "number" else values
+
+
+def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
+    """Return the rows of a design table as layers that know their lines, after all checks of single values.
+
+    An empty cell of a column that the schema does not require gives no value. Raises ConfigError naming file, line, row
+    and column.
+    """
+    source = display_name(path, root)
+    header, rows = read_csv_rows(path, root)
+    _check_columns(header, schema, source)
+    lines: dict[str, int] = {}
+    checked = []
+    for line, cells in rows:
+        name = cells["row"]
+        if name in lines:
+            raise ConfigError(
+                f"{source}, line {line}: row is '{name}', which stands in line {lines[name]} too,"
+                " allowed is each name once."
+            )
+        lines[name] = line
+        values = {c: _cell(v, schema["properties"][c]) for c, v in cells.items() if v or c in schema["required"]}
+        layer = Layer(source, values, {(): line}, f"row {name}" if name else "")
+        check_layer(layer, schema)
+        checked.append(layer)
+    return checked
+
+
+def _cell(text: str, schema: dict[str, Any]) -> Any:
+    """Return the value of a cell: a number or a boolean where it spells one and the column is no text."""
+    if schema.get("type") == "boolean":
+        return {"true": True, "false": False}.get(text, text)
+    if schema.get("type") == "integer" and INTEGER.match(text):
+        return int(text)
+    return float(text) if schema.get("type") in NUMBERS and NUMBER.match(text) else text
+
+
+def _check_columns(header: list[str], schema: dict[str, Any], source: str) -> None:
+    for column in header:
+        if column not in schema["properties"]:
+            raise ConfigError(f"{source}, header: {unknown_key((column,), schema, noun='column')}.")
+    for column in schema["required"]:
+        if column not in header:
+            allowed = ", ".join(schema["required"])
+            raise ConfigError(f"{source}, header: column {column} is missing, allowed are {allowed}.")
+
+
+def check_materials(layer: Layer) -> dict[str, Any]:
+    """Return the materials as floats after all checks. Raises ConfigError."""
+    schema = load_schema("materials")
+    check_layer(layer, schema)
+    for name, particle in layer.values["particles"].items():
+        distribution = particle["size_distribution"]
+        path = ("particles", name, "size_distribution", "mass_fraction")
+        fractions, count = distribution["mass_fraction"], len(distribution["relative_diameter"])
+        if len(fractions) != count:
+            raise ConfigError(
+                f"{layer.where(path)}: {dotted(path)} has {len(fractions)} values, allowed are {count},"
+                " one per relative_diameter."
+            )
+        if abs(math.fsum(fractions) - 1.0) > MASS_FRACTION_TOLERANCE:
+            raise ConfigError(
+                f"{layer.where(path)}: {dotted(path)} has the sum {math.fsum(fractions):.10g}, allowed is 1."
+            )
+    return coerce_numbers(layer.values, schema)
+
+
+def unknown_name(source: str, noun: str, name: str, known: list[str]) -> str:
+    """Return the sentence for a name that is not there."""
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f" (the nearest is {near[0]})" if near else ""
+    return f"{source}: {noun} is {show(name)}, allowed is one of {', '.join(known) or 'none'}{hint}."
+
+
+def check_material_names(
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    materials: dict[str, Any],
+    keys: tuple[tuple[str, str, str], ...],
+) -> None:
+    """Raise ConfigError if a setting names a material that config/materials.yaml does not have.
+
+    keys: section, key, and kind of material of the settings that name one
+    """
+    for section, key, kind in keys:
+        value, known = settings[section][key], materials.get(kind, {})
+        if value not in known:
+            where = locate(layers, (section, key))
+            raise ConfigError(unknown_name(where, f"{section}.{key}", value, sorted(known)))
+
+
+def check_calibrated_for(
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    materials: dict[str, Any],
+    keys: tuple[tuple[str, str, str], ...],
+) -> None:
+    """Raise ConfigError if a bulk material was calibrated in another rolling friction model or convention.
+
+    A rolling coefficient is a number of the model and of the radius that it was found with; keys as for
+    `check_material_names`.
+    """
+    for section, key, kind in keys:
+        found = materials.get(kind, {}).get(settings[section][key], {}).get("calibrated")
+        for word in CALIBRATED_WITH if found and kind == "particles" else ():
+            if settings["solver"][word] != found[word]:
+                raise ConfigError(
+                    f"{locate(layers, ('solver', word))}: solver.{word} is '{settings['solver'][word]}', allowed is"
+                    f" {found[word]}, in which study {found['study']} calibrated {settings[section][key]}."
+                )
+
+
+def locate(layers: tuple[Layer, ...], path: KeyPath) -> str:
+    """Return where a setting stands: in the strongest layer that holds it."""
+    return next(layer for layer in reversed(layers) if layer.holds(path)).where(path)

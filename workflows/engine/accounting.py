@@ -1,0 +1,78 @@
+"""What a simulated cycle leaves: its loads become a ledger, the ledger wears the surface, forces go into a table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from postproc.mesh import SurfaceMesh
+from postproc.readers.mesh_loads import read_mesh_loads
+from workflows.engine.case import CycleError
+from workflows.engine.chain import Chain
+from workflows.engine.ledgers import producer
+from workflows.engine.schedule import Span
+from workflows.engine.wear_step import law_volume, load_sums, on_whole_surface, wear
+
+LEDGER, FORCES, HISTORY = "ledger.parquet", "forces.csv", "wear_history.csv"
+
+
+def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> tuple[dict[str, Any], list[Path]]:
+    """Turn what the solver wrote in a cycle into its ledger, tables and worn surface.
+
+    Returns the cycle's record and the files that nobody needs once its state is written; until then all of them stay,
+    and it can be done again. Raises CycleError for a cycle that the case does not accept.
+    """
+    source, case = producer(chain.parameters), chain.case
+    ledger_bytes = source.written_bytes(folder)
+    ledger = account(chain, span, folder, surface)
+    wear_history(chain, span, folder, surface, ledger).to_csv(folder / HISTORY, index=False)
+    case.forces(chain.parameters, span, folder).to_csv(folder / FORCES, index=False)
+    own = case.own_columns(chain.parameters, span, folder)
+    if fault := case.cycle_fault(chain.parameters, own):
+        raise CycleError(f"{chain.name}, cycle {span.cycle}: {fault}")
+    row = wear(chain, span, folder, surface, ledger) | own
+    spent = [*source.written(folder), *(folder / name for name in case.leftovers)]
+    spent += case.reduce(chain.parameters, span, folder)
+    return {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}, spent
+
+
+def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.DataFrame:
+    """Write a cycle's ledger, the solver's own measures beside it, and return it. Raises the producer's errors.
+
+    It has a row per triangle that the solver got, under its number on the whole surface.
+    """
+    piece = chain.case.piece(chain.parameters, span, surface)
+    columns = producer(chain.parameters).columns(chain, span, folder, piece.mesh)
+    own = read_mesh_loads(folder / f"loads_{span.solver_steps}.vtk", len(piece.triangles))
+    ledger = pd.DataFrame({"triangle": piece.triangles[own.pop("triangle")], **columns, **own})
+    ledger = chain.case.on_surface(chain.parameters, ledger)
+    ledger.to_parquet(folder / LEDGER, index=False)
+    return ledger
+
+
+def wear_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh, ledger: pd.DataFrame) -> pd.DataFrame:
+    """Return the wear of a cycle from look to look, without reading anything between two steps twice.
+
+    A row per stretch of travel: cycle, time_s and travel_m at its end, and of the stretch sliding_work_J,
+    archard_volume_m3, base_ and bump_archard_volume_m3 and mean_normal_force_N, as in wear.csv, whose row they add up
+    to. Raises the producer's errors.
+    """
+    parameters, piece = chain.parameters, chain.case.piece(chain.parameters, span, surface)
+    steps, sums = [0], []
+    for until, columns in producer(parameters).history(chain, span, folder, piece.mesh):
+        look = on_whole_surface(pd.DataFrame({"triangle": piece.triangles, **columns}), len(surface.triangles))
+        steps.append(until)
+        sums.append(load_sums(surface, look, law_volume(parameters, look)))
+    whole = on_whole_surface(ledger, len(surface.triangles))
+    steps.append(span.solver_steps)
+    sums.append(load_sums(surface, whole, law_volume(parameters, whole)))
+    duration = np.array(steps) * parameters["derived"]["time_step_s"] / span.substeps
+    end = span.first_step * parameters["derived"]["time_step_s"] + duration[1:]
+    table = pd.DataFrame(sums)
+    table = table.diff().fillna(table)
+    force = table.pop("normal_impulse_N_s") / np.diff(duration)
+    place = {"cycle": span.cycle, "time_s": end, "travel_m": end * parameters["sliding"]["velocity_m_per_s"]}
+    return pd.DataFrame(place).join(table).assign(mean_normal_force_N=force)

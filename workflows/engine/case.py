@@ -1,0 +1,274 @@
+"""What a case tells the rest of the workflow: a class with one method for everything that differs between cases, and
+the cases that there are.
+
+A case turns settings and design rows into runs, makes the decks of a run's cycles and reads what they leave; the loop
+over cycles, wear, state and tables know no case. What most cases have in common is the default here. Modules that are
+slow to import and needed in jobs only are imported where they are used: every job of Snakemake reads the studies first.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from postproc.mesh import SurfaceMesh
+from postproc.wear.caps import edge_limit
+from workflows.engine.work import Stage, Work
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from workflows.engine.schedule import Span
+
+CASES_PACKAGE = "workflows.cases"  # of which each package is a case that registers itself when it is imported
+DEFAULT_CASE = "sliding_sample"  # of a study that names none
+SETUP_LOADS, SETUP_BED = "loads_0.vtk", "bed_0.dump"  # of a cycle's first instant: the last one of the cycle before
+
+Parameters = Mapping[str, Any]  # of a run or of a bed, SI
+
+
+class CycleError(RuntimeError):
+    """A cycle went wrong in a way that the solver did not notice; the message names run, cycle and what to do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """The part of a surface that the solver gets in a cycle. triangles: (k,) their numbers on the whole surface."""
+
+    mesh: SurfaceMesh
+    triangles: np.ndarray
+
+
+@dataclass(frozen=True)
+class Run:
+    """One simulation: a row of the design with one surface, "" where the case knows no surfaces.
+
+    `parameters` holds the sections of the case (see its `run_parameters`); SI, the unit is the suffix of the key.
+    """
+
+    name: str
+    row: str
+    surface: str
+    parameters: dict[str, Any]
+
+
+class Case:
+    """A case; subclasses override what they need, and their module registers one of them.
+
+    name: of its folder in `workflows/cases`, and in studies
+    material_keys: (section, key, kind in materials.yaml) of the settings that name a material
+    checks: of a run, see run_checks.py
+    run_templates: names of the templates of a run's decks
+    bed_template: that of the deck of a bed
+    alternatives: two settings of which exactly one is given; the stronger layer's replaces the other
+    geometry: sections of a run's parameters that its pristine surface depends on
+    length: (section, key) of a run's parameters that only say after how many of its equal cycles it ends; a longer run
+        goes on from the cycles of a shorter one
+    first_title: what people call cycle 0
+    leftovers: files that a wear cycle's solver leaves and nobody needs once the cycle is accounted
+    kept: files that `reduce` leaves, without which a wear cycle is not whole
+    """
+
+    name = ""
+    material_keys: tuple[tuple[str, str, str], ...] = ()
+    checks: tuple[Callable[..., Any], ...] = ()
+    run_templates: tuple[str, ...] = ()
+    bed_template = ""
+    alternatives: tuple[tuple[str, str], ...] = ()
+    geometry: tuple[str, ...] = ()
+    length: tuple[tuple[str, str], ...] = ()
+    first_title = ""
+    leftovers: tuple[str, ...] = (SETUP_LOADS,)
+    kept: tuple[str, ...] = ()
+
+    # ---------------------------------------------------------------- from settings to runs
+
+    def surfaces(self, head: Mapping[str, Any]) -> Sequence[str]:
+        """Return the surfaces of which each design row makes a run; `head` holds the keys that are the study's own."""
+        return ("",)
+
+    def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
+        """Return what is wrong with a design as a whole, a phrase after the table's name, or None."""
+        return None
+
+    def run_parameters(
+        self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
+    ) -> dict[str, Any]:
+        """Return the parameters of a run, JSON-able; everything in SI, given and returned."""
+        raise NotImplementedError
+
+    def beds(self, runs: Sequence[Run]) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
+        """Return {bed id: parameters} and {run: bed id}; nothing where runs start from no bed."""
+        return {}, {}
+
+    def table_columns(self, parameters: Parameters) -> dict[str, Any]:
+        """Return the columns of design.csv that follow from a run's parameters."""
+        return {}
+
+    def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
+        """Return the pristine surface of a run from the sections of its parameters that `geometry` names."""
+        raise NotImplementedError
+
+    # ---------------------------------------------------------------- decks of a run
+
+    def run_in_steps(self, parameters: Parameters, bed: Parameters | None) -> int:
+        """Return the time steps of cycle 0."""
+        raise NotImplementedError
+
+    def deck(self, parameters: Parameters, bed: Parameters | None, span: Span | None, restart: str) -> str:
+        """Return the deck of a wear cycle, or of cycle 0 (None).
+
+        restart: path of the restart file it begins with, from its folder; "" where cycle 0 begins with none
+        """
+        raise NotImplementedError
+
+    def piece_ends(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> list[int]:
+        """Return the solver's steps in a cycle at which it ends and is started anew; the last one ends the cycle."""
+        return [span.solver_steps if span else self.run_in_steps(parameters, bed)]
+
+    def bed_deck(self, bed: Parameters) -> dict[str, Any]:
+        """Return the parameters of the deck of a bed, whose template is `bed_template`."""
+        raise NotImplementedError
+
+    def write_bed_files(self, bed: Parameters, folder: Path) -> None:
+        """Write what the deck of a bed reads into its folder."""
+
+    def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
+        """Write what the decks of all cycles of a run read besides surface and restart file into the run's folder."""
+
+    def piece(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> Piece:
+        """Return what the solver gets of the surface in a cycle; here all of it."""
+        return Piece(surface, np.arange(len(surface.triangles)))
+
+    def on_surface(self, parameters: Parameters, ledger: pd.DataFrame) -> pd.DataFrame:
+        """Return a ledger in the frame of the master surface, where the solver's is another one."""
+        return ledger
+
+    def substeps(self, parameters: Parameters, wear: Mapping[str, float]) -> int:
+        """Return in how many the solver takes each time step of a cycle whose predecessor left that row of wear.csv."""
+        return 1
+
+    # ---------------------------------------------------------------- what a study will cost
+
+    def work(
+        self, runs: Sequence[Run], beds: Mapping[str, Parameters], bed_of: Mapping[str, str], ranks: int
+    ) -> tuple[Work, ...]:
+        """Return the jobs of a study that call the solver, those that others need first; see `workflows.engine.work`.
+
+        beds, bed_of: as from `beds`; here a job for each bed and one for each run, which costs nothing where a run
+        before it has the same parameters
+        """
+        first = {bed_of[run.name]: run.parameters for run in reversed(runs) if run.name in bed_of}
+        jobs = [
+            Work("settled_bed", (name,), self.bed_stages(first[name], bed), "", ranks, 1, self.bed_bytes(first[name]))
+            for name, bed in beds.items()
+        ]
+        for run in runs:
+            bed, same = bed_of.get(run.name), next(each for each in runs if each.parameters == run.parameters)
+            if same is not run:
+                jobs.append(Work("worn_run", (run.name,), (), f"worn_run_{same.name}", ranks))
+                continue
+            stages = self.run_stages(run.parameters, beds.get(bed))
+            needs = f"settled_bed_{bed}" if bed else ""
+            jobs.append(Work("worn_run", (run.name,), stages, needs, ranks, 1, self.run_bytes(run.parameters)))
+        return tuple(jobs)
+
+    def bed_stages(self, parameters: Parameters, bed: Parameters) -> tuple[Stage, ...]:
+        """Return the stages of filling a bed; parameters are those of a run that starts from it."""
+        raise NotImplementedError
+
+    def bed_bytes(self, parameters: Parameters) -> float:
+        """Return what such a bed leaves on disk."""
+        raise NotImplementedError
+
+    def run_stages(self, parameters: Parameters, bed: Parameters | None) -> tuple[Stage, ...]:
+        """Return the stages of a run; the last one is of its wear cycles."""
+        raise NotImplementedError
+
+    def run_bytes(self, parameters: Parameters) -> float:
+        """Return what a run leaves on disk."""
+        raise NotImplementedError
+
+    # ---------------------------------------------------------------- what a cycle leaves
+
+    def record(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> dict[str, Any]:
+        """Return what the state of a cycle tells besides that of all cases."""
+        return {}
+
+    def forces(self, parameters: Parameters, span: Span, folder: Path) -> pd.DataFrame:
+        """Return the rows of forces.csv of a cycle from what the solver left in its folder."""
+        raise NotImplementedError
+
+    def own_columns(self, parameters: Parameters, span: Span, folder: Path) -> dict[str, float]:
+        """Return the case's own columns of a cycle's row of wear.csv."""
+        return {}
+
+    def reduce(self, parameters: Parameters, span: Span, folder: Path) -> list[Path]:
+        """Make tables of what a wear cycle wrote in bulk; return the files, leftovers aside, of no use from then on."""
+        return []
+
+    def cycle_fault(self, parameters: Parameters, own: Mapping[str, float]) -> str | None:
+        """Return a phrase if a cycle went wrong unnoticed by the solver, from its own columns; else None."""
+        return None
+
+    def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
+        """Return columns of a cycle's row of wear.csv from the surfaces before and right after its update.
+
+        touched: (m,) bool, triangles that wear by the law
+        """
+        return {}
+
+    def files_to_drop(self, parameters: Parameters, span: Span | None) -> tuple[str, ...]:
+        """Return the files of a cycle that go when its successor is finished; here all are kept."""
+        return ()
+
+    # ---------------------------------------------------------------- bounds of a wear update
+
+    def lasting_limit(self, parameters: Parameters, surface: SurfaceMesh) -> np.ndarray:
+        """Return how far (n,) m each node may move in one update, however long the cycle."""
+        return edge_limit(surface.points, surface.triangles, parameters["wear"]["largest_step_edge_fraction"])
+
+    def closing_gap(self, parameters: Parameters, duration: float) -> float:
+        """Return how far (m) any node may move in an update after a cycle of that duration (s)."""
+        return np.inf
+
+    def worn_through(self, worn: SurfaceMesh) -> str | None:
+        """Return a phrase if the surface is worn further than the case allows, else None."""
+        return None
+
+    # ---------------------------------------------------------------- summary
+
+    def summary(
+        self, design: Path, wear: Sequence[Path], pristine: Sequence[Path], worn: Sequence[Path]
+    ) -> pd.DataFrame:
+        """Return the table of summary.csv, one row per run; all files in the order of the design's rows."""
+        raise NotImplementedError
+
+
+_REGISTERED: dict[str, Case] = {}
+
+
+def register(case: Case) -> Case:
+    """Make a case known under its name; the module `case` of its folder does it."""
+    _REGISTERED[case.name] = case
+    return case
+
+
+def case_names() -> list[str]:
+    """Return the names of all cases: the packages of `CASES_PACKAGE`."""
+    package = importlib.import_module(CASES_PACKAGE)
+    return sorted(found.name for found in pkgutil.iter_modules(package.__path__) if found.ispkg)
+
+
+def find_case(name: str) -> Case:
+    """Return the case of that name, imported when it is first asked for. Raises ValueError naming all cases."""
+    if name not in case_names():
+        raise ValueError(f"case is '{name}', allowed is one of {', '.join(case_names())}.")
+    importlib.import_module(f"{CASES_PACKAGE}.{name}.case")
+    return _REGISTERED[name]

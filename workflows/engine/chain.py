@@ -1,0 +1,130 @@
+"""A run as the driver sees it: where its cycles are, how long they are, and the decks that simulate them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from postproc.mesh import SurfaceMesh, read_surface, write_stl
+from workflows.engine import decks, state
+from workflows.engine.case import Case
+from workflows.engine.schedule import Span, cycle_title, first_span, known_spans, next_span
+from workflows.engine.solver import DECK, LAUNCHER
+
+MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
+SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A run as the driver sees it.
+
+    `parameters` and `bed` as the case makes them (SI), no bed where the case has none; paths,
+    the MPI ranks that the solver gets and what starts them, which change nothing but the time it takes, and the folder
+    of a finished run with the same parameters, whose cycles this one shares.
+    """
+
+    name: str
+    folder: Path
+    case: Case
+    parameters: Mapping[str, Any]
+    surface: Path
+    bed: Mapping[str, Any] | None = None
+    bed_restart: Path | None = None
+    ranks: int = 1
+    launcher: str = LAUNCHER
+    same_as: Path | None = None
+
+
+def surface_before(chain: Chain, cycle: int) -> Path:
+    """Return the surface that a cycle starts from."""
+    return chain.surface if cycle <= 1 else state.cycle_folder(chain.folder, cycle - 1) / SURFACE
+
+
+def span_of(chain: Chain, cycle: int) -> Span | None:
+    """Return the span of a wear cycle (1, 2, ...) whose predecessors are finished; None after the last one."""
+    if cycle == 1:
+        return first_span(chain.parameters)
+    before = state.read_state(chain.folder, cycle - 1)
+    span = next_span(chain.parameters, Span(**before["span"]), before["wear"])
+    return span and replace(span, substeps=chain.case.substeps(chain.parameters, before["wear"]))
+
+
+def run_in_steps(chain: Chain) -> int:
+    """Return the time steps of cycle 0."""
+    return chain.case.run_in_steps(chain.parameters, chain.bed)
+
+
+def steps_before(chain: Chain, span: Span | None) -> int:
+    """Return the time steps of a run before a wear cycle; before cycle 0 (None) there are none."""
+    return run_in_steps(chain) + span.first_step if span else 0
+
+
+def total_steps(chain: Chain) -> int:
+    """Return the time steps of a whole run."""
+    return run_in_steps(chain) + chain.parameters["derived"]["travel_steps"]
+
+
+def deck_text(chain: Chain, span: Span | None) -> str:
+    """Return the deck of a wear cycle, or of cycle 0 (None); paths in it are relative to the cycle's folder."""
+    restart = ""
+    if span:
+        restart = f"../{state.cycle_folder(chain.folder, span.cycle - 1).name}/{RESTART}"
+    elif chain.bed_restart:
+        restart = os.path.relpath(chain.bed_restart, state.cycle_folder(chain.folder, 0))
+    return chain.case.deck(chain.parameters, chain.bed, span, restart)
+
+
+def decks_without_paths(chain: Chain) -> list[str]:
+    """Return the decks of cycle 0 and of the first wear cycle as they are wherever the run's folder is."""
+    spans = (None, first_span(chain.parameters))
+    return [chain.case.deck(chain.parameters, chain.bed, span, restart="") for span in spans]
+
+
+def write_shared_files(chain: Chain) -> None:
+    """Write what the decks of all cycles read besides surface and restart file."""
+    chain.case.write_shared_files(chain.bed, chain.folder)
+
+
+def write_cycle(chain: Chain, span: Span | None, folder: Path, surface: SurfaceMesh) -> int:
+    """Write the deck and the surface of a wear cycle, or of cycle 0 (None), into its folder, where they run by hand.
+
+    Returns the number of triangles that the solver gets.
+    """
+    (folder / DECK).write_text(deck_text(chain, span))
+    mesh = chain.case.piece(chain.parameters, span, surface).mesh
+    write_stl(folder / SURFACE_STL, mesh.points, mesh.triangles)
+    return len(mesh.triangles)
+
+
+def title(chain: Chain, cycle: int) -> str:
+    """Return what people call a cycle."""
+    return cycle_title(chain.parameters, cycle) if cycle else chain.case.first_title
+
+
+# ---------------------------------------------------------------- decks by hand
+
+
+def write_bed(case: Case, bed: Mapping[str, Any], folder: Path) -> None:
+    """Write the deck of a bed, and what it reads, into its folder, where it runs by hand."""
+    folder.mkdir(parents=True, exist_ok=True)
+    case.write_bed_files(bed, folder)
+    (folder / DECK).write_text(decks.render(case.bed_template, case.bed_deck(bed)))
+
+
+def write_decks(chain: Chain) -> None:
+    """Write the decks of a run with what they read, without running the solver; they run by hand in their order.
+
+    Of adaptive cycles only the first is known beforehand, of many the first `MOST_DECKS` are written: all have
+    the pristine surface here, so later ones show nothing new.
+    """
+    surface = read_surface(chain.surface)
+    chain.folder.mkdir(parents=True, exist_ok=True)
+    write_shared_files(chain)
+    for span in (None, *known_spans(chain.parameters)[:MOST_DECKS]):
+        folder = state.cycle_folder(chain.folder, span.cycle if span else 0)
+        folder.mkdir(parents=True, exist_ok=True)
+        write_cycle(chain, span, folder, surface)

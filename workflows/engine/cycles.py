@@ -1,0 +1,237 @@
+"""The driver of a run: solver restart -> load ledger -> wear -> displaced mesh, cycle by cycle, resumable.
+
+Every step is a plain function of the files of a cycle's folder (chain.py, accounting.py); here they are strung
+together.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from postproc.mesh import read_surface, write_surface
+from postproc.readers.load_ledger import announcement
+from postproc.readers.solver_log import solver_version, thermo_table, warnings
+from workflows.engine import state
+from workflows.engine.accounting import HISTORY, LEDGER, account_and_wear
+from workflows.engine.case import Case
+from workflows.engine.chain import (
+    RESTART,
+    SURFACE,
+    Chain,
+    decks_without_paths,
+    run_in_steps,
+    span_of,
+    steps_before,
+    surface_before,
+    title,
+    total_steps,
+    write_bed,
+    write_cycle,
+    write_shared_files,
+)
+from workflows.engine.ledgers import producer
+from workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
+from workflows.engine.progress import Progress
+from workflows.engine.schedule import Span, first_span, known_spans
+from workflows.engine.solver import (
+    CYCLE_EXECUTABLES,
+    EXECUTABLE,
+    LAUNCHER,
+    LOG,
+    SCREEN,
+    SolverError,
+    missing_program,
+    processor_seconds,
+    run_deck,
+)
+from workflows.engine.tables import write_table
+from workflows.engine.wear_step import worn_surface
+
+WORN_SURFACE = "worn_surface.vtu"
+BED_STEPS = (
+    "settling_steps",
+    "relaxing_steps",
+    "packing_steps",
+    "steady_steps",
+)  # of the decks of beds, where they have them
+
+
+def run_chain(chain: Chain) -> None:
+    """Run what is missing of a run, then write its wear.csv and cost.csv. Resumes after the last finished cycle.
+
+    Raises SolverError, StateError, WearError or a reader's error; finished cycles stay and are not done again.
+    """
+    announce = Progress(chain.name, 1).say
+    with state.only_driver(chain.folder, announce):
+        inputs = inputs_digest(chain)
+        if moved := state.set_aside_others(chain.folder, inputs):
+            announce(moved)
+        if moved := state.fit_length(chain.folder, inputs, cycles_of(chain)):
+            announce(moved)
+        if chain.same_as and (shared := state.share_cycles(chain.folder, chain.same_as, inputs)):
+            announce(f"is the same simulation as {chain.same_as.name} and shares {shared} cycles with it")
+        finished = state.finished_cycles(chain.folder, inputs, needed=(RESTART, SURFACE))
+        span = span_of(chain, finished) if finished else None
+        unfinished = finished == 0 or span is not None
+        if unfinished and (missing := missing_program(cycle_executable(chain, first_span(chain.parameters)))):
+            raise SolverError(missing)  # before the run-in, which needs the plain solver only
+        progress = Progress(chain.name, total_steps(chain), steps_before(chain, span))
+        if finished and unfinished:
+            announce(f"resumes after {title(chain, finished - 1)}")
+        if not finished:
+            run_cycle(chain, None, inputs, progress)
+            finished, span = 1, span_of(chain, 1)
+        for cycle in range(1, finished - 1):
+            drop_files(chain, cycle)
+        while span:
+            run_cycle(chain, span, inputs, progress)
+            drop_files(chain, span.cycle - 1)
+            finished, span = finished + 1, span_of(chain, span.cycle + 1)
+        write_products(chain, finished)
+
+
+def inputs_digest(chain: Chain) -> str:
+    """Return the hash of all that the cycles of a run depend on: parameters, decks, surface and bed.
+
+    How many cycles there are is left out where the case says that it changes none of them.
+    """
+    left_out = {("solver", "ranks"), *chain.case.length}
+    parameters = dict(chain.parameters)
+    for section in {section for section, _ in left_out}:
+        values = chain.parameters[section].items()
+        parameters[section] = {key: value for key, value in values if (section, key) not in left_out}
+    files = [path for path in (chain.surface, chain.bed_restart) if path]
+    return state.digest(parameters, *decks_without_paths(chain), *map(state.file_digest, files))
+
+
+def cycles_of(chain: Chain) -> int | None:
+    """Return how many cycles a run has, cycle 0 included, where the case lets it be lengthened; else None."""
+    return len(known_spans(chain.parameters)) + 1 if chain.case.length else None
+
+
+def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:
+    """Simulate, account, wear and displace one cycle; cycle 0 (None) brings the run to its start, without wear."""
+    started, cycle = time.monotonic(), span.cycle if span else 0
+    origin = origin_digest(chain, cycle, inputs)
+    with state.working_folder(chain.folder, cycle, lambda part: bool(finished_pieces(part, origin))) as folder:
+        surface = read_surface(surface_before(chain, cycle))
+        started -= sum(piece.wall_s for piece in finished_pieces(folder, origin))
+        write_shared_files(chain)
+        triangles = write_cycle(chain, span, folder, surface)
+        pieces = simulate(chain, span, folder, triangles, progress, origin)
+        record, spent = account_and_wear(chain, span, folder, surface) if span else ({"cost": {}}, [])
+        record["cost"] = cost(chain, span, folder, triangles, pieces, time.monotonic() - started) | record["cost"]
+        record |= {
+            "span": asdict(span) if span else None,
+            **chain.case.record(chain.parameters, chain.bed, span),
+            "solver": solver_version(folder / SCREEN),
+            "solver_ledger": announcement(folder / SCREEN),
+            "solver_warnings": warnings(folder / SCREEN),
+        }
+        if inputs_digest(chain) != inputs:
+            raise state.StateError(f"{chain.name}: its inputs changed while {title(chain, cycle)} ran; start again.")
+        kept = (*producer(chain.parameters).kept, *chain.case.kept)
+        files = (RESTART, SURFACE, LEDGER, HISTORY, *kept) if span else (RESTART,)
+        state.write_state(folder, inputs, files, record)
+        forget_pieces(folder)  # before anything that a repeated accounting would miss
+        for path in spent:
+            path.unlink()
+
+
+def drop_files(chain: Chain, cycle: int) -> None:
+    """Remove what the case does not keep of a cycle that has a successor."""
+    folder = state.cycle_folder(chain.folder, cycle)
+    span = state.read_state(chain.folder, cycle)["span"]
+    state.drop_files(folder, chain.case.files_to_drop(chain.parameters, Span(**span) if span else None))
+
+
+def origin_digest(chain: Chain, cycle: int, inputs: str) -> str:
+    """Return the hash of what a cycle starts from: the run's inputs and the state of the cycle before."""
+    before = state.cycle_folder(chain.folder, cycle - 1) / state.STATE
+    return state.digest(inputs, state.file_digest(before)) if cycle else inputs
+
+
+def simulate(
+    chain: Chain, span: Span | None, folder: Path, triangles: int, progress: Progress, origin: str = ""
+) -> list[Piece]:
+    """Run the solver on a cycle's deck, or on the pieces of it that are missing; return all pieces.
+
+    origin: hash of what the cycle starts from. Raises SolverError.
+    """
+    cycle, before = span.cycle if span else 0, steps_before(chain, span)
+    substeps = span.substeps if span else 1
+
+    def run(variables: Mapping[str, str]) -> float:
+        if "begin" in variables:
+            progress.say(f"{title(chain, cycle)} goes on after step {variables['begin_step']}")
+        return run_deck(
+            folder,
+            chain.ranks,
+            lambda step: progress.update(before + step // substeps, title(chain, cycle)),
+            triangles={f"sample_{cycle}": triangles},
+            executable=cycle_executable(chain, span),
+            launcher=chain.launcher,
+            variables=variables,
+        )
+
+    ends = chain.case.piece_ends(chain.parameters, chain.bed, span)
+    return simulate_in_pieces(folder, origin, ends, run)
+
+
+def cycle_executable(chain: Chain, span: Span | None) -> str:
+    """Return the program that simulates a cycle; only wear cycles have a ledger."""
+    return CYCLE_EXECUTABLES[chain.parameters["ledger"]] if span else EXECUTABLE
+
+
+def cost(
+    chain: Chain, span: Span | None, folder: Path, triangles: int, pieces: Sequence[Piece], all_seconds: float
+) -> dict[str, float]:
+    """Return what a cycle cost: times in s and the sizes that they depend on.
+
+    pieces: of its simulation; all_seconds: wall time of the cycle
+    """
+    thermo = thermo_table(folder / LOG)
+    solver_seconds = sum(piece.wall_s for piece in pieces)
+    return {
+        "cycle": span.cycle if span else 0,
+        "solver_s": round(solver_seconds, 3),
+        "processor_s": round(sum(piece.processor_s for piece in pieces), 3),
+        "other_s": round(all_seconds - solver_seconds, 3),
+        "steps": span.solver_steps if span else run_in_steps(chain),
+        "particles": int(thermo["Atoms"][-1]),
+        "triangles": triangles,
+        "ranks": chain.ranks,
+        "ledger_bytes": 0,
+    }
+
+
+def write_products(chain: Chain, finished: int) -> None:
+    """Write wear.csv, cost.csv and worn_surface.vtu of a run from what its finished cycles left."""
+    states = [state.read_state(chain.folder, cycle) for cycle in range(finished)]
+    write_table(chain.folder / "wear.csv", [found["wear"] for found in states[1:]])
+    free = {"solver_s": 0.0, "processor_s": 0.0, "other_s": 0.0}  # what another run has paid for
+    write_table(
+        chain.folder / "cost.csv", [found["cost"] | (free if "shared_with" in found else {}) for found in states]
+    )
+    write_surface(chain.folder / WORN_SURFACE, worn_surface(chain, Span(**states[-1]["span"])))
+
+
+def fill_bed(
+    case: Case, name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1, launcher: str = LAUNCHER
+) -> None:
+    """Fill and settle a bed; leaves bed.restart and cost.csv in the folder. Raises SolverError."""
+    parameters = case.bed_deck(bed)
+    total = sum(parameters.get(name, 0) for name in BED_STEPS)
+    progress = Progress(name, total)
+    with state.only_driver(folder, progress.say):
+        write_bed(case, bed, folder)
+        before = processor_seconds()
+        seconds = run_deck(folder, ranks, lambda step: progress.update(step, "filling and settling"), launcher=launcher)
+    particles = int(thermo_table(folder / LOG)["Atoms"][-1])
+    processor = round(processor_seconds() - before, 3)
+    row = {"solver_s": round(seconds, 3), "processor_s": processor, "steps": total, "particles": particles}
+    write_table(folder / "cost.csv", [row])

@@ -1,0 +1,383 @@
+"""Render the templates of templates/ into decks that run by hand.
+
+A deck's parameters are SI numbers and words; what a template does not use, and what it uses but is not given, is an
+error. Everything that has to be computed is computed here, so that templates only substitute.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import jinja2
+import jinja2.meta
+
+from postproc.readers.cycle_folders import PACKING
+from postproc.wear.caps import GRAVITY
+from postproc.wear.laws import law_kernels
+from workflows.cases.sliding_sample.window import window
+from workflows.engine.derived import WALLS, WINDOW, neighbour_skin
+from workflows.engine.schedule import Span
+
+TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
+FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere
+FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
+RELAXING_TIME = 0.01  # s, after levelling
+PACKING_FREE_FALLS = 7.5  # -, the same for a bed that nothing moves afterwards: after 6 the last grain had tumbled down
+LOWERING_FREE_FALLS = 2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
+FILL_GAP_DIAMETERS = 0.1  # -, between poured particles and the walls, in largest diameters
+PILE_UP = 3.0  # -, the bed's height where it piles up at a sample, over its thickness; room for it is left
+END_WALL_CLEARANCE = 1e-6  # m, between the end walls' upper edge and the domain: a mesh must lie inside it
+DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
+REPORTS_PER_RUN = 50  # lines of progress per run command
+SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
+STATE_COLUMNS = "id x y z vx vy vz omegax omegay omegaz radius"  # of a dump of particles at rest
+ID_COLUMNS = range(13, 16)  # of these, counted from 1: mesh, triangle, particle
+STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, before the solver's check stops the run
+
+
+class DeckError(ValueError):
+    """A template and its parameters do not fit; the message names the template and the parameter."""
+
+
+# ---------------------------------------------------------------- rendering
+
+
+@cache
+def _environment(folder: Path) -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(folder),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters["table"] = pair_table
+    return environment
+
+
+def pair_table(rows: Sequence[Sequence[float]]) -> str:
+    """Return a square table as the continued lines of a LIGGGHTS command."""
+    return " &\n".join("     " + " ".join(f"{value:.9g}" for value in row) for row in rows)
+
+
+def _trees(template: str, folder: Path, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Template]:
+    """Return {file name: syntax tree} of a template and its partials, without branches that `words` do not take.
+
+    That is decided for branches `{% if name == "word" %}` whose name `words` has; all others count as taken.
+    """
+    environment = _environment(folder)
+    trees: dict[str, jinja2.nodes.Template] = {}
+    names = [f"{template}.in.j2"]
+    for name in names:
+        try:
+            source = environment.loader.get_source(environment, name)[0]
+        except jinja2.TemplateNotFound as missing:
+            raise DeckError(f"templates/{missing.name}: no such template.") from missing
+        trees[name] = environment.parse(source)
+        for branch in trees[name].find_all(jinja2.nodes.If):
+            _prune(branch, words)
+        found = jinja2.meta.find_referenced_templates(trees[name])
+        names.extend(part for part in found if part and part not in names)
+    return trees
+
+
+def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> None:
+    """Empty the part of a branch that `words` do not take."""
+    test = branch.test
+    if not (isinstance(test, jinja2.nodes.Compare) and isinstance(test.expr, jinja2.nodes.Name)):
+        return
+    if len(test.ops) != 1 or test.ops[0].op != "eq" or not isinstance(test.ops[0].expr, jinja2.nodes.Const):
+        return
+    if test.expr.name in words:
+        taken = words[test.expr.name] == test.ops[0].expr.value
+        branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
+
+
+@cache  # a study asks for the same few templates once per run
+def template_parts(template: str, folder: Path = TEMPLATES) -> tuple[str, ...]:
+    """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
+    return tuple(_trees(template, folder, {}))
+
+
+def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
+    """Return {file name: text} of a template and its partials: what a deck depends on besides its parameters."""
+    return {name: (folder / name).read_text() for name in template_parts(template, folder)}
+
+
+def template_variables(
+    template: str, folder: Path = TEMPLATES, words: Mapping[str, Any] = MappingProxyType({})
+) -> set[str]:
+    """Return the names of all parameters that a template and its partials use, in the branches that `words` take."""
+    return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, folder, words).values()))
+
+
+def render(template: str, parameters: Mapping[str, Any], folder: Path = TEMPLATES) -> str:
+    """Return the deck of a template, e.g. "settled_bed". Raises DeckError for missing and for unused parameters."""
+    wanted = template_variables(template, folder, parameters)
+    for names, fault in (
+        (wanted - set(parameters), "is not given"),
+        (set(parameters) - wanted, "is never used"),
+    ):
+        if names:
+            raise DeckError(f"templates/{template}.in.j2: parameter {', '.join(sorted(names))} {fault}.")
+    try:
+        return _environment(folder).get_template(f"{template}.in.j2").render(parameters)
+    except jinja2.TemplateError as fault:
+        raise DeckError(f"templates/{template}.in.j2: {fault}.") from fault
+
+
+# ---------------------------------------------------------------- parameters of the three decks
+
+
+def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of the deck that fills and settles a bed; `bed` as in design.bed_parameters."""
+    particle = bed["particle"]
+    filled = bed["thickness_m"] * particle["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
+    gap = max(particle["diameters_m"]) * FILL_GAP_DIAMETERS
+    floor = bed["temporary_floor_m"]
+    step = bed["time_step_s"]
+    settling = steps(math.sqrt(2.0 * filled / GRAVITY), step)
+    return {
+        **integration(bed, step, particle, settling),
+        **material_tables(particle, bed["floor_material"], bed["floor_material"], bed),
+        **_domain(bed),
+        "temporary_floor_m": floor,
+        "fill_bottom_m": floor + gap,
+        "fill_top_m": floor + gap + filled,
+        "fill_gap_m": gap if bed["ends"] == WALLS else 0.0,
+        "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
+        **poured_particles(particle, bed["seed"]),
+        "settling_steps": settling,
+        "relaxing_steps": steps(RELAXING_TIME, step),
+        **({"packing_steps": falling_steps(bed, step, PACKING_FREE_FALLS)} if bed["ends"] == WINDOW else {}),
+    }
+
+
+def poured_particles(particle: Mapping[str, Any], seed: int) -> dict[str, Any]:
+    """Return what decks that pour a bed say of its particles."""
+    return {
+        "fill_fraction": FILL_FRACTION,
+        "fall_speed_m_per_s": FALL_SPEED,
+        "density_kg_per_m3": particle["density_kg_per_m3"],
+        "particle_diameter_m": particle["diameters_m"],
+        "size_distribution": size_distribution(particle["mass_fractions"]),
+        "size_count": len(particle["mass_fractions"]),
+        "seeds": primes(seed, len(particle["diameters_m"]) + 2),
+    }
+
+
+def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str) -> dict[str, Any]:
+    """Return the parameters of the deck that lowers a settled bed on to the sample and runs it in.
+
+    `run` is Run.parameters, `bed` the bed's, `bed_restart` the path of its restart file as seen from the deck.
+    """
+    derived = run["derived"]
+    step = derived["time_step_s"]
+    lowering = falling_steps(bed, step, LOWERING_FREE_FALLS)
+    packing = {"bed_packing_file": str(Path(bed_restart).parent / PACKING)} if bed["ends"] == WINDOW else {}
+    return {
+        **integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
+        **_sliding(run, bed, cycle=0, steps_before=0),
+        "begin": bed_restart,
+        "lowering_steps": lowering,
+        "end_step": lowering + derived["run_in_steps"],
+        **window(run, bed, -lowering, lowering + derived["run_in_steps"], PACKING),
+        **packing,
+    }
+
+
+def falling_steps(bed: Mapping[str, Any], time_step: float, free_falls: float) -> int:
+    """Return the time steps (of s) in which a bed could fall so many times from its temporary floor to the true one."""
+    return steps(free_falls * math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY), time_step)
+
+
+def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, run_restart: str) -> dict[str, Any]:
+    """Return the parameters of the deck of one wear cycle; arguments as for `lowered_bed`."""
+    derived = run["derived"]
+    look = wear_interval_steps(run, span) if run["ledger"] == "solver" else 0
+    return {
+        **integration(run["solver"], derived["time_step_s"], run["particle"], span.steps),
+        **_sliding(run, bed, span.cycle, derived["run_in_steps"] + span.first_step),
+        "begin": run_restart,
+        "end_step": span.steps,
+        "picture_steps": min(derived["picture_interval_steps"], span.steps),
+        "ledger": run["ledger"],
+        **LEDGERS[run["ledger"]](run, span),
+        **window(run, bed, derived["run_in_steps"] + span.first_step, span.steps, f"../cycle_000/{PACKING}", look),
+    }
+
+
+def bed_contacts(run: Mapping[str, Any], restart: str) -> dict[str, Any]:
+    """Return the parameters of the deck that counts contacts in a restart file; arguments as for `lowered_bed`."""
+    step, convention = run["derived"]["time_step_s"], ("rolling_radius", "rolling_friction")
+    materials = {**run["derived"], **{key: run["solver"][key] for key in convention}}
+    needed = integration(run["solver"], step, run["particle"], 1)
+    return {
+        **{key: needed[key] for key in ("time_step_s", "rayleigh_fraction", "skin_m")},
+        **material_tables(run["particle"], run["sample_material"], run["floor_material"], materials),
+        "ends": run["bed"]["ends"],
+        "begin": restart,
+        "state_columns": f"{STATE_COLUMNS} c_contacts",
+    }
+
+
+def exact_ledger(run: Mapping[str, Any], history_steps: int = 0) -> dict[str, Any]:
+    """Return what a deck needs to sum every contact in the solver, and to write the sums so far every so many steps."""
+    kernels = law_kernels(run["wear"]["law"])
+    return {
+        "ledger_history": f" history {history_steps}" if history_steps else "",
+        "ledger_kernels": " ".join(["", "kernels", *kernels]) if kernels else "",
+    }
+
+
+def wear_interval_steps(run: Mapping[str, Any], span: Span) -> int:
+    """Return the steps between two looks at the wear of a cycle: equal parts of it of about solver.wear_interval_m."""
+    parts = max(round(travelled(run, span.steps) / run["solver"]["wear_interval_m"]), 1)
+    return math.ceil(span.steps / parts)
+
+
+def _exact_ledger_of_sample(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
+    return exact_ledger(run, wear_interval_steps(run, span))
+
+
+def _sampled_contacts(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
+    """Return what a deck needs to write sampled contacts."""
+    from postproc.readers.contacts import CONTACT_COLUMNS  # slow to import, and every job reads its study first
+
+    columns = range(1, CONTACT_COLUMNS + 1)
+    return {
+        "sampling_interval_steps": run["solver"]["sampling_interval_steps"],
+        "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in columns),
+        "contact_format": " ".join("%.0f" if column in ID_COLUMNS else "%g" for column in columns),
+    }
+
+
+# Producers of the load ledger -> what their part of the deck is filled with.
+LEDGERS = {"solver": _exact_ledger_of_sample, "dumps": _sampled_contacts}
+
+
+def travelled(run: Mapping[str, Any], steps: int) -> float:
+    """Return how far (m) the bed has travelled after that many time steps since it was set in motion."""
+    return run["sliding"]["velocity_m_per_s"] * run["derived"]["time_step_s"] * steps
+
+
+def steps(duration: float, time_step: float) -> int:
+    """Return the whole number of time steps, at least one, that last a duration; both in s."""
+    return max(math.ceil(duration / time_step), 1)
+
+
+def primes(above: int, count: int) -> list[int]:
+    """Return the first `count` primes above a number; LIGGGHTS takes only primes above 10,000 as random seeds."""
+    found: list[int] = []
+    candidate = max(above, SMALLEST_SEED)
+    while len(found) < count:
+        candidate += 1
+        if all(candidate % divisor for divisor in range(2, math.isqrt(candidate) + 1)):
+            found.append(candidate)
+    return found
+
+
+# ---------------------------------------------------------------- shared blocks
+
+
+def integration(
+    solver: Mapping[str, Any], time_step: float, particle: Mapping[str, Any], longest_run: int
+) -> dict[str, Any]:
+    """Return what every deck needs to integrate; `solver` has rayleigh_fraction (-), `longest_run` is in steps."""
+    return {
+        "time_step_s": time_step,
+        "rayleigh_fraction": solver["rayleigh_fraction"],
+        "largest_time_fraction": STEP_CHECK_MARGIN * solver["rayleigh_fraction"],
+        "skin_m": neighbour_skin(particle),
+        "gravity_m_per_s2": GRAVITY,
+        "report_steps": max(longest_run // REPORTS_PER_RUN, 1),
+    }
+
+
+def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
+    """Return the box of a bed, long enough for its whole travel and high enough for bulk piling up at a sample."""
+    margin = DOMAIN_MARGIN_DIAMETERS * max(bed["particle"]["diameters_m"])
+    beyond = margin if bed["ends"] == WALLS else 0.0
+    filled = bed["thickness_m"] * bed["particle"]["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
+    return {
+        "ends": bed["ends"],
+        "half_width_m": bed["width_m"] / 2.0,
+        "bed_start_m": bed["start_m"],
+        "bed_end_m": bed["start_m"] + bed["length_m"],
+        "domain_start_m": bed["start_m"] - beyond,
+        "domain_end_m": bed["start_m"] + bed["length_m"] + bed["travel_m"] + beyond,
+        "domain_margin_m": margin,
+        "domain_top_m": bed["temporary_floor_m"] + max(filled, PILE_UP * bed["thickness_m"]) + 2.0 * margin,
+    }
+
+
+def end_wall_corners(bed: Mapping[str, Any]) -> tuple[float, float, float]:
+    """Return half width, bottom and top (m) of the walls at the bed's ends; they fill the domain's cross-section."""
+    domain = _domain(bed)
+    return domain["half_width_m"], -0.5 * domain["domain_margin_m"], domain["domain_top_m"] - END_WALL_CLEARANCE
+
+
+def material_tables(
+    particle: Mapping[str, Any],
+    sample: Mapping[str, Any],
+    floor: Mapping[str, Any],
+    derived: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Return the property tables for the types particle, sample, floor. Wall on wall repeats the wall's value."""
+    moduli, rolling = derived["youngs_modulus_pa"], derived["rolling_friction_for_solver"]
+    sample_key = "sample_material" if "sample_material" in moduli else "floor_material"
+    keys = ("particle", sample_key, "floor_material")
+    contacts = [section["contact"] for section in (particle, sample, floor)]
+    return {
+        "type_names": ["particle", "sample", "floor and end walls"],
+        "youngs_modulus_pa": [moduli[key] for key in keys],
+        "poissons_ratio": [section["poissons_ratio"] for section in (particle, sample, floor)],
+        "restitution": _pairs(contact["restitution"] for contact in contacts),
+        "sliding_friction": _pairs(contact["sliding_friction"] for contact in contacts),
+        "rolling_friction_coefficient": _pairs(rolling[key] for key in keys),
+        "rolling_radius": derived["rolling_radius"],
+        "rolling_friction_model": derived["rolling_friction"],
+    }
+
+
+def _pairs(with_particle: Iterable[float]) -> list[list[float]]:
+    """Return the symmetric table of a property that is known for particle, sample and floor against a particle."""
+    particle, sample, floor = with_particle
+    return [[particle, sample, floor], [sample, sample, floor], [floor, floor, floor]]
+
+
+def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, steps_before: int) -> dict[str, Any]:
+    """Return what both sliding decks need: materials, where the bed's ends are, the sample's fix id."""
+    coefficient = run["wear"]["accelerated_wear_coefficient_per_pa"]
+    convention = {key: run["solver"][key] for key in ("rolling_radius", "rolling_friction")}
+    return {
+        **material_tables(
+            run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}
+        ),
+        "finnie_coefficient_per_pa": _pairs([coefficient] * 3),
+        "velocity_m_per_s": run["sliding"]["velocity_m_per_s"],
+        "cycle": cycle,
+        **_ends(bed, travelled(run, steps_before)),
+    }
+
+
+def _ends(bed: Mapping[str, Any], ahead: float) -> dict[str, Any]:
+    """Return where the walls at the bed's ends are when it has travelled so far (m); a periodic bed has none."""
+    if bed["ends"] != WALLS:
+        return {"ends": bed["ends"]}
+    return {
+        "ends": bed["ends"],
+        "upstream_end_m": bed["start_m"] + ahead,
+        "downstream_end_m": bed["start_m"] + bed["length_m"] + ahead,
+        "end_wall_file": "../end_wall.stl",
+    }
+
+
+def size_distribution(fractions: Sequence[float]) -> str:
+    return " ".join(f"size_{index} {fraction:.9g}" for index, fraction in enumerate(fractions, start=1))

@@ -1,0 +1,236 @@
+"""Values that follow from a run's parameters. SI throughout: units are converted in design.py only."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from meshes.sample import skirt_width
+from postproc.reference.size_ratios import equivalent_size_ratio
+from postproc.wear.caps import GRAVITY
+
+THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
+HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
+# Values of bed.ends: two walls that push the bed along, none, or a window that travels with the sample.
+WALLS, PERIODIC, WINDOW = "walls", "periodic", "window"
+STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
+SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
+RAMP = ("height_above_floor_m", "skirt_slope_rad", "skirt_radius_m")  # what the sample's skirt depends on
+ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
+ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
+
+
+def youngs_modulus(shear_modulus: float, poissons_ratio: float) -> float:
+    """Return E = 2 G (1 + nu) in Pa, from G in Pa."""
+    return 2.0 * shear_modulus * (1.0 + poissons_ratio)
+
+
+def rayleigh_time(radius: float, density: float, shear_modulus: float, poissons_ratio: float) -> float:
+    """Return the Rayleigh time of a sphere in s, from radius (m), density (kg/m3) and shear modulus (Pa).
+
+    T_R = pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the time a surface wave needs for half the circumference;
+    Li, Xu and Thornton, Powder Technology 160 (2005) 219-228.
+    """
+    return math.pi * radius * math.sqrt(density / shear_modulus) / (0.1631 * poissons_ratio + 0.8766)
+
+
+def ramp_hop(velocity: float, slope: float) -> float:
+    """Return how far (m) a particle flies off the top of a ramp: 2 v^2 tan(slope) / g, ballistic, small slope.
+
+    velocity in m/s along the floor, slope in rad. The sample is hardly loaded over this length.
+    """
+    return 2.0 * velocity**2 * math.tan(slope) / GRAVITY
+
+
+def last_slope(sample: Mapping[str, Any]) -> float:
+    """Return the slope (rad) at which the ramp reaches the sample; of a curved one that of its last element."""
+    radius, slope = sample["skirt_radius_m"], sample["skirt_slope_rad"]
+    return min(slope, math.atan(sample["element_size_m"] / (2.0 * radius))) if radius else slope
+
+
+def rolling_coefficient_for_solver(coefficient: float, rolling_radius: str, contact: str) -> float:
+    """Return the rolling friction coefficient (-) that makes LIGGGHTS apply the torque meant.
+
+    LIGGGHTS' cdt and epsd2 limit the torque to mu_r F_n R_reduced, R_reduced = R1 R2 / (R1 + R2): half the
+    radius for two equal spheres, the whole radius against a wall. A coefficient calibrated with the full
+    radius (`rolling_radius` full: M_r = mu_r R F_n, Yan 2022, Eq 3.3) is therefore doubled between particles
+    and unchanged at walls. For unequal spheres the factor is a compromise (radii 1.2 to 0.8: the torque is
+    4 % less than with the mean radius): recalibrate where that matters.
+
+    `contact` is "particle_particle" or "particle_wall". Raises ValueError for other words.
+    """
+    factors = {
+        ("full", "particle_particle"): 2.0,
+        ("full", "particle_wall"): 1.0,
+        ("reduced", "particle_particle"): 1.0,
+        ("reduced", "particle_wall"): 1.0,
+    }
+    if (rolling_radius, contact) not in factors:
+        raise ValueError(
+            f"rolling_radius is {rolling_radius!r} and contact {contact!r}, allowed are full or reduced"
+            " and particle_particle or particle_wall."
+        )
+    return coefficient * factors[rolling_radius, contact]
+
+
+def whole_steps(duration: float, largest_time_step: float, multiple: int) -> tuple[int, float]:
+    """Return (steps, time step in s) of a duration: a multiple of `multiple` steps, and exactly the duration asked for.
+
+    The time step is the largest one, not above `largest_time_step` (s), of which that many steps last `duration` (s).
+    """
+    count = math.ceil(duration / (largest_time_step * multiple) * (1.0 - ROUNDING))
+    steps = max(count, 1) * multiple
+    return steps, duration / steps
+
+
+def flow_measures(parameters: Mapping[str, Any]) -> dict[str, float]:
+    """Return what the bins of a run's flow need (SI), see `workflows.cases.sliding_sample.flow_history.RunFlow`."""
+    return {
+        "width": parameters["sample"]["width_m"],
+        "length": parameters["sample"]["length_m"],
+        "bed_width": parameters["bed"]["width_m"],
+        "bed_length": parameters["derived"]["bed_length_m"],
+        "bed_thickness": parameters["bed"]["thickness_m"],
+        "velocity": parameters["sliding"]["velocity_m_per_s"],
+        "time_step": parameters["derived"]["time_step_s"],
+        "particle_scale": parameters["particle"]["scale"],
+    }
+
+
+def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return what follows from the other sections (SI)."""
+    layers = parameters["bed"]["thickness_m"] / parameters["particle"]["median_diameter_m"]
+    return {
+        "layers": layers,
+        "thin_bed": layers < THIN_BED_LAYERS * (1.0 - ROUNDING),
+        "equivalent_size_ratio": size_ratio(parameters),
+        "physical_patch_factor": physical_patch_factor(parameters),
+        **derived_materials(parameters),
+        **_derived_geometry(parameters),
+        **_derived_times(parameters),
+    }
+
+
+def size_ratio(parameters: dict[str, Any]) -> float | None:
+    pattern = parameters["pattern"]
+    if pattern is None:
+        return None
+    lengths = (pattern["major_radius_m"], pattern["minor_radius_m"], pattern["height_m"])
+    return equivalent_size_ratio(parameters["particle"]["median_diameter_m"], *lengths)
+
+
+def physical_patch_factor(parameters: dict[str, Any]) -> float:
+    """Return the true contact's Hertz radius over the simulated one (-); 1 where the study does not ask for it."""
+    modulus = parameters["wear"].get("physical_shear_modulus_pa")
+    if modulus is None:
+        return 1.0
+    from postproc.wear.patch import physical_radius  # slow to import, and every job reads its study first
+
+    particle, wall = parameters["particle"], parameters["sample_material"]
+    pair = [(particle["shear_modulus_pa"], modulus), (wall["shear_modulus_pa"],) * 2]
+    compliances = [
+        sum(
+            (1.0 - section["poissons_ratio"] ** 2) / youngs_modulus(moduli[kind], section["poissons_ratio"])
+            for section, moduli in zip((particle, wall), pair, strict=True)
+        )
+        for kind in (0, 1)
+    ]
+    return float(physical_radius(1.0, 1.0 / compliances[0], 1.0 / compliances[1], particle["scale"]))
+
+
+def derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return Young's moduli, and the rolling coefficients in the solver's convention."""
+    sections = {name: parameters[name] for name in ("particle", "sample_material", "floor_material")}
+    convention = parameters["solver"]["rolling_radius"]
+    return {
+        "youngs_modulus_pa": {
+            name: youngs_modulus(section["shear_modulus_pa"], section["poissons_ratio"])
+            for name, section in sections.items()
+        },
+        "rolling_friction_for_solver": {
+            name: rolling_coefficient_for_solver(
+                section["contact"]["rolling_friction"],
+                convention,
+                "particle_particle" if name == "particle" else "particle_wall",
+            )
+            for name, section in sections.items()
+        },
+    }
+
+
+def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
+    """Return the skirt's width, and the bed's length, mass and particles.
+
+    A bed between end walls is as long as the whole travel and its ends; a periodic one comes round again; one in a
+    window has room for the fresh bed of an exchange, for the strip that holds it and for what keeps it off the wake.
+    """
+    sample, bed, sliding = parameters["sample"], parameters["bed"], parameters["sliding"]
+    particle = parameters["particle"]
+    travel = sliding["run_in_m"] + sliding["travel_m"] if bed["ends"] == WALLS else 0.0  # of the bed within its domain
+    window = [bed["exchange_m"], *window_lengths(particle)] if bed["ends"] == WINDOW else []
+    length = math.fsum([bed["ahead_m"], bed["behind_m"], sample["length_m"], travel, *window])
+    solid_volume = length * bed["width_m"] * bed["thickness_m"] * particle["bulk_solid_fraction"]
+    per_volume = math.fsum(
+        fraction / (math.pi / 6.0 * diameter**3)
+        for fraction, diameter in zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
+    )
+    return {
+        "ramp_hop_m": ramp_hop(sliding["velocity_m_per_s"], last_slope(sample)),
+        "skirt_width_m": skirt_width(*(sample[key] for key in RAMP)),
+        "bed_length_m": length,
+        "bed_start_m": sample["length_m"] / 2.0 + bed["behind_m"] - length,
+        "bed_travel_m": travel,
+        "highest_point_m": sample["height_above_floor_m"]
+        + (parameters["pattern"] or {"height_m": 0.0})["height_m"]
+        + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
+        "bed_mass_kg": solid_volume * particle["density_kg_per_m3"],
+        "bed_particles": round(solid_volume * per_volume),
+    }
+
+
+def neighbour_skin(particle: Mapping[str, Any]) -> float:
+    """Return the skin (m) of the neighbour lists."""
+    return SKIN_OVER_RADIUS * min(particle["diameters_m"]) / 2.0
+
+
+def window_lengths(particle: Mapping[str, Any]) -> tuple[float, float]:
+    """Return the length (m) of the strip that holds the fresh bed of a window, and how far other bed stays off it.
+
+    Centres of other bed are further off than a particle reaches, and than they move before their list is made anew.
+    """
+    largest = max(particle["diameters_m"])
+    return STRIP_DIAMETERS * largest, largest + neighbour_skin(particle)
+
+
+def smallest_rayleigh_time(particle: Mapping[str, Any]) -> float:
+    """Return the Rayleigh time (s) of the smallest particle."""
+    return rayleigh_time(
+        min(particle["diameters_m"]) / 2.0,
+        particle["density_kg_per_m3"],
+        particle["shear_modulus_pa"],
+        particle["poissons_ratio"],
+    )
+
+
+def _derived_times(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return time steps (s) and numbers of steps."""
+    particle, sliding, solver = parameters["particle"], parameters["sliding"], parameters["solver"]
+    rayleigh = smallest_rayleigh_time(particle)
+    largest = solver["rayleigh_fraction"] * rayleigh
+    sampled = solver.get("sampling_interval_steps", 1)  # only sampled contacts ask for whole samples in a cycle
+    cycles = 1 if sliding["cycles"] == ADAPTIVE else sliding["cycles"]
+    steps, time_step = whole_steps(sliding["travel_m"] / sliding["velocity_m_per_s"], largest, sampled * cycles)
+    travel_per_step = sliding["velocity_m_per_s"] * time_step
+    first = steps // cycles
+    if sliding["cycles"] == ADAPTIVE:
+        first = min(max(round(sliding["first_cycle_m"] / travel_per_step / sampled), 1) * sampled, steps)
+    return {
+        "rayleigh_time_s": rayleigh,
+        "largest_time_step_s": largest,
+        "time_step_s": time_step,
+        "travel_steps": steps,
+        "first_cycle_steps": first,
+        "run_in_steps": round(sliding["run_in_m"] / travel_per_step),
+        "picture_interval_steps": max(round(solver["picture_interval_m"] / travel_per_step), 1),
+    }

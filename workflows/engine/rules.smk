@@ -1,0 +1,117 @@
+"""Surfaces, beds and runs: everything up to what calls the solver, and the same decks without calling it."""
+
+
+# A deck is rendered in a second: on a cluster, where snakemake was called.
+localrules:
+    bed_deck,
+    run_decks,
+
+
+rule surface_mesh:
+    output:
+        "results/{study}/{run}/surface.vtu",
+    log:
+        "results/{study}/logs/surface_mesh_{run}.log",
+    benchmark:
+        "results/{study}/logs/surface_mesh_{run}.benchmark.tsv"
+    priority: 1  # as beds: before the runs
+    group:
+        "meshes"
+    params:
+        case=case_of,
+        geometry=run_geometry,
+    message:
+        "Surface mesh of {wildcards.run}"
+    script:
+        "../scripts/surface_mesh.py"
+
+
+rule settled_bed:
+    output:
+        restart="results/{study}/beds/{bed}/bed.restart",
+        cost="results/{study}/beds/{bed}/cost.csv",
+    log:
+        "results/{study}/logs/settled_bed_{bed}.log",
+    benchmark:
+        "results/{study}/logs/settled_bed_{bed}.benchmark.tsv"
+    priority: 1  # all of them first: of the runs that can then start, the one with the largest bed does
+    threads: ranks_of
+    resources:
+        runtime=asked("settled_bed", 0),
+        mem_mb=asked("settled_bed", 1),
+        tasks=ranks_of,
+        cpus_per_task=1,
+        mpi=launcher_of,
+    params:
+        case=case_of,
+        bed=bed_parameters,
+        templates=bed_templates,
+    message:
+        "Filling and settling {wildcards.bed}"
+    script:
+        "../scripts/settled_bed.py"
+
+
+rule worn_run:
+    input:
+        surface="results/{study}/{run}/surface.vtu",
+        bed=bed_restart_of_run("beds"),
+        same=same_run,
+    output:
+        wear="results/{study}/{run}/wear.csv",
+        cost="results/{study}/{run}/cost.csv",
+        surface="results/{study}/{run}/worn_surface.vtu",
+    log:
+        "results/{study}/logs/worn_run_{run}.log",
+    benchmark:
+        "results/{study}/logs/worn_run_{run}.benchmark.tsv"
+    threads: ranks_of
+    resources:
+        runtime=asked("worn_run", 0),
+        mem_mb=asked("worn_run", 1),
+        tasks=ranks_of,
+        cpus_per_task=1,
+        mpi=launcher_of,
+    params:
+        case=case_of,
+        run=run_parameters,
+        bed=bed_parameters_of_run,
+        templates=run_templates,
+    message:
+        "Wear cycles of {wildcards.run}"
+    script:
+        "../scripts/worn_run.py"
+
+
+rule bed_deck:
+    output:
+        "results/{study}/decks/beds/{bed}/deck.in",
+    log:
+        "results/{study}/logs/bed_deck_{bed}.log",
+    params:
+        case=case_of,
+        bed=bed_parameters,
+        templates=bed_templates,
+    message:
+        "Deck of {wildcards.bed}"
+    script:
+        "../scripts/bed_deck.py"
+
+
+rule run_decks:
+    input:
+        "results/{study}/{run}/surface.vtu",
+    output:
+        "results/{study}/decks/{run}/cycle_000/deck.in",
+    log:
+        "results/{study}/logs/run_decks_{run}.log",
+    params:
+        case=case_of,
+        run=run_parameters,
+        bed=bed_parameters_of_run,
+        templates=run_templates,
+        bed_restart=lambda wildcards: next(iter(bed_restart_of_run("decks/beds")(wildcards)), None),
+    message:
+        "Decks of {wildcards.run}"
+    script:
+        "../scripts/run_decks.py"

@@ -1,0 +1,185 @@
+"""Run LIGGGHTS on a deck in its folder: start it, watch it, stop it with its parent, and pass on its last words."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import resource
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
+
+DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
+EXECUTABLE = "liggghts"
+LAUNCHER = "mpirun --bind-to none"  # starts the ranks of a solver; a cluster's profile may name another
+LEDGER_EXECUTABLE = str(Path(__file__).resolve().parents[2] / "solver" / "build" / "liggghts-ledger")
+CYCLE_EXECUTABLES = {"solver": LEDGER_EXECUTABLE, "dumps": EXECUTABLE}  # of wear cycles, by the ledger's producer
+OF_SLURM = ("SLURM_", "PMI_", "PMIX_")  # environment variables of a job
+POLL_SECONDS = 0.25  # between two looks at the log
+LAST_LINES = 12  # of the solver's output, shown when it fails
+_PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+
+
+class SolverError(RuntimeError):
+    """LIGGGHTS failed; the message gives its last words and, where known, the cause."""
+
+
+def missing_program(executable: str) -> str | None:
+    """Return a sentence that says what to do where a program is missing, None where it is there."""
+    if shutil.which(executable) is not None:
+        return None
+    if executable == LEDGER_EXECUTABLE:
+        return (
+            f"{executable}: there is no such program; `make setup` (or `make -C solver`) builds it, and a study with "
+            "`ledger: dumps` does without."
+        )
+    return f"{executable} is not on the PATH; `make setup` installs it and `make doctor` checks it."
+
+
+def solver_command(ranks: int, executable: str = EXECUTABLE, launcher: str = LAUNCHER) -> list[str]:
+    """Return the command that runs a deck; output is line-buffered, or fatal messages would vanish in a pipe."""
+    deck = ["stdbuf", "-oL", executable, "-in", DECK, "-log", LOG]
+    return deck if ranks == 1 else [*shlex.split(launcher), "-n", str(ranks), *deck]
+
+
+def ranks_here(tasks: int, threads: int) -> int:
+    """Return the ranks that a job starts: its tasks within a Slurm job, else no more than the cores it was given."""
+    return tasks if "SLURM_JOB_ID" in os.environ else min(tasks, threads)
+
+
+def solver_environment(by_slurm: bool = False) -> dict[str, str]:
+    """Return the environment of the solver; Open MPI refuses to run as root unless told twice.
+
+    by_slurm: Slurm itself starts the ranks (srun). Otherwise they must not know of it: Open MPI would look for an
+    allocation that jobs of Snakemake do not hand on, or for a Slurm that speaks its protocol.
+    """
+    allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    kept = {key: value for key, value in os.environ.items() if by_slurm or not key.startswith(OF_SLURM)}
+    return {**kept, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
+
+
+def processor_seconds() -> float:
+    """Return the processor time (s) of all programs that this process has run to their end so far."""
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return spent.ru_utime + spent.ru_stime
+
+
+def run_deck(
+    folder: Path,
+    ranks: int = 1,
+    on_step: Callable[[int], None] = lambda step: None,
+    triangles: Mapping[str, int] | None = None,
+    executable: str = EXECUTABLE,
+    launcher: str = LAUNCHER,
+    variables: Mapping[str, str] = MappingProxyType({}),
+) -> float:
+    """Run `deck.in` of a folder to its end and return the wall time in s.
+
+    on_step: called with the last time step reported, several times a second
+    triangles: {mesh fix id: number of triangles written for it}; the run is stopped when the solver reports fewer
+    executable: name on the PATH, or path, of the LIGGGHTS that runs it
+    launcher: command, with options, that starts several ranks of it
+    variables: of style index, whose values in the deck these replace
+
+    Raises SolverError.
+    """
+    if missing := missing_program(executable):
+        raise SolverError(missing)
+    started, unchecked = time.monotonic(), dict(triangles or {})
+    given = [word for name, value in variables.items() for word in ("-var", name, value)]
+    with open(folder / SCREEN, "wb") as screen:
+        process = subprocess.Popen(
+            [*solver_command(ranks, executable, launcher), *given],
+            cwd=folder,
+            env=solver_environment(by_slurm=ranks > 1 and shlex.split(launcher)[0] == "srun"),
+            stdin=subprocess.DEVNULL,
+            stdout=screen,
+            stderr=subprocess.STDOUT,
+            preexec_fn=die_with(os.getpid()),
+        )
+        try:
+            _watch(process, folder, on_step, unchecked)
+        finally:
+            _stop(process)
+    if process.returncode != 0:
+        raise SolverError(_last_words(folder, process.returncode))
+    if unchecked:
+        raise SolverError(f"{folder / SCREEN}: LIGGGHTS did not report the triangles of mesh {', '.join(unchecked)}.")
+    return time.monotonic() - started
+
+
+def _watch(process: subprocess.Popen, folder: Path, on_step: Callable[[int], None], triangles: dict[str, int]) -> None:
+    """Follow a run until it ends; every mesh is checked once, as soon as the solver has reported it."""
+    ended = False
+    while not ended:
+        ended = _ended(process)
+        step = last_step(folder / SCREEN)  # the log file lags behind: the solver buffers it
+        if step is not None:
+            on_step(step)
+        if triangles:
+            _check_triangles(folder, triangles)
+
+
+def _ended(process: subprocess.Popen) -> bool:
+    try:
+        process.wait(POLL_SECONDS)
+    except subprocess.TimeoutExpired:
+        return False
+    return True
+
+
+def _check_triangles(folder: Path, expected: dict[str, int]) -> None:
+    """Compare the triangles that the solver kept with those written; what is checked leaves `expected`."""
+    for mesh, written in list(expected.items()):
+        try:
+            kept = reported_triangles(folder / SCREEN, mesh)
+        except SolverLogError:
+            continue
+        if kept != written:
+            raise SolverError(
+                f"{folder / DECK}: LIGGGHTS keeps {kept} of the {written} triangles of mesh {mesh}; allowed is every "
+                "one, because it drops degenerate ones silently and the ids of all later ones shift."
+            )
+        del expected[mesh]
+
+
+def _last_words(folder: Path, code: int) -> str:
+    text = (folder / SCREEN).read_text("utf-8", "replace")
+    cause = failure(text) or f"LIGGGHTS stopped with exit code {code}"
+    lines = deque((line for line in text.splitlines() if line.strip()), maxlen=LAST_LINES)
+    quoted = "\n".join(f"    {line}" for line in lines)
+    return f"{folder / DECK}: {cause}. Its last lines ({folder / SCREEN}):\n{quoted}"
+
+
+def _stop(process: subprocess.Popen) -> None:
+    if process.poll() is None:
+        process.terminate()
+        try:
+            process.wait(10.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def die_with(parent: int) -> Callable[[], None]:
+    """Return what lets the kernel stop a child, such as the solver, when its parent dies; mpirun then stops its ranks.
+
+    To be called in the child; parent: id of the process that starts it
+    """
+
+    def before_exec() -> None:
+        if sys.platform == "linux":
+            ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGTERM)
+        if os.getppid() != parent:  # it died before the kernel was asked
+            os._exit(1)
+
+    return before_exec

@@ -1,0 +1,86 @@
+"""What a study will have to do, before any of it is done: jobs, and the stages that the solver goes through in them.
+
+Cases tell it (`Case.jobs`), `forecast.py` makes seconds, memory and disk of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+# bytes on disk, of files that the solver and the driver write; measured
+RESTART_PARTICLE, RESTART_TRIANGLE = 250.0, 120.0  # restart file
+PICTURE_PARTICLE = 110.0  # dump of all particles
+SOLVER_TRIANGLE = 355.0  # surface as STL, and loads per triangle, of a cycle
+LEDGER_TRIANGLE = 36.0  # ledger of a cycle, of a surface that is touched nearly everywhere
+SURFACE_TRIANGLE = 56.0  # surface of a cycle, labels and depths included
+RUN_TRIANGLE = 100.0  # pristine and worn surface of a run
+CYCLE_BYTES = 50_000.0  # deck, logs, state and forces of a cycle
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A part of a job in which nothing changes but the number of particles, of which the mean counts.
+
+    decks: starts of the solver; 0 where it goes on with the deck of the stage before
+    steps: time steps, of all decks together
+    particles, triangles: that the solver has
+    builds: of the neighbour list, of all decks together
+    moving: the bulk flows or slides, it neither falls nor rests
+    surface_triangles: of the whole surface, where each deck is followed by a wear update; 0 where none is
+    """
+
+    decks: int
+    steps: float
+    particles: float
+    triangles: float = 0.0
+    builds: float = 0.0
+    moving: bool = False
+    surface_triangles: float = 0.0
+
+    def terms(self) -> dict[str, float]:
+        """Return the amounts of work by term, see `workflows.forecast.cost_model`."""
+        particle_steps = self.particles * self.steps
+        cycles = self.decks if self.surface_triangles else 0
+        return {
+            "decks": self.decks,
+            "triangles_read": self.decks * self.triangles,
+            "steps": self.steps,
+            "particle_steps": particle_steps,
+            "moving_particle_steps": particle_steps if self.moving else 0.0,
+            "particle_builds": self.particles * self.builds,
+            "triangle_steps": self.triangles * self.steps,
+            "loaded_triangle_steps": self.triangles * self.steps if self.particles > 1.0 else 0.0,
+            "jobs": 0,
+            "meshed_triangles": 0.0,
+            "cycles": cycles,
+            "worn_triangles": cycles * self.surface_triangles,
+        }
+
+
+@dataclass(frozen=True)
+class Work:
+    """A job that calls the solver.
+
+    rule, wildcards: as the workflow knows it, without the study; needs: name of the job that must be done before
+    stages: none where another job has simulated the same
+    ranks: MPI ranks of a simulation; parallel: simulations at the same time
+    disk_bytes: of what stays
+    """
+
+    rule: str
+    wildcards: tuple[str, ...]
+    stages: tuple[Stage, ...]
+    needs: str = ""
+    ranks: int = 1
+    parallel: int = 1
+    disk_bytes: float = 0.0
+
+    @property
+    def surface_triangles(self) -> float:
+        """Triangles of the surface that is meshed for it and worn, 0 without one."""
+        return max((stage.surface_triangles for stage in self.stages), default=0.0)
+
+    @property
+    def name(self) -> str:
+        """The name of the job's log and benchmark files."""
+        return "_".join([self.rule, *self.wildcards])

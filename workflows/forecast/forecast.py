@@ -1,0 +1,192 @@
+"""What a study will cost before it runs: seconds, memory and disk of its jobs from their work and the machine's rates.
+
+A core hour is an hour of one core's processor time. Sizes are those of `Case.work`; nothing is meshed or simulated.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from workflows.config.design import Study
+from workflows.config.units import to_si
+from workflows.engine.progress import duration_text
+from workflows.engine.work import Work
+from workflows.forecast.cost_model import OUTSIDE_TERMS, SOLVER_TERMS, TERMS, Rates, seconds
+from workflows.forecast.rates import RatesError, rates_file, read_rates
+from workflows.report.figures import varies_scale
+
+# Memory of a job, measured as the largest resident sets of solver and driver. B per particle, per triangle, B alone.
+PARTICLE_MEMORY, SOLVER_TRIANGLE_MEMORY, SOLVER_MEMORY = 1.3e3, 3.4e3, 3.5e7  # per rank at most
+WORN_TRIANGLE_MEMORY, DRIVER_MEMORY = 3.1e3, 2.25e8
+MORE_CORES = (16, 64, 256)  # numbers of cores for which the wall time of a study is told besides the present one
+SECONDS_PER_HOUR, GIGABYTE = 3600.0, 1e9
+SHOWN = {  # column of the table -> heading of the printed one
+    "job": "job",
+    "particles": "particles",
+    "triangles": "triangles",
+    "steps": "steps",
+    "cycles": "cycles",
+    "core_h": "core hours",
+    "wall_h": "wall hours",
+    "memory_gb": "memory GB",
+    "disk_gb": "disk GB",
+}
+
+
+def work_of(study: Study) -> tuple[Work, ...]:
+    """Return the jobs of a study that call the solver: its packings where it has any, then beds, then runs."""
+    bed_of = {run.name: bed for run in study.runs if (bed := study.bed_of(run.name))}
+    work = study.case.work(study.runs, study.beds, bed_of, study.settings["solver"]["ranks"])
+    if not varies_scale(study):
+        return work
+    from workflows.cases.sliding_sample.particle_size.packings import packed_runs
+    from workflows.cases.sliding_sample.particle_size.work import (
+        packing_work,  # slow to import, and few studies have packings
+    )
+
+    return packing_work(packed_runs(study), to_si(study.settings)["packing"]), *work
+
+
+def forecast_table(work: Sequence[Work], rates: Rates) -> pd.DataFrame:
+    """Return a row per job: sizes, processor seconds in the solver and outside, core and wall hours, memory, disk.
+
+    particles, triangles: most that the solver has at once; steps, cycles: in all. Wall time is that of the job alone;
+    ranks and simulations side by side are taken to share the solver's work evenly.
+    """
+    return pd.DataFrame([_row(job, rates) for job in work])
+
+
+def _row(job: Work, rates: Rates) -> dict[str, float | str]:
+    """Return a row of `forecast_table`."""
+    meshed = job.surface_triangles
+    around = {"jobs": 2 if meshed else 1, "meshed_triangles": meshed}  # the job itself, and that of its mesh
+    terms = pd.DataFrame([*(stage.terms() for stage in job.stages), around], columns=list(TERMS)).fillna(0.0)
+    solver, outside = (float(seconds(terms, rates, of).sum()) for of in (SOLVER_TERMS, OUTSIDE_TERMS))
+    return {
+        "job": job.name,
+        "particles": round(max((stage.particles for stage in job.stages), default=0)),
+        "triangles": round(max((stage.triangles for stage in job.stages), default=0)),
+        "steps": round(float(terms["steps"].sum())),
+        "cycles": round(float(terms["cycles"].sum())),
+        "solver_s": solver,
+        "outside_s": outside,
+        "core_h": (solver + outside) / SECONDS_PER_HOUR,
+        "wall_h": (solver / (job.ranks * job.parallel) + outside) / SECONDS_PER_HOUR,
+        "cores": job.ranks * job.parallel,
+        "needs": job.needs,
+        "memory_gb": memory(job) / GIGABYTE,
+        "disk_gb": job.disk_bytes / GIGABYTE,
+    }
+
+
+def memory(job: Work) -> float:
+    """Return about how much memory (B) a job needs at most: its simulations, and the driver with the whole surface."""
+    sizes = [PARTICLE_MEMORY * stage.particles + SOLVER_TRIANGLE_MEMORY * stage.triangles for stage in job.stages]
+    solvers = job.parallel * (max(sizes) + job.ranks * SOLVER_MEMORY) if sizes else 0.0
+    return solvers + DRIVER_MEMORY + WORN_TRIANGLE_MEMORY * job.surface_triangles
+
+
+def wall_hours(table: pd.DataFrame, cores: int) -> float:
+    """Return the wall time (h) of jobs on that many cores: each starts, in their order, as soon as what it needs is
+    done and its cores are free.
+
+    A job that wants more cores than there are gets all of them and takes as much longer. What a job needs that is not
+    in the table counts as done.
+    """
+    waiting, running, done = table.to_dict("records"), [], set()
+    free, now, names = cores, 0.0, set(table["job"])
+    while waiting or running:
+        for job in list(waiting):
+            taken = min(job["cores"], cores)
+            if taken <= free and (job["needs"] not in names or job["needs"] in done):
+                heapq.heappush(running, (now + job["wall_h"] * job["cores"] / taken, job["job"], taken))
+                free -= taken
+                waiting.remove(job)
+        now, name, taken = heapq.heappop(running)
+        free += taken
+        done.add(name)
+    return now
+
+
+def totals(table: pd.DataFrame, cores: int) -> dict[str, float]:
+    """Return core hours, wall hours on that many cores, most memory (GB) of a job and disk (GB) of all jobs."""
+    return {
+        "jobs": len(table),
+        "core_h": float(table["core_h"].sum()),
+        "wall_h": wall_hours(table, cores),
+        "memory_gb": float(table["memory_gb"].max()),
+        "disk_gb": float(table["disk_gb"].sum()),
+    }
+
+
+# ---------------------------------------------------------------- words
+
+
+def forecast_text(heading: str, study: str, table: pd.DataFrame, cores: int, said: str) -> str:
+    """Return the forecast as people read it: a line per job, totals, wall time on more cores, what it rests on."""
+    rows = [[_number(row[column]) for column in SHOWN] for row in table.to_dict("records")]
+    more = ", ".join(f"{n}: {hours_text(wall_hours(table, n))}" for n in MORE_CORES if n > cores)
+    return "\n".join(
+        [
+            f"Forecast of {heading}",
+            "",
+            *_aligned([list(SHOWN.values()), *rows]),
+            "",
+            summary_line(study, totals(table, cores), cores) + ".",
+            f"Wall time on more cores: {more}.",
+            "Ranks of a run (solver.ranks) are taken to share its work evenly.",
+            f"By {said}.",
+            "Meshes, particles and steps are estimated, not made; tables, figures and pages are not counted.",
+            "",
+        ]
+    )
+
+
+def announcement(study: Study, jobs: Collection[str], root: Path, cores: int) -> str:
+    """Return in one line what those jobs of a study will cost, or what is wrong with the rates."""
+    try:
+        found = read_rates(rates_file(root))
+    except RatesError as fault:
+        return f"No forecast: {fault}"
+    table = forecast_table([job for job in work_of(study) if job.name in jobs], found.rates)
+    return f"Forecast of {summary_line(study.name, totals(table, cores), cores)}; by {found.said()}."
+
+
+def summary_line(name: str, found: Mapping[str, float], cores: int) -> str:
+    """Return what a study costs in one line."""
+    hours, memory_gb, disk_gb = (_number(found[key]) for key in ("core_h", "memory_gb", "disk_gb"))
+    return (
+        f"{name}: {found['jobs']} job{'s' * (found['jobs'] > 1)} of the solver, about {hours} core hours,"
+        f" {hours_text(found['wall_h'])} on {cores} core{'s' * (cores > 1)}, up to {memory_gb} GB of memory per job,"
+        f" {disk_gb} GB on disk"
+    )
+
+
+def hours_text(hours: float) -> str:
+    """Return hours as people say them; days from two on."""
+    return f"{hours / 24.0:.1f} days" if hours >= 48.0 else duration_text(SECONDS_PER_HOUR * hours)
+
+
+def _number(value: float | str) -> str:
+    """Return a number with three digits at least and no exponent, small ones to the third decimal; words unchanged."""
+    if isinstance(value, str):
+        return value
+    return (
+        f"{value:,.0f}" if value >= 100 or value == round(value) else f"{value:.3g}" if value >= 0.1 else f"{value:.3f}"
+    )
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Return rows of text as lines with aligned columns, the first one to the left."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            cell.ljust(width) if k == 0 else cell.rjust(width)
+            for k, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        for row in rows
+    ]

@@ -1,0 +1,101 @@
+"""The rates of the cost model on a machine: measured by `rate_benchmark.py` into results/cost_rates.json, or by default
+those of config/cost_rates.json, which are another machine's.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from workflows.forecast.cost_model import TERMS
+
+MEASURED, DEFAULT = Path("results/cost_rates.json"), Path("config/cost_rates.json")
+
+
+class RatesError(ValueError):
+    """A file of rates is damaged; the message names it and says what to do."""
+
+
+@dataclass(frozen=True)
+class MachineRates:
+    """Rates (s per unit of each term of the cost model), where and when they were measured, and how well they fit.
+
+    fit: {measurement: seconds by the model over measured ones}; side_by_side: copies of the benchmark that shared the
+    machine, 1 in files that do not tell
+    """
+
+    rates: dict[str, float]
+    machine: dict[str, Any]
+    date: str
+    fit: dict[str, float]
+    side_by_side: int = 1
+    measured_here: bool = True
+
+    def said(self) -> str:
+        """Return in one phrase where the numbers come from."""
+        beside = f"by {self.side_by_side} processes side by side" if self.side_by_side > 1 else "by a single process"
+        where = f"{self.machine['processor']}, {self.machine['cores']} cores, measured {self.date} {beside}"
+        if not self.measured_here:
+            return f"DEFAULT RATES OF ANOTHER MACHINE ({where}); `make rates` measures this one's in a minute or two"
+        if self.machine != machine_facts():
+            return f"RATES OF ANOTHER MACHINE ({where}); `make rates` measures this one's in a minute or two"
+        return f"rates of this machine ({where})"
+
+
+def rates_file(root: Path) -> Path:
+    """Return the file of rates that forecasts use: measured here, or the default of the project at `root`."""
+    return MEASURED if MEASURED.is_file() else root / DEFAULT
+
+
+def read_rates(path: Path) -> MachineRates:
+    """Return the rates of a file. Raises RatesError."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+        rates = MachineRates(**found, measured_here=path.parent.name != DEFAULT.parent.name)
+        numbers = [float(rates.rates[term]) for term in TERMS]
+    except (OSError, ValueError, TypeError, KeyError, AttributeError) as fault:
+        raise RatesError(
+            f"{path}: no file of rates ({fault}); remove it and `make rates` measures them anew."
+        ) from fault
+    if not all(number >= 0.0 for number in numbers):
+        raise RatesError(
+            f"{path}: a rate is {min(numbers):g} s, allowed is 0 or more; `make rates` measures them anew."
+        )
+    if not (isinstance(rates.side_by_side, int) and rates.side_by_side >= 1):
+        raise RatesError(
+            f"{path}: side_by_side is {rates.side_by_side!r}, allowed are whole numbers from 1 on; `make rates`"
+            " measures them anew."
+        )
+    return rates
+
+
+def write_rates(path: Path, rates: MachineRates) -> None:
+    """Write rates, whole or not at all."""
+    kept = {key: value for key, value in asdict(rates).items() if key != "measured_here"}
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    os.replace(part, path)
+
+
+def machine_facts() -> dict[str, Any]:
+    """Return processor, cores, memory (GB) and system of this machine."""
+    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "memory_gb": round(pages / 1e9, 1),
+        "system": f"{platform.system()} {platform.machine()}",
+    }
+
+
+def _processor() -> str:
+    try:
+        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+    except OSError:
+        found = None
+    return found[1].strip() if found else platform.processor() or platform.machine()

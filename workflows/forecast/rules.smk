@@ -1,0 +1,29 @@
+"""What studies will cost: the rates of this machine, and a forecast per study."""
+
+
+rule cost_rates:
+    output:
+        "results/cost_rates.json",
+    log:
+        "results/cost_rates.log",
+    threads: CORES
+    message:
+        "What the solver's work costs on this machine"
+    script:
+        "../scripts/cost_rates.py"
+
+
+rule forecast_table:
+    input:
+        rates=used_rates,
+    output:
+        "results/{study}/forecast.csv",
+    log:
+        "results/{study}/logs/forecast_table.log",
+    params:
+        work=lambda wildcards: solver_work(wildcards.study)(wildcards),
+        fidelity=lambda wildcards: study_of(wildcards).fidelity,
+    message:
+        "Forecast of {wildcards.study}, to compare with what it takes"
+    script:
+        "../scripts/forecast_table.py"

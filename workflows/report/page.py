@@ -1,0 +1,254 @@
+"""Assemble a study's page: one HTML file that needs nothing else, read from what the study's jobs left.
+
+`study` is `figures.page_parameters`, `folder` is results/<study>. Numbers come from the tables beside the
+figures."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import os
+import platform
+import re
+import subprocess
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import pandas as pd
+
+from postproc.readers.cycle_folders import cycle_files
+from postproc.readers.solver_log import solver_version
+from workflows.cases.sliding_sample.comparison import read_summary
+from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs, outside_solver_share
+from workflows.report.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
+from workflows.report.pages import key_numbers_of, page_of
+from workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+TABLE_OF = {"worn_surface_3d": "worn_surface", "worn_disc": "unrolled_track"}  # figures that share another's table
+DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
+LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
+FORECAST = "forecast.csv"
+FURTHER_COSTS = {"packing_profiles": "packings/solver_cost.csv"}  # job that calls the solver, besides beds and runs
+PACKAGES = (
+    "numpy",
+    "scipy",
+    "pandas",
+    "numba",
+    "meshio",
+    "gmsh",
+    "pyvista",
+    "vtk",
+    "matplotlib",
+    "snakemake",
+)
+
+
+def write_page(path: Path, study: Mapping[str, Any]) -> None:
+    """Write the page of a study beside its tables. Raises FileNotFoundError or ValueError when one is
+    missing.
+    """
+    text = environment().get_template(TEMPLATE).render(page_context(study, path.parent))
+    part = path.with_suffix(".html.part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def environment() -> jinja2.Environment:
+    """Return the Jinja environment of the page and of captions: strict, everything escaped."""
+    found = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(REPORT_FOLDER),
+        undefined=jinja2.StrictUndefined,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters["number"] = number
+    return found
+
+
+def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return everything that the template shows."""
+    summary, page = read_summary(folder / "summary.csv"), page_of(study["case"])
+    jobs, key_numbers = jobs_of(study, folder), key_numbers_of(study["case"]).key_numbers(study, folder, summary)
+    results = key_numbers["results"]
+    return {
+        **key_numbers,
+        "key_numbers": page.KEY_NUMBERS,
+        "study": study,
+        "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        "results": results.to_dict("records"),
+        "run_columns": run_columns(study),
+        "detailed": DETAILED,
+        "results_csv": data_uri(results.to_csv(index=False).encode(), "text/csv"),
+        "runs_note": page.RUNS_NOTE,
+        "settings": setting_rows(study["settings"], study["paper_settings"]),
+        "runs": run_rows(study),
+        "figures": [figure(name, index, folder) for index, name in enumerate(study["figures"], start=1)],
+        "simplified": simplifications(study, summary, page),
+        "versions": versions(study, folder),
+        "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
+        "decks": decks_of(study, folder, page.DECKS),
+        "warnings": solver_warnings(study, folder),
+        "jobs": solver_jobs(jobs),
+        "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
+        "totals": cost_totals(jobs),
+        "forecast_by": pd.read_csv(folder / FORECAST)["by"].iloc[0],
+        "balance": float(summary["largest_balance_error"].max()),
+    }
+
+
+# ---------------------------------------------------------------- results
+
+
+def figure(name: str, index: int, folder: Path) -> dict[str, Any]:
+    """Return one figure of the page: number, title, caption paragraphs, picture or page, its table."""
+    title, paragraphs = caption(name)
+    file = folder / "figures" / figure_file(name)
+    table = folder / "figures" / f"{TABLE_OF.get(name, name)}.csv"
+    interactive = name in INTERACTIVE
+    embedded = table.stat().st_size <= LARGEST_EMBEDDED_BYTES
+    return {
+        "name": name,
+        "number": index,
+        "title": title,
+        "caption": paragraphs,
+        "page": file.read_text(encoding="utf-8") if interactive else None,
+        "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
+        "table_name": table.name,
+        "table": data_uri(table.read_bytes(), "text/csv") if embedded else f"figures/{table.name}",
+        "embedded": embedded,
+    }
+
+
+def caption(name: str, folder: Path = REPORT_FOLDER) -> tuple[str, list[str]]:
+    """Return (title, paragraphs) of a figure's caption file: an underlined title, then plain paragraphs.
+
+    Raises ValueError when the title is not underlined.
+    """
+    path = folder / f"{name}.rst"
+    title, underline, *rest = path.read_text(encoding="utf-8").split("\n")
+    if set(underline) != {"-"}:
+        raise ValueError(f"{path}: line 2 must underline the title with '-', found {underline!r}.")
+    blocks = re.split(r"\n\s*\n", "\n".join(rest).strip())
+    return title, [" ".join(block.split()) for block in blocks]
+
+
+# ---------------------------------------------------------------- setting
+
+
+def run_rows(study: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return one row per run: design factors, its bed where it has one, and what the case tells of its parameters."""
+    factors = {row["row"]: {k: v for k, v in row.items() if k != "row"} for row in study["design_rows"]}
+    columns = dict.fromkeys(name for row in factors.values() for name in row)
+    return [
+        {"run": run}
+        | {name: factors[names["row"]].get(name) for name in columns}
+        | ({"bed": study["bed_of"][run]} if study["beds"] else {})
+        | page_of(study["case"]).run_columns(study["parameters"][run])
+        for run, names in study["runs"].items()
+    ]
+
+
+def run_columns(study: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Return key, name and unit of the columns of the table of runs."""
+    pairs = ((key, *name_and_unit(key)) for key in run_rows(study)[0])
+    return [{"key": key, "name": name, "unit": unit} for key, name, unit in pairs]
+
+
+# ---------------------------------------------------------------- cost and provenance
+
+
+def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Return the cost of every job behind the page, see `analysis.cost.job_costs`."""
+    files = [folder / "logs" / f"{job}{BENCHMARK_SUFFIX}" for job in study["jobs"]]
+    costs = {f"worn_run_{run}": folder / run / "cost.csv" for run in study["runs"]}
+    costs |= {f"settled_bed_{bed}": folder / "beds" / bed / "cost.csv" for bed in study["beds"]}
+    costs |= {job: folder / path for job, path in FURTHER_COSTS.items() if job in study["jobs"]}
+    tables = {job: pd.read_csv(path) for job, path in costs.items() if path.is_file()}
+    jobs = job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
+    return against_forecast(jobs, pd.read_csv(folder / FORECAST))
+
+
+def solver_jobs(jobs: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the jobs that call the solver, and all others in one row."""
+    solving = jobs[jobs["solver_s"] > 0.0]
+    rest = jobs[jobs["solver_s"] == 0.0]
+    others = {"job": f"{len(rest)} other jobs (meshes, tables, figures)", "wall_s": rest["wall_s"].sum()}
+    rows = [
+        *solving.to_dict("records"),
+        {**dict.fromkeys(jobs.columns), **others, "outside_s": others["wall_s"]},
+    ]
+    return [{**row, "solver_share": share_of(row["solver_s"], row["wall_s"])} for row in rows]
+
+
+def share_of(part: float | None, whole: float) -> float:
+    """Return a share in percent, 0 where nothing was taken."""
+    return 100.0 * (part or 0.0) / whole if whole else 0.0
+
+
+def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
+    """Return the sums of all jobs: wall_s, solver_s, outside_s, outside_percent, particle steps per second, forecast_s,
+    measured_over_forecast.
+    """
+    solver_seconds, expected = (float(jobs[name].sum()) for name in ("solver_s", "forecast_s"))
+    measured = float((jobs["measured_over_forecast"] * jobs["forecast_s"]).sum())
+    steps = float((jobs["particle_steps_per_s"] * jobs["solver_s"]).sum()) if solver_seconds else 0.0
+    return {
+        "jobs": len(jobs),
+        "wall_s": float(jobs["wall_s"].sum()),
+        "solver_s": solver_seconds,
+        "outside_s": float(jobs["outside_s"].sum()),
+        "outside_percent": 100.0 * outside_solver_share(jobs),
+        "particle_steps_per_s": steps / solver_seconds if solver_seconds else float("nan"),
+        "forecast_s": expected,
+        "measured_over_forecast": measured / expected if expected else float("nan"),
+    }
+
+
+def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
+    """Return the versions of everything that made the results."""
+    log = next((folder / run / "cycle_001" / "log.liggghts" for run in study["runs"]), None)
+    said = solver_version(log) if log and log.is_file() else None
+    found = {"LIGGGHTS": said.removeprefix("Version ") if said else "not reported"}
+    found["this project"] = commit()
+    found["Python"] = f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
+    for name in PACKAGES:
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    return found
+
+
+def commit(repository: Path = REPOSITORY) -> str:
+    """Return the commit of the project, and whether files differ from it; what is known where git is not
+    there.
+    """
+
+    def git(*words: str) -> str:
+        command = ["git", "-c", f"safe.directory={repository}", *words]
+        return subprocess.run(command, cwd=repository, capture_output=True, text=True, check=True).stdout.strip()
+
+    try:
+        changed = " with changes" if git("status", "--porcelain") else ""
+        return f"commit {git('rev-parse', '--short=12', 'HEAD')}{changed}"
+    except (OSError, subprocess.CalledProcessError):
+        return "commit not known"
+
+
+def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, Any]]:
+    """Return the solver's warnings over all cycles of all runs: what was said, how often."""
+    counts: dict[str, int] = {}
+    for said, count in _warnings_of(folder / run for run in study["runs"]):
+        counts[said] = counts.get(said, 0) + count
+    return [{"said": said, "count": count} for said, count in sorted(counts.items(), key=lambda item: -item[1])]
+
+
+def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:
+    for folder in folders:
+        for path in cycle_files(folder, "state.json"):
+            yield from json.loads(path.read_text()).get("solver_warnings", {}).items()

@@ -1,0 +1,19 @@
+"""What every figure of a study must say about itself: what is smaller than at paper fidelity, and what is assumed."""
+
+from __future__ import annotations
+
+from workflows.config.design import Study
+from workflows.report.pages import page_of
+
+
+def figure_remarks(study: Study) -> list[str]:
+    """Return what every figure must say: what is smaller than at paper fidelity or else simpler, law, acceleration."""
+    now = study.settings
+    remarks = page_of(study.case.name).remarks(study)
+    if now["wear"]["law"] != "archard":
+        remarks.append(f"worn by the law {now['wear']['law']}, whose volume stands where Archard's is named")
+    if now["wear"]["scheme"] != "conserving":
+        remarks.append("worn by the per-triangle rule, which removes more than the law's volume")
+    if now["wear"]["acceleration"] != 1.0:
+        remarks.append(f"wear accelerated {now['wear']['acceleration']:g} times")
+    return remarks
