@@ -21,7 +21,7 @@ from postproc.plots.style import (
     picture,
 )
 from postproc.scans.comparison import STEEPEST, depth_of_faces
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 
 DEVIATION_MAP = "RdBu_r"
 TOP_SHARE = 0.99  # of the cells: deeper ones share the top colour

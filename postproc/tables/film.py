@@ -10,9 +10,9 @@ import pandas as pd
 
 from postproc.mesh import SurfaceMesh, read_surface
 from postproc.tables.display import in_display_units
+from postproc.tables.summary import PLAIN, rows_to_show, runs_of_rows
 from postproc.wear.pattern_left import bump_volume
 from postproc.wear.update import REMOVED_THICKNESS, worn_faces
-from workflows.cases.sliding_sample.comparison import PLAIN, rows_to_show, runs_of_rows
 
 MOST_FRAMES = 60  # of a film: more would make its file large, and not easier to see
 ON_PLANE = 1e-9  # -, of the mesh's size: a node so near to the plane of a section counts as beside it

@@ -11,6 +11,8 @@ import pandas as pd
 from postproc.mesh import read_surface
 from postproc.wear.update import lost_volume
 
+PLAIN = "plain"
+
 SUMMED = (
     "archard_volume_m3",
     "base_archard_volume_m3",
@@ -88,3 +90,29 @@ def pin_summary_table(
         mean_vertical_force_N=[rows["mean_vertical_force_N"].mean() for rows in wear],
         most_contacts_per_step=[rows["contacts_per_step"].max() for rows in wear],
     )
+
+
+def read_summary(path: str | Path) -> pd.DataFrame:
+    """Return a study's summary.csv with names as text."""
+    return pd.read_csv(path, dtype={"run": str, "row": str, "surface": str})
+
+
+def read_history(path: str | Path) -> pd.DataFrame:
+    """Return the table of wear against travel with names as text."""
+    return pd.read_csv(path, dtype={"run": str, "row": str, "surface": str})
+
+
+def rows_to_show(summary: pd.DataFrame, most: int = 1) -> list[str]:
+    """Return up to `most` design rows for figures that cannot show all: lowest relative wear first.
+
+    Studies without plain runs show their first rows.
+    """
+    rows = list(dict.fromkeys(summary["row"]))
+    best = summary.dropna(subset=["wear_over_plain"])
+    best = best[best["surface"] != PLAIN].sort_values("wear_over_plain", kind="stable")["row"]
+    return list(dict.fromkeys([*best, *rows]))[:most]
+
+
+def runs_of_rows(summary: pd.DataFrame, rows: Sequence[str]) -> list[str]:
+    """Return the runs of some design rows, in the order of the summary."""
+    return summary.loc[summary["row"].isin(list(rows)), "run"].tolist()

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+EMPTY_DIAMETERS = 0.72
+
 # bytes on disk, of files that the solver and the driver write; measured
 RESTART_PARTICLE, RESTART_TRIANGLE = 250.0, 120.0  # restart file
 PICTURE_PARTICLE = 110.0  # dump of all particles

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import argparse
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from postproc.plots.style import save_small
+from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from workflows.config.design import Study, load_study
+from workflows.report.page import commit, cost_totals, jobs_of
+from workflows.report.remarks import figure_remarks
 from workflows.report.text import number
+
+SECONDS_PER_MINUTE = 60.0
 
 LINE = 118  # characters of a line of prose
 
@@ -82,3 +88,34 @@ def write_page_of_rows(description: str, folder: str, write: Callable[[Path, Pat
     given = study_arguments(description, folder)
     rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
     write(given.folder, given.docs, load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows}))
+
+
+def provenance(folder: Path, study: Study) -> str:
+    """Return when, by which versions and at which sizes the study was simulated."""
+    states = [path for run in study.runs for path in cycle_files(folder / run.name, "state.json")]
+    solver = solver_words(states[0].parent / "log.liggghts")
+    said = (
+        f"Simulated {simulated_between(states)} with {solver}, page written by {commit()}: {len(study.runs)} runs of "
+        f"{len(study.design_rows)} rows. {'; '.join(figure_remarks(study))}."
+    )
+    return f"{prose(said)}\n"
+
+
+def durations(folder: Path, page: Mapping[str, Any]) -> str:
+    """Return what the solver's jobs took beside their forecast, and the totals of the study."""
+    jobs = jobs_of(page, folder)
+    totals = cost_totals(jobs)
+    solving = jobs[jobs["solver_s"] > 0.0]
+    table = solving[["job", "particles", "steps"]].assign(
+        **{
+            f"{name} (min)": solving[column] / SECONDS_PER_MINUTE
+            for name, column in (("wall", "wall_s"), ("processor", "processor_s"), ("forecast", "forecast_s"))
+        },
+        **{"measured over forecast": solving["measured_over_forecast"]},
+    )
+    told = (
+        f"All jobs together took {totals['wall_s'] / SECONDS_PER_MINUTE:.0f} minutes of wall time, "
+        f"{totals['outside_percent']:.1f} % of it outside the solver; the solver's processor time is "
+        f"{totals['measured_over_forecast']:.2f} of its forecast. What else the machine did lengthens wall times."
+    )
+    return f"{prose(told)}\n\n{markdown(table)}"

@@ -21,7 +21,7 @@ import pandas as pd
 
 from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs, outside_solver_share
 from workflows.report.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
 from workflows.report.pages import key_numbers_of, page_of

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from postproc.plots.style import save
 from postproc.tables.display import MILLIMETRES, in_display_units
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.flow_history import RunFlow, spin_profiles
 from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
 from workflows.engine.job import job_log

@@ -6,7 +6,7 @@ from postproc.flow.bed import shown_particles
 from postproc.plots.pictures import bed, bed_table
 from postproc.plots.style import save
 from postproc.tables.depths import read_worn_surfaces
-from workflows.cases.sliding_sample.comparison import read_summary, rows_to_show, runs_of_rows
+from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
 from workflows.cases.sliding_sample.page import ROWS_IN_DETAIL
 from workflows.engine.job import job_log
 

@@ -1,6 +1,6 @@
 """Write the best design of each flow regime as a design table, and what is predicted of it."""
 
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.screening.confirmation import best_of_regimes, design_of
 from workflows.cases.sliding_sample.screening.regression_tables import screen_summary
 from workflows.engine.job import job_log

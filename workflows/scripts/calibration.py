@@ -3,12 +3,13 @@
 import pandas as pd
 
 from postproc.plots.style import save
-from workflows.cases.pin_on_disc.coefficient import laboratory_coefficient, scaling_limits, step_cap_limits
+from postproc.tables.published import published_value
+from postproc.wear.coefficient import laboratory_coefficient
+from workflows.cases.pin_on_disc.coefficient import scaling_limits, step_cap_limits
 from workflows.cases.pin_on_disc.figure_tables import calibrated, laboratory_volume, only_reference
 from workflows.cases.pin_on_disc.plots.volume import calibration
 from workflows.cases.pin_on_disc.run_in import run_in_table
 from workflows.cases.pin_on_disc.runs import REFERENCE, of_runs, pin_runs, reference_remark
-from workflows.cases.pin_on_disc.series import published_value
 from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):

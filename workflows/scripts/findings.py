@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.screening.finding_tests import findings_table
 from workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source
 from workflows.cases.sliding_sample.screening.published_model import published_wear_by_row

@@ -5,7 +5,7 @@ from pathlib import Path
 from postproc.flow.bed import last_snapshot, read_snapshot
 from postproc.plots.style import save
 from postproc.tables.depths import read_worn_surfaces
-from workflows.cases.sliding_sample.comparison import read_summary, rows_to_show, runs_of_rows
+from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
 from workflows.cases.sliding_sample.flow_views import flow_views, sample_lines
 from workflows.cases.sliding_sample.plots import flow_views as figures
 from workflows.cases.sliding_sample.screening.regime_groups import published_rows_in_detail, rows_in_detail

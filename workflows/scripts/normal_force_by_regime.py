@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.replicates import mean_of_replicates
 from workflows.cases.sliding_sample.screening.plots.regimes import normal_force_by_regime
 from workflows.cases.sliding_sample.screening.regime_groups import force_by_group, force_remarks, regime_remarks

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.flow_history import row_profiles
 from workflows.cases.sliding_sample.plots.flow import angular_velocity_profiles, velocity_profiles
 from workflows.cases.sliding_sample.screening.regime_groups import (

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.screening.plots.regression import DRAWN, regression_figures
 from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
 from workflows.cases.sliding_sample.screening.regression_warnings import warnings_for_figures

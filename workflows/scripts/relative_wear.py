@@ -3,7 +3,8 @@
 import pandas as pd
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_history, read_summary, relative_wear_table
+from postproc.tables.summary import read_history, read_summary
+from workflows.cases.sliding_sample.comparison import relative_wear_table
 from workflows.cases.sliding_sample.plots.bars import relative_wear
 from workflows.cases.sliding_sample.replicates import by_setting, replicate_remark
 from workflows.cases.sliding_sample.screening.regime_groups import published_relative_wear

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from postproc.reference.size_ratios import PUBLISHED_CRITICAL_SCALE
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.particle_size.published_sizes import (
     beside_the_source,
     critical_sentences,

@@ -3,10 +3,11 @@
 import pandas as pd
 
 from postproc.plots.style import save
+from postproc.tables.published import published_value
 from workflows.cases.pin_on_disc.figure_tables import size_cases
 from workflows.cases.pin_on_disc.plots import volume as pin_volume
 from workflows.cases.pin_on_disc.runs import of_runs, pin_runs
-from workflows.cases.pin_on_disc.series import published_value, size_invariance
+from workflows.cases.pin_on_disc.series import size_invariance
 from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import steady_by_scale as drawn
 from workflows.cases.sliding_sample.particle_size.published_sizes import steady_by_scale
 from workflows.engine.job import job_log

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import over_the_sample, velocity_bounds
 from workflows.engine.job import job_log

@@ -5,7 +5,7 @@ from dataclasses import asdict
 import pandas as pd
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import wear_against_scale
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     beside_published,

@@ -1,7 +1,7 @@
 """Draw the relative wear of all runs by regime."""
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.replicates import replicate_remark, with_intervals
 from workflows.cases.sliding_sample.screening.plots.regimes import wear_by_regime
 from workflows.cases.sliding_sample.screening.regime_groups import regime_remarks, wear_by_group, with_wear_rates

@@ -6,7 +6,7 @@ import pandas as pd
 
 from postproc.plots.style import save
 from postproc.tables.history import wear_within_cycles
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.flow_history import published_window
 from workflows.cases.sliding_sample.plots.flow import along_travel
 from workflows.cases.sliding_sample.screening.regime_groups import gradients_by_group, regime_remarks

@@ -1,7 +1,8 @@
 """Draw Archard's and Finnie's volumes."""
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import law_comparison, read_summary
+from postproc.tables.summary import read_summary
+from workflows.cases.sliding_sample.comparison import law_comparison
 from workflows.cases.sliding_sample.plots.bars import wear_law_comparison
 from workflows.engine.job import job_log
 

@@ -3,7 +3,7 @@
 from postproc.plots.pictures import wear_maps
 from postproc.plots.style import save
 from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import smallest_and_largest
 from workflows.engine.job import job_log
 

@@ -1,7 +1,8 @@
 """Draw the wear of base and bumps."""
 
 from postproc.plots.style import save
-from workflows.cases.sliding_sample.comparison import read_summary, wear_split
+from postproc.tables.summary import read_summary
+from workflows.cases.sliding_sample.comparison import wear_split
 from workflows.cases.sliding_sample.plots import bars
 from workflows.engine.job import job_log
 

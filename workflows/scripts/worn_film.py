@@ -7,7 +7,7 @@ import pandas as pd
 from postproc.plots.film import film_pictures, save_film
 from postproc.tables.depths import depth_quantity
 from postproc.tables.film import film_frames, film_run, film_surfaces, frame_table
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):

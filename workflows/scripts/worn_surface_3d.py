@@ -3,7 +3,7 @@
 from postproc.plots.page import surfaces_page
 from postproc.plots.pictures import colour_limits
 from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-from workflows.cases.sliding_sample.comparison import read_summary, rows_to_show, runs_of_rows
+from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
 from workflows.cases.sliding_sample.page import ROWS_IN_DETAIL
 from workflows.engine.job import job_log
 

@@ -12,8 +12,7 @@ import pandas as pd
 import pytest
 
 from postproc.tables.history import wear_history
-from postproc.tables.summary import summary_table
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary, summary_table
 from workflows.cases.sliding_sample.screening.plots.regression import DRAWN
 from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
 from workflows.config.design import REPOSITORY, load_study

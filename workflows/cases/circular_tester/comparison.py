@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 
 from postproc.tables.display import CUBIC_MILLIMETRES
+from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.volume import CONVEX, element_increments
-from workflows.cases.sliding_sample.comparison import PLAIN
 
 MACHINE = ["shape", "particle_scale"]
 WORN_OUT_SHARE = 0.05  # of the pattern's volume: what is left of it then counts as nothing

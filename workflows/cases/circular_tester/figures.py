@@ -16,6 +16,7 @@ import pandas as pd
 from postproc.mesh import read_surface
 from postproc.plots.style import save
 from postproc.scans.comparison import bump_names
+from postproc.tables.published import published_value
 from workflows.cases.circular_tester import comparison as tester_comparison
 from workflows.cases.circular_tester import distribution as tester_distribution
 from workflows.cases.circular_tester import findings as tester_findings
@@ -43,7 +44,6 @@ from workflows.cases.circular_tester.runs import (
     volumes,
     whole_revolutions,
 )
-from workflows.cases.pin_on_disc.series import published_value
 
 SHOWN_BUMPS = ["C11", "C13", "C15"]  # of Fig 6.5 and 6.16
 MESH_BUMP = ["C15"]  # of Fig 6.9

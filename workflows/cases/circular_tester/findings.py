@@ -12,11 +12,11 @@ import numpy as np
 import pandas as pd
 from scipy.stats import linregress
 
+from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
+from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.comparison import mean_ratios
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.volume import CONVEX, SURE, TERMS, volume_at
-from workflows.cases.sliding_sample.comparison import PLAIN
-from workflows.cases.sliding_sample.screening.findings import CONFIRMED, REFUTED, UNSAID, Verdict
 
 LEAST_R_SQUARED = 0.99
 SIZE_SPREAD = 0.14  # -, largest from smallest of the plain sample's volumes over particle scales, Fig 6.10

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from postproc.statistics.steady import FEWEST_VALUES, common_start, steady_window
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 
 STEADINESS = ("velocity_m_per_s", "bed_height_m", "wear_rate_m3_per_s")  # the three criteria of Fig 6.7
 WHOLE = 1e-6  # revolutions that an instant may lie before a whole one and belong to the next

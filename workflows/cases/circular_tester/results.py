@@ -10,16 +10,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from postproc.tables.summary import read_summary
 from workflows.cases.circular_tester.comparison import worn_out_at
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.flow import steady_revolutions
 from workflows.cases.circular_tester.key_numbers import findings_table, result_table
 from workflows.cases.circular_tester.volume import TERMS
-from workflows.cases.sliding_sample.comparison import read_summary
-from workflows.cases.sliding_sample.screening.results import durations, provenance
 from workflows.config.design import REPOSITORY, Study
 from workflows.report.figures import figures_of, page_parameters
-from workflows.report.markdown import copy_pictures, markdown, picture, prose, write_page_of_rows
+from workflows.report.markdown import copy_pictures, durations, markdown, picture, prose, provenance, write_page_of_rows
 from workflows.report.text import UNDEFINED
 
 PUBLISHED_FITS = REPOSITORY / "config" / "published" / "circular_tester_volume.csv"

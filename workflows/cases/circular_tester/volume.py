@@ -13,12 +13,12 @@ import numpy as np
 import pandas as pd
 
 from postproc.tables.display import CUBIC_MILLIMETRES
-from workflows.cases.pin_on_disc.coefficient import coefficient_of_volume, laboratory_coefficient
-from workflows.cases.pin_on_disc.series import published_value
-from workflows.cases.pin_on_disc.volume import ORDERS
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.published import published_value
+from postproc.tables.summary import PLAIN
+from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient
 
 CONVEX = "convex"
+ORDERS = {"linear": 1, "quadratic": 2}  # of the fits
 CASE = ["run", "surface", "particle_scale"]  # columns that tell one case from another
 TERMS = ["linear_mm3_per_revolution", "quadratic_mm3_per_revolution2"]
 SECONDS_PER_HOUR = 3600.0

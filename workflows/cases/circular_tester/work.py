@@ -9,11 +9,11 @@ from typing import Any
 from meshes.estimate import sample_triangles
 from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester.decks import HOLDER_SIZE
-from workflows.cases.sliding_sample.work import EMPTY_DIAMETERS
 from workflows.engine import decks as deck
 from workflows.engine.geometry import convex_pattern
 from workflows.engine.work import (
     CYCLE_BYTES,
+    EMPTY_DIAMETERS,
     LEDGER_TRIANGLE,
     PICTURE_PARTICLE,
     RESTART_PARTICLE,

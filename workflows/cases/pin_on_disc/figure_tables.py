@@ -13,11 +13,12 @@ import pandas as pd
 
 from postproc.mesh import SurfaceMesh, read_surface
 from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
+from postproc.tables.published import published_value
 from workflows.cases.pin_on_disc.coefficient import calibration_table
 from workflows.cases.pin_on_disc.contours import CONTOURS, depth_map, section_table, track_radii
 from workflows.cases.pin_on_disc.run_in import SIZES, revolution_statistics, run_in_revolution, whole_revolutions
 from workflows.cases.pin_on_disc.runs import CALIBRATED, SCHEMES, reference_runs, same_coefficient, size_histogram
-from workflows.cases.pin_on_disc.series import circular_segment, published_value
+from workflows.cases.pin_on_disc.series import circular_segment
 from workflows.cases.pin_on_disc.volume import groove_volume, law_volume, published_volume
 
 TESTED = {"depth": "depth_p_value", "opening width": "width_p_value"}  # size -> column of Table 5.3

@@ -11,11 +11,12 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.readers.cycle_folders import cycle_files
-from workflows.cases.pin_on_disc.coefficient import laboratory_coefficient
+from postproc.tables.published import published_value
+from postproc.wear.coefficient import laboratory_coefficient
 from workflows.cases.pin_on_disc.figure_tables import groove_remark, laboratory_volume, run_in_words, shown_factors
 from workflows.cases.pin_on_disc.run_in import run_in_table, whole_revolutions
 from workflows.cases.pin_on_disc.runs import REFERENCE, pin_runs, reference_runs
-from workflows.cases.pin_on_disc.series import EDGES_PER_WIDTH, STABLE_PERCENT, published_value
+from workflows.cases.pin_on_disc.series import EDGES_PER_WIDTH, STABLE_PERCENT
 from workflows.cases.pin_on_disc.volume import CANDIDATES
 from workflows.report.cost import run_cost
 from workflows.report.markdown import copy_pictures, markdown, picture, prose, simulated_between, solver_words

@@ -10,8 +10,8 @@ import pandas as pd
 
 from postproc.readers.cycle_folders import cycle_files
 from postproc.tables.display import MILLIMETRES
+from postproc.tables.published import published_value
 from workflows.cases.pin_on_disc.run_in import chi_squared_normality
-from workflows.cases.pin_on_disc.series import published_value
 from workflows.cases.pin_on_disc.volume import COEFFICIENT_TOLERANCE
 
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "load_n", "track_radius_mm")

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
+from postproc.tables.published import published_value
 from workflows.cases.pin_on_disc.run_in import SIZES
 
 EDGES_PER_WIDTH = 5.0  # -, meshes up to a fifth of the groove's width are to agree
@@ -13,17 +14,6 @@ STABLE_PERCENT = 5.0  # within which they are to agree
 PERCENT = 100.0
 COMPARED = ("depth", "width", "volume")
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm")
-
-
-def published_value(published: pd.DataFrame, quantity: str, of: str) -> float:
-    """The value of a published quantity `of` laboratory or simulation, in the unit of the table.
-
-    Raises ValueError when the table has none.
-    """
-    found = published[(published["quantity"] == quantity) & (published["of"] == of)]
-    if len(found) != 1:
-        raise ValueError(f"published '{quantity}' of '{of}' is there {len(found)} times, allowed is once")
-    return float(found["value"].iloc[0])
 
 
 def mesh_series(summary: pd.DataFrame, statistics: pd.DataFrame) -> pd.DataFrame:

@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
 
 from postproc.tables.display import in_display_units
-
-PLAIN = "plain"
-
-
-def read_summary(path: str | Path) -> pd.DataFrame:
-    """Return a study's summary.csv with names as text."""
-    return pd.read_csv(path, dtype={"run": str, "row": str, "surface": str})
-
-
-def read_history(path: str | Path) -> pd.DataFrame:
-    """Return the table of wear against travel with names as text."""
-    return pd.read_csv(path, dtype={"run": str, "row": str, "surface": str})
+from postproc.tables.summary import PLAIN
 
 
 def plain_of_row(summary: pd.DataFrame, column: str) -> pd.Series:
@@ -81,19 +69,3 @@ def relative_wear_table(
     ratios = [size_ratios.get(run) for run in table["run"]]
     table = table.assign(equivalent_size_ratio=np.array(ratios, dtype=float))
     return table.merge(cycle_ratios(history), on=["row", "surface"], how="left")
-
-
-def rows_to_show(summary: pd.DataFrame, most: int = 1) -> list[str]:
-    """Return up to `most` design rows for figures that cannot show all: lowest relative wear first.
-
-    Studies without plain runs show their first rows.
-    """
-    rows = list(dict.fromkeys(summary["row"]))
-    best = summary.dropna(subset=["wear_over_plain"])
-    best = best[best["surface"] != PLAIN].sort_values("wear_over_plain", kind="stable")["row"]
-    return list(dict.fromkeys([*best, *rows]))[:most]
-
-
-def runs_of_rows(summary: pd.DataFrame, rows: Sequence[str]) -> list[str]:
-    """Return the runs of some design rows, in the order of the summary."""
-    return summary.loc[summary["row"].isin(list(rows)), "run"].tolist()

@@ -10,7 +10,8 @@ import pandas as pd
 
 from postproc.tables.depths import depth_summary
 from postproc.tables.display import in_display_units
-from workflows.cases.sliding_sample.comparison import cycle_ratios, read_history, rows_to_show
+from postproc.tables.summary import read_history, rows_to_show
+from workflows.cases.sliding_sample.comparison import cycle_ratios
 from workflows.cases.sliding_sample.page import ROWS_IN_DETAIL, SIZE_TABLES
 from workflows.cases.sliding_sample.replicates import relative_wear_intervals
 from workflows.cases.sliding_sample.screening.findings import UNSURE

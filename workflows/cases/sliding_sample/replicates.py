@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.evaluation import UNDECIDED
 
 NO_REPLICATES = "each row is one packing: the scatter between packings is not known"

@@ -13,6 +13,7 @@ from workflows.engine.derived import ADAPTIVE, RAMP, WINDOW
 from workflows.engine.geometry import convex_pattern
 from workflows.engine.work import (
     CYCLE_BYTES,
+    EMPTY_DIAMETERS,
     LEDGER_TRIANGLE,
     PICTURE_PARTICLE,
     RESTART_PARTICLE,
@@ -25,7 +26,6 @@ from workflows.engine.work import (
 
 # Median diameters of a bed's thickness in which no particle's centre is: half of one is taken off in levelling, the
 # rest is the looser layer on the floor. Measured on beds of 3 to 7.5 layers, within 1 % in particles.
-EMPTY_DIAMETERS = 0.72
 # Recession of the fastest node over the mean that Archard's law gives for the bed's weight on a plain floor. From the
 # 208 adaptive cycles of worn_bump at quick fidelity; the only number here that hangs on one run.
 FASTEST_OVER_MEAN = 217.0

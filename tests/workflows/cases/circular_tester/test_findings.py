@@ -6,13 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID
 from tests.support import tester_study as study
 from workflows.cases.circular_tester import volume as tester_volume
 from workflows.cases.circular_tester.comparison import ratios_by_revolution
 from workflows.cases.circular_tester.distribution import mesh_size_effect
 from workflows.cases.circular_tester.findings import TESTS, Evidence, findings_table
 from workflows.cases.circular_tester.flow import revolution_means, steady_revolutions
-from workflows.cases.sliding_sample.screening.findings import CONFIRMED, REFUTED, UNSAID
 
 FINDINGS = pd.read_csv(study.ROOT / "config/published/circular_tester_findings.csv")
 THESIS = {  # surface, particle scale -> mm3 per revolution, per revolution2: the source's own, plain of scale 4 made up

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from postproc.tables.published import published_value
 from tests.support import tester_study as study
 from workflows.cases.circular_tester.volume import (
     LABORATORY,
@@ -26,7 +27,6 @@ from workflows.cases.circular_tester.volume import (
     volume_at,
     volume_fits,
 )
-from workflows.cases.pin_on_disc.series import published_value
 
 EXACT = 1e-9  # relative, of fits to noiseless laws
 COEFFICIENT = 5e-9  # 1/Pa, of the synthetic runs

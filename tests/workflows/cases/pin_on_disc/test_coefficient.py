@@ -4,14 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from workflows.cases.pin_on_disc.coefficient import (
-    calibration_table,
-    coefficient_of_volume,
-    laboratory_coefficient,
-    scaling_factor,
-    scaling_limits,
-    step_cap_limits,
-)
+from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
+from workflows.cases.pin_on_disc.coefficient import calibration_table, scaling_limits, step_cap_limits
 
 VOLUME, ERROR, LOAD, DISTANCE, REVOLUTIONS = 0.565e-9, 0.089e-9, 5.0, 180.0, 1302.5  # m3, m3, N, m, -
 CIRCLE = DISTANCE / REVOLUTIONS  # m

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from postproc.tables.published import published_value
 from tests import PUBLISHED
 from workflows.cases.pin_on_disc.run_in import SIZES
 from workflows.cases.pin_on_disc.series import (
@@ -11,7 +12,6 @@ from workflows.cases.pin_on_disc.series import (
     comparison,
     mesh_series,
     mesh_stability,
-    published_value,
     size_invariance,
 )
 

@@ -4,14 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from workflows.cases.sliding_sample.comparison import (
-    cycle_ratios,
-    law_comparison,
-    relative_wear_table,
-    rows_to_show,
-    runs_of_rows,
-    wear_split,
-)
+from postproc.tables.summary import rows_to_show, runs_of_rows
+from workflows.cases.sliding_sample.comparison import cycle_ratios, law_comparison, relative_wear_table, wear_split
 
 RELATIVE = 1e-12  # rounding of one quotient
 

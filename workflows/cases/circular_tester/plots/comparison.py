@@ -8,11 +8,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from postproc.plots.style import COLOURS, MARKERS, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import COLOURS, MARKERS, OTHER_COLOUR, SMALLEST_FONT, named_once, new_figure
 from postproc.tables.display import CUBIC_MILLIMETRES
+from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
-from workflows.cases.pin_on_disc.plots.style import named_once
-from workflows.cases.sliding_sample.comparison import PLAIN
 
 STYLES = {"channel": "-", "ring": "--"}
 SHIFT = 0.05  # revolutions that two machines stand apart

@@ -21,14 +21,14 @@ from postproc.plots.style import (
     MARKERS,
     SMALLEST_FONT,
     colour,
+    named_once,
     new_figure,
 )
 from postproc.tables.display import DEGREES, MILLIMETRES
+from postproc.tables.published import published_value
+from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.flow import STEADINESS
-from workflows.cases.pin_on_disc.plots.style import named_once
-from workflows.cases.pin_on_disc.series import published_value
-from workflows.cases.sliding_sample.comparison import PLAIN
 
 BAND_COLOUR = "#dddddd"  # of published ranges, behind what is simulated
 BANDS = 0.25  # opacity of published ranges in the colour of their surface

@@ -10,8 +10,20 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.plots.style import COLOURS, LARGEST_HEIGHT, MARKERS, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import (
+    COLOURS,
+    LARGEST_HEIGHT,
+    MARKERS,
+    OTHER_COLOUR,
+    PUBLISHED,
+    SMALLEST_FONT,
+    named_once,
+    new_figure,
+    printed_table,
+)
 from postproc.tables.display import CUBIC_MILLIMETRES
+from postproc.tables.published import published_value
+from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.volume import (
     CONVEX,
     LABORATORY,
@@ -24,9 +36,6 @@ from workflows.cases.circular_tester.volume import (
     published_terms,
     volume_at,
 )
-from workflows.cases.pin_on_disc.plots.style import PUBLISHED, named_once, printed_table
-from workflows.cases.pin_on_disc.series import published_value
-from workflows.cases.sliding_sample.comparison import PLAIN
 
 CURVE_POINTS = 101
 NOTE_CHARACTERS = 105  # of a line over a printed table

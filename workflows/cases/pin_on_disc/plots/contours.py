@@ -11,16 +11,9 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, PUBLISHED, SMALLEST_FONT, named_once, new_figure
 from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.cases.pin_on_disc.plots.style import (
-    LABORATORY_COLOUR,
-    PUBLISHED,
-    SCHEME_COLOURS,
-    SCHEME_MARKERS,
-    SCHEME_NAMES,
-    named_once,
-)
+from workflows.cases.pin_on_disc.plots.style import LABORATORY_COLOUR, SCHEME_COLOURS, SCHEME_MARKERS, SCHEME_NAMES
 from workflows.cases.pin_on_disc.run_in import SIGNIFICANCE, SIZES
 
 UNITS = {"depth": ("µm", MICROMETRES), "opening width": ("mm", MILLIMETRES)}

@@ -9,20 +9,27 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.plots.style import LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, facets, label_all, new_figure
+from postproc.plots.style import (
+    LARGEST_HEIGHT,
+    OTHER_COLOUR,
+    PUBLISHED,
+    SMALLEST_FONT,
+    facets,
+    label_all,
+    named_once,
+    new_figure,
+    printed_table,
+)
 from postproc.tables.display import CUBIC_MILLIMETRES
-from workflows.cases.pin_on_disc.coefficient import scaling_factor
+from postproc.wear.coefficient import scaling_factor
 from workflows.cases.pin_on_disc.figure_tables import PUBLISHED_FITS, TOUCHED
 from workflows.cases.pin_on_disc.plots.style import (
     LABORATORY_COLOUR,
     LAW_COLOUR,
-    PUBLISHED,
     SCHEME_COLOURS,
     SCHEME_MARKERS,
     SCHEME_NAMES,
     coefficient_name,
-    named_once,
-    printed_table,
 )
 from workflows.cases.pin_on_disc.volume import CANDIDATES, VOLUMES, law_volume, published_volume
 

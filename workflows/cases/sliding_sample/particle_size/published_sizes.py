@@ -10,7 +10,7 @@ import pandas as pd
 
 from postproc.flow.packing import MEASURES, inner_means
 from postproc.statistics.lines import Crossing
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX
 
 AGREES, DIFFERS, UNSAID = "agrees", "differs", "cannot be said"

@@ -14,13 +14,12 @@ import pandas as pd
 from postproc.flow.packing import inner_means
 from postproc.reference.size_ratios import size_ratios
 from postproc.tables.display import in_display_units
-from workflows.cases.sliding_sample.comparison import read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
 from workflows.cases.sliding_sample.particle_size.published_sizes import AGREES, DIFFERS, UNSAID
-from workflows.cases.sliding_sample.screening.results import durations, provenance
 from workflows.config.design import Study
 from workflows.report.figures import bumps_and_particles, page_parameters
-from workflows.report.markdown import copy_pictures, markdown, picture, prose, write_page_of_rows
+from workflows.report.markdown import copy_pictures, durations, markdown, picture, prose, provenance, write_page_of_rows
 
 HEAD = """# Particle size at {fidelity} fidelity: results
 

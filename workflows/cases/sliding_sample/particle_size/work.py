@@ -13,11 +13,10 @@ from typing import Any
 from postproc.wear.caps import GRAVITY
 from workflows.cases.calibration.work import POURED, filled_particles, simulation_bytes
 from workflows.cases.sliding_sample.particle_size.packings import by_scale, container
-from workflows.cases.sliding_sample.work import EMPTY_DIAMETERS
 from workflows.engine import bulk_tests
 from workflows.engine import decks as deck
 from workflows.engine.case import Parameters
-from workflows.engine.work import Stage, Work
+from workflows.engine.work import EMPTY_DIAMETERS, Stage, Work
 
 JOB = "packing_profiles"  # rule that simulates all containers of a study, one after the other
 FILLING_FREE_FALLS = 1.45  # -, until what is poured rests, in free falls through the filling; measured 1.35 to 1.64

@@ -19,7 +19,7 @@ from postproc.plots.style import (
     colour,
     new_figure,
 )
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY_RUNS = 6  # from here on run names stand upright

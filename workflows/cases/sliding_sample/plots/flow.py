@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from postproc.plots.style import LARGEST_HEIGHT, MARKERS, SMALLEST_FONT, colour, new_figure
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 
 LAYER = 5.0  # mm, of the published profiles, whose particles have their real size
 PANELS = {  # column of a profile -> its quantity in the published table and the label of the axis

@@ -8,17 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
+from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, RIDES_ALONG
 from workflows.cases.sliding_sample.screening.findings import (
     CENTRAL,
-    CONFIRMED,
     PERCENT,
-    REFUTED,
     SIDE,
-    UNSAID,
     Evidence,
-    Verdict,
     coefficient,
     main_effects,
     percent,

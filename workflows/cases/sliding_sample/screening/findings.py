@@ -15,14 +15,13 @@ import pandas as pd
 
 from postproc.statistics.regression import CONSTANT
 from postproc.tables.display import MILLIMETRES
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.evaluation import CONTINUOUS
 from workflows.cases.sliding_sample.replicates import relative_wear_intervals
 from workflows.cases.sliding_sample.screening.published_model import has_factors
 from workflows.cases.sliding_sample.screening.regression_warnings import confounded
 from workflows.cases.sliding_sample.screening.study_regression import Screening
 
-CONFIRMED, REFUTED, UNSAID = "confirmed", "not confirmed", "cannot be said"
 UNSURE = 0.05  # -, from 1: between versions of the program the demo's relative wear has scattered by as much (README)
 CENTRAL, SIDE = "central", "side"
 PERCENT = 100.0
@@ -101,15 +100,6 @@ def _regression(tables: Mapping[str, pd.DataFrame], study: Screening | None) -> 
         "model_p": float(found["p_value_permutation"].iloc[0]),
         "aliased": {name: what for what, factors in confounded(study).items() for name in factors},
     }
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What was found, in words with numbers, the verdict, and the reason where nothing can be said."""
-
-    found: str
-    verdict: str
-    reason: str = ""
 
 
 def rows_of_study(

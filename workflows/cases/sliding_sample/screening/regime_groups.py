@@ -12,7 +12,7 @@ import pandas as pd
 
 from postproc.readers.cycle_folders import cycle_files
 from postproc.tables.display import CUBIC_MILLIMETRES
-from workflows.cases.sliding_sample.comparison import PLAIN, rows_to_show
+from postproc.tables.summary import PLAIN, rows_to_show
 from workflows.cases.sliding_sample.evaluation import (
     CONTINUOUS,
     DISCONTINUOUS,

@@ -9,7 +9,7 @@ import pandas as pd
 
 from postproc.statistics.factors import Factor, factor_of
 from postproc.statistics.model_terms import aliasing, candidate_terms
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.screening.published_model import has_factors, published_wear
 from workflows.cases.sliding_sample.screening.regression_warnings import confounded, screening_warnings
 from workflows.cases.sliding_sample.screening.study_regression import (

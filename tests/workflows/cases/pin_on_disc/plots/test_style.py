@@ -5,10 +5,11 @@ import pandas as pd
 import pytest
 
 from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, remarks_of
+from postproc.wear.coefficient import laboratory_coefficient
 from tests import PUBLISHED
 from tests.support import pin_study
 from workflows.cases.pin_on_disc import figure_tables as pin_figures
-from workflows.cases.pin_on_disc.coefficient import laboratory_coefficient, scaling_limits
+from workflows.cases.pin_on_disc.coefficient import scaling_limits
 from workflows.cases.pin_on_disc.plots import contours as contour_plots
 from workflows.cases.pin_on_disc.plots import disc
 from workflows.cases.pin_on_disc.plots import volume as pin_volume

@@ -6,18 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID
 from tests import REPOSITORY as ROOT
 from tests.support.screening_study import FACTORS
 from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS
 from workflows.cases.sliding_sample.screening.finding_tests import findings_table
-from workflows.cases.sliding_sample.screening.findings import (
-    CONFIRMED,
-    REFUTED,
-    UNSAID,
-    gather,
-    runs_beside_source,
-    side_of_one,
-)
+from workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source, side_of_one
 from workflows.cases.sliding_sample.screening.published_model import published_wear_by_row
 from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
 from workflows.cases.sliding_sample.steady_table import MEASURES

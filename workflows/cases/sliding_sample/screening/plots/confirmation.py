@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from postproc.plots.style import MARKERS, OTHER_COLOUR, SMALLEST_FONT, colour, new_figure, scaled
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.screening.confirmation import interval_reach
 
 ROOM = 1.05  # -, of the largest value on the axis

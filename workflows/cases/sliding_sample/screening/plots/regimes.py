@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from postproc.plots.style import BASE_COLOUR, BUMP_COLOUR, LARGEST_HEIGHT, SMALLEST_FONT, colour, new_figure
-from workflows.cases.sliding_sample.comparison import PLAIN
+from postproc.tables.summary import PLAIN
 
 BAR = 0.4  # -, width of a bar over the distance of rows
 PLAIN_FILL = "#f4c9a8"  # of the plain samples' bars
