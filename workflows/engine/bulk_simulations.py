@@ -8,6 +8,7 @@ whenever it is asked for. A packing in which an arch blocks the slot is kept too
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -24,6 +25,9 @@ from postproc.readers.solver_log import failure, last_step, solver_version, ther
 from workflows.engine import state
 from workflows.engine.bulk_tests import deck_text, slot_length, time_step, write_test
 from workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds, run_deck
+from workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
+
+POURED = 1.04  # -, poured particles over those that fill the box, as counted
 
 FILLED = "filled.dump"
 PACKINGS = 3  # of a test, before it is given up because arches block all of them
@@ -156,3 +160,16 @@ def answer(measurement: Measurement) -> dict[str, float]:
 def responses_of(kinds: Sequence[str]) -> list[str]:
     """Return the responses that kinds of tests give."""
     return [name for kind in kinds for name in RESPONSES[kind]]
+
+
+def filled_particles(test: Mapping[str, Any]) -> float:
+    """Return about how many particles fill the box of a test."""
+    particle, box = test["particle"], test["box"]
+    solid = box["length_m"] * box["width_m"] * box["fill_height_m"] * particle["bulk_solid_fraction"]
+    pairs = zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
+    return solid * math.fsum(fraction / (math.pi / 6.0 * diameter**3) for fraction, diameter in pairs)
+
+
+def simulation_bytes(stages: tuple[Stage, ...]) -> float:
+    """Return what simulations leave on disk: two dumps of all particles and the log each."""
+    return sum(stage.decks * (2.0 * PICTURE_PARTICLE * stage.particles + CYCLE_BYTES) for stage in stages)

@@ -73,6 +73,9 @@ class Case:
     first_title: what people call cycle 0
     leftovers: files that a wear cycle's solver leaves and nobody needs once the cycle is accounted
     kept: files that `reduce` leaves, without which a wear cycle is not whole
+    figure_modules: of its folder, that declare figures and tables (`workflows.report.products`), in a page's order
+    shared_figures: names of those of `workflows.report.surfaces` that it shows, after its own
+    run_rules: rules that make a job of every run
     """
 
     name = ""
@@ -86,6 +89,9 @@ class Case:
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)
     kept: tuple[str, ...] = ()
+    figure_modules: tuple[str, ...] = ("figures",)
+    shared_figures: tuple[str, ...] = ()
+    run_rules: tuple[str, ...] = ("surface_mesh", "worn_run")
 
     # ---------------------------------------------------------------- from settings to runs
 
@@ -178,6 +184,10 @@ class Case:
             needs = f"settled_bed_{bed}" if bed else ""
             jobs.append(Work("worn_run", (run.name,), stages, needs, ranks, 1, self.run_bytes(run.parameters)))
         return tuple(jobs)
+
+    def further_work(self, study: Any) -> tuple[Work, ...]:
+        """Return the jobs of a checked study that call the solver besides beds and runs."""
+        return ()
 
     def bed_stages(self, parameters: Parameters, bed: Parameters) -> tuple[Stage, ...]:
         """Return the stages of filling a bed; parameters are those of a run that starts from it."""

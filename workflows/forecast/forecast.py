@@ -12,12 +12,10 @@ from pathlib import Path
 import pandas as pd
 
 from workflows.config.design import Study
-from workflows.config.units import to_si
 from workflows.engine.progress import duration_text
 from workflows.engine.work import Work
 from workflows.forecast.cost_model import OUTSIDE_TERMS, SOLVER_TERMS, TERMS, Rates, seconds
 from workflows.forecast.rates import RatesError, rates_file, read_rates
-from workflows.report.figures import varies_scale
 
 # Memory of a job, measured as the largest resident sets of solver and driver. B per particle, per triangle, B alone.
 PARTICLE_MEMORY, SOLVER_TRIANGLE_MEMORY, SOLVER_MEMORY = 1.3e3, 3.4e3, 3.5e7  # per rank at most
@@ -38,17 +36,10 @@ SHOWN = {  # column of the table -> heading of the printed one
 
 
 def work_of(study: Study) -> tuple[Work, ...]:
-    """Return the jobs of a study that call the solver: its packings where it has any, then beds, then runs."""
+    """Return the jobs of a study that call the solver: what its case has besides, then beds, then runs."""
     bed_of = {run.name: bed for run in study.runs if (bed := study.bed_of(run.name))}
     work = study.case.work(study.runs, study.beds, bed_of, study.settings["solver"]["ranks"])
-    if not varies_scale(study):
-        return work
-    from workflows.cases.sliding_sample.particle_size.packings import packed_runs
-    from workflows.cases.sliding_sample.particle_size.work import (
-        packing_work,  # slow to import, and few studies have packings
-    )
-
-    return packing_work(packed_runs(study), to_si(study.settings)["packing"]), *work
+    return *study.case.further_work(study), *work
 
 
 def forecast_table(work: Sequence[Work], rates: Rates) -> pd.DataFrame:

@@ -1,6 +1,6 @@
 """Assemble a study's page: one HTML file that needs nothing else, read from what the study's jobs left.
 
-`study` is `figures.page_parameters`, `folder` is results/<study>. Numbers come from the tables beside the
+`study` is `page_parameters.page_parameters`, `folder` is results/<study>. Numbers come from the tables beside the
 figures."""
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import importlib.metadata
 import json
 import os
 import platform
-import re
 import subprocess
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
@@ -23,16 +22,14 @@ from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from postproc.tables.summary import read_summary
 from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs, outside_solver_share
-from workflows.report.figures import INTERACTIVE, REPORT_FOLDER, TEMPLATE, figure_file
-from workflows.report.pages import key_numbers_of, page_of
+from workflows.report.page_parameters import REPORT_FOLDER
+from workflows.report.pages import page_of
+from workflows.report.sections import DIGITS, Block, Table, with_all_figures
 from workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-TABLE_OF = {"worn_surface_3d": "worn_surface", "worn_disc": "unrolled_track"}  # figures that share another's table
-DETAILED = ("worn_surface_3d", "bed", "worn_film")  # figures that show a few design rows only
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
 FORECAST = "forecast.csv"
-FURTHER_COSTS = {"packing_profiles": "packings/solver_cost.csv"}  # job that calls the solver, besides beds and runs
 PACKAGES = (
     "numpy",
     "scipy",
@@ -51,7 +48,7 @@ def write_page(path: Path, study: Mapping[str, Any]) -> None:
     """Write the page of a study beside its tables. Raises FileNotFoundError or ValueError when one is
     missing.
     """
-    text = environment().get_template(TEMPLATE).render(page_context(study, path.parent))
+    text = environment().get_template("study.html.j2").render(page_context(study, path.parent))
     part = path.with_suffix(".html.part")
     part.write_text(text, encoding="utf-8")
     os.replace(part, path)
@@ -66,28 +63,25 @@ def environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters["number"] = number
+    found.filters |= {"number": number, "kind": kind, "cells": cells}
     return found
 
 
 def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return everything that the template shows."""
     summary, page = read_summary(folder / "summary.csv"), page_of(study["case"])
-    jobs, key_numbers = jobs_of(study, folder), key_numbers_of(study["case"]).key_numbers(study, folder, summary)
-    results = key_numbers["results"]
+    jobs = jobs_of(study, folder)
+    sections = with_all_figures(page.sections(study, folder), list(study["figures"]))
+    names = [name for section in sections for block in section.blocks for name in getattr(block, "names", ())]
     return {
-        **key_numbers,
-        "key_numbers": page.KEY_NUMBERS,
         "study": study,
         "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
-        "results": results.to_dict("records"),
+        "sections": sections,
+        "figures": {name: figure(study, name, names.index(name) + 1, folder) for name in names},
         "run_columns": run_columns(study),
-        "detailed": DETAILED,
-        "results_csv": data_uri(results.to_csv(index=False).encode(), "text/csv"),
         "runs_note": page.RUNS_NOTE,
         "settings": setting_rows(study["settings"], study["paper_settings"]),
         "runs": run_rows(study),
-        "figures": [figure(name, index, folder) for index, name in enumerate(study["figures"], start=1)],
         "simplified": simplifications(study, summary, page),
         "versions": versions(study, folder),
         "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
@@ -104,37 +98,44 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 # ---------------------------------------------------------------- results
 
 
-def figure(name: str, index: int, folder: Path) -> dict[str, Any]:
+def kind(block: Block) -> str:
+    """Return the name of a block's class, by which the template tells them apart."""
+    return type(block).__name__.lower()
+
+
+def cells(table: Table) -> dict[str, Any]:
+    """Return heads and cells of a table as text: numbers with few digits, aligned to the right."""
+    columns = []
+    for name in table.data:
+        title, unit = table.heads.get(name, name_and_unit(str(name)))
+        numeric = pd.api.types.is_numeric_dtype(table.data[name]) and not pd.api.types.is_bool_dtype(table.data[name])
+        values = [number(value, table.digits.get(name, DIGITS)) for value in table.data[name].tolist()]
+        shown = values if numeric else ["" if pd.isna(value) else number(value) for value in table.data[name].tolist()]
+        columns.append({"title": title, "unit": unit, "numeric": numeric, "cells": shown})
+    return {
+        "columns": columns,
+        "rows": list(zip(*(column["cells"] for column in columns), strict=True)),
+        "csv": data_uri(table.data.to_csv(index=False).encode(), "text/csv"),
+    }
+
+
+def figure(study: Mapping[str, Any], name: str, index: int, folder: Path) -> dict[str, Any]:
     """Return one figure of the page: number, title, caption paragraphs, picture or page, its table."""
-    title, paragraphs = caption(name)
-    file = folder / "figures" / figure_file(name)
-    table = folder / "figures" / f"{TABLE_OF.get(name, name)}.csv"
-    interactive = name in INTERACTIVE
+    told = study["figures"][name]
+    file, table = folder / "figures" / told["file"], folder / "figures" / f"{name}.csv"
+    interactive = file.suffix == ".html"
     embedded = table.stat().st_size <= LARGEST_EMBEDDED_BYTES
     return {
         "name": name,
         "number": index,
-        "title": title,
-        "caption": paragraphs,
+        "title": told["title"],
+        "caption": told["caption"],
         "page": file.read_text(encoding="utf-8") if interactive else None,
         "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
         "table_name": table.name,
         "table": data_uri(table.read_bytes(), "text/csv") if embedded else f"figures/{table.name}",
         "embedded": embedded,
     }
-
-
-def caption(name: str, folder: Path = REPORT_FOLDER) -> tuple[str, list[str]]:
-    """Return (title, paragraphs) of a figure's caption file: an underlined title, then plain paragraphs.
-
-    Raises ValueError when the title is not underlined.
-    """
-    path = folder / f"{name}.rst"
-    title, underline, *rest = path.read_text(encoding="utf-8").split("\n")
-    if set(underline) != {"-"}:
-        raise ValueError(f"{path}: line 2 must underline the title with '-', found {underline!r}.")
-    blocks = re.split(r"\n\s*\n", "\n".join(rest).strip())
-    return title, [" ".join(block.split()) for block in blocks]
 
 
 # ---------------------------------------------------------------- setting
@@ -167,7 +168,7 @@ def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
     files = [folder / "logs" / f"{job}{BENCHMARK_SUFFIX}" for job in study["jobs"]]
     costs = {f"worn_run_{run}": folder / run / "cost.csv" for run in study["runs"]}
     costs |= {f"settled_bed_{bed}": folder / "beds" / bed / "cost.csv" for bed in study["beds"]}
-    costs |= {job: folder / path for job, path in FURTHER_COSTS.items() if job in study["jobs"]}
+    costs |= {job: folder / path for job, path in study["told"].get("costs", {}).items()}
     tables = {job: pd.read_csv(path) for job, path in costs.items() if path.is_file()}
     jobs = job_costs(benchmark_seconds([path for path in files if path.is_file()]), tables)
     return against_forecast(jobs, pd.read_csv(folder / FORECAST))

@@ -1,4 +1,4 @@
-"""Where a case tells what its page says: its modules `page` and `key_numbers`."""
+"""Where a case tells what its page says: its module `page`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,3 @@ from workflows.engine.case import CASES_PACKAGE
 def page_of(case: str) -> ModuleType:
     """Return the module of a case's page."""
     return importlib.import_module(f"{CASES_PACKAGE}.{case}.page")
-
-
-def key_numbers_of(case: str) -> ModuleType:
-    """Return the module of a case's key numbers."""
-    return importlib.import_module(f"{CASES_PACKAGE}.{case}.key_numbers")

@@ -11,6 +11,7 @@ import pandas as pd
 from workflows.config.layers import ConfigError
 from workflows.config.run_checks import Check, CheckedRun, Fault
 from workflows.engine import bulk_tests
+from workflows.engine.bulk_simulations import simulation_bytes
 from workflows.engine.case import Case, Parameters, Run, register
 from workflows.engine.sections import particle_section, wall_section
 from workflows.engine.work import Work
@@ -91,6 +92,7 @@ class Calibration(Case):
     """
 
     name = "calibration"
+    figure_modules = ()
     material_keys = (
         ("bulk", "material", "particles"),
         ("shear_box", "wall_material", "walls"),
@@ -143,7 +145,7 @@ class Calibration(Case):
             "box_sizes": found.sizes_stages([run.parameters for run in runs]),
         }
         return tuple(
-            Work(rule, (), stages, parallel=parallel, disk_bytes=found.simulation_bytes(stages))
+            Work(rule, (), stages, parallel=parallel, disk_bytes=simulation_bytes(stages))
             for rule, stages in jobs.items()
         )
 

@@ -14,12 +14,12 @@ from postproc.wear.caps import GRAVITY
 from workflows.cases.calibration.driver import SHEAR_BOX, test_of
 from workflows.engine import bulk_tests
 from workflows.engine import decks as deck
+from workflows.engine.bulk_simulations import POURED, filled_particles
 from workflows.engine.case import Parameters
-from workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
+from workflows.engine.work import Stage
 
 FILLING_FREE_FALLS = 1.3  # -, until the poured box rests, in free falls through its filling; measured 1.2 to 1.4
 FLOWING_FREE_FALLS = 11.8  # -, until the heap rests, in free falls of the box's height; measured 9.3 to 14.7
-POURED = 1.04  # -, poured particles over those that fill the box, as counted
 SLOT_FLOW = 0.73  # -, of the flow from a slot, (D - k d)^1.5 sqrt(g); gives the 5.6 s that the slot was chosen for
 OUTFLOW_SHARE = 0.75  # -, of the content that a draw-down test's slot lets out: two slopes of some 30 degrees stay
 STAYING = {SHEAR_BOX: 0.54, "draw_down": 1.0}  # -, particles that the solver has while it flows, mean over those filled
@@ -37,14 +37,6 @@ def stages_of(test: Mapping[str, Any], number: int) -> tuple[Stage, ...]:
         Stage(number, number * deck.steps(filling, step), POURED * particles, triangles),
         Stage(0, number * deck.steps(flowing, step), left, triangles, moving=True),
     )
-
-
-def filled_particles(test: Mapping[str, Any]) -> float:
-    """Return about how many particles fill the box of a test."""
-    particle, box = test["particle"], test["box"]
-    solid = box["length_m"] * box["width_m"] * box["fill_height_m"] * particle["bulk_solid_fraction"]
-    pairs = zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
-    return solid * math.fsum(fraction / (math.pi / 6.0 * diameter**3) for fraction, diameter in pairs)
 
 
 def discharge_time(test: Mapping[str, Any]) -> float:
@@ -69,8 +61,3 @@ def sizes_stages(runs: Sequence[Parameters]) -> tuple[Stage, ...]:
     """Return the stages of the shear boxes of all sizes with all their packings."""
     found = (stages_of(test_of(run, SHEAR_BOX, {}, 0), run["calibration"]["repeats"]) for run in runs)
     return tuple(stage for stages in found for stage in stages)
-
-
-def simulation_bytes(stages: tuple[Stage, ...]) -> float:
-    """Return what simulations leave on disk: two dumps of all particles and the log each."""
-    return sum(stage.decks * (2.0 * PICTURE_PARTICLE * stage.particles + CYCLE_BYTES) for stage in stages)

@@ -48,6 +48,8 @@ class CircularTester(Case):
     checks = TESTER_CHECKS
     run_templates = ("tester_run_in", "circular_tester")
     bed_template = "tester_bed"
+    figure_modules = ()
+    shared_figures = ("worn_surface", "wear_updates")
     geometry = ("sample", "pattern")
     length = (("sliding", "revolutions"), ("sliding", "cycles"), ("derived", "travel_steps"))
     first_title = "run-in"

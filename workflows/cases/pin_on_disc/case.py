@@ -46,6 +46,8 @@ class PinOnDisc(Case):
     material_keys = (("pin", "material", "pins"), ("disc", "material", "walls"))
     checks = PIN_CHECKS
     run_templates = ("pin_set_down", "pin_on_disc")
+    figure_modules = ()
+    run_rules = ("surface_mesh", "worn_run", "track_tables")
     geometry = ("disc",)
     first_title = "setting the pin down"
     leftovers = (SETUP_LOADS, FORCE_WINDOWS)

@@ -13,7 +13,9 @@ from postproc.readers.cycle_folders import FLOW_TABLE, SPIN_TABLE
 from postproc.readers.solver_log import exchanges, thermo_rows, thermo_table
 from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows.cases.sliding_sample import work as sliding_work
+from workflows.cases.sliding_sample.study import varies_scale
 from workflows.config.run_checks import SLIDING_CHECKS
+from workflows.config.units import to_si
 from workflows.engine import decks as deck
 from workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Run, register
 from workflows.engine.derived import (
@@ -30,7 +32,7 @@ from workflows.engine.pieces import piece_ends
 from workflows.engine.schedule import Span
 from workflows.engine.sections import particle_section, solver_section, wall_section, wear_section
 from workflows.engine.solver import LOG
-from workflows.engine.work import Stage
+from workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,6 +53,7 @@ class SlidingSample(Case):
     checks = SLIDING_CHECKS
     run_templates = ("lowered_bed", "sliding_sample")
     bed_template = "settled_bed"
+    shared_figures = ("worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")
     first_title = "lowering and run-in"
@@ -116,6 +119,13 @@ class SlidingSample(Case):
         if span is None:
             return deck.render("lowered_bed", deck.lowered_bed(parameters, bed, restart))
         return deck.render("sliding_sample", deck.sliding_sample(parameters, bed, span, restart))
+
+    def further_work(self, study: Any) -> tuple[Work, ...]:
+        """Return the containers in which the particles of a study of particle size are packed."""
+        from workflows.cases.sliding_sample.particle_size.packings import packed_runs
+        from workflows.cases.sliding_sample.particle_size.work import packing_work
+
+        return (packing_work(packed_runs(study), to_si(study.settings)["packing"]),) if varies_scale(study) else ()
 
     def bed_stages(self, parameters: Parameters, bed: Parameters) -> tuple[Stage, ...]:
         """Return settling and, levelled, relaxing."""

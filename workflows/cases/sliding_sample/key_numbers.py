@@ -10,39 +10,62 @@ import pandas as pd
 
 from postproc.tables.depths import depth_summary
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import read_history, rows_to_show
+from postproc.tables.summary import read_history, read_summary
 from workflows.cases.sliding_sample.comparison import cycle_ratios
-from workflows.cases.sliding_sample.page import ROWS_IN_DETAIL, SIZE_TABLES
 from workflows.cases.sliding_sample.replicates import relative_wear_intervals
 from workflows.cases.sliding_sample.screening.findings import UNSURE
+from workflows.report.sections import Block, Cards, Table, Text
 from workflows.report.text import data_uri, number
 
+SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/
 TEXTS = ("model", "given", "not_in_model", "warning")  # columns of words, which may be empty
 REGRESSION_TABLES = ("models", "best_designs", "warnings")
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 
 
-def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -> dict[str, Any]:
-    """Return what the template KEY_NUMBERS shows, `results` (a table for download), and the rows shown in detail."""
+def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
+    """Return the cards that answer a study's question, and the numbers of every run."""
+    summary = read_summary(folder / "summary.csv")
     history = read_history(folder / "figures" / "wear_against_travel.csv")
     depths = depth_summary(
         pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=["run", "depth_um", "area_mm2"])
     )
-    acceleration = study["settings"]["wear"]["acceleration"]
+    settings = study["settings"]
+    acceleration = settings["wear"]["acceleration"]
     results = result_table(summary, depths, history, acceleration)
-    results = results.merge(relative_wear_intervals(summary, study["replicates"]), on="run", how="left")
-    return {
-        "results": results,
-        "repeated": bool(results["interval_low"].notna().any()),
-        "compared": len(study["design_rows"]) > 1,
-        "accelerated": acceleration != 1.0,
-        "deformed": bool(study["settings"]["wear"]["deform"]),
-        "cards": cards(results, acceleration),
-        "rows_in_detail": rows_to_show(summary, ROWS_IN_DETAIL),
-        "regression": regression(folder) | {"factors": list(study["factors"])} if study["factors"] else None,
-        "findings": findings(folder / "findings") if study["findings"] else None,
-        "sizes": sizes(folder / "particle_size") if study["varies_scale"] else None,
-    }
+    results = results.merge(relative_wear_intervals(summary, study["told"]["replicates"]), on="run", how="left")
+    return [
+        *([Cards(found)] if (found := cards(results, acceleration)) else []),
+        Table(results.dropna(axis="columns", how="all").drop(columns=["row", "surface"]), "key_numbers"),
+        Text(note(settings, len(study["design_rows"]) > 1, bool(results["interval_low"].notna().any()))),
+    ]
+
+
+def note(settings: Mapping[str, Any], compared: bool, repeated: bool) -> str:
+    """Return what must be said of the key numbers; whether there are several rows, and rows with other packings."""
+    acceleration = settings["wear"]["acceleration"]
+    said = ["Wear by the study's law on the sample, without the skirt."]
+    if acceleration != 1.0:
+        said.append(
+            "Per metre: of simulated travel, with the accelerated coefficient; real: the same over the acceleration of "
+            f"{acceleration:g}."
+        )
+    said.append(
+        "Mean normal force: contact forces square to the faces, added up over the sample. Lowest and highest ratio: of "
+        "a single wear cycle, no confidence interval."
+    )
+    if repeated:
+        said.append(
+            "Interval: 95 % of the mean over rows that differ in their packing alone, from one scatter for all rows."
+        )
+    elif compared:
+        said.append(
+            "No row is repeated with another packing, so how far these ratios scatter from packing to packing is not "
+            "known."
+        )
+    if settings["wear"]["deform"]:
+        said.append("Carried share: worn by the law, not applied to the shape yet, see What is simplified.")
+    return " ".join(said)
 
 
 def regression(folder: Path) -> dict[str, Any]:
@@ -105,8 +128,8 @@ def result_table(
     return in_display_units(table).merge(ranges, on=["row", "surface"], how="left").merge(depths, on="run", how="left")
 
 
-def cards(results: pd.DataFrame, acceleration: float) -> list[dict[str, str]]:
-    """Return the few numbers that answer the question, lowest relative wear first; none without a plain twin."""
+def cards(results: pd.DataFrame, acceleration: float) -> list[tuple[str, str]]:
+    """Return (number, what it is) of the few that answer the question, lowest wear first; none without a plain twin."""
     convex = results[(results["surface"] != "plain") & results["wear_over_plain"].notna()]
     if convex.empty:
         return []
@@ -127,4 +150,4 @@ def cards(results: pd.DataFrame, acceleration: float) -> list[dict[str, str]]:
         found.append((f"{(ratio < 1.0).sum()} of {len(convex)}", f"patterns wear less than their plain twin{little}"))
     else:
         found.append((f"{best['bump_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
-    return [{"value": value, "label": label} for value, label in found]
+    return found

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from postproc.reference.size_ratios import LARGEST_RATIO
+from workflows.cases.sliding_sample.key_numbers import key_numbers
+from workflows.cases.sliding_sample.study import replicate_settings
 from workflows.config.design import PARTICLE_SCALE
 from workflows.engine.derived import PERIODIC, WINDOW
+from workflows.report.sections import Pictures, Section
 from workflows.report.text import range_text
 
 if TYPE_CHECKING:
     from workflows.config.design import Study
 
-KEY_NUMBERS = "key_numbers_sliding_sample.html.j2"
-FURTHER_TEMPLATES = ("findings.html.j2", "particle_size.html.j2")  # that it includes
 RUNS_NOTE = (
     "Layers: thickness of the bed over the median diameter of the (scaled) particles. Equivalent size ratio: particle "
     "over bump (Yan 2022, Eq 4.18). Particles: estimate from mass; the solver's number is under Cost."
@@ -25,7 +27,6 @@ DECKS = (  # {bed} and {run} are those of the first run
     ("First wear cycle", "{run}/cycle_001/deck.in"),
 )
 SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/, of a study of particle size
-ROWS_IN_DETAIL = 1  # design rows that the interactive page and the bed show, lowest relative wear first
 TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
 ALONG = {  # bed.ends -> what it makes of the packing along the travel
     PERIODIC: " and along it, so that it passes the sample again and again",
@@ -39,6 +40,18 @@ REDUCED = (
     ("bed", "ahead_mm", "bed ahead of the sample"),
     ("sliding", "run_in_mm", "run-in"),
 )  # settings whose reduction every figure tells
+
+
+def told(study: Study) -> dict[str, Any]:
+    """Return what the page is told besides what every page is."""
+    return {"replicates": replicate_settings(study)}
+
+
+def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the sections of a study's page: its key numbers, then those of screenings and of particle size."""
+    return [
+        Section("Key numbers", [*key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]),
+    ]
 
 
 def remarks(study: Study) -> list[str]:

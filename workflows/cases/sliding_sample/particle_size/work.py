@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from postproc.wear.caps import GRAVITY
-from workflows.cases.calibration.work import POURED, filled_particles, simulation_bytes
 from workflows.cases.sliding_sample.particle_size.packings import by_scale, container
 from workflows.engine import bulk_tests
 from workflows.engine import decks as deck
+from workflows.engine.bulk_simulations import POURED, filled_particles, simulation_bytes
 from workflows.engine.case import Parameters
 from workflows.engine.work import EMPTY_DIAMETERS, Stage, Work
 

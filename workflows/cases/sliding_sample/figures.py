@@ -1,0 +1,206 @@
+"""Figures of every study of sliding samples; those of screenings and of particle size have folders of their own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from workflows.cases.sliding_sample.study import published_rows
+from workflows.report.page_parameters import is_deformed
+from workflows.report.products import Job, every_run, figure
+
+DESIGN, SUMMARY = "results/{study}/design.csv", "results/{study}/summary.csv"
+SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
+
+
+@figure(
+    "Wear",
+    "Wear against travel",
+    inputs={"design": DESIGN, "wear": WEAR},
+    caption="""
+    Cumulative wear volume of the sample, without skirt. Full line: worn by the law from the loads. Dashed line:
+    what the surface has lost by then; the difference is carried to later cycles because a cycle may move a node
+    only so far. A rigid study applies nothing and has no dashed line. One point per wear cycle; the run-in is not
+    counted.
+    """,
+)
+def wear_against_travel(job: Job) -> Any:
+    """Draw cumulative wear against travel."""
+    from postproc.plots import curves
+    from postproc.tables.history import wear_history
+
+    history = wear_history(job.files.design, job.files.wear)
+    return curves.wear_against_travel(history, job.remarks), history
+
+
+@figure(
+    "Wear",
+    "Wear of base and pattern",
+    inputs={"summary": SUMMARY},
+    caption="""
+    Worn volume on the flat base and on the pattern, over the volume of the plain sample of the same design row. The
+    plain sample is 1 by definition (dashed line).
+    """,
+)
+def wear_split(job: Job) -> Any:
+    """Draw the wear of base and pattern."""
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample import comparison
+    from workflows.cases.sliding_sample.plots import bars
+
+    split = comparison.wear_split(read_summary(job.files.summary))
+    return bars.wear_split(split, job.remarks), split
+
+
+@figure(
+    "Wear",
+    "Distribution of depth",
+    inputs={"design": DESIGN, "depths": "results/{study}/figures/worn_surface.csv"},
+    told={"deformed": is_deformed},
+    caption="""
+    Share of the sample's area, its pattern included, that is worn deeper than the depth on the logarithmic axis.
+    Where the curve starts below 100 %, the rest of the area is hardly worn or not at all; a long tail to the right
+    means deep wear in few places. The axis ends where 99.9 % of every sample's area is worn less, and spans three
+    decades.
+    """,
+)
+def depth_distribution(job: Job) -> Any:
+    """Draw the distribution of depth over the area."""
+    import pandas as pd
+
+    from postproc.plots import curves
+    from postproc.tables import depths
+    from postproc.tables.history import runs_of
+
+    shares = depths.depth_distribution(pd.read_csv(job.files.depths, usecols=["run", "depth_um", "area_mm2"]))
+    table = runs_of(job.files.design).merge(shares, on="run")
+    return curves.depth_distribution(table, depths.depth_quantity(job.told.deformed), job.remarks), table
+
+
+@figure(
+    "Bed",
+    "Bed over the sample",
+    inputs={"summary": SUMMARY, "surfaces": SURFACES},
+    digits=6,
+    caption="""
+    Particles at the end of the last wear cycle, cut along the travel through the middle of the sample; the half
+    towards the viewer is not drawn. Colour: speed relative to the sample. Particles are drawn at their simulated,
+    coarse-grained size. In studies of several design rows the row with the lowest relative wear is shown.
+    """,
+)
+def bed(job: Job) -> Any:
+    """Draw the bed over the samples of the row that is shown in detail."""
+    from postproc.flow.bed import shown_particles
+    from postproc.plots import pictures
+    from postproc.tables.depths import read_worn_surfaces
+    from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
+
+    summary = read_summary(job.files.summary)
+    shown = runs_of_rows(summary, rows_to_show(summary))
+    files = dict(zip(summary["run"], job.files.surfaces, strict=True))
+    meshes = read_worn_surfaces(shown, [files[run] for run in shown])
+    cuts = {run: shown_particles(Path(files[run]).parent, meshes[run]) for run in shown}
+    return pictures.bed(cuts, meshes, job.remarks), pictures.bed_table(cuts)
+
+
+VIEWS = {
+    "inputs": {
+        "summary": SUMMARY,
+        "surfaces": SURFACES,
+        "regimes": lambda study: [f"results/{study.name}/flow/regimes.csv"] if study.finds_regimes else [],
+    },
+    "told": {"published_rows": published_rows},
+    "digits": 6,
+    "caption": """
+    Particles at the end of the last wear cycle, coloured by angular speed. Side view: one layer of particles along
+    the travel through the middle of the sample. Bottom view: the particles next to the floor, seen from below, with
+    the edge of the sample and the feet of its pattern. Cross-section: one layer across the travel through the
+    middle. The bed moves to the right, so the sample goes to the left through it; in a discontinuous flow particles
+    ride along and heap up before it, on the left, in a continuous one they pass and heap up over its back. The
+    counterpart of Yan 2022, Fig 3.11, 3.17 and 3.18. Particles are drawn at their simulated, coarse-grained size.
+    """,
+}
+
+
+@figure("Bed", "Views of the flow", **VIEWS)
+def flow_views(job: Job) -> Any:
+    """Draw the flow over the samples of the row that is shown in detail."""
+    return _views(job, 0)
+
+
+@figure(
+    "Bed",
+    "Views of the flow, second row",
+    when=lambda study: study.finds_regimes and len(study.design_rows) > 1,
+    **VIEWS,
+)
+def flow_views_second(job: Job) -> Any:
+    """Draw the flow over the samples of a second row, of another regime where there is one."""
+    return _views(job, 1)
+
+
+def _views(job: Job, place: int) -> Any:
+    """Draw the flow over the samples of one of the rows that are shown in detail."""
+    from postproc.flow.bed import last_snapshot, read_snapshot
+    from postproc.tables.depths import read_worn_surfaces
+    from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
+    from workflows.cases.sliding_sample import flow_views as views_of
+    from workflows.cases.sliding_sample.plots import flow_views as figures
+    from workflows.cases.sliding_sample.screening.regime_groups import published_rows_in_detail, rows_in_detail
+
+    summary = read_summary(job.files.summary)
+    rows = rows_to_show(summary)
+    if job.files.regimes:
+        preferred = published_rows_in_detail(job.told.published_rows)
+        rows = rows_in_detail(summary, read_summary(job.files.regimes[0]), preferred)
+    shown = runs_of_rows(summary, rows[place : place + 1])
+    files = dict(zip(summary["run"], job.files.surfaces, strict=True))
+    meshes = read_worn_surfaces(shown, [files[run] for run in shown])
+    snapshots = {run: read_snapshot(last_snapshot(Path(files[run]).parent)) for run in shown}
+    views = {run: views_of.flow_views(snapshots[run], meshes[run]) for run in shown}
+    lines = {run: views_of.sample_lines(mesh) for run, mesh in meshes.items()}
+    return figures.flow_views(views, lines, job.remarks), figures.flow_views_table(views)
+
+
+@figure(
+    "Bed",
+    "Forces on the sample",
+    inputs={"design": DESIGN, "wear": WEAR},
+    caption="""
+    Force of the bed on the sample after the run-in: vertical (downwards) and drag (along the motion of the bed).
+    The force includes the skirt. Studies of more than two design rows show mean values, with bars from the 10th to
+    the 90th percentile along the travel.
+    """,
+)
+def forces(job: Job) -> Any:
+    """Draw the forces on the samples: along the travel, or their means where there are many design rows."""
+    from postproc.plots import curves
+    from postproc.tables.history import force_history, force_summary
+    from workflows.cases.sliding_sample.plots import bars
+
+    table, draw = force_history(job.files.design, [Path(path).parent for path in job.files.wear]), curves.forces
+    if table["row"].nunique() > curves.FEW_ROWS:
+        table, draw = force_summary(table), bars.mean_forces
+    return draw(table, job.remarks), table
+
+
+@figure(
+    "Wear laws",
+    "The study's law and the solver's Finnie model",
+    inputs={"summary": SUMMARY},
+    caption="""
+    Wear volume by the study's law (from the load ledger) and by the Finnie model that LIGGGHTS has built in, both
+    with the same coefficient. They are not two estimates of one quantity. Finnie describes cutting by particles
+    that hit at an angle: LIGGGHTS takes the velocity of the particle's centre without its spin, and the model tends
+    to zero for pure sliding. So it stays far below Archard's law where particles slide along a flat sample, and
+    comes closer where they run against a pattern.
+    """,
+)
+def wear_law_comparison(job: Job) -> Any:
+    """Draw the volumes by the study's law and by the solver's Finnie model."""
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.comparison import law_comparison
+    from workflows.cases.sliding_sample.plots import bars
+
+    table = law_comparison(read_summary(job.files.summary))
+    return bars.wear_law_comparison(table, job.remarks), table

@@ -1,0 +1,131 @@
+"""What the figures and the page of a study of sliding samples are told of its configuration."""
+
+from __future__ import annotations
+
+import csv
+import re
+from typing import Any
+
+from workflows.config.design import PARTICLE_SCALE, REPOSITORY, Study
+from workflows.engine.case import Run
+from workflows.engine.derived import flow_measures
+from workflows.report.text import name_and_unit
+
+PUBLISHED_DESIGN = REPOSITORY / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
+CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")  # columns that are no property of the pattern
+PATTERN = (  # columns that make two rows the same
+    "major_radius_mm",
+    "minor_radius_mm",
+    "column_spacing_mm",
+    "height_mm",
+    "velocity_m_per_s",
+    "bed_thickness_mm",
+)
+
+
+def has_findings(study: Study) -> bool:
+    """Return whether a study can be held against the source's findings: it has some of its rows, and their regimes."""
+    return study.case.name == "sliding_sample" and study.finds_regimes and bool(published_rows(study))
+
+
+def regression_table(study: Study, name: str) -> str | list[str]:
+    """Return the path of a table of the study's regression, an empty list without one."""
+    return f"results/{study.name}/regression/{name}.csv" if study.factors else []
+
+
+def varies_scale(study: Study) -> bool:
+    """Return whether a study is one of particle size: the rows of its sliding samples give their particle scale."""
+    return study.case.name == "sliding_sample" and any(PARTICLE_SCALE in row for row in study.design_rows)
+
+
+def published_flow(study: Study) -> str:
+    """Return the table of what the source tells of the flow: of its chapter 4 for particle size, else of chapter 3."""
+    return f"config/published/{'particle_size' if varies_scale(study) else 'screening'}_results.csv"
+
+
+def plain_runs(study: Study) -> dict[str, Run]:
+    """Return the plain runs of a study, by name."""
+    return {run.name: run for run in study.runs if run.surface == "plain"}
+
+
+def factor_labels(study: Study) -> dict[str, str]:
+    """Return {short name: name and unit for an axis} of the factors of a study's regression."""
+    named = {short: name_and_unit(column) for short, column in study.factors.items()}
+    return {short: f"{name.capitalize()} {short} ({unit})" for short, (name, unit) in named.items()}
+
+
+def flow_runs(study: Study) -> dict[str, dict[str, float]]:
+    """Return by run what the bins of its flow need, see `workflows.cases.sliding_sample.flow_history.RunFlow`."""
+    return {run.name: flow_measures(run.parameters) for run in study.runs}
+
+
+def flow_velocities(study: Study) -> dict[str, float]:
+    """Return the velocity of the bed (m/s) by run."""
+    return {run.name: run.parameters["sliding"]["velocity_m_per_s"] for run in study.runs}
+
+
+def passing_beds(study: Study) -> dict[str, dict[str, float]]:
+    """Return by run what the mass that passes its sample depends on, see `evaluation.wear_rate`."""
+    return {run.name: _passing_bed(run.parameters) for run in study.runs}
+
+
+def _passing_bed(parameters: dict[str, Any]) -> dict[str, float]:
+    particle, bed = parameters["particle"], parameters["bed"]
+    return {
+        "velocity": parameters["sliding"]["velocity_m_per_s"],
+        "thickness": bed["thickness_m"],
+        "width": bed["width_m"],
+        "bulk_density": particle["density_kg_per_m3"] * particle["bulk_solid_fraction"],
+    }
+
+
+def published_rows(study: Study) -> dict[str, str]:
+    """Return {row: row of Yan 2022, Table 3.8} of the rows, and settings of replicates, that have its factors."""
+    with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:
+        published = {tuple(float(row[name]) for name in PATTERN): row["row"] for row in csv.DictReader(stream)}
+    levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in study.design_rows}
+    same = {row: published[found] for row, found in levels.items() if found in published}
+    settings = replicate_settings(study)
+    return same | {settings[row]: theirs for row, theirs in same.items()}
+
+
+def replicate_settings(study: Study) -> dict[str, str]:
+    """Return {row: name of its setting}; rows that differ in nothing but their seed have the same.
+
+    The name is R5 of R5-1 and R5-2, or that of the first of them where they are named otherwise.
+    """
+    groups: dict[tuple, list[str]] = {}
+    for row in study.design_rows:
+        key = tuple(sorted((name, value) for name, value in row.items() if name not in ("row", "seed")))
+        groups.setdefault(key, []).append(str(row["row"]))
+    stems = [{re.sub(r"-\d+$", "", row) for row in rows} for rows in groups.values()]
+    names = [
+        stem.copy().pop() if len(rows) > 1 and len(stem) == 1 and stems.count(stem) == 1 else rows[0]
+        for stem, rows in zip(stems, groups.values(), strict=True)
+    ]
+    return {row: name for name, rows in zip(names, groups.values(), strict=True) for row in rows}
+
+
+def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
+    """Return by row pattern, real particles and scale of its convex run, see `guidance`."""
+    return {run.row: _bumps_and_particles(run.parameters) for run in study.runs if run.parameters["pattern"]}
+
+
+def _bumps_and_particles(parameters: dict[str, Any]) -> dict[str, Any]:
+    pattern, particle = parameters["pattern"], parameters["particle"]
+    lengths = ("major_radius", "minor_radius", "height", "column_spacing", "row_spacing")
+    return {
+        "pattern": {name: pattern[f"{name}_m"] for name in lengths}
+        | {"across": pattern["major_axis"] == "across_travel"},
+        "particles": {
+            "median_diameter": particle["median_diameter_m"] / particle["scale"],
+            "diameters": [diameter / particle["scale"] for diameter in particle["diameters_m"]],
+            "mass_fractions": particle["mass_fractions"],
+        },
+        "scale": particle["scale"],
+    }
+
+
+def equivalent_size_ratios(study: Study) -> dict[str, float | None]:
+    """Return alpha_ER by run; None for a plain one."""
+    return {run.name: run.parameters["derived"]["equivalent_size_ratio"] for run in study.runs}

@@ -1,0 +1,62 @@
+"""What the page of a study is told of its configuration, JSON-able."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from workflows.config.design import Study
+from workflows.report.pages import page_of
+from workflows.report.products import Product, figures_of, products_of_study
+from workflows.report.remarks import figure_remarks
+
+REPORT_FOLDER = Path(__file__).resolve().parent
+TEMPLATES = ("study.html.j2", "style.html.j2", "sections.html.j2")
+
+
+def page_templates(study: Study) -> list[str]:
+    """Return the paths of the templates of a study's page."""
+    return [str(REPORT_FOLDER / name) for name in TEMPLATES]
+
+
+def is_deformed(study: Study) -> bool:
+    """Return whether wear is applied to the surfaces of a study, which then lose thickness."""
+    return bool(study.settings["wear"]["deform"])
+
+
+def job_names(study: Study) -> list[str]:
+    """Return the names of all jobs behind a study's page, as their benchmark files are named."""
+    return [
+        "design_table",
+        "summary",
+        *(f"settled_bed_{bed}" for bed in study.beds),
+        *(f"{rule}_{run.name}" for run in study.runs for rule in study.case.run_rules),
+        *(product.rule for product in products_of_study(study).values()),
+        *(job.name for job in study.case.further_work(study)),
+    ]
+
+
+def page_parameters(study: Study) -> dict[str, Any]:
+    """Return everything that a study's page says about its configuration; `told`: what its case adds."""
+    return {
+        "name": study.name,
+        "case": study.case.name,
+        "title": study.title,
+        "question": study.question,
+        "fidelity": study.fidelity,
+        "settings": study.settings,
+        "paper_settings": study.paper_settings,
+        "design_rows": list(study.design_rows),
+        "remarks": figure_remarks(study),
+        "figures": {product.name: _figure_words(product) for product in figures_of(study)},
+        "told": page_of(study.case.name).told(study),
+        "jobs": job_names(study),
+        "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},
+        "parameters": {run.name: run.parameters for run in study.runs},
+        "beds": list(study.beds),
+        "bed_of": {run.name: study.bed_of(run.name) for run in study.runs},
+    }
+
+
+def _figure_words(product: Product) -> dict[str, Any]:
+    return {"title": product.title, "caption": product.paragraphs, "file": product.file}

@@ -1,0 +1,191 @@
+"""Figures and tables of a study: each is one declaration, and one rule and one script make them all.
+
+A declaration is a decorated function of a module `figures` of a case (`Case.figure_modules`), or of `surfaces` here,
+whose figures any case may show (`Case.shared_figures`). It says what files the function reads, what of the study's
+configuration it is told, and the caption; the function returns the figure and the table beside it. Modules that are
+slow to import are imported inside the function: Snakemake reads all declarations before the first job.
+
+    @figure("Wear", "Wear against travel", inputs={"wear": every_run("wear.csv")}, caption="Volumes over travel.")
+    def wear_against_travel(job):
+        from postproc.plots import curves
+        ...
+        return curves.wear_against_travel(history, job.remarks), history
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+from workflows.engine.case import CASES_PACKAGE, Case
+
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
+SHARED = "workflows.report.surfaces"  # figures that any case may show
+OfStudy = Callable[["Study"], Any]
+Source = str | OfStudy  # a path, in which {study} stands for its name, or what gives one path or several
+
+
+@dataclass(frozen=True)
+class Product:
+    """A figure, or a job of tables alone, of the studies of a case.
+
+    name: of the function, and of the figure's files
+    make: takes a `Job`; a figure's returns (figure, its table) or (figure, its table, {key: further table}), a job of
+        tables returns {key: table}. A figure is one of matplotlib, or a function that writes the file of a given path
+    inputs: {name in `Job.files`: where it comes from}
+    told: {name in `Job.told`: what of the study the function needs to know}; a change of it makes the product again
+    tables: {key: path below results/<study>} of what is written besides the figure and the table of its name
+    when: whether a study has it
+    title, category, caption: of a figure; the caption's paragraphs are apart by an empty line
+    suffix: png, gif of a film, or html of an interactive page
+    digits: significant ones of its tables, or of the tables by key; None: all
+    """
+
+    name: str
+    make: Callable[[Job], Any]
+    inputs: Mapping[str, Source]
+    told: Mapping[str, OfStudy] = field(default_factory=dict)
+    tables: Mapping[str, str] = field(default_factory=dict)
+    when: Callable[[Study], bool] = lambda study: True
+    title: str = ""
+    category: str = ""
+    caption: str = ""
+    suffix: str = "png"
+    digits: int | Mapping[str, int] | None = None
+
+    @property
+    def is_figure(self) -> bool:
+        """Return whether it is a figure."""
+        return bool(self.title)
+
+    @property
+    def rule(self) -> str:
+        """Return the name of its rule."""
+        return f"{'figure' if self.is_figure else 'tables'}_{self.name}"
+
+    @property
+    def file(self) -> str:
+        """Return the file name of a figure."""
+        return f"{self.name}.{self.suffix}"
+
+    @property
+    def paragraphs(self) -> list[str]:
+        """Return the caption's paragraphs."""
+        return [" ".join(block.split()) for block in self.caption.strip().split("\n\n")]
+
+
+@dataclass(frozen=True)
+class Job:
+    """What the function of a product works on.
+
+    files: paths by the names of `Product.inputs`, lists where there are several
+    told: values by the names of `Product.told`
+    remarks: what every figure of the study must say
+    """
+
+    files: SimpleNamespace
+    told: SimpleNamespace
+    remarks: list[str]
+
+
+def figure(category: str, title: str, **declaration: Any) -> Callable[[Callable[[Job], Any]], Callable[[Job], Any]]:
+    """Declare a figure, see `Product`; a decorator."""
+    return _declare(category=category, title=title, **declaration)
+
+
+def tables(**declaration: Any) -> Callable[[Callable[[Job], Any]], Callable[[Job], Any]]:
+    """Declare a job of tables, see `Product`; a decorator."""
+    return _declare(**declaration)
+
+
+def _declare(**declaration: Any) -> Callable[[Callable[[Job], Any]], Callable[[Job], Any]]:
+    def declare(make: Callable[[Job], Any]) -> Callable[[Job], Any]:
+        make.product = Product(name=make.__name__, make=make, **declaration)
+        return make
+
+    return declare
+
+
+def every_run(file: str) -> OfStudy:
+    """Return a source: a file of the folder of every run of a study."""
+    return lambda study: [f"results/{study.name}/{run.name}/{file}" for run in study.runs]
+
+
+def paths_of(source: Source, study: Study) -> str | list[str]:
+    """Return the path, or the paths, of a source for a study."""
+    return source.format(study=study.name) if isinstance(source, str) else source(study)
+
+
+def products_of(case: Case) -> dict[str, Product]:
+    """Return every figure and job of tables of a case by name, in the order in which pages show them."""
+    modules = [f"{CASES_PACKAGE}.{case.name}.{name}" for name in case.figure_modules]
+    found = {name: product for module in modules for name, product in _declared(module).items()}
+    shared = _declared(SHARED)
+    return found | {name: shared[name] for name in case.shared_figures}
+
+
+def _declared(module: str) -> dict[str, Product]:
+    made = vars(importlib.import_module(module)).values()
+    return {each.product.name: each.product for each in made if hasattr(each, "product")}
+
+
+def products_of_study(study: Study) -> dict[str, Product]:
+    """Return those of a case that a study has."""
+    return {name: product for name, product in products_of(study.case).items() if product.when(study)}
+
+
+def figures_of(study: Study) -> list[Product]:
+    """Return a study's figures in the order of its page."""
+    return [product for product in products_of_study(study).values() if product.is_figure]
+
+
+def product_files(study: Study) -> list[str]:
+    """Return the paths of all figures and tables of a study."""
+    return [path for product in products_of_study(study).values() for path in outputs_of(product, study.name).values()]
+
+
+def outputs_of(product: Product, study: str = "{study}") -> dict[str, str]:
+    """Return {key: path} of all that a product's job writes: `figure` and `table` of a figure, and further tables."""
+    results = f"results/{study}"
+    drawn = {"figure": f"{results}/figures/{product.file}", "table": f"{results}/figures/{product.name}.csv"}
+    return (drawn if product.is_figure else {}) | {key: f"{results}/{path}" for key, path in product.tables.items()}
+
+
+def told_to(product: Product, study: Study) -> dict[str, Any]:
+    """Return what of a study's configuration a product's job is told."""
+    return {name: ask(study) for name, ask in product.told.items()}
+
+
+def write_product(product: Product, job: Job, outputs: Mapping[str, str]) -> None:
+    """Make a product and write its files; outputs: {key: path}, see `outputs_of`."""
+    made = product.make(job)
+    if product.is_figure:
+        drawn, table, *further = made
+        _write_figure(drawn, outputs["figure"])
+        made = {"table": table} | (further[0] if further else {})
+    for key, table in made.items():
+        table.to_csv(outputs[key], index=False, float_format=_float_format(product, key))
+
+
+def _float_format(product: Product, key: str) -> str | None:
+    digits = product.digits.get(key) if isinstance(product.digits, Mapping) else product.digits
+    return None if digits is None else f"%.{digits}g"
+
+
+def _write_figure(drawn: Any, path: str) -> None:
+    from postproc.plots.style import save  # slow to import, and Snakemake reads this module first
+
+    if callable(drawn):
+        drawn(path)
+    else:
+        save(drawn, path)
+
+
+def job_of(files: Mapping[str, Any], told: Mapping[str, Any], remarks: Sequence[str]) -> Job:
+    """Return a job from what a rule has."""
+    return Job(SimpleNamespace(**files), SimpleNamespace(**told), list(remarks))

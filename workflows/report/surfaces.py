@@ -1,0 +1,134 @@
+"""Figures of worn surfaces, which any case may show (`Case.shared_figures`)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from workflows.report.page_parameters import is_deformed
+from workflows.report.products import Job, every_run, figure
+
+DESIGN, SUMMARY = "results/{study}/design.csv", "results/{study}/summary.csv"
+SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
+
+
+@figure(
+    "Wear",
+    "Worn surfaces",
+    inputs={"design": DESIGN, "surfaces": SURFACES},
+    told={"deformed": is_deformed},
+    digits=6,
+    caption="""
+    Wear depth on the sample, obliquely and from above; studies of several design rows show views from above without
+    skirt. Depth is the thickness removed along the path of the surface; for a rigid study it is the worn volume of
+    a triangle over its area, which was not applied to the shape. The runs of a design row share one colour scale,
+    which ends at the depth that 99 % of the area of its most worn sample does not exceed; deeper spots take the top
+    colour. With several rows, that depth is the number at each row's name. Grey: the skirt, whose wear is not
+    counted. The bed moves towards +y, up.
+    """,
+)
+def worn_surface(job: Job) -> Any:
+    """Draw the worn surfaces of a study."""
+    from postproc.plots import pictures
+    from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+    from postproc.tables.history import runs_of
+
+    runs, deformed = runs_of(job.files.design), job.told.deformed
+    meshes = read_worn_surfaces(runs["run"], job.files.surfaces)
+    depths = depth_table(meshes, deformed)
+    remarks = [*job.remarks, carried_remark(meshes, deformed)]
+    return pictures.worn_surface(meshes, runs, deformed, depths, depth_quantity(deformed), remarks), depths
+
+
+@figure(
+    "Wear",
+    "Worn surfaces, interactive",
+    inputs={"summary": SUMMARY, "surfaces": SURFACES},
+    told={"deformed": is_deformed},
+    suffix="html",
+    digits=6,
+    caption="""
+    The worn surfaces in three dimensions: drag to turn, scroll to zoom. Heights are true to scale. In studies of
+    several design rows the row with the lowest relative wear is shown. Colours as in the picture, with a scale of
+    their own.
+    """,
+)
+def worn_surface_3d(job: Job) -> Any:
+    """Draw all runs of the row that is shown in detail on a page of their own."""
+    from postproc.plots.page import surfaces_page
+    from postproc.plots.pictures import colour_limits
+    from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+    from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
+
+    summary, deformed = read_summary(job.files.summary), job.told.deformed
+    shown = runs_of_rows(summary, rows_to_show(summary))
+    files = dict(zip(summary["run"], job.files.surfaces, strict=True))
+    meshes = read_worn_surfaces(shown, [files[run] for run in shown])
+    depths = depth_table(meshes, deformed)
+    remarks, limits = [*job.remarks, carried_remark(meshes, deformed)], colour_limits(depths)
+    return lambda path: surfaces_page(path, meshes, deformed, limits, depth_quantity(deformed), remarks), depths
+
+
+@figure(
+    "Wear",
+    "What each wear update did",
+    inputs={"design": DESIGN, "wear": WEAR},
+    told={"angle_bound": lambda study: study.settings["remeshing"]["smallest_angle_deg"]},
+    when=is_deformed,
+    caption="""
+    One point per wear cycle. Volumes: what the update took off the surface (full line) and what is carried on after
+    it (dashed), both of what the wear law takes in the cycle; above 100 % is also what earlier cycles left. Steps:
+    the largest step that the cycle's wear asked of a node, over the cap that the edges of the mesh set (full), and
+    the largest step taken over the largest cap in force (dashed), which the closing gap between particles and
+    sample can set far lower. Where a line reaches 1, wear is carried on. Smallest angle of the mesh after
+    remeshing, with the bound below which faces are remeshed (dotted); the bars are the faces remeshed. Balance:
+    pristine minus present volume, plus carried, against the wear law's volume of all cycles, over that volume; no
+    point where it closes exactly. Studies of more than two design rows show the worst cycle of each run, and all
+    its remeshed faces.
+    """,
+)
+def wear_updates(job: Job) -> Any:
+    """Draw the updates along the travel, or the worst per run where there are many design rows."""
+    from postproc.plots import curves, updates
+    from postproc.tables.updates import update_summary
+    from postproc.tables.updates import wear_updates as table_of
+
+    table, draw = table_of(job.files.design, job.files.wear), updates.wear_updates
+    if table["row"].nunique() > curves.FEW_ROWS:
+        table, draw = update_summary(table), updates.worst_updates
+    return draw(table, job.told.angle_bound, job.remarks), table
+
+
+@figure(
+    "Wear",
+    "The sample wears, a film",
+    # the surfaces of the cycles, whose number may follow from the wear, lie beside these
+    inputs={"summary": SUMMARY, "wear": WEAR, "surfaces": SURFACES, "pristine": every_run("surface.vtu")},
+    when=is_deformed,
+    suffix="gif",
+    caption="""
+    Film of the worn surface without skirt, one picture per wear cycle, evenly thinned to at most 60; it starts with
+    the unworn surface and repeats. Colour: removed thickness, on one scale for all pictures, which ends at the
+    depth that 99 % of the sample's area does not exceed in the end. Below: section along the travel through the
+    bump that loses most, true to scale, with the unworn section dotted. What is left of the bumps is their volume
+    above the mean height of their feet. In studies of several design rows the row with the lowest relative wear is
+    shown.
+    """,
+)
+def worn_film(job: Job) -> Any:
+    """Film how a run of the row that is shown in detail wears, cycle by cycle."""
+    import pandas as pd
+
+    from postproc.plots.film import film_pictures, save_film
+    from postproc.tables.depths import depth_quantity
+    from postproc.tables.film import film_frames, film_run, film_surfaces, frame_table
+    from postproc.tables.summary import read_summary
+
+    summary = read_summary(job.files.summary)
+    run = film_run(summary)
+    wear_file = Path(dict(zip(summary["run"], job.files.wear, strict=True))[run])
+    frames = film_frames(pd.read_csv(wear_file))
+    surfaces = film_surfaces(wear_file.parent, frames)
+    table = frame_table(frames, surfaces)
+    pictures = film_pictures(run, surfaces, table, depth_quantity(True), job.remarks)
+    return lambda path: save_film(pictures, path), table.assign(run=run)
