@@ -240,8 +240,9 @@ void FixLoadLedger::sum_loads() {
       sums_.add(BY_WORK + k, triangle, work * means[k]);
       sums_.add(BY_IMPULSE + k, triangle, impulse * means[k]);
     }
-    for (std::size_t k = 0; k < kernels_.size(); ++k)
-      sums_.add(FIRST_KERNEL + static_cast<int>(k), triangle, kernels_[k].rate(contact) * dt);
+    int column = FIRST_KERNEL;
+    for (const ChosenKernel& chosen : kernels_)
+      sums_.add(column++, triangle, chosen.kernel.rate(contact, chosen.values) * dt);
   }
 }
 

@@ -1,4 +1,4 @@
-// fix ID group load/ledger mesh MESH_ID file FILE [history STEPS] [kernels NAME ...]
+// fix ID group load/ledger mesh MESH_ID file FILE [history STEPS] [kernels NAME [PARAMETER VALUE ...] ...]
 //
 // Sums, per triangle of one mesh and at every time step, what particles do to it: the load ledger. The sums are written
 // to FILE at the end of every run and are part of every restart file; history writes those so far every so many steps to
@@ -82,9 +82,15 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   struct BodyTouch {
     double body, signed_force, energy, triangle, rank;
   };
+  // A kernel that the deck asks for, with the values of its parameters.
+  struct ChosenKernel {
+    Kernel kernel;
+    double values[MOST_PARAMETERS];
+  };
   enum class Phase { set_up, step, between };
 
   void parse(int narg, char** arg);
+  void parse_kernels(int narg, char** arg, int first);
   void find_mesh();
   void check_deck();
   void check_layout();
@@ -112,7 +118,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   void write_file(const std::string& name);
 
   std::string mesh_id_, file_;
-  std::vector<Kernel> kernels_;
+  std::vector<ChosenKernel> kernels_;
   int triangles_ = 0;
   std::int64_t history_ = 0;  // steps between two files of the sums so far, 0 without
 

@@ -1,5 +1,6 @@
 // Contact kernels: what a wear law that is not linear in force and speed needs summed, one function and one line each.
-// Python has the same registry under the same names (postproc/wear/kernels.py), for contacts sampled into dumps.
+// Python has the same registry under the same names (postproc/wear/kernels.py), for contacts sampled into dumps; the
+// program tells its own when it is called with -kernels.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +35,7 @@ inline void cross(const double* a, const double* b, double* result) {
 // Power (W) of Finnie's impact wear (Finnie 1960) as LIGGGHTS evaluates it for `wear finnie`, also at its velocities: a
 // function of the angle between velocity and surface times speed and contact force, and only while the particle
 // approaches. Times its coefficient k (1/Pa) and summed over time it is the worn volume.
-inline double finnie_work(const Contact& contact) {
+inline double finnie_work(const Contact& contact, const double*) {
   const double slowest = 1e-7;       // m/s, the solver's own threshold
   const double one_third = 0.33333;  // the solver's own digits
   const double* velocity = contact.velocity_before;
@@ -49,14 +50,23 @@ inline double finnie_work(const Contact& contact) {
   return 2.0 * angle_function * speed * length(contact.force);
 }
 
+constexpr int MOST_PARAMETERS = 8;
+
 struct Kernel {
-  const char* name;                // in the deck, after `kernels`
-  const char* column;              // in the ledger, with its unit
-  double (*rate)(const Contact&);  // summed over time
+  const char* name;                                          // in the deck, after `kernels`
+  const char* column;                                        // in the ledger, with its unit
+  double (*rate)(const Contact&, const double* parameters);  // summed over time
+  const char* parameters[MOST_PARAMETERS];                   // in the deck after the name, with values; SI
 };
 
 constexpr Kernel KERNELS[] = {
-    {"finnie_work", "finnie_work_J", finnie_work},
+    {"finnie_work", "finnie_work_J", finnie_work, {}},
 };
+
+inline int parameter_count(const Kernel& kernel) {
+  int count = 0;
+  while (count < MOST_PARAMETERS && kernel.parameters[count]) ++count;
+  return count;
+}
 
 }  // namespace load_ledger

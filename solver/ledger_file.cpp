@@ -36,7 +36,7 @@ std::vector<std::string> FixLoadLedger::column_names() const {
   std::vector<std::string> names = {"sliding_work_J",   "normal_impulse_N_s", "rolling_work_J",
                                     "impact_energy_J",  "contact_time_s",     "contact_radius_m",
                                     "contact_weight_1", "contact_weight_2",   "contact_weight_3"};
-  for (const Kernel& kernel : kernels_) names.push_back(kernel.column);
+  for (const ChosenKernel& chosen : kernels_) names.push_back(chosen.kernel.column);
   return names;
 }
 
@@ -97,11 +97,16 @@ void FixLoadLedger::write_file(const std::string& name) {
 
 // ---------------------------------------------------------------- restart
 
-// A stored ledger is taken up by a ledger of the same mesh and kernels; one of another mesh starts empty.
+// A stored ledger is taken up by a ledger of the same mesh and kernels, parameters included; any other starts empty.
 std::string FixLoadLedger::identity() const {
   std::ostringstream text;
+  text.precision(17);
   text << "load_ledger 1 " << mesh_id_ << ' ' << triangles_;
-  for (const Kernel& kernel : kernels_) text << ' ' << kernel.name;
+  for (const ChosenKernel& chosen : kernels_) {
+    text << ' ' << chosen.kernel.name;
+    for (int k = 0; k < parameter_count(chosen.kernel); ++k)
+      text << ' ' << chosen.kernel.parameters[k] << ' ' << chosen.values[k];
+  }
   return text.str();
 }
 

@@ -1,10 +1,12 @@
 // LIGGGHTS with a load ledger: the solver of the shared library, unchanged, plus one fix style (load/ledger).
 // Used like the plain program: liggghts-ledger -in deck.in
+// liggghts-ledger -kernels lists its contact kernels: name, column of the ledger, parameters.
 
 #include <mpi.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <string>
 
@@ -34,6 +36,14 @@ Fix* create_load_ledger(LAMMPS* lammps, int narg, char** arg) {
   return new load_ledger::FixLoadLedger(lammps, narg, arg);
 }
 
+void list_kernels() {
+  for (const load_ledger::Kernel& kernel : load_ledger::KERNELS) {
+    std::printf("%s %s", kernel.name, kernel.column);
+    for (int k = 0; k < load_ledger::parameter_count(kernel); ++k) std::printf(" %s", kernel.parameters[k]);
+    std::printf("\n");
+  }
+}
+
 // As the plain program does: a first signal ends the run after the next step, with a restart file if the deck asks for
 // one.
 void handle_signals() {
@@ -45,6 +55,10 @@ void handle_signals() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 2 && !std::strcmp(argv[1], "-kernels")) {
+    list_kernels();
+    return 0;
+  }
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // or a fatal message would vanish in a pipe
   handle_signals();
   MPI_Init(&argc, &argv);

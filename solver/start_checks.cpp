@@ -41,6 +41,12 @@ std::string kernel_names() {
   return names;
 }
 
+std::string parameter_names(const Kernel& kernel) {
+  std::string names;
+  for (int k = 0; k < parameter_count(kernel); ++k) names += (k ? ", " : "") + std::string(kernel.parameters[k]);
+  return names;
+}
+
 }  // namespace
 
 void FixLoadLedger::parse(int narg, char** arg) {
@@ -58,13 +64,8 @@ void FixLoadLedger::parse(int narg, char** arg) {
         stop("found history '" + std::string(arg[k]) + "', allowed is a whole number of steps from 1.");
       ++k;
     } else if (key == "kernels") {
-      for (; k < narg; ++k) {
-        const Kernel* found = nullptr;
-        for (const Kernel& kernel : KERNELS)
-          if (!std::strcmp(kernel.name, arg[k])) found = &kernel;
-        if (!found) stop("found kernel '" + std::string(arg[k]) + "', allowed are " + kernel_names() + ".");
-        kernels_.push_back(*found);
-      }
+      parse_kernels(narg, arg, k);
+      k = narg;
     } else {
       stop("found '" + key + "', allowed are mesh MESH_ID, file FILE, history STEPS and kernels NAME ...");
     }
@@ -73,6 +74,37 @@ void FixLoadLedger::parse(int narg, char** arg) {
   if (!atom->sphere_flag && !atom->radius_flag) stop("it needs spheres or multispheres.");
   if (atom->superquadric_flag || atom->shapetype_flag)
     stop("found particles that are not spheres; allowed are spheres and multispheres.");
+}
+
+// All words from `first` on: kernels, each followed by all of its parameters with their values, in any order.
+void FixLoadLedger::parse_kernels(int narg, char** arg, int first) {
+  const auto stop = [this](const std::string& sentence) {
+    error->all(FLERR, ("fix load/ledger: " + sentence).c_str());
+  };
+  for (int k = first; k < narg;) {
+    const std::string name = arg[k++];
+    const Kernel* found = nullptr;
+    for (const Kernel& kernel : KERNELS)
+      if (name == kernel.name) found = &kernel;
+    if (!found) stop("found kernel '" + name + "', allowed are " + kernel_names() + ".");
+    const int count = parameter_count(*found);
+    ChosenKernel chosen{*found, {}};
+    std::vector<bool> given(count, false);
+    for (int pair = 0; pair < count; ++pair, k += 2) {
+      int at = 0;
+      while (at < count && (k >= narg || std::strcmp(found->parameters[at], arg[k]))) ++at;
+      if (at == count || given[at] || k + 1 >= narg)
+        stop("found " + (k < narg ? "'" + std::string(arg[k]) + "'" : "nothing") + " after " + std::to_string(pair) +
+             " parameters of the kernel " + name + ", allowed are " + parameter_names(*found) +
+             ", each once and with its value.");
+      char* end = nullptr;
+      chosen.values[at] = std::strtod(arg[k + 1], &end);
+      if (end == arg[k + 1] || *end != '\0' || !std::isfinite(chosen.values[at]))
+        stop("found " + std::string(arg[k]) + " '" + arg[k + 1] + "' of the kernel " + name + ", allowed is a number.");
+      given[at] = true;
+    }
+    kernels_.push_back(chosen);
+  }
 }
 
 void FixLoadLedger::find_mesh() {

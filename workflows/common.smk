@@ -13,7 +13,7 @@ from workflows.config.design import CONFIRMATION, TARGETS, ConfigError, confirma
 from workflows.cases.sliding_sample.study import plain_runs
 from workflows.engine.job import let_jobs_import
 from workflows.forecast.rates import rates_file
-from workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, missing_program
+from workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
 
 min_version("9.0")
 
@@ -63,7 +63,8 @@ onstart:
     # before the first job: a bed takes minutes to fill, and without its solver no run can follow
     for job in workflow.dag.needrun_jobs():
         if job.rule.name == "worn_run":
-            if fault := missing_program(CYCLE_EXECUTABLES[run_parameters(job.wildcards)["ledger"]]):
+            parameters = run_parameters(job.wildcards)
+            if fault := cycle_fault(CYCLE_EXECUTABLES[parameters["ledger"]], parameters):
                 raise WorkflowError(fault)
     for study, jobs in jobs_by_study(workflow.dag.needrun_jobs()).items():
         announce_cost(study, jobs)

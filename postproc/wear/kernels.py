@@ -1,18 +1,18 @@
 """Contact kernels: what a wear law that is not linear in the ledger's sums takes from every contact.
 
 A kernel is one function and one line in `KERNELS`. It returns a value per contact and unit time; the ledger sums it,
-times the time step, over the contacts of every triangle. The solver has kernels of the same names
+times the time step, over the contacts of every triangle. The solver has the same kernels with the same parameters
 (`solver/kernels.h`), so that both producers of a ledger write the same columns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
-
-Kernel = Callable[[SimpleNamespace, SimpleNamespace, np.ndarray], np.ndarray]
 
 SLOWEST = 1e-7  # m/s; the solver's Finnie wear ignores contacts that move slower
 IMPACT_BRANCH = 0.33333  # -, of cos^2: the factor as the solver writes it, not 1/3
@@ -44,11 +44,47 @@ def finnie_work(contacts, motion: SimpleNamespace, face_normal: np.ndarray) -> n
     return np.where(counts, 2.0 * share * speed * force, 0.0)
 
 
-KERNELS: dict[str, Kernel] = {"finnie_work": finnie_work}
+@dataclass(frozen=True)
+class Kernel:
+    """A contact kernel.
+
+    rate: (contacts, motion, normals of their triangles, parameters by name) -> (n,) array per unit time, as
+        `finnie_work`; motion as of `postproc.wear.ledger.contact_kinematics`
+    unit: of the sum over time, as the ledger's column spells it
+    parameters: names of the numbers that `rate` takes, SI, each with its unit; a law that needs the kernel has them too
+    """
+
+    rate: Callable[..., np.ndarray]
+    unit: str = "J"
+    parameters: tuple[str, ...] = ()
+
+
+KERNELS: dict[str, Kernel] = {"finnie_work": Kernel(finnie_work)}
 
 
 def kernel_column(name: str) -> str:
     """Return the ledger column of a kernel, unit included. Raises ValueError for a name that is no kernel."""
+    return f"{name}_{_kernel(name).unit}"
+
+
+def kernel_parameters(name: str) -> tuple[str, ...]:
+    """Return the names of a kernel's parameters. Raises ValueError for a name that is no kernel."""
+    return _kernel(name).parameters
+
+
+def kernel_rate(name: str, parameters: Mapping[str, float]) -> Callable[..., np.ndarray]:
+    """Return a kernel as a function of (contacts, motion, normals of their triangles).
+
+    Raises ValueError for a name that is no kernel and for parameters that are not exactly those of the kernel.
+    """
+    kernel = _kernel(name)
+    if set(parameters) != set(kernel.parameters):
+        found, allowed = (", ".join(names) or "nothing" for names in (parameters, kernel.parameters))
+        raise ValueError(f"parameters of the contact kernel '{name}' are {found}, allowed are: {allowed}")
+    return partial(kernel.rate, **parameters)
+
+
+def _kernel(name: str) -> Kernel:
     if name not in KERNELS:
         raise ValueError(f"contact kernel '{name}' is unknown, allowed are: {', '.join(sorted(KERNELS))}")
-    return f"{name}_J"
+    return KERNELS[name]

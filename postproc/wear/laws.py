@@ -1,8 +1,11 @@
 """Wear laws: worn volume per triangle from the load ledger of one cycle.
 
-A law is one function and one line in `LAWS`, with the contact kernels (kernels.py) whose sums it needs. It takes the
-ledger columns (name -> (m,) array, SI units in the names) and a mapping of parameters (units in the names), and
-returns the worn volume of every triangle.
+A law is one function and one entry in `LAWS`: with its words, its source, the contact kernels (kernels.py) whose sums
+it needs, and its parameters. Settings, their checks, decks, both ledgers, figures and pages follow from that entry. The
+function takes the ledger columns (name -> (m,) array, SI units in the names) and a mapping of parameters (SI, units in
+the names), and returns the worn volume of every triangle. That is proportional to the wear coefficient, which a study
+accelerates, and additive in the columns, which are summed over any number of cycles: whatever is not linear in a
+contact's force and speed belongs into a kernel.
 """
 
 from __future__ import annotations
@@ -12,15 +15,46 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from postproc.wear.kernels import kernel_column
+from postproc.wear.kernels import kernel_column, kernel_parameters
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of a law, besides the wear coefficient, that the configuration gives: `wear.parameters.<name>`.
+
+    name: ends in its unit as every key of the configuration does, without one for a pure number; the law's function and
+        its kernels get it in SI (`length_mm` as `length_m`)
+    meaning: one line
+    lowest, highest: the allowed range, ends included
+    default: None where the configuration must give it
+    """
+
+    name: str
+    meaning: str
+    lowest: float
+    highest: float
+    default: float | None = None
 
 
 @dataclass(frozen=True)
 class Law:
-    """A wear law: its function, and the contact kernels whose sums the ledger must have for it."""
+    """A wear law.
+
+    volume: the function
+    words: what a volume is by this law, with {wear_coefficient_per_pa} and the names of its parameters, in braces,
+        where a page shows their values
+    source: where it was published
+    kernels: names of the contact kernels whose sums the ledger must have
+    parameters: what it takes besides the wear coefficient; a kernel takes its own parameters from these
+    is_solver_measure: whether LIGGGHTS' own `wear finnie` counts the same
+    """
 
     volume: Callable[[Mapping[str, np.ndarray], Mapping[str, float]], np.ndarray]
+    words: str
+    source: str
     kernels: tuple[str, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    is_solver_measure: bool = False
 
 
 def archard(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
@@ -67,12 +101,36 @@ def finnie(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -
     return _proportional(kernel_column("finnie_work"), columns, parameters)
 
 
-LAWS: dict[str, Law] = {"archard": Law(archard), "finnie": Law(finnie, kernels=("finnie_work",))}
+LAWS: dict[str, Law] = {
+    "archard": Law(
+        archard,
+        "volume = coefficient times normal force times sliding path, coefficient {wear_coefficient_per_pa} 1/Pa, the "
+        "same for all particles and places. Rolling and impact are recorded but take no volume.",
+        "J. F. Archard, J. Appl. Phys. 24 (1953) 981",
+    ),
+    "finnie": Law(
+        finnie,
+        "volume = coefficient times a function of the impact angle times force and velocity of the particle's centre, "
+        "coefficient {wear_coefficient_per_pa} 1/Pa, the same for all particles and places.",
+        "I. Finnie, Wear 3 (1960) 87",
+        kernels=("finnie_work",),
+        is_solver_measure=True,
+    ),
+}
+NEUTRAL_LAW = "archard"  # whose volume figures and pages name where they say nothing else
 
 
-def law_kernels(law: str) -> tuple[str, ...]:
-    """Contact kernels that the law of that name needs. Raises ValueError as `worn_volume`."""
-    return _law(law).kernels
+def law_kernels(name: str, parameters: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """Return {contact kernel: {parameter: value}} that the law of that name needs.
+
+    parameters: of the law, SI
+
+    Raises ValueError and KeyError as `worn_volume`.
+    """
+    return {
+        kernel: {key: _required(parameters, key, "wear parameter") for key in kernel_parameters(kernel)}
+        for kernel in law_of(name).kernels
+    }
 
 
 def worn_volume(law: str, columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
@@ -83,10 +141,11 @@ def worn_volume(law: str, columns: Mapping[str, np.ndarray], parameters: Mapping
     ValueError : no law of that name; the message names the allowed ones.
     KeyError : a ledger column or parameter that the law needs is missing.
     """
-    return _law(law).volume(columns, parameters)
+    return law_of(law).volume(columns, parameters)
 
 
-def _law(name: str) -> Law:
+def law_of(name: str) -> Law:
+    """Return the law of that name. Raises ValueError where there is none; the message names the allowed ones."""
     if name not in LAWS:
         raise ValueError(f"wear law '{name}' is unknown, allowed are: {', '.join(sorted(LAWS))}")
     return LAWS[name]

@@ -7,12 +7,12 @@ finished table; others add a sum of their own (kernels.py).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from types import SimpleNamespace
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType, SimpleNamespace
 
 import numpy as np
 
-from postproc.wear.kernels import KERNELS, kernel_column
+from postproc.wear.kernels import kernel_column, kernel_rate
 
 CONTACTS_PER_BATCH = 100_000
 LEDGER_FIELDS = (
@@ -88,7 +88,7 @@ def hertz_elastic_energy(force, radius, effective_modulus):
 
 
 def columns_of_solver(
-    columns: Mapping[str, np.ndarray], corners: np.ndarray, kernels: Sequence[str] = ()
+    columns: Mapping[str, np.ndarray], corners: np.ndarray, kernels: Iterable[str] = ()
 ) -> dict[str, np.ndarray]:
     """Return the ledger that the solver has summed: the columns that `LedgerBuilder.table` returns.
 
@@ -115,11 +115,12 @@ class LedgerBuilder:
     touching: ids of the particles that touch the mesh in the sample before the first one (carry it from the
         previous cycle's builder, so that a lasting contact is no new impact); None: unknown, so nothing in
         the first sample counts as an impact
-    kernels: names of `postproc.wear.kernels.KERNELS` to sum as well, one column each
+    kernels: {name in `postproc.wear.kernels.KERNELS`: {parameter: value}} to sum as well, one column each
     face_normals: (n_triangles, 3) normals of the triangles, needed by kernels only
     wall_angular_velocity: (3,) rad/s, of a mesh that rotates
 
-    Raises ValueError for an unknown kernel and for kernels without normals of every triangle.
+    Raises ValueError for an unknown kernel, for parameters that are not its own, and for kernels without normals of
+    every triangle.
     """
 
     def __init__(
@@ -129,14 +130,14 @@ class LedgerBuilder:
         effective_modulus: float,
         density: float,
         touching=None,
-        kernels: Sequence[str] = (),
+        kernels: Mapping[str, Mapping[str, float]] = MappingProxyType({}),
         face_normals=None,
         wall_angular_velocity=(0.0, 0.0, 0.0),
     ):
         self.n_triangles, self.mesh_index = n_triangles, mesh_index
         self.effective_modulus, self.density = effective_modulus, density
         self.wall_angular_velocity = wall_angular_velocity
-        self._kernels = {kernel_column(name): KERNELS[name] for name in kernels}
+        self._kernels = {kernel_column(name): kernel_rate(name, given) for name, given in kernels.items()}
         self._face_normals = None if face_normals is None else np.asarray(face_normals, np.float64)
         found = None if self._face_normals is None else self._face_normals.shape
         if kernels and found != (n_triangles, 3):

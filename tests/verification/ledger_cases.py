@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from meshes.plate import flat_plate
 from postproc.mesh import SurfaceMesh, write_stl
 from postproc.readers.contacts import read_contact_batches
 from postproc.readers.load_ledger import LoadLedger, read_load_ledger
@@ -152,3 +153,33 @@ def ledger_of_dumps(
     for batch in read_contact_batches(folder / "contacts.dump", folder / "spins.dump", after_step=after_step):
         builder.add_batch(batch, time_step)
     return builder.table()
+
+
+def said_when_refused(folder, solver=None, ledger=LEDGER_LINE, without=()):
+    """Run a small case that must fail; return all that it said. without: beginnings of lines left out of the frame."""
+    write_case(folder, flat_plate(0.004, 0.004, 1e-3), pin(1.3e-4, 0.7e-4), PIN_MOTION, steps=50)
+    (folder / "ledger.in").write_text(ledger + "\n")
+    lines = FRAME.read_text().splitlines(keepends=True)
+    kept = [line for line in lines if not line.startswith(tuple(without))]
+    assert len(kept) == len(lines) - len(without)
+    (folder / FRAME.name).write_text("".join(kept))
+    words = command() if solver is None else command(solver=solver)
+    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, timeout=120)
+    said = (done.stdout + done.stderr).decode("utf-8", "replace")
+    assert done.returncode != 0, said
+    assert not (folder / "load_ledger.bin").exists()
+    return said
+
+
+def build(folder, edit=None, **settings):
+    """Build the solver from a copy of its sources; edit: (file, old, new). Returns the executable."""
+    sources = folder / "solver"
+    shutil.copytree(REPOSITORY / "solver", sources, ignore=shutil.ignore_patterns("build"))
+    if edit is not None:
+        name, old, new = edit
+        text = (sources / name).read_text()
+        assert old in text, f"{name} no longer holds what this test takes out"
+        (sources / name).write_text(text.replace(old, new))
+    words = ["make", "-C", str(sources), "BUILD=build", *(f"{name}={value}" for name, value in settings.items())]
+    subprocess.run(words, check=True, capture_output=True)
+    return sources / "build" / "liggghts-ledger"

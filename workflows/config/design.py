@@ -14,6 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from workflows.config.law_settings import check_law, law_settings
 from workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
 from workflows.config.run_checks import CheckedRun, check_run
 from workflows.config.units import to_si
@@ -153,6 +154,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     sources = _read_sources(confirms or name, root, overrides)
     fidelity = _fidelity(sources)
     layers = sources.stack(fidelity)
+    check_law(layers)
     settings = sources.merged(layers)
     materials = check_materials(read_yaml(_materials_file(settings, root), root))
     check_material_names(layers, settings, materials, sources.case.material_keys)
@@ -251,7 +253,9 @@ class _Sources:
                 for section, key in alternatives:
                     settings.get(section, {}).pop(key, None)
             settings = merge(settings, layer.values)
-        return coerce_numbers(settings, case_schema(self.case.name, "settings"))
+        settings["wear"].pop("parameters", None)
+        of_law = {"wear": {"parameters": found}} if (found := law_settings(layers)) else {}
+        return coerce_numbers(merge(settings, of_law), case_schema(self.case.name, "settings"))
 
 
 def _read_sources(name: str, root: Path, overrides: dict[str, Any] | None) -> _Sources:

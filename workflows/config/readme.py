@@ -9,7 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from postproc.wear.laws import LAWS, Law, Parameter
 from workflows.config.design import REPOSITORY
+from workflows.config.law_settings import parameters_schema
 from workflows.config.layers import dotted
 from workflows.config.validation import allowed_text, leaves, load_schema, schema_file
 from workflows.engine.case import case_names, find_case
@@ -17,7 +19,8 @@ from workflows.engine.case import case_names, find_case
 INTRODUCTION = """\
 # Configuration
 
-Generated from `workflows/schemas` by `python -m workflows.config.readme`; edit the schemas, not this page.
+Generated from `workflows/schemas` and the wear laws (`postproc/wear/laws.py`) by `python -m workflows.config.readme`;
+edit these, not this page.
 
 * `default.yaml`: settings that all cases share.
 * `cases/<case>.yaml`: settings of one case, which stand above those.
@@ -36,6 +39,19 @@ CHECKS = """\
 
 Done before any solver starts:
 
+"""
+
+LAWS_HEAD = """\
+## Wear laws
+
+Values of `wear.law`. `wear.parameters` holds the parameters of the chosen law, in the units that their names spell;
+those of another law are refused.
+
+"""
+LAW_TABLE = """
+
+| key | law | unit | allowed | default | meaning |
+|---|---|---|---|---|---|
 """
 
 TABLES = (
@@ -64,6 +80,26 @@ def table(name: str) -> str:
     return "\n".join(["| key | unit | allowed | meaning |", "|---|---|---|---|", *_rows(load_schema(name))])
 
 
+def wear_laws() -> str:
+    """Return the section about the wear laws and their parameters."""
+    laws = [f"* `{name}`: {_words(law)} Source: {law.source}." for name, law in LAWS.items()]
+    rows = [_parameter_row(name, parameter) for name, law in LAWS.items() for parameter in law.parameters]
+    return LAWS_HEAD + "\n".join(laws) + (LAW_TABLE + "\n".join(rows) if rows else "") + "\n"
+
+
+def _words(law: Law) -> str:
+    names = ("wear_coefficient_per_pa", *(f"parameters.{parameter.name}" for parameter in law.parameters))
+    return law.words.format(**{name.rpartition(".")[2]: f"`wear.{name}`" for name in names})
+
+
+def _parameter_row(law: str, parameter: Parameter) -> str:
+    schema = parameters_schema(law)["properties"][parameter.name]
+    allowed = allowed_text(schema).removesuffix(f" {schema['x-unit']}")
+    default = "required" if parameter.default is None else f"{parameter.default:g}"
+    unit = schema["x-unit"]
+    return f"| `wear.parameters.{parameter.name}` | {law} | {unit} | {allowed} | {default} | {parameter.meaning} |"
+
+
 def sections_of_case(name: str) -> Iterator[str]:
     """Yield the sections about one case."""
     yield f"## Case `{name}`\n\n{(find_case(name).__doc__ or '').splitlines()[0]}\n"
@@ -78,7 +114,7 @@ def readme() -> str:
     """Return the whole page."""
     sections = [f"## {title}\n\nKeys {where}.\n\n{table(name)}\n" for title, name, where in TABLES]
     cases = [section for name in case_names() for section in sections_of_case(name)]
-    return "\n".join([INTRODUCTION, *sections, *cases])
+    return "\n".join([INTRODUCTION, sections[0], wear_laws(), *sections[1:], *cases])
 
 
 def main(root: Path = REPOSITORY) -> None:

@@ -16,6 +16,7 @@ from typing import Any
 
 import jsonschema
 
+from postproc.wear.laws import LAWS
 from workflows.config.layers import (
     INTEGER,
     NUMBER,
@@ -85,6 +86,8 @@ def schema_file(name: str) -> Path:
 def load_schema(name: str) -> dict[str, Any]:
     """Return the schema of that name. Raises jsonschema.SchemaError if it is no schema."""
     schema = read_yaml(schema_file(name), SCHEMA_FOLDER).values
+    if name == "settings":
+        schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
     _Validator.check_schema(schema)
     return schema
 

@@ -44,7 +44,7 @@ from workflows.engine.solver import (
     LOG,
     SCREEN,
     SolverError,
-    missing_program,
+    cycle_fault,
     processor_seconds,
     run_deck,
 )
@@ -77,8 +77,9 @@ def run_chain(chain: Chain) -> None:
         finished = state.finished_cycles(chain.folder, inputs, needed=(RESTART, SURFACE))
         span = span_of(chain, finished) if finished else None
         unfinished = finished == 0 or span is not None
-        if unfinished and (missing := missing_program(cycle_executable(chain, first_span(chain.parameters)))):
-            raise SolverError(missing)  # before the run-in, which needs the plain solver only
+        program = cycle_executable(chain, first_span(chain.parameters))
+        if unfinished and (fault := cycle_fault(program, chain.parameters)):
+            raise SolverError(fault)  # before the run-in, which needs the plain solver only
         progress = Progress(chain.name, total_steps(chain), steps_before(chain, span))
         if finished and unfinished:
             announce(f"resumes after {title(chain, finished - 1)}")

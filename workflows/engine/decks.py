@@ -18,10 +18,10 @@ import jinja2.meta
 
 from postproc.readers.cycle_folders import PACKING
 from postproc.wear.caps import GRAVITY
-from postproc.wear.laws import law_kernels
 from workflows.cases.sliding_sample.window import window
 from workflows.engine.derived import WALLS, WINDOW, neighbour_skin
 from workflows.engine.schedule import Span
+from workflows.engine.sections import run_kernels
 
 TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
@@ -229,10 +229,14 @@ def bed_contacts(run: Mapping[str, Any], restart: str) -> dict[str, Any]:
 
 def exact_ledger(run: Mapping[str, Any], history_steps: int = 0) -> dict[str, Any]:
     """Return what a deck needs to sum every contact in the solver, and to write the sums so far every so many steps."""
-    kernels = law_kernels(run["wear"]["law"])
+    words = [
+        word
+        for kernel, given in run_kernels(run).items()
+        for word in (kernel, *(f"{name} {value!r}" for name, value in given.items()))
+    ]
     return {
         "ledger_history": f" history {history_steps}" if history_steps else "",
-        "ledger_kernels": " ".join(["", "kernels", *kernels]) if kernels else "",
+        "ledger_kernels": " ".join(["", "kernels", *words]) if words else "",
     }
 
 

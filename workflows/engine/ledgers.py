@@ -16,11 +16,11 @@ import numpy as np
 from postproc.mesh import SurfaceMesh, stl_corners
 from postproc.readers.contacts import read_contact_batches
 from postproc.readers.load_ledger import read_load_ledger
-from postproc.wear.laws import law_kernels
 from postproc.wear.ledger import LedgerBuilder, columns_of_solver
 from workflows.engine import state
 from workflows.engine.chain import Chain
 from workflows.engine.schedule import Span
+from workflows.engine.sections import run_kernels
 
 LOAD_LEDGER = "load_ledger.bin"
 CONTACTS, SPINS, TOUCHING = "contacts.dump", "spins.dump", "touching.npy"
@@ -76,7 +76,7 @@ def history_of_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMe
 def _columns_of_file(path: Path, chain: Chain, span: Span, surface: SurfaceMesh, steps: int) -> Columns:
     loads = read_load_ledger(path, mesh=f"sample_{span.cycle}", n_triangles=len(surface.triangles), steps=steps)
     corners = stl_corners(surface.points, surface.triangles)
-    return columns_of_solver(loads.columns, corners, law_kernels(chain.parameters["wear"]["law"]))
+    return columns_of_solver(loads.columns, corners, run_kernels(chain.parameters))
 
 
 def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Columns:
@@ -93,7 +93,7 @@ def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMe
         effective_modulus(parameters),
         parameters["particle"]["density_kg_per_m3"],
         touching=_touching_before(chain, span.cycle),
-        kernels=law_kernels(parameters["wear"]["law"]),
+        kernels=run_kernels(parameters),
         face_normals=np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
     )
     for batch in read_contact_batches(folder / CONTACTS, folder / SPINS, after_step=0):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from postproc.wear.laws import law_kernels
+
 
 def wear_section(wear: Mapping[str, Any], particle: Mapping[str, Any]) -> dict[str, Any]:
     """Return the section with the accelerated coefficient, and of the patch only what its choice needs.
@@ -15,6 +17,17 @@ def wear_section(wear: Mapping[str, Any], particle: Mapping[str, Any]) -> dict[s
     if wear["patch"] == "physical":
         kept["physical_shear_modulus_pa"] = particle.get("physical_shear_modulus_pa")
     return {**kept, "accelerated_wear_coefficient_per_pa": wear["wear_coefficient_per_pa"] * wear["acceleration"]}
+
+
+def law_parameters(run: Mapping[str, Any]) -> dict[str, float]:
+    """Return what the wear law of a run takes: the coefficient, acceleration included, and parameters of its own."""
+    wear = run["wear"]
+    return {"wear_coefficient_per_pa": wear["accelerated_wear_coefficient_per_pa"], **wear.get("parameters", {})}
+
+
+def run_kernels(run: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """Return {contact kernel: {parameter: value}} whose sums the wear law of a run needs."""
+    return law_kernels(run["wear"]["law"], law_parameters(run))
 
 
 def solver_section(settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -12,11 +12,15 @@ import subprocess
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
+from postproc.wear.kernels import kernel_column, kernel_parameters
+from workflows.engine.sections import run_kernels
 
 DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
 EXECUTABLE = "liggghts"
@@ -43,6 +47,34 @@ def missing_program(executable: str) -> str | None:
             "`ledger: dumps` does without."
         )
     return f"{executable} is not on the PATH; `make setup` installs it and `make doctor` checks it."
+
+
+def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
+    """Return a sentence that says what to do where a program lacks contact kernels (`postproc/wear/kernels.py`) as they
+    are here: column and parameters; None where it has them.
+    """
+    wanted = {name: " ".join([name, kernel_column(name), *kernel_parameters(name)]) for name in kernels}
+    known = _told_kernels(executable) if wanted else ()
+    if missing := [name for name, line in wanted.items() if line not in known]:
+        return (
+            f"{executable}: it has no contact kernel {', '.join(missing)} as postproc/wear/kernels.py has it, found: "
+            f"{'; '.join(known) or 'none'}; `make -C solver` builds those of solver/kernels.h, and a study with "
+            "`ledger: dumps` does without."
+        )
+    return None
+
+
+@cache  # a study asks once per run
+def _told_kernels(executable: str) -> tuple[str, ...]:
+    """Return what a program says of its kernels, a line each; nothing from one that does not know the question."""
+    told = subprocess.run([executable, "-kernels"], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    return tuple(told.stdout.splitlines()) if told.returncode == 0 else ()
+
+
+def cycle_fault(executable: str, run: Mapping[str, Any]) -> str | None:
+    """Return a sentence that says what to do where a program cannot simulate the wear cycles of a run; else None."""
+    kernels = run_kernels(run) if run["ledger"] == "solver" else ()
+    return missing_program(executable) or missing_kernels(executable, kernels)
 
 
 def solver_command(ranks: int, executable: str = EXECUTABLE, launcher: str = LAUNCHER) -> list[str]:

@@ -29,6 +29,7 @@ from workflows.engine import state
 from workflows.engine.case import Case
 from workflows.engine.chain import SURFACE, Chain
 from workflows.engine.schedule import Span
+from workflows.engine.sections import law_parameters
 
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J")
 SUMS = (*SUMMED, "finnie_volume_m3", "worn_volume_m3")  # cell data of the surface, over all cycles so far
@@ -129,7 +130,7 @@ def law_volume(parameters: Mapping[str, Any], ledger: pd.DataFrame) -> np.ndarra
     return worn_volume(
         parameters["wear"]["law"],
         {name: ledger[name].to_numpy() for name in ledger},
-        {"wear_coefficient_per_pa": parameters["wear"]["accelerated_wear_coefficient_per_pa"]},
+        law_parameters(parameters),
     )
 
 

@@ -9,6 +9,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from postproc.wear.laws import LAWS, NEUTRAL_LAW
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -32,13 +34,7 @@ UNITS = (
     ("_s", "s"),
     ("_h", "h"),
 )
-LAW_WORDS = {
-    "archard": "volume = coefficient times normal force times sliding path, coefficient {} 1/Pa, the same for all "
-    "particles and places. Rolling and impact are recorded but take no volume.",
-    "finnie": "volume = coefficient times a function of the impact angle times force and velocity of the particle's "
-    "centre, coefficient {} 1/Pa, the same for all particles and places. Where figures and columns name Archard's "
-    "volume, it is this law's.",
-}  # what a law takes, the coefficient left open
+NAMED_ELSEWHERE = f" Where figures and columns name {NEUTRAL_LAW.capitalize()}'s volume, it is this law's."
 SPOKEN = {"_fraction", "_steps"}  # suffixes that belong to the name as well
 EXTRA_UNITS = {
     "particle_scale": NO_UNIT,
@@ -82,21 +78,33 @@ def name_and_unit(key: str) -> tuple[str, str]:
     return key.replace("_", " "), EXTRA_UNITS.get(key, "")
 
 
+def number_and_unit(key: str, value: float) -> str:
+    """Return a setting as people say it: name, value, unit."""
+    name, unit = name_and_unit(key)
+    return f"{name} {number(value)} {unit}".rstrip(f" {NO_UNIT}")
+
+
 def setting_rows(settings: Mapping[str, Any], paper: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
-    """Return all settings by section: name, value, unit, and the value at paper fidelity, None where it is
-    the same.
+    """Return all settings by section, blocks within it included: name, value, unit, and the value at paper fidelity,
+    None where it is the same.
     """
     sections: dict[str, list[dict[str, Any]]] = {}
     for key, value in settings.items():
         nested = isinstance(value, Mapping)
-        full = paper.get(key, {}) if nested else paper
-        for inner, found in (value if nested else {key: value}).items():
+        full = _flat(paper.get(key, {})) if nested else paper
+        for inner, found in (_flat(value) if nested else {key: value}).items():
             name, unit = name_and_unit(inner)
             other = full.get(inner)
             same = other == found or inner == "fidelity"
             row = {"name": name, "value": found, "unit": unit, "paper": None if same else other}
             sections.setdefault(key if nested else "study", []).append(row)
     return sections
+
+
+def _flat(section: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a section with the keys of its blocks among its own."""
+    blocks = [value if isinstance(value, Mapping) else {key: value} for key, value in section.items()]
+    return {key: value for block in blocks for key, value in block.items()}
 
 
 def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: ModuleType) -> list[tuple[str, str]]:
@@ -115,11 +123,11 @@ def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: Modul
 
 def _comparison(law: str) -> list[tuple[str, str]]:
     """Return what the solver's own wear measure is; nothing where the study wears by that law itself."""
-    if law == "finnie":
+    if LAWS[law].is_solver_measure:
         return []
     how = (
         "The solver's own wear model is Finnie's impact wear with the velocity of the particle's centre, without "
-        "spin; it tends to zero for pure sliding. It stands beside Archard's law for comparison and wears nothing."
+        "spin; it tends to zero for pure sliding. It stands beside the study's law for comparison and wears nothing."
     )
     return [("LIGGGHTS' Finnie differs", how)]
 
@@ -128,7 +136,7 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, furth
     """Return what concerns wear: law, acceleration, rigid sample or caps and what they hold back."""
     wear = study["settings"]["wear"]
     coefficients = [run["wear"]["wear_coefficient_per_pa"] for run in study["parameters"].values()]
-    law = ("Wear law", f"{wear['law'].capitalize()}: " + LAW_WORDS[wear["law"]].format(range_text(coefficients, 3)))
+    law = ("Wear law", law_words(wear, range_text(coefficients, 3)))
     factor = wear["acceleration"]
     accelerated = (
         f"The coefficient is multiplied by {factor:g}: one second of simulation stands for {factor:g} s of test. "
@@ -146,6 +154,17 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, furth
         f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
     )
     return [law, acceleration, caps]
+
+
+def law_words(wear: Mapping[str, Any], coefficient: str) -> str:
+    """Return what a volume is by the law of a study.
+
+    wear: its settings; coefficient: the wear coefficient as the sentence shows it
+    """
+    given = {key: number(value) for key, value in wear.get("parameters", {}).items()}
+    words = LAWS[wear["law"]].words.format(wear_coefficient_per_pa=coefficient, **given)
+    named = "" if wear["law"] == NEUTRAL_LAW else NAMED_ELSEWHERE
+    return f"{wear['law'].replace('_', ' ').capitalize()}: {words}{named}"
 
 
 def range_text(values: list[float], digits: int = 2) -> str:

@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from postproc.wear.kernels import KERNELS, finnie_work, kernel_column
-from postproc.wear.ledger import LedgerBuilder
+from postproc.wear.kernels import KERNELS, finnie_work, kernel_column, kernel_rate
+from postproc.wear.ledger import LedgerBuilder, contact_kinematics
 from tests import REPOSITORY
+from tests.support.law_cases import long_slip_registered
 
 ROUND_OFF = 1e-12  # a few products in float64
 CONTINUITY = 1e-4  # relative; 0.33333 of the solver is not 1/3
@@ -87,28 +88,48 @@ def test_units_are_neutral():
 
 def test_every_kernel_has_a_column_and_takes_no_contacts():
     """Names carry the unit; an empty sample gives an empty array."""
-    nothing = SimpleNamespace(contact_point=np.zeros((0, 3)), centre=np.zeros((0, 3)), force=np.zeros((0, 3)))
+    vectors = ("contact_point", "centre", "force", "particle_velocity", "wall_velocity", "angular_velocity")
+    nothing = SimpleNamespace(radius=np.zeros(0), **{name: np.zeros((0, 3)) for name in vectors})
     for name, kernel in KERNELS.items():
-        assert kernel_column(name) == f"{name}_J"
-        assert kernel(nothing, moving(np.zeros((0, 3))), np.zeros((0, 3))).shape == (0,)
+        assert kernel_column(name) == f"{name}_{kernel.unit}"
+        rate = kernel_rate(name, dict.fromkeys(kernel.parameters, 1.0))
+        assert rate(nothing, contact_kinematics(nothing), np.zeros((0, 3))).shape == (0,)
 
 
 def test_the_solver_has_the_same_kernels():
-    """Names and columns of solver/kernels.h and of the registry here are the same, so either producer serves a law."""
+    """Names, columns and parameters of solver/kernels.h are those of the registry: either producer serves a law."""
     source = (REPOSITORY / "solver" / "kernels.h").read_text()
     listed = re.search(r"KERNELS\[\] = \{(.*?)^\};", source, re.DOTALL | re.MULTILINE)[1]
-    found = dict(re.findall(r'\{"(\w+)", "(\w+)"', listed))
-    assert found == {name: kernel_column(name) for name in KERNELS}
+    found = {
+        name: (column, tuple(re.findall(r'"(\w+)"', parameters)))
+        for name, column, parameters in re.findall(r'\{"(\w+)",\s*"(\w+)",\s*\w+,\s*\{(.*?)\}', listed, re.DOTALL)
+    }
+    assert found == {name: (kernel_column(name), kernel.parameters) for name, kernel in KERNELS.items()}
 
 
 def test_an_unknown_kernel_is_named():
     """With those that there are."""
     with pytest.raises(ValueError, match=r"contact kernel 'oka_work' is unknown, allowed are: finnie_work"):
-        LedgerBuilder(4, 0, 2e8, 2500.0, kernels=("oka_work",), face_normals=np.zeros((4, 3)))
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={"oka_work": {}}, face_normals=np.zeros((4, 3)))
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "found", "allowed"),
+    [
+        ("finnie_work", {"exponent": 2.0}, "exponent", "nothing"),
+        ("long_slip", {}, "nothing", "exponent, length_m"),
+        ("long_slip", {"exponent": 2.0, "length_mm": 2.0}, "exponent, length_mm", "exponent, length_m"),
+    ],
+)
+def test_a_kernel_takes_exactly_its_parameters(name, given, found, allowed):
+    """One that is missing and one that it does not know are refused with those that it takes."""
+    sentence = f"parameters of the contact kernel '{name}' are {found}, allowed are: {allowed}$"
+    with long_slip_registered(), pytest.raises(ValueError, match=sentence):
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={name: given}, face_normals=np.zeros((4, 3)))
 
 
 @pytest.mark.parametrize("normals", [None, np.zeros((3, 3))])
 def test_kernels_without_normals_are_refused(normals):
     """One normal per triangle, or the angle of impact is unknown."""
     with pytest.raises(ValueError, match=r"face_normals for kernels have the shape .*, allowed is \(4, 3\)"):
-        LedgerBuilder(4, 0, 2e8, 2500.0, kernels=("finnie_work",), face_normals=normals)
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={"finnie_work": {}}, face_normals=normals)

@@ -1,12 +1,15 @@
 """Wear laws: worn volume from the ledger."""
 
+from string import Formatter
+
 import numpy as np
 import pytest
 
 from postproc.wear.kernels import KERNELS, kernel_column
-from postproc.wear.laws import LAWS, archard, finnie, law_kernels, worn_volume
-
-ALPHA = 6.3e-13  # 1/Pa, steel on a pin-on-disc rig (Yan 2022, chapter 5)
+from postproc.wear.laws import LAWS, NEUTRAL_LAW, archard, finnie, law_kernels, worn_volume
+from tests.support.law_cases import ALPHA, parameters_of
+from workflows.config.law_settings import parameters_schema
+from workflows.config.units import to_si
 
 
 def test_archard_is_coefficient_times_sliding_work():
@@ -21,7 +24,7 @@ def test_archard_is_coefficient_times_sliding_work():
 def columns_for(law, m=4, seed=3):
     """Ledger columns that a law needs, as float32."""
     random = np.random.default_rng(seed)
-    names = ("sliding_work_J", *map(kernel_column, law_kernels(law)))
+    names = ("sliding_work_J", *map(kernel_column, LAWS[law].kernels))
     return {name: random.uniform(0.0, 5.0, m).astype(np.float32) for name in names}
 
 
@@ -34,7 +37,7 @@ def test_finnie_is_coefficient_times_finnie_work():
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_returns_one_volume_per_triangle(law):
     """(m,) float64, also from float32 columns."""
-    volume = worn_volume(law, columns_for(law), {"wear_coefficient_per_pa": ALPHA})
+    volume = worn_volume(law, columns_for(law), parameters_of(law))
     assert volume.shape == (4,) and volume.dtype == np.float64
 
 
@@ -42,16 +45,18 @@ def test_every_law_returns_one_volume_per_triangle(law):
 def test_zero_load_wears_nothing(law):
     """V = 0, exactly."""
     nothing = {name: np.zeros(4) for name in columns_for(law)}
-    assert not worn_volume(law, nothing, {"wear_coefficient_per_pa": ALPHA}).any()
+    assert not worn_volume(law, nothing, parameters_of(law)).any()
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_is_linear_in_the_ledger_and_the_coefficient(law):
     """Two cycles wear the sum of each; twice the coefficient wears twice. Powers of two keep it exact."""
-    once = worn_volume(law, columns_for(law), {"wear_coefficient_per_pa": ALPHA})
-    twice = worn_volume(law, {name: 2 * v for name, v in columns_for(law).items()}, {"wear_coefficient_per_pa": ALPHA})
+    parameters = parameters_of(law)
+    once = worn_volume(law, columns_for(law), parameters)
+    twice = worn_volume(law, {name: 2 * v for name, v in columns_for(law).items()}, parameters)
     np.testing.assert_array_equal(twice, 2.0 * once)
-    np.testing.assert_array_equal(worn_volume(law, columns_for(law), {"wear_coefficient_per_pa": 2 * ALPHA}), twice)
+    faster = {**parameters, "wear_coefficient_per_pa": 2 * ALPHA}
+    np.testing.assert_array_equal(worn_volume(law, columns_for(law), faster), twice)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -59,7 +64,7 @@ def test_laws_follow_the_order_of_the_triangles(law):
     """Face-order invariance."""
     order = np.array([2, 0, 3, 1])
     shuffled = {name: values[order] for name, values in columns_for(law).items()}
-    parameters = {"wear_coefficient_per_pa": ALPHA}
+    parameters = parameters_of(law)
     np.testing.assert_array_equal(
         worn_volume(law, shuffled, parameters), worn_volume(law, columns_for(law), parameters)[order]
     )
@@ -68,16 +73,42 @@ def test_laws_follow_the_order_of_the_triangles(law):
 @pytest.mark.parametrize("law", LAWS)
 def test_laws_need_kernels_that_exist_and_nothing_more(law):
     """The kernels that a law names suffice for it, and both producers of a ledger know them."""
-    assert set(law_kernels(law)) <= set(KERNELS)
-    for missing in law_kernels(law):
+    assert set(law_kernels(law, parameters_of(law))) == set(LAWS[law].kernels) <= set(KERNELS)
+    for missing in LAWS[law].kernels:
         columns = {name: v for name, v in columns_for(law).items() if name != kernel_column(missing)}
         with pytest.raises(KeyError, match=kernel_column(missing)):
-            worn_volume(law, columns, {"wear_coefficient_per_pa": ALPHA})
+            worn_volume(law, columns, parameters_of(law))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_law_takes_every_parameter_that_it_declares(law):
+    """Each is wanted by its function or its kernels; names are given once, a default lies in its range."""
+    declared = LAWS[law].parameters
+    assert len({parameter.name for parameter in declared}) == len(declared)
+    assert all(p.lowest <= p.default <= p.highest for p in declared if p.default is not None)
+    for missing in to_si(dict.fromkeys(parameters_schema(law)["properties"], 1.0)):
+        parameters = {name: value for name, value in parameters_of(law).items() if name != missing}
+        with pytest.raises(KeyError, match=missing):
+            law_kernels(law, parameters)
+            worn_volume(law, columns_for(law), parameters)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_words_of_a_law_leave_its_numbers_open(law):
+    """The coefficient and nothing but parameters that the law declares."""
+    names = {name for _, name, _, _ in Formatter().parse(LAWS[law].words) if name is not None}
+    assert "wear_coefficient_per_pa" in names <= {"wear_coefficient_per_pa", *parameters_schema(law)["properties"]}
+    assert LAWS[law].words.endswith(".") and not LAWS[law].source.endswith(".")
+
+
+def test_the_neutral_law_takes_nothing_but_its_coefficient():
+    """So that a study that says nothing has no kernel in its decks and no parameter in its settings."""
+    assert LAWS[NEUTRAL_LAW].kernels == LAWS[NEUTRAL_LAW].parameters == ()
 
 
 def test_unknown_law_names_the_allowed_ones():
     """An unknown law is refused with one sentence naming it and the allowed ones."""
-    with pytest.raises(ValueError, match=r"wear law 'oka' is unknown, allowed are: archard, finnie"):
+    with pytest.raises(ValueError, match=rf"wear law 'oka' is unknown, allowed are: {', '.join(sorted(LAWS))}"):
         worn_volume("oka", {}, {})
 
 

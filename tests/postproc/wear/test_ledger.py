@@ -12,6 +12,7 @@ from postproc.wear.ledger import (
     hertz_contact_radius,
     hertz_elastic_energy,
 )
+from tests.support.law_cases import long_slip_registered
 
 ROUND_OFF = 1e-12  # sums of up to a few thousand float64 terms
 CANCELLATION = 1e-15  # of F_n L: what equal and opposite velocities of order one leave in float64
@@ -385,7 +386,8 @@ def test_the_wall_spin_changes_the_rolling_only():
 
 def test_kernels_add_their_sum_and_change_nothing_else():
     """finnie_work_J = sum of 2 E v F dt per triangle; batches give the same."""
-    crowd, options = random_samples(), {"kernels": ("finnie_work",), "face_normals": np.tile([0.0, 0.0, 1.0], (12, 1))}
+    crowd, up = random_samples(), np.tile([0.0, 0.0, 1.0], (12, 1))
+    options = {"kernels": {"finnie_work": {}}, "face_normals": up}
     table = ledger(crowd, **options)
     assert list(table) == [*LEDGER_FIELDS, "finnie_work_J"]
     assert_same(table, ledger(crowd))
@@ -396,6 +398,15 @@ def test_kernels_add_their_sum_and_change_nothing_else():
     single = ledger([falling], **options)["finnie_work_J"]
     assert single[0] == pytest.approx(2.0 * 0.33333 * 0.64 * 0.5 * 2.0 * 1e-3, rel=ROUND_OFF)
     assert not single[1:].any()
+
+
+def test_a_kernel_gets_its_parameters():
+    """|v_t| (L / 1 mm)^n dt with n = 2 and L = 3 mm is nine times the slip; the column ends in the kernel's unit."""
+    up = np.tile([0.0, 0.0, 1.0], (12, 1))
+    with long_slip_registered():
+        given = {"long_slip": {"length_m": 3e-3, "exponent": 2.0}}
+        table = ledger([sample(particle_velocity=[[0.4, 0.0, -0.3]])], kernels=given, face_normals=up)
+    assert table["long_slip_m"][0] == pytest.approx(9.0 * 0.4 * table["contact_time_s"][0], rel=ROUND_OFF)
 
 
 def test_columns_of_the_solver_are_those_of_the_samples():

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from postproc.wear.laws import LAWS
 from tests import DATA
+from tests.support.law_cases import long_slip_registered, wear_settings
 from tests.support.tiny import tiny_study
 from workflows.config.design import list_studies, load_study
 from workflows.engine import decks as deck
@@ -122,10 +122,17 @@ def test_sampled_contacts_run_with_any_liggghts():
 
 
 def test_a_law_with_a_kernel_asks_the_solver_for_it():
-    """The fix gets the names of exactly the kernels that the law needs."""
-    lines = {law: re.search(r" file load_ledger.bin history \d+(.*)", cycle_deck(wear={"law": law})) for law in LAWS}
-    expected = {law: "".join(f" kernels {name}" for name in LAWS[law].kernels) for law in LAWS}
-    assert {law: line[1] for law, line in lines.items()} == expected
+    """The fix gets exactly the kernels that the law needs, each with its parameters in SI, all digits of them."""
+    with long_slip_registered():
+        chosen = {law: wear_settings(law) for law in ("archard", "finnie", "long_slip")}
+        chosen["long_slip"]["parameters"] = {"exponent": 5 / 3}
+        texts = {law: cycle_deck(wear=settings) for law, settings in chosen.items()}
+    asked = {law: re.search(r" file load_ledger.bin history \d+(.*)", text)[1] for law, text in texts.items()}
+    assert asked == {
+        "archard": "",
+        "finnie": " kernels finnie_work",
+        "long_slip": " kernels long_slip exponent 1.6666666666666667 length_m 0.002",
+    }
 
 
 def test_the_producer_adds_its_own_parameters_only():

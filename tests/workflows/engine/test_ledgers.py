@@ -8,8 +8,10 @@ import pytest
 
 from postproc.mesh import SurfaceMesh
 from postproc.readers.load_ledger import RADIUS, SUMS, WEIGHTS, LoadLedgerError
-from postproc.wear.laws import LAWS, law_kernels
+from postproc.wear.kernels import kernel_column
+from postproc.wear.laws import LAWS
 from postproc.wear.ledger import LEDGER_FIELDS
+from tests.support.law_cases import wear_settings
 from tests.support.tiny import tiny_study
 from workflows.engine import cycles
 from workflows.engine.chain import Chain
@@ -58,7 +60,7 @@ def weights():
 
 def write_load_ledger(chain, folder, **changes):
     """What the solver would sum of one contact that slides on triangle 0 during a whole cycle."""
-    kernels = [f"{name}_J" for name in law_kernels(chain.parameters["wear"]["law"])]
+    kernels = map(kernel_column, LAWS[chain.parameters["wear"]["law"]].kernels)
     sums = {name: [0.0, 0.0] for name in (*SUMS, *kernels)}
     sums["sliding_work_J"] = [FORCE * SPEED * time_of(chain), 0.0]
     sums["normal_impulse_N_s"] = [FORCE * time_of(chain), 0.0]
@@ -103,7 +105,7 @@ def columns_of(ledger, folder, **changes):
 @pytest.mark.parametrize("law", LAWS)
 def test_both_producers_write_the_same_columns(tmp_path, law):
     """Names, order, dtypes and lengths do not depend on who has summed, whatever the law adds."""
-    found = {name: columns_of(name, tmp_path / name / "cycle_001", wear={"law": law}) for name in PRODUCERS}
+    found = {name: columns_of(name, tmp_path / name / "cycle_001", wear=wear_settings(law)) for name in PRODUCERS}
     kinds = {
         name: [(column, values.dtype, values.shape) for column, values in columns.items()]
         for name, columns in found.items()
@@ -111,7 +113,7 @@ def test_both_producers_write_the_same_columns(tmp_path, law):
     assert kinds["solver"] == kinds["dumps"]
     assert [column for column, *_ in kinds["solver"]] == [
         *LEDGER_FIELDS,
-        *(f"{kernel}_J" for kernel in law_kernels(law)),
+        *map(kernel_column, LAWS[law].kernels),
     ]
 
 

@@ -10,12 +10,6 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-
-from postproc.tables.history import wear_history
-from postproc.tables.summary import read_summary, summary_table
-from workflows.cases.sliding_sample.screening.plots.regression import DRAWN
-from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
-from workflows.config.design import REPOSITORY, load_study
 from workflows.report.figures import (
     FIGURES,
     OF_SERIES,
@@ -25,6 +19,12 @@ from workflows.report.figures import (
     published_rows,
     replicate_settings,
 )
+
+from postproc.tables.history import wear_history
+from postproc.tables.summary import read_summary, summary_table
+from workflows.cases.sliding_sample.screening.plots.regression import DRAWN
+from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
+from workflows.config.design import REPOSITORY, load_study
 from workflows.report.page import TABLE_OF, caption, commit, write_page
 from workflows.report.text import UNDEFINED, name_and_unit, number, setting_rows
 

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 import yaml
+from workflows.report.figures import OF_CALIBRATIONS, page_templates
 
 from postproc.flow.bulk_test import RESPONSES
 from postproc.inference.loop import packing_seed, posterior
@@ -32,7 +33,6 @@ from workflows.cases.calibration.tables import calibrated_materials, draw_all, r
 from workflows.config.design import REPOSITORY, ConfigError, load_study
 from workflows.engine.bulk_simulations import Measurement
 from workflows.engine.decks import primes
-from workflows.report.figures import OF_CALIBRATIONS, page_templates
 
 MEASURED, PAIRS = PUBLISHED / "gravel_tests.csv", PUBLISHED / "gravel_pairs.csv"
 TABLES = ("simulations", "looks", "repeats")

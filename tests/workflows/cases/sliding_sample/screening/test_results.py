@@ -2,11 +2,11 @@
 
 import pandas as pd
 import pytest
+from workflows.report.figures import page_parameters
 
 from tests.support.finished_runs import leave_runs
 from workflows.cases.sliding_sample.screening.results import wear_text, write_results
 from workflows.config.design import load_study
-from workflows.report.figures import page_parameters
 from workflows.report.markdown import durations
 
 CONVEX, PLAIN = 1.5e-9, 2.0e-9  # m3 over 0.06 m of travel

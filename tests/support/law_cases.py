@@ -1,0 +1,60 @@
+"""Settings of every wear law for tests, and a law with parameters of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from postproc.wear.kernels import KERNELS, Kernel
+from postproc.wear.laws import LAWS, Law, Parameter
+from workflows.config.units import to_si
+from workflows.config.validation import case_schema, load_schema
+
+ALPHA = 6.3e-13  # 1/Pa, steel on a pin-on-disc rig (Yan 2022, chapter 5)
+
+
+def wear_settings(law: str) -> dict[str, Any]:
+    """Keys of `wear` that choose a law; its parameters have their defaults, or the middle of their range."""
+    middle = {p.name: 0.5 * (p.lowest + p.highest) if p.default is None else p.default for p in LAWS[law].parameters}
+    return {"law": law, "parameters": middle}
+
+
+def parameters_of(law: str) -> dict[str, float]:
+    """The same parameters as the law's function takes them: SI, with a wear coefficient."""
+    return {"wear_coefficient_per_pa": ALPHA, **to_si(wear_settings(law)["parameters"])}
+
+
+def long_slip(contacts, motion, face_normal, exponent, length_m):
+    """|v_t| (L / 1 mm)^n in m/s: not a power, and both parameters matter."""
+    return motion.sliding_speed * (length_m / 1e-3) ** exponent
+
+
+LONG_SLIP_KERNEL = Kernel(long_slip, unit="m", parameters=("exponent", "length_m"))
+LONG_SLIP = Law(
+    lambda columns, given: given["wear_coefficient_per_pa"] * np.asarray(columns["long_slip_m"], np.float64),
+    "coefficient {wear_coefficient_per_pa} 1/Pa, exponent {exponent}, length {length_mm} mm.",
+    "nobody",
+    kernels=("long_slip",),
+    parameters=(
+        Parameter("exponent", "of the length", 0.5, 3.0),
+        Parameter("length_mm", "a length", 0.1, 50.0, default=2.0),
+    ),
+)
+
+
+@contextmanager
+def long_slip_registered() -> Iterator[None]:
+    """Within it there is the law `long_slip`, with a kernel and parameters of its own."""
+    LAWS["long_slip"], KERNELS["long_slip"] = LONG_SLIP, LONG_SLIP_KERNEL
+    schemas = (load_schema, case_schema)  # they remember the laws
+    try:
+        for schema in schemas:
+            schema.cache_clear()
+        yield
+    finally:
+        del LAWS["long_slip"], KERNELS["long_slip"]
+        for schema in schemas:
+            schema.cache_clear()
