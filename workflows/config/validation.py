@@ -28,6 +28,7 @@ from workflows.config.layers import (
     read_csv_rows,
     read_yaml,
 )
+from workflows.engine.case import case_names
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
 CASES_FOLDER = Path(__file__).parents[1] / "cases"
@@ -88,6 +89,8 @@ def load_schema(name: str) -> dict[str, Any]:
     schema = read_yaml(schema_file(name), SCHEMA_FOLDER).values
     if name == "settings":
         schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
+    if name == "study":
+        schema["properties"]["case"]["enum"] = case_names()
     _Validator.check_schema(schema)
     return schema
 

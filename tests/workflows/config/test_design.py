@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import math
 import re
@@ -156,8 +155,7 @@ def test_whole_and_decimal_numbers_give_the_same_parameters(config):
 
 def test_loading_twice_gives_the_same_study_and_shares_nothing(config):
     """Parameters of one study can be changed without changing another (no shared mutable state)."""
-    first = load_study("small", config.root)
-    untouched = copy.deepcopy(first)
+    first, untouched = (load_study("small", config.root) for _ in range(2))
     first.runs[0].parameters["particle"]["diameters_m"].append(1.0)
     first.runs[0].parameters["solver"]["ranks"] = 99
     assert load_study("small", config.root) == untouched

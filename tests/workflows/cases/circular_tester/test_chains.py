@@ -14,7 +14,6 @@ from postproc.readers.solver_log import thermo_table
 from postproc.wear.update import worn_faces
 from tests.support.tiny import tiny_chain
 from tests.support.tiny_tester import ROWS, tiny_tester
-from workflows.cases import CASES
 from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester import distribution as tester_distribution
 from workflows.cases.circular_tester import figures as tester_figures
@@ -197,7 +196,7 @@ def test_figures_and_page_are_made_of_the_tables(finished, tables, tmp_path):
         tester_figures.JOBS[name](tables)
     drawn = {path.stem for path in tables.folder.glob("*.png")}
     assert drawn == {path.stem for path in tables.folder.glob("*.csv")} and len(drawn) == 14
-    folder, case = finished.folder, CASES[finished.study.case]
+    folder, case = finished.folder, finished.study.case
     write_table(folder / "design.csv", finished.study.design_table())
     wear = [chain.folder / "wear.csv" for chain in finished.chains.values()]
     case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
