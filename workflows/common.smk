@@ -11,6 +11,7 @@ from workflows.engine.case import find_case
 from workflows.engine.decks import template_sources
 from workflows.config.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
 from workflows.cases.sliding_sample.study import plain_runs
+from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
 from workflows.engine.job import let_jobs_import
 from workflows.forecast.rates import rates_file
 from workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
@@ -108,17 +109,19 @@ def run_geometry(wildcards):
     return {name: run_parameters(wildcards)[name] for name in study_of(wildcards).case.geometry}
 
 
-def bed_parameters(wildcards):
-    return study_of(wildcards).beds[wildcards.bed]
+@cache
+def simulated_run(study, run):
+    """The parameters of a run, and of its bed, which run again when what is simulated from them changes."""
+    case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
+    bed = STUDIES[study].beds.get(STUDIES[study].bed_of(run))
+    digest = run_digest(case, parameters, bed)
+    return SimulatedFrom(parameters, digest), bed and SimulatedFrom(bed, digest)
 
 
-def bed_templates(wildcards):
-    """The sources of the templates of a bed's deck: a bed is filled again when one changes."""
-    return template_sources(study_of(wildcards).case.bed_template)
-
-
-def bed_parameters_of_run(wildcards):
-    return study_of(wildcards).beds.get(study_of(wildcards).bed_of(wildcards.run))
+@cache
+def simulated_bed(study, bed):
+    """The parameters of a bed, which is filled again when its deck or what that reads changes."""
+    return SimulatedFrom(STUDIES[study].beds[bed], bed_digest(STUDIES[study].case, STUDIES[study].beds[bed]))
 
 
 def bed_restart_of_run(folder):
@@ -141,11 +144,6 @@ def same_run(wildcards):
     """The table of the run that simulates this one as well; nothing where the run is simulated itself."""
     same = study_of(wildcards).same_as(wildcards.run)
     return [f"results/{wildcards.study}/{same}/wear.csv"] if same else []
-
-
-def run_templates(wildcards):
-    """The sources of the templates of a run's decks: a run is done again when one changes."""
-    return [template_sources(name) for name in study_of(wildcards).case.run_templates]
 
 
 def of_every_run(pattern):

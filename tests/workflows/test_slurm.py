@@ -36,7 +36,7 @@ PLAIN = TINY.replace("surfaces: [convex, plain]", "surfaces: [plain]")
 IN_PIECES = PLAIN + "solver: {checkpoint_interval_steps: 200}\n"
 # What Slurm keeps of a job's environment for it hides an allocation from Open MPI, or promises one that is not there.
 START_RANKS = """
-from workflows.solver import SCREEN, run_deck
+from workflows.engine.solver import SCREEN, run_deck
 folder = Path(__file__).parent
 try:
     run_deck(folder, ranks=2)

@@ -68,6 +68,7 @@ class Case:
     bed_template: that of the deck of a bed
     alternatives: two settings of which exactly one is given; the stronger layer's replaces the other
     geometry: sections of a run's parameters that its pristine surface depends on
+    consumed: sections of a run's parameters that the driver reads besides decks, surface and bed, see inputs.py
     length: (section, key) of a run's parameters that only say after how many of its equal cycles it ends; a longer run
         goes on from the cycles of a shorter one
     first_title: what people call cycle 0
@@ -85,6 +86,7 @@ class Case:
     bed_template = ""
     alternatives: tuple[tuple[str, str], ...] = ()
     geometry: tuple[str, ...] = ()
+    consumed: tuple[str, ...] = ("wear", "remeshing", "sliding")
     length: tuple[tuple[str, str], ...] = ()
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)

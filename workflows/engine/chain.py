@@ -78,12 +78,6 @@ def deck_text(chain: Chain, span: Span | None) -> str:
     return chain.case.deck(chain.parameters, chain.bed, span, restart)
 
 
-def decks_without_paths(chain: Chain) -> list[str]:
-    """Return the decks of cycle 0 and of the first wear cycle as they are wherever the run's folder is."""
-    spans = (None, first_span(chain.parameters))
-    return [chain.case.deck(chain.parameters, chain.bed, span, restart="") for span in spans]
-
-
 def write_shared_files(chain: Chain) -> None:
     """Write what the decks of all cycles read besides surface and restart file."""
     chain.case.write_shared_files(chain.bed, chain.folder)

@@ -22,7 +22,6 @@ from workflows.engine.chain import (
     RESTART,
     SURFACE,
     Chain,
-    decks_without_paths,
     run_in_steps,
     span_of,
     steps_before,
@@ -33,6 +32,7 @@ from workflows.engine.chain import (
     write_cycle,
     write_shared_files,
 )
+from workflows.engine.inputs import inputs_digest
 from workflows.engine.ledgers import producer
 from workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
 from workflows.engine.progress import Progress
@@ -93,20 +93,6 @@ def run_chain(chain: Chain) -> None:
             drop_files(chain, span.cycle - 1)
             finished, span = finished + 1, span_of(chain, span.cycle + 1)
         write_products(chain, finished)
-
-
-def inputs_digest(chain: Chain) -> str:
-    """Return the hash of all that the cycles of a run depend on: parameters, decks, surface and bed.
-
-    How many cycles there are is left out where the case says that it changes none of them.
-    """
-    left_out = {("solver", "ranks"), *chain.case.length}
-    parameters = dict(chain.parameters)
-    for section in {section for section, _ in left_out}:
-        values = chain.parameters[section].items()
-        parameters[section] = {key: value for key, value in values if (section, key) not in left_out}
-    files = [path for path in (chain.surface, chain.bed_restart) if path]
-    return state.digest(parameters, *decks_without_paths(chain), *map(state.file_digest, files))
 
 
 def cycles_of(chain: Chain) -> int | None:

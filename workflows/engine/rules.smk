@@ -44,8 +44,7 @@ rule settled_bed:
         mpi=launcher_of,
     params:
         case=case_of,
-        bed=bed_parameters,
-        templates=bed_templates,
+        bed=lambda wildcards: simulated_bed(wildcards.study, wildcards.bed),
     message:
         "Filling and settling {wildcards.bed}"
     script:
@@ -74,9 +73,8 @@ rule worn_run:
         mpi=launcher_of,
     params:
         case=case_of,
-        run=run_parameters,
-        bed=bed_parameters_of_run,
-        templates=run_templates,
+        run=lambda wildcards: simulated_run(wildcards.study, wildcards.run)[0],
+        bed=lambda wildcards: simulated_run(wildcards.study, wildcards.run)[1],
     message:
         "Wear cycles of {wildcards.run}"
     script:
@@ -90,8 +88,7 @@ rule bed_deck:
         "results/{study}/logs/bed_deck_{bed}.log",
     params:
         case=case_of,
-        bed=bed_parameters,
-        templates=bed_templates,
+        bed=lambda wildcards: simulated_bed(wildcards.study, wildcards.bed),
     message:
         "Deck of {wildcards.bed}"
     script:
@@ -107,9 +104,8 @@ rule run_decks:
         "results/{study}/logs/run_decks_{run}.log",
     params:
         case=case_of,
-        run=run_parameters,
-        bed=bed_parameters_of_run,
-        templates=run_templates,
+        run=lambda wildcards: simulated_run(wildcards.study, wildcards.run)[0],
+        bed=lambda wildcards: simulated_run(wildcards.study, wildcards.run)[1],
         bed_restart=lambda wildcards: next(iter(bed_restart_of_run("decks/beds")(wildcards)), None),
     message:
         "Decks of {wildcards.run}"

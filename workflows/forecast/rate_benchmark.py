@@ -28,7 +28,8 @@ from postproc.readers.solver_timing import run_times
 from workflows.config.design import Study, load_study
 from workflows.engine import state
 from workflows.engine.chain import Chain, span_of
-from workflows.engine.cycles import fill_bed, inputs_digest, run_cycle
+from workflows.engine.cycles import fill_bed, run_cycle
+from workflows.engine.inputs import inputs_digest
 from workflows.engine.progress import Progress
 from workflows.engine.schedule import Span
 from workflows.engine.solver import LOG, die_with, processor_seconds

@@ -66,8 +66,8 @@ BAD_KEYS = [
         STUDY,
         "design: small.csv",
         "case: drum\ndesign: small.csv",
-        "config/studies/small.yaml, line 3: case is 'drum', allowed is one of sliding_sample, pin_on_disc,"
-        " calibration, circular_tester.",
+        "config/studies/small.yaml, line 3: case is 'drum', allowed is one of calibration, circular_tester,"
+        " pin_on_disc, sliding_sample.",
     ),
     (
         STUDY,

@@ -24,6 +24,7 @@ from tests.support.tiny import tiny_chain, tiny_study
 from workflows.engine import cycles, state, wear_step
 from workflows.engine.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
 from workflows.engine.chain import write_cycle, write_shared_files
+from workflows.engine.inputs import inputs_digest
 from workflows.engine.ledgers import PRODUCERS
 from workflows.engine.pieces import PIECES
 from workflows.engine.progress import Progress
@@ -50,7 +51,7 @@ LOOKS = {"wear_interval_mm": 2, "picture_interval_mm": 1}
 KILL_TIMEOUT = 120.0  # s, for a chain that takes seconds
 DRIVER = """
 import pickle, sys
-from workflows.cycles import run_chain
+from workflows.engine.cycles import run_chain
 run_chain(pickle.load(open(sys.argv[1], "rb")))
 """
 
@@ -160,7 +161,7 @@ def test_a_cycle_whose_flow_is_lost_is_done_again(looked_into, tmp_path):
     chain = twin(looked_into, tmp_path)
     for cycle in range(3):
         shutil.copytree(state.cycle_folder(looked_into.folder, cycle), state.cycle_folder(chain.folder, cycle))
-    inputs = cycles.inputs_digest(chain)
+    inputs = inputs_digest(chain)
     assert state.finished_cycles(chain.folder, inputs) == 3
     (state.cycle_folder(chain.folder, 2) / "flow.parquet").unlink()
     assert state.finished_cycles(chain.folder, inputs) == 2
@@ -488,7 +489,7 @@ def test_a_damaged_cycle_is_done_again(finished, tmp_path):
     """A restart file that changed after its state was written does not count: its cycle is simulated again."""
     chain = twin(finished, tmp_path)
     copy_cycles(finished, chain)
-    inputs = cycles.inputs_digest(chain)
+    inputs = inputs_digest(chain)
     assert state.finished_cycles(chain.folder, inputs) == wear_cycles(chain) + 1
     with open(state.cycle_folder(chain.folder, 1) / "run.restart", "ab") as restart:
         restart.write(b"damage")
@@ -572,4 +573,4 @@ def test_a_second_driver_waits_for_the_first(finished, tmp_path):
 
 def test_more_ranks_are_the_same_run(finished):
     """Ranks change the time a run takes, not what it is: its cycles stay valid."""
-    assert cycles.inputs_digest(replace(finished, ranks=4)) == cycles.inputs_digest(finished)
+    assert inputs_digest(replace(finished, ranks=4)) == inputs_digest(finished)

@@ -51,6 +51,7 @@ class CircularTester(Case):
     figure_modules = ()
     shared_figures = ("worn_surface", "wear_updates")
     geometry = ("sample", "pattern")
+    consumed = ("wear", "remeshing", "sliding", "tester")
     length = (("sliding", "revolutions"), ("sliding", "cycles"), ("derived", "travel_steps"))
     first_title = "run-in"
     leftovers = (SETUP_LOADS, SETUP_BED)

@@ -47,6 +47,7 @@ class PinOnDisc(Case):
     checks = PIN_CHECKS
     run_templates = ("pin_set_down", "pin_on_disc")
     figure_modules = ()
+    consumed = ("wear", "remeshing", "sliding", "pin", "disc")
     run_rules = ("surface_mesh", "worn_run", "track_tables")
     geometry = ("disc",)
     first_title = "setting the pin down"

@@ -20,6 +20,7 @@ from workflows.config.layers import ConfigError
 from workflows.engine import cycles, state
 from workflows.engine.case import find_case
 from workflows.engine.chain import MOST_DECKS, Chain, deck_text, write_decks
+from workflows.engine.inputs import inputs_digest
 from workflows.engine.progress import Progress
 from workflows.engine.schedule import known_spans
 
@@ -312,7 +313,7 @@ def test_a_cycle_in_smaller_time_steps_is_the_same_cycle(finished, tmp_path):
     folder.mkdir()
     shutil.copy(finished.surface, folder / "surface.vtu")
     chain = replace(finished, folder=folder, surface=folder / "surface.vtu")
-    inputs, span = cycles.inputs_digest(chain), known_spans(chain.parameters)[0]
+    inputs, span = inputs_digest(chain), known_spans(chain.parameters)[0]
     for each in (None, replace(span, substeps=2)):
         cycles.run_cycle(chain, each, inputs, Progress(ROW, 1))
     found, expected = (state.read_state(run.folder, 1) for run in (chain, finished))

@@ -23,6 +23,7 @@ from workflows.engine import cycles
 from workflows.engine import decks as deck
 from workflows.engine.chain import write_cycle
 from workflows.engine.derived import window_lengths
+from workflows.engine.inputs import inputs_digest
 from workflows.engine.ledgers import summed_by_solver
 from workflows.engine.progress import Progress
 from workflows.engine.schedule import first_span, known_spans
@@ -239,7 +240,7 @@ def test_the_count_of_particles_adds_up(tmp_path):
 def run(tmp_path_factory):
     """The folder of a run whose bed is in motion, and of its first wear cycle run by hand with many snapshots."""
     chain = tiny_chain(window_study(), tmp_path_factory.mktemp("window"))
-    cycles.run_cycle(chain, None, cycles.inputs_digest(chain), Progress("window", 1))
+    cycles.run_cycle(chain, None, inputs_digest(chain), Progress("window", 1))
     span, folder = first_span(chain.parameters), chain.folder / "by_hand"
     folder.mkdir()
     triangles = write_cycle(chain, span, folder, read_surface(chain.surface))

@@ -1,0 +1,76 @@
+"""What a run is simulated from: what changes its hash, and what does not."""
+
+import copy
+import pickle
+
+import pytest
+
+from tests.support.tiny import tiny_study
+from tests.support.tiny_tester import tiny_tester
+from workflows.engine import decks, inputs
+from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
+
+
+def digest_of(study, run, change=lambda parameters: None):
+    """Hash of a run of a study after a change of its parameters."""
+    parameters = copy.deepcopy(study.run(run).parameters)
+    change(parameters)
+    return run_digest(study.case, parameters, study.beds[study.bed_of(run)])
+
+
+@pytest.fixture(scope="module")
+def study():
+    return tiny_study()
+
+
+def test_a_setting_that_nothing_consumes_simulates_nothing_again(study):
+    """A key of the solver that no deck uses, and what follows from settings for tables only, leave the hash alone."""
+    before = digest_of(study, "R9_convex")
+    assert digest_of(study, "R9_convex", lambda run: run["solver"].update(new_option="none")) == before
+    assert digest_of(study, "R9_convex", lambda run: run["derived"].update(told_in_tables=1.0)) == before
+    assert digest_of(study, "R9_convex", lambda run: run["solver"].update(ranks=2)) == before
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value"),
+    [
+        ("wear", "accelerated_wear_coefficient_per_pa", 1e-9),
+        ("wear", "patch", "physical"),
+        ("remeshing", "largest_aspect", 20.0),
+        ("sliding", "velocity_m_per_s", 0.5),
+        ("derived", "travel_steps", 7),
+    ],
+)
+def test_what_solver_or_wear_step_consume_changes_the_hash(study, section, key, value):
+    """Wear settings, bounds of remeshing, velocity and length each make another run."""
+    assert digest_of(study, "R9_convex", lambda run: run[section].update({key: value})) != digest_of(study, "R9_convex")
+
+
+def test_changed_wear_code_changes_the_hash(study, monkeypatch):
+    """The number that is raised beside the wear code makes every run another one."""
+    before = digest_of(study, "R9_convex")
+    monkeypatch.setattr(inputs, "WEAR_VERSION", inputs.WEAR_VERSION + 1)
+    assert digest_of(study, "R9_convex") != before
+
+
+def test_an_edited_template_changes_the_hash(study, monkeypatch):
+    """A word more in a deck makes another run and another bed."""
+    before = digest_of(study, "R9_convex"), bed_digest(study.case, study.beds["bed_1"])
+    render = decks.render
+    monkeypatch.setattr(decks, "render", lambda *given: render(*given) + "# a word more\n")
+    assert digest_of(study, "R9_convex") != before[0]
+    assert bed_digest(study.case, study.beds["bed_1"]) != before[1]
+
+
+def test_a_longer_run_of_the_tester_is_the_same_one():
+    """Where a case says that its length changes no cycle, the hash leaves it out; the machine's shape is in it."""
+    short, long = (tiny_tester(sliding={"revolutions": revolutions}) for revolutions in (2, 3))
+    assert digest_of(short, "convex") == digest_of(long, "convex")
+    assert digest_of(short, "convex", lambda run: run["tester"].update(incline_rad=0.1)) != digest_of(long, "convex")
+
+
+def test_jobs_compare_the_hash_and_get_the_values():
+    """Snakemake compares what a parameter looks like: the hash alone; a pickled copy has the values."""
+    first, second = SimulatedFrom({"a": 1}, "f" * 64), SimulatedFrom({"a": 1, "new": "none"}, "f" * 64)
+    assert repr(first) == repr(second) == "simulated from ffffffffffff"
+    assert pickle.loads(pickle.dumps(second)) == {"a": 1, "new": "none"}
