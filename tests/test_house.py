@@ -17,25 +17,29 @@ LONGEST_MODULE = 399
 LONGEST_FUNCTION = 60
 LARGEST_FILE_BYTES = 1_000_000
 
-# plots -> analysis -> wear, readers -> mesh: what a layer may import of postproc and meshes. The longest
-# layer that fits a module's name counts; closed forms (reference) stand beside the chain.
+# What a folder may import of this project's own packages; the longest one that a module lies in counts. Closed forms
+# (reference) stand beside the chain. Cases are named by their folder: CASE stands for the case's own one.
+CASE = "workflows.cases.<own>"
 LAYERS = {
     "postproc.mesh": (),
     "postproc.readers": ("postproc.mesh", "postproc.readers"),
     "postproc.wear": ("postproc.mesh", "postproc.wear"),
     "postproc.reference": ("postproc.reference",),
+    "postproc.statistics": ("postproc.statistics",),
     "postproc.inference": ("postproc.inference",),
-    "postproc.analysis": (
-        "postproc.mesh",
-        "postproc.readers",
-        "postproc.wear",
-        "postproc.reference",
-        "postproc.inference",
-        "postproc.analysis",
-    ),
-    "postproc.plots": ("postproc",),
+    "postproc": ("postproc",),
     "meshes": ("postproc.mesh", "meshes"),
+    "workflows.environment": ("workflows.environment",),
+    "workflows.engine": ("postproc", "meshes", "workflows.engine"),
+    "workflows.config": ("postproc", "meshes", "workflows.engine", "workflows.config"),
+    "workflows.forecast": ("postproc", "meshes", "workflows.engine", "workflows.config", "workflows.forecast"),
+    "workflows.report": ("postproc", "meshes", "workflows.engine", "workflows.config", "workflows.report"),
+    "workflows.cases": (
+        *("postproc", "meshes", "workflows.engine", "workflows.config"),
+        *("workflows.forecast", "workflows.report", CASE),
+    ),
 }
+OURS = ("postproc", "meshes", "workflows", "benchmarks", "tests")
 LIBRARY = ("postproc", "meshes")
 WORKFLOW_MODULES = {"snakemake", "jinja2", "workflows"}
 DRAWING_MODULES = {"matplotlib", "PIL", "pyvista", "vtk", "vtkmodules"}
@@ -91,13 +95,39 @@ def inside(name: str, packages) -> bool:
 
 
 def layer_breaches(module: str, source: str) -> list[str]:
-    """Imports of `postproc` or `meshes` that the layer of `module` must not have."""
+    """Imports of this project that the layer of `module` must not have."""
     layer = max((name for name in LAYERS if inside(module, (name,))), key=len, default=None)
     if layer is None:
         return []
+    own = ".".join(module.split(".")[:3])
+    allowed = tuple(own if name == CASE else name for name in LAYERS[layer])
     # `from postproc import wear` names the bare package too, which says nothing by itself
-    names = {name for name in imported(source) if inside(name, LIBRARY) and name not in LIBRARY}
-    return sorted(name for name in names if not inside(name, LAYERS[layer]))
+    names = {name for name in imported(source) if inside(name, OURS) and name not in (*OURS, "workflows.cases")}
+    return sorted(name for name in names if not inside(name, allowed))
+
+
+def circles(graph: dict[str, set[str]]) -> list[str]:
+    """Modules that reach themselves over the imports of others."""
+
+    def reached(start: str) -> set[str]:
+        found: set[str] = set()
+        waiting = list(graph[start])
+        while waiting:
+            name = waiting.pop()
+            if name not in found:
+                found.add(name)
+                waiting.extend(graph.get(name, ()))
+        return found
+
+    return sorted(name for name in graph if name in reached(name))
+
+
+def import_graph(sources: dict[str, str]) -> dict[str, set[str]]:
+    """For each module of {module: source} those of the others that it imports."""
+    return {
+        module: {name for name in imported(source) if name in sources and name != module}
+        for module, source in sources.items()
+    }
 
 
 def function_lengths(source: str) -> dict[str, int]:
@@ -152,16 +182,22 @@ def test_library_knows_nothing_of_the_workflow():
 
 
 def test_imports_go_one_way():
-    """plots -> analysis -> wear, readers -> mesh, never back and never by a relative import."""
-    guilty = {name_of(path): layer_breaches(module_of(path), path.read_text()) for path in library_files()}
+    """postproc <- meshes <- engine <- config <- forecast, report <- cases, by folder; no case imports another one."""
+    files = {name_of(path): path for path in python_files()}
+    guilty = {name: layer_breaches(module_of(path), path.read_text()) for name, path in files.items()}
     assert {name: found for name, found in guilty.items() if found} == {}
-    relative = [name_of(path) for path in library_files() if "" in roots(imported(path.read_text()))]
+    relative = [name for name, path in files.items() if "" in roots(imported(path.read_text()))]
     assert relative == []
 
 
+def test_no_circle():
+    """No module reaches itself over its imports, those inside functions included."""
+    assert circles(import_graph({module_of(path): path.read_text() for path in python_files()})) == []
+
+
 def test_drawing_stays_in_plots():
-    """matplotlib, Pillow, pyvista and vtk are imported below postproc/plots only."""
-    outside = [path for path in python_files() if not inside(module_of(path), ("postproc.plots",))]
+    """matplotlib, Pillow, pyvista and vtk are imported in folders called plots only."""
+    outside = [path for path in python_files() if "plots" not in path.parent.parts]
     guilty = {name_of(path): roots(imported(path.read_text())) & DRAWING_MODULES for path in outside}
     assert {name: found for name, found in guilty.items() if found} == {}
 
@@ -279,8 +315,13 @@ def test_functions_stay_short():
         ("postproc.wear.laws", "from postproc.readers.contacts import Contacts"),
         ("postproc.wear.laws", "def f():\n    from postproc import plots"),
         ("postproc.mesh", "import postproc.wear.laws"),
-        ("postproc.analysis.profile", "from postproc.plots import maps"),
+        ("postproc.statistics.lines", "from postproc.plots import maps"),
+        ("postproc.tables.history", "from meshes.plate import plate"),
         ("meshes.plate", "from postproc.wear import displacement"),
+        ("workflows.engine.cycles", "from workflows.config.design import Study"),
+        ("workflows.engine.chain", "def f():\n    from workflows.cases.pin_on_disc import case"),
+        ("workflows.config.design", "from workflows.cases.pin_on_disc.case import PinOnDisc"),
+        ("workflows.cases.pin_on_disc.case", "from workflows.cases.circular_tester.case import CircularTester"),
     ],
 )
 def test_a_wrong_direction_is_found(module, source):
@@ -292,13 +333,21 @@ def test_a_wrong_direction_is_found(module, source):
     ("module", "source"),
     [
         ("postproc.wear.laws", "from postproc.mesh import areas\nimport numpy"),
-        ("postproc.plots.maps", "from postproc.analysis import profile"),
+        ("postproc.plots.maps", "from postproc.tables import history"),
+        ("workflows.cases.pin_on_disc.case", "from workflows.cases.pin_on_disc.checks import PIN_CHECKS"),
+        ("workflows.cases.pin_on_disc.figures", "from workflows.report.products import figure"),
         ("meshes.plate", "from postproc import mesh"),
     ],
 )
 def test_a_right_direction_is_allowed(module, source):
     """Imports down the chain are no breach."""
     assert layer_breaches(module, source) == []
+
+
+def test_a_circle_is_found():
+    """Modules that import each other over a third one are found, those that lead to them are not."""
+    graph = import_graph({"a": "import b", "b": "def f():\n    from c import x", "c": "import a", "d": "import a"})
+    assert circles(graph) == ["a", "b", "c"]
 
 
 def test_snakemake_is_found_as_object_and_as_module():

@@ -9,11 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from test_snakemake import REPOSITORY, TINY, workspace
 
 from tests.support.slurm import Slurm, missing_programs
 from tests.support.tiny import tiny_chain
 from tests.workflows.engine.test_cycles import solver_processes
+from tests.workflows.test_snakemake import REPOSITORY, TINY, workspace
 from workflows.config.design import load_study
 from workflows.engine import cycles
 from workflows.engine.pieces import PIECES
