@@ -8,13 +8,13 @@ from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
 from workflows.engine.case import find_case
-from workflows.engine.decks import template_sources
 from workflows.config.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
 from workflows.cases.sliding_sample.study import plain_runs
 from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
 from workflows.engine.job import let_jobs_import
 from workflows.forecast.rates import rates_file
 from workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
+from workflows.engine.templates import template_sources
 
 min_version("9.0")
 

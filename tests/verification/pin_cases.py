@@ -16,8 +16,8 @@ from postproc.readers.solver_log import thermo_table
 from postproc.reference.sphere_contact import stable_time_step, touching_reach
 from tests.verification.groove_cases import touching_height
 from tests.verification.ledger_cases import DENSITY, LOAD, MASS, RADIUS, effective_modulus, hertz_overlap, run
-from workflows.engine import decks as deck
 from workflows.engine.derived import rayleigh_time, youngs_modulus
+from workflows.engine.templates import render
 
 TRACK_RADIUS = 0.022  # m; this and what follows: Yan 2022, Table 5.2 and section 5.4.1
 DISC_RADIUS, INNER_RADIUS = 0.024, 0.020  # m; nothing inside the inner one is touched
@@ -31,10 +31,13 @@ BAND = 0.5e-3  # m, half the width of the fine band
 SETTLING_TIME = 0.014  # s; the pin's oscillation of 0.34 ms has lost all but 1e-20 of itself
 
 COLUMNS = range(1, 19)  # of the dump of contacts
+SOLVER = {
+    **{"contact_model": "hertz", "cohesion": "none", "rolling_friction": "cdt", "rolling_radius": "full"},
+    "sampling_interval_steps": 1,
+}
 LEDGERS = {
     "solver": {"ledger_history": "", "ledger_kernels": ""},
     "dumps": {
-        "sampling_interval_steps": 1,
         "contact_columns": " ".join(f"c_wall_contact[{k}]" for k in COLUMNS),
         "contact_format": " ".join("%.12g" for _ in COLUMNS),
     },
@@ -96,7 +99,7 @@ def common(case: PinCase, cycle: int, report_steps: int) -> dict:
     fraction = case.time_step / rayleigh_time(case.pin_radius, case.density, **PIN)
     return {
         "time_step_s": case.time_step,
-        "rayleigh_fraction": round(fraction, 3),
+        "solver": {**SOLVER, "rayleigh_fraction": round(fraction, 3)},
         "largest_time_fraction": 1.25 * fraction,
         "skin_m": 0.2 * case.pin_radius,
         "load_n": case.load,
@@ -107,8 +110,6 @@ def common(case: PinCase, cycle: int, report_steps: int) -> dict:
         "restitution": pair(case.restitution),
         "sliding_friction": pair(case.friction),
         "rolling_friction_coefficient": pair(0.0),
-        "rolling_friction_model": "cdt",
-        "rolling_radius": "full",
         "finnie_coefficient_per_pa": pair(1e-11),
         "cycle": cycle,
         "report_steps": report_steps,
@@ -118,7 +119,7 @@ def common(case: PinCase, cycle: int, report_steps: int) -> dict:
 def write_set_down(folder: Path, case: PinCase, mesh: SurfaceMesh) -> None:
     """Write the deck that sets the pin down at angle 0, from where it just touches, and the surface that it reads."""
     outside = case.track_radius + 4.0 * case.pin_radius
-    text = deck.render(
+    text = render(
         "pin_set_down",
         common(case, 0, 100)
         | {
@@ -149,7 +150,7 @@ def write_arc(
     first_step: steps of all cycles before, since the pin stood at angle 0
     """
     per_step = case.angular_velocity * case.time_step
-    text = deck.render(
+    text = render(
         "pin_on_disc",
         common(case, cycle, report_steps)
         | {

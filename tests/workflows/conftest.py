@@ -61,6 +61,8 @@ wear:
 solver:
   ranks: 1
   rayleigh_fraction: 0.2
+  contact_model: hertz
+  cohesion: none
   rolling_friction: cdt
   rolling_radius: full
   sampling_interval_steps: 20

@@ -10,31 +10,27 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
 from workflows.config.law_settings import check_law, law_settings
 from workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
-from workflows.config.run_checks import CheckedRun, check_run
+from workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_own_words, check_run
+from workflows.config.schema import case_schema, coerce_numbers, joined, leaves, load_schema, without_required
 from workflows.config.units import to_si
 from workflows.config.validation import (
-    case_schema,
     check_alternatives,
     check_calibrated_for,
     check_layer,
     check_material_names,
     check_materials,
-    coerce_numbers,
-    joined,
-    leaves,
-    load_schema,
     locate,
     read_design,
     unknown_name,
-    without_required,
 )
 from workflows.engine.case import DEFAULT_CASE, Case, Run, find_case
+from workflows.engine.chain import sample_decks
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 
@@ -169,7 +165,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         for surface in sources.case.surfaces(head)
     )
     factors = {} if confirms else _factors(sources, designed)
-    return Study(
+    study = Study(
         name=name,
         case=sources.case,
         title=f"{head['title']}: the best designs simulated" if confirms else head["title"],
@@ -186,6 +182,10 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         and bool(factors or confirms or any(PARTICLE_SCALE in row.values for row in rows)),
         confirms=confirms,
     )
+    first = study.runs[0]
+    decks = partial(sample_decks, study.case, first.parameters, study.beds.get(study.bed_of(first.name)))
+    check_own_words(layers, study.case, settings.get("deck", {}), decks)
+    return study
 
 
 def confirmation_design(study: str) -> str:
@@ -362,7 +362,7 @@ def _checked_run(
     columns = row_overrides(row, load_schema(f"cases/{sources.case.name}/design"))
     of_row = with_row(settings, row, columns)
     parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
-    check_run(CheckedRun(layers, of_row, row, parameters, columns), case.checks)
+    check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks))
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)
 

@@ -9,15 +9,8 @@ from typing import Any
 
 from postproc.wear.laws import LAWS
 from workflows.config.layers import ConfigError, KeyPath, Layer, dotted
-from workflows.config.validation import (
-    UNIT_OF_SUFFIX,
-    allowed_text,
-    check_layer,
-    locate,
-    show,
-    unknown_key,
-    without_required,
-)
+from workflows.config.schema import without_required
+from workflows.config.validation import UNIT_OF_SUFFIX, allowed_text, check_layer, locate, show, unknown_key
 
 WEAR, LAW, PARAMETERS = "wear", "law", "parameters"
 

@@ -5,7 +5,7 @@ python -m workflows.config.readme
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,9 @@ from postproc.wear.laws import LAWS, Law, Parameter
 from workflows.config.design import REPOSITORY
 from workflows.config.law_settings import parameters_schema
 from workflows.config.layers import dotted
-from workflows.config.validation import allowed_text, leaves, load_schema, schema_file
+from workflows.config.run_checks import COMMON_CHECKS, Check
+from workflows.config.schema import leaves, load_schema, schema_file
+from workflows.config.validation import allowed_text
 from workflows.engine.case import case_names, find_case
 
 INTRODUCTION = """\
@@ -34,12 +36,7 @@ Every key with a dimension ends in its unit; another unit is refused, and so is 
 written as in YAML 1.2: `6.3e-13`, `1e-9` and `.5` are numbers, `'80'` and `80 mm` are not.
 """
 
-CHECKS = """\
-### Checks that compare values
-
-Done before any solver starts:
-
-"""
+CHECKS_TITLE = "Checks that compare values"
 
 LAWS_HEAD = """\
 ## Wear laws
@@ -100,6 +97,11 @@ def _parameter_row(law: str, parameter: Parameter) -> str:
     return f"| `wear.parameters.{parameter.name}` | {law} | {unit} | {allowed} | {default} | {parameter.meaning} |"
 
 
+def listed(checks: Iterable[Check]) -> str:
+    """Return the Markdown list of checks."""
+    return "Done before any solver starts:\n\n" + "\n".join(f"* {(c.__doc__ or '').splitlines()[0]}" for c in checks)
+
+
 def sections_of_case(name: str) -> Iterator[str]:
     """Yield the sections about one case."""
     yield f"## Case `{name}`\n\n{(find_case(name).__doc__ or '').splitlines()[0]}\n"
@@ -107,14 +109,15 @@ def sections_of_case(name: str) -> Iterator[str]:
         schema = f"cases/{name}/{kind}"
         if schema_file(schema).is_file():
             yield f"### {title}\n\nKeys {where.format(case=name)}.\n\n{table(schema)}\n"
-    yield CHECKS + "\n".join(f"* {(check.__doc__ or '').splitlines()[0]}" for check in find_case(name).checks) + "\n"
+    yield f"### {CHECKS_TITLE}\n\n{listed(find_case(name).checks)}\n"
 
 
 def readme() -> str:
     """Return the whole page."""
     sections = [f"## {title}\n\nKeys {where}.\n\n{table(name)}\n" for title, name, where in TABLES]
     cases = [section for name in case_names() for section in sections_of_case(name)]
-    return "\n".join([INTRODUCTION, sections[0], wear_laws(), *sections[1:], *cases])
+    common = f"## {CHECKS_TITLE}\n\n{listed(COMMON_CHECKS)}\n"
+    return "\n".join([INTRODUCTION, sections[0], wear_laws(), *sections[1:], common, *cases])
 
 
 def main(root: Path = REPOSITORY) -> None:

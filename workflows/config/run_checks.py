@@ -1,7 +1,7 @@
 """Checks of one run that compare several settings, before any solver starts.
 
 Each check returns None, or (key at fault, what is allowed). To add one: a function, listed in the checks of its case;
-those of a sliding sample are here.
+those of every case and those of a sliding sample are here.
 """
 
 from __future__ import annotations
@@ -9,18 +9,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from meshes.pattern import pattern_faults
 from postproc.wear.caps import GRAVITY
 from workflows.config.layers import ConfigError, Layer
-from workflows.config.validation import locate, show
+from workflows.config.schema import load_schema
+from workflows.config.units import to_si
+from workflows.config.validation import allowed_text, locate, show
 from workflows.engine.derived import ADAPTIVE, PERIODIC, THIN_BED_LAYERS, WINDOW, window_lengths
 from workflows.engine.geometry import convex_pattern
 from workflows.engine.schedule import LEAST_CYCLE_STEPS
+from workflows.engine.templates import DeckError, solver_settings, template_variables
+
+if TYPE_CHECKING:
+    from workflows.engine.case import Case
 
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
+CONTACT_MODEL = "_shared/contact_model"  # template
 TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
@@ -77,6 +84,38 @@ def _is_setting(run: CheckedRun, key: str) -> bool:
 
 def millimetres(metres: float) -> str:
     return f"{metres * 1000.0:.6g} mm"
+
+
+def model_properties_given(run: CheckedRun) -> Fault | None:
+    """Every property that the chosen contact, cohesion and rolling models need is given in the solver's section."""
+    known = load_schema("settings")["properties"]["solver"]["properties"]
+    given = to_si(run.settings["solver"])
+    for name, chosen_by in solver_settings(CONTACT_MODEL, words={"solver": given}).items():
+        if name not in given:
+            key = next(key for key in known if name in to_si({key: 0.0}))
+            missing = f"solver.{key} ({allowed_text(known[key])}) is missing"
+            return f"solver.{chosen_by}", f"one whose properties stand beside it: {missing}"
+    return None
+
+
+def check_own_words(layers: tuple[Layer, ...], case: Case, words: Mapping[str, Any], decks: Callable[[], Any]) -> None:
+    """Raise ConfigError for a word of the user's own that no template of a case uses, or that is one of ours.
+
+    decks: renders a deck of each kind
+    """
+    if not words:
+        return
+    bed = (case.bed_template,) if case.bed_template else ()
+    templates = (*case.run_templates, *bed, *case.more_templates)
+    for word in sorted(set(words).difference(*map(template_variables, templates))):
+        raise ConfigError(
+            f"{locate(layers, ('deck', word))}: deck.{word} stands in no template, allowed is a word that one of"
+            f" {', '.join(templates)} uses."
+        )
+    try:
+        decks()
+    except DeckError as fault:
+        raise ConfigError(f"{locate(layers, ('deck',))}: {fault}") from None
 
 
 def sample_in_bed(run: CheckedRun) -> Fault | None:
@@ -279,6 +318,7 @@ def pattern_fits(run: CheckedRun) -> Fault | None:
     return None if fault is None else ("", fault)
 
 
+COMMON_CHECKS: tuple[Check, ...] = (model_properties_given,)
 SLIDING_CHECKS: tuple[Check, ...] = (
     enough_layers,
     bump_in_bed,

@@ -10,13 +10,9 @@ import difflib
 import math
 import re
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-import jsonschema
-
-from postproc.wear.laws import LAWS
 from workflows.config.layers import (
     INTEGER,
     NUMBER,
@@ -26,12 +22,9 @@ from workflows.config.layers import (
     display_name,
     dotted,
     read_csv_rows,
-    read_yaml,
 )
-from workflows.engine.case import case_names
+from workflows.config.schema import Validator, coerce_numbers, leaves, load_schema, subschema
 
-SCHEMA_FOLDER = Path(__file__).parent / "schemas"
-CASES_FOLDER = Path(__file__).parents[1] / "cases"
 CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
 
 # Suffix of a key -> unit as written in the schemas (x-unit); no suffix: "-".
@@ -42,7 +35,10 @@ UNIT_OF_SUFFIX = {
     "n": "N",
     "pa": "Pa",
     "per_pa": "1/Pa",
+    "pa_s": "Pa s",
     "kg_per_m3": "kg/m3",
+    "j_per_m3": "J/m3",
+    "n_per_m": "N/m",
     "m_per_s": "m/s",
     "s": "s",
     "steps": "steps",
@@ -63,59 +59,6 @@ MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
 LONGEST_VALUE = 60  # characters of a value that a message shows
-
-
-def _is_number(_checker: Any, value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _is_integer(_checker: Any, value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool)
-
-
-_TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
-_Validator = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=_TYPES)
-
-
-def schema_file(name: str) -> Path:
-    """Return the file of a schema, which of a case (cases/<case>/<kind>) lies in its folder."""
-    folder = CASES_FOLDER.parent if name.startswith("cases/") else SCHEMA_FOLDER
-    return folder / f"{name}.schema.yaml"
-
-
-@cache
-def load_schema(name: str) -> dict[str, Any]:
-    """Return the schema of that name. Raises jsonschema.SchemaError if it is no schema."""
-    schema = read_yaml(schema_file(name), SCHEMA_FOLDER).values
-    if name == "settings":
-        schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
-    if name == "study":
-        schema["properties"]["case"]["enum"] = case_names()
-    _Validator.check_schema(schema)
-    return schema
-
-
-def joined(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of blocks with the keys of both; a block that both have is joined in turn."""
-    properties = dict(first.get("properties", {}))
-    for key, inner in second["properties"].items():
-        properties[key] = joined(properties[key], inner) if key in properties else inner
-    required = list(dict.fromkeys([*first.get("required", []), *second.get("required", [])]))
-    return {**second, **first, "properties": properties, "required": required}
-
-
-@cache
-def case_schema(case: str, kind: str) -> dict[str, Any]:
-    """Return the schema of a case's settings or studies: what all cases share, and its own."""
-    own = f"cases/{case}/{kind}"
-    return joined(load_schema(kind), load_schema(own)) if schema_file(own).is_file() else load_schema(kind)
-
-
-def without_required(schema: Any) -> Any:
-    """Return the schema with nothing required: for a layer that overrides some keys."""
-    if isinstance(schema, dict):
-        return {key: without_required(value) for key, value in schema.items() if key != "required"}
-    return [without_required(value) for value in schema] if isinstance(schema, list) else schema
 
 
 def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
@@ -140,7 +83,7 @@ def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required
 
 def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     """Yield (key path, sentence without its end) for every value that is wrong and every unknown key."""
-    for error in _Validator(schema).iter_errors(values):
+    for error in Validator(schema).iter_errors(values):
         path = tuple(error.absolute_path)
         if error.validator == "additionalProperties":
             for key in [key for key in error.instance if key not in error.schema.get("properties", {})]:
@@ -151,22 +94,12 @@ def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[Ke
 
 def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
     """Yield (path of the block, sentence without its end) for every block in which a key is missing."""
-    for error in _Validator(schema).iter_errors(values):
+    for error in Validator(schema).iter_errors(values):
         if error.validator == "required":
             path = tuple(error.absolute_path)
             key = next(key for key in error.validator_value if key not in error.instance)
             allowed = allowed_text(error.schema["properties"][key])
             yield path, f"{dotted((*path, key))} is missing, allowed is {allowed}"
-
-
-def _subschema(schema: dict[str, Any], path: KeyPath) -> dict[str, Any] | None:
-    """Return the schema of the key at a path, None where the schema does not know it."""
-    for key in path:
-        inner = schema.get("properties", {}).get(key, schema.get("additionalProperties"))
-        schema = schema.get("items") if isinstance(key, int) else inner
-        if not isinstance(schema, dict):
-            return None
-    return schema
 
 
 def allowed_text(schema: dict[str, Any]) -> str:
@@ -245,7 +178,7 @@ def _split_unknown(key: str) -> tuple[str, str]:
 def unknown_key(path: KeyPath, schema: dict[str, Any], found: str = "", noun: str = "key") -> str:
     """Return the fault of an unknown key: another unit of a known key, or the nearest known key."""
     parent, key = path[:-1], str(path[-1])
-    known = (_subschema(schema, parent) or {}).get("properties", {})
+    known = (subschema(schema, parent) or {}).get("properties", {})
     stem, unit = _split_unknown(key)
     found_key = f"(found {key}: {found})" if found else f"(found {key})"
     for name, inner in known.items():
@@ -266,32 +199,6 @@ def _nearest(path: KeyPath, known: dict[str, Any], schema: dict[str, Any]) -> st
     near += [full for full, leaf in everywhere.items() if leaf == key]
     near += difflib.get_close_matches(dotted(path), everywhere, n=1, cutoff=0.7)
     return f"the nearest is {near[0]}" if near else f"allowed are {', '.join(known)}"
-
-
-def leaves(schema: dict[str, Any], path: KeyPath = ()) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
-    """Yield (key path, schema) of every key that holds a value; `<name>` stands for a free name."""
-    for key, inner in _children(schema):
-        if "x-allowed" not in inner and any(True for _ in _children(inner)):
-            yield from leaves(inner, (*path, key))
-        else:
-            yield (*path, key), inner
-
-
-def _children(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    yield from schema.get("properties", {}).items()
-    if isinstance(schema.get("additionalProperties"), dict):
-        yield "<name>", schema["additionalProperties"]
-
-
-def coerce_numbers(values: Any, schema: dict[str, Any] | None) -> Any:
-    """Return the values with every `number` as float, so that 2 and 2.0 give the same parameters."""
-    if schema is None:
-        return values
-    if isinstance(values, dict):
-        return {key: coerce_numbers(inner, _subschema(schema, (key,))) for key, inner in values.items()}
-    if isinstance(values, list):
-        return [coerce_numbers(inner, schema.get("items")) for inner in values]
-    return float(values) if schema.get("type") == "number" else values
 
 
 def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:

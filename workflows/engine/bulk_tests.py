@@ -8,7 +8,7 @@ The parameters of a test, all SI:
     shaking    of the container: amplitude_m, frequency_rad_per_s, duration_s, axis (x, y or z)
     rest       energy_fraction, check_interval_s, calm_checks, longest_s: when all counts as being at rest
     particle, wall_material, floor_material    as in Run.parameters; the draw-down test's floor_material is its front's
-    solver     rayleigh_fraction, rolling_friction, rolling_radius
+    solver, deck    those of the run, or what the test's template uses of them
     seed       of the packing
 """
 
@@ -26,6 +26,7 @@ from postproc.wear.caps import GRAVITY
 from workflows.engine import decks as deck
 from workflows.engine.derived import PERIODIC, WALLS, derived_materials, rayleigh_time
 from workflows.engine.solver import DECK
+from workflows.engine.templates import render
 
 MARGIN_DIAMETERS = 2.0  # -, room between the boxes and the domain, in largest diameters
 PIT_DIAMETERS = 10.0  # -, domain below the floor of a shear box, where what flows out is taken out
@@ -45,7 +46,7 @@ FILL_EXCESS = 1.1  # -, poured over levelled volume: loose packings of rough par
 
 def deck_text(test: Mapping[str, Any]) -> str:
     """Return the deck of a test. Raises DeckError."""
-    return deck.render(test["kind"], DECKS[test["kind"]](test))
+    return render(test["kind"], DECKS[test["kind"]](test))
 
 
 def write_test(test: Mapping[str, Any], folder: Path) -> None:
@@ -170,10 +171,10 @@ def _half_domain(test: Mapping[str, Any]) -> float:
 
 def _filled_box(test: Mapping[str, Any]) -> dict[str, Any]:
     """Return what both decks need: materials, particles, filling, and when all is at rest."""
-    particle, solver, box, rest = (test[key] for key in ("particle", "solver", "box", "rest"))
+    particle, box, rest = (test[key] for key in ("particle", "box", "rest"))
     step = time_step(test)
-    materials = {**derived_materials(bulk_materials(test)), **solver}
-    integration = deck.integration(solver, step, particle, 1)
+    materials = derived_materials(bulk_materials(test))
+    integration = deck.integration(test, step, particle, 1)
     integration.pop("report_steps")  # the looks for rest are the lines of progress
     gap = max(particle["diameters_m"]) * deck.FILL_GAP_DIAMETERS
     return {

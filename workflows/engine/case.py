@@ -19,6 +19,7 @@ import numpy as np
 
 from postproc.mesh import SurfaceMesh
 from postproc.wear.caps import edge_limit
+from workflows.engine.schedule import Span, first_span
 from workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
@@ -64,8 +65,8 @@ class Case:
     name: of its folder in `workflows/cases`, and in studies
     material_keys: (section, key, kind in materials.yaml) of the settings that name a material
     checks: of a run, see run_checks.py
-    run_templates: names of the templates of a run's decks
-    bed_template: that of the deck of a bed
+    run_templates: names of the templates of a run's decks; bed_template: of the deck of a bed; more_templates: of
+        simulations beside the runs
     alternatives: two settings of which exactly one is given; the stronger layer's replaces the other
     geometry: sections of a run's parameters that its pristine surface depends on
     consumed: sections of a run's parameters that the driver reads besides decks, surface and bed, see inputs.py
@@ -84,6 +85,7 @@ class Case:
     checks: tuple[Callable[..., Any], ...] = ()
     run_templates: tuple[str, ...] = ()
     bed_template = ""
+    more_templates: tuple[str, ...] = ()
     alternatives: tuple[tuple[str, str], ...] = ()
     geometry: tuple[str, ...] = ()
     consumed: tuple[str, ...] = ("wear", "remeshing", "sliding")
@@ -135,6 +137,10 @@ class Case:
         restart: path of the restart file it begins with, from its folder; "" where cycle 0 begins with none
         """
         raise NotImplementedError
+
+    def sample_decks(self, parameters: Parameters, bed: Parameters | None) -> list[str]:
+        """Return the decks of cycle 0 and of the first wear cycle as they are wherever the run's folder is."""
+        return [self.deck(parameters, bed, span, restart="") for span in (None, first_span(parameters))]
 
     def piece_ends(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> list[int]:
         """Return the solver's steps in a cycle at which it ends and is started anew; the last one ends the cycle."""

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from postproc.mesh import SurfaceMesh, read_surface, write_stl
-from workflows.engine import decks, state
+from workflows.engine import state
 from workflows.engine.case import Case
 from workflows.engine.schedule import Span, cycle_title, first_span, known_spans, next_span
 from workflows.engine.solver import DECK, LAUNCHER
+from workflows.engine.templates import render
 
 MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
 SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
@@ -102,11 +103,21 @@ def title(chain: Chain, cycle: int) -> str:
 # ---------------------------------------------------------------- decks by hand
 
 
+def bed_deck_text(case: Case, bed: Mapping[str, Any]) -> str:
+    """Return the deck of a bed. Raises DeckError."""
+    return render(case.bed_template, case.bed_deck(bed))
+
+
+def sample_decks(case: Case, parameters: Mapping[str, Any], bed: Mapping[str, Any] | None) -> list[str]:
+    """Return a deck of each kind of a run, its bed's included if it has one. Raises DeckError."""
+    return [*case.sample_decks(parameters, bed), *([bed_deck_text(case, bed)] if bed else [])]
+
+
 def write_bed(case: Case, bed: Mapping[str, Any], folder: Path) -> None:
     """Write the deck of a bed, and what it reads, into its folder, where it runs by hand."""
     folder.mkdir(parents=True, exist_ok=True)
     case.write_bed_files(bed, folder)
-    (folder / DECK).write_text(decks.render(case.bed_template, case.bed_deck(bed)))
+    (folder / DECK).write_text(bed_deck_text(case, bed))
 
 
 def write_decks(chain: Chain) -> None:

@@ -1,20 +1,14 @@
-"""Render the templates of templates/ into decks that run by hand.
+"""Parameters of the decks of beds and sliding samples, and what all decks share; templates.py renders them.
 
-A deck's parameters are SI numbers and words; what a template does not use, and what it uses but is not given, is an
-error. Everything that has to be computed is computed here, so that templates only substitute.
+Everything that has to be computed is computed here, so that templates only substitute.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
-
-import jinja2
-import jinja2.meta
 
 from postproc.readers.cycle_folders import PACKING
 from postproc.wear.caps import GRAVITY
@@ -22,8 +16,8 @@ from workflows.cases.sliding_sample.window import window
 from workflows.engine.derived import WALLS, WINDOW, neighbour_skin
 from workflows.engine.schedule import Span
 from workflows.engine.sections import run_kernels
+from workflows.engine.templates import SOLVER, whole_sections
 
-TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
 FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere
 FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
@@ -39,98 +33,6 @@ SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
 STATE_COLUMNS = "id x y z vx vy vz omegax omegay omegaz radius"  # of a dump of particles at rest
 ID_COLUMNS = range(13, 16)  # of these, counted from 1: mesh, triangle, particle
 STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, before the solver's check stops the run
-
-
-class DeckError(ValueError):
-    """A template and its parameters do not fit; the message names the template and the parameter."""
-
-
-# ---------------------------------------------------------------- rendering
-
-
-@cache
-def _environment(folder: Path) -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folder),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.filters["table"] = pair_table
-    return environment
-
-
-def pair_table(rows: Sequence[Sequence[float]]) -> str:
-    """Return a square table as the continued lines of a LIGGGHTS command."""
-    return " &\n".join("     " + " ".join(f"{value:.9g}" for value in row) for row in rows)
-
-
-def _trees(template: str, folder: Path, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Template]:
-    """Return {file name: syntax tree} of a template and its partials, without branches that `words` do not take.
-
-    That is decided for branches `{% if name == "word" %}` whose name `words` has; all others count as taken.
-    """
-    environment = _environment(folder)
-    trees: dict[str, jinja2.nodes.Template] = {}
-    names = [f"{template}.in.j2"]
-    for name in names:
-        try:
-            source = environment.loader.get_source(environment, name)[0]
-        except jinja2.TemplateNotFound as missing:
-            raise DeckError(f"templates/{missing.name}: no such template.") from missing
-        trees[name] = environment.parse(source)
-        for branch in trees[name].find_all(jinja2.nodes.If):
-            _prune(branch, words)
-        found = jinja2.meta.find_referenced_templates(trees[name])
-        names.extend(part for part in found if part and part not in names)
-    return trees
-
-
-def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> None:
-    """Empty the part of a branch that `words` do not take."""
-    test = branch.test
-    if not (isinstance(test, jinja2.nodes.Compare) and isinstance(test.expr, jinja2.nodes.Name)):
-        return
-    if len(test.ops) != 1 or test.ops[0].op != "eq" or not isinstance(test.ops[0].expr, jinja2.nodes.Const):
-        return
-    if test.expr.name in words:
-        taken = words[test.expr.name] == test.ops[0].expr.value
-        branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
-
-
-@cache  # a study asks for the same few templates once per run
-def template_parts(template: str, folder: Path = TEMPLATES) -> tuple[str, ...]:
-    """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
-    return tuple(_trees(template, folder, {}))
-
-
-def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
-    """Return {file name: text} of a template and its partials: what a deck depends on besides its parameters."""
-    return {name: (folder / name).read_text() for name in template_parts(template, folder)}
-
-
-def template_variables(
-    template: str, folder: Path = TEMPLATES, words: Mapping[str, Any] = MappingProxyType({})
-) -> set[str]:
-    """Return the names of all parameters that a template and its partials use, in the branches that `words` take."""
-    return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, folder, words).values()))
-
-
-def render(template: str, parameters: Mapping[str, Any], folder: Path = TEMPLATES) -> str:
-    """Return the deck of a template, e.g. "settled_bed". Raises DeckError for missing and for unused parameters."""
-    wanted = template_variables(template, folder, parameters)
-    for names, fault in (
-        (wanted - set(parameters), "is not given"),
-        (set(parameters) - wanted, "is never used"),
-    ):
-        if names:
-            raise DeckError(f"templates/{template}.in.j2: parameter {', '.join(sorted(names))} {fault}.")
-    try:
-        return _environment(folder).get_template(f"{template}.in.j2").render(parameters)
-    except jinja2.TemplateError as fault:
-        raise DeckError(f"templates/{template}.in.j2: {fault}.") from fault
-
 
 # ---------------------------------------------------------------- parameters of the three decks
 
@@ -182,7 +84,7 @@ def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str
     lowering = falling_steps(bed, step, LOWERING_FREE_FALLS)
     packing = {"bed_packing_file": str(Path(bed_restart).parent / PACKING)} if bed["ends"] == WINDOW else {}
     return {
-        **integration(run["solver"], step, run["particle"], max(lowering, derived["run_in_steps"])),
+        **integration(run, step, run["particle"], max(lowering, derived["run_in_steps"])),
         **_sliding(run, bed, cycle=0, steps_before=0),
         "begin": bed_restart,
         "lowering_steps": lowering,
@@ -202,7 +104,7 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
     derived = run["derived"]
     look = wear_interval_steps(run, span) if run["ledger"] == "solver" else 0
     return {
-        **integration(run["solver"], derived["time_step_s"], run["particle"], span.steps),
+        **integration(run, derived["time_step_s"], run["particle"], span.steps),
         **_sliding(run, bed, span.cycle, derived["run_in_steps"] + span.first_step),
         "begin": run_restart,
         "end_step": span.steps,
@@ -215,12 +117,11 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
 
 def bed_contacts(run: Mapping[str, Any], restart: str) -> dict[str, Any]:
     """Return the parameters of the deck that counts contacts in a restart file; arguments as for `lowered_bed`."""
-    step, convention = run["derived"]["time_step_s"], ("rolling_radius", "rolling_friction")
-    materials = {**run["derived"], **{key: run["solver"][key] for key in convention}}
-    needed = integration(run["solver"], step, run["particle"], 1)
     return {
-        **{key: needed[key] for key in ("time_step_s", "rayleigh_fraction", "skin_m")},
-        **material_tables(run["particle"], run["sample_material"], run["floor_material"], materials),
+        **whole_sections(run),
+        "time_step_s": run["derived"]["time_step_s"],
+        "skin_m": neighbour_skin(run["particle"]),
+        **material_tables(run["particle"], run["sample_material"], run["floor_material"], run["derived"]),
         "ends": run["bed"]["ends"],
         "begin": restart,
         "state_columns": f"{STATE_COLUMNS} c_contacts",
@@ -256,7 +157,6 @@ def _sampled_contacts(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
 
     columns = range(1, CONTACT_COLUMNS + 1)
     return {
-        "sampling_interval_steps": run["solver"]["sampling_interval_steps"],
         "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in columns),
         "contact_format": " ".join("%.0f" if column in ID_COLUMNS else "%g" for column in columns),
     }
@@ -291,13 +191,16 @@ def primes(above: int, count: int) -> list[int]:
 
 
 def integration(
-    solver: Mapping[str, Any], time_step: float, particle: Mapping[str, Any], longest_run: int
+    parameters: Mapping[str, Any], time_step: float, particle: Mapping[str, Any], longest_run: int
 ) -> dict[str, Any]:
-    """Return what every deck needs to integrate; `solver` has rayleigh_fraction (-), `longest_run` is in steps."""
+    """Return what every deck needs to integrate, and the `whole_sections` of its run, bed or test.
+
+    time_step: s; longest_run: time steps
+    """
     return {
+        **whole_sections(parameters),
         "time_step_s": time_step,
-        "rayleigh_fraction": solver["rayleigh_fraction"],
-        "largest_time_fraction": STEP_CHECK_MARGIN * solver["rayleigh_fraction"],
+        "largest_time_fraction": STEP_CHECK_MARGIN * parameters[SOLVER]["rayleigh_fraction"],
         "skin_m": neighbour_skin(particle),
         "gravity_m_per_s2": GRAVITY,
         "report_steps": max(longest_run // REPORTS_PER_RUN, 1),
@@ -345,8 +248,6 @@ def material_tables(
         "restitution": _pairs(contact["restitution"] for contact in contacts),
         "sliding_friction": _pairs(contact["sliding_friction"] for contact in contacts),
         "rolling_friction_coefficient": _pairs(rolling[key] for key in keys),
-        "rolling_radius": derived["rolling_radius"],
-        "rolling_friction_model": derived["rolling_friction"],
     }
 
 
@@ -359,11 +260,8 @@ def _pairs(with_particle: Iterable[float]) -> list[list[float]]:
 def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, steps_before: int) -> dict[str, Any]:
     """Return what both sliding decks need: materials, where the bed's ends are, the sample's fix id."""
     coefficient = run["wear"]["accelerated_wear_coefficient_per_pa"]
-    convention = {key: run["solver"][key] for key in ("rolling_radius", "rolling_friction")}
     return {
-        **material_tables(
-            run["particle"], run["sample_material"], run["floor_material"], {**run["derived"], **convention}
-        ),
+        **material_tables(run["particle"], run["sample_material"], run["floor_material"], run["derived"]),
         "finnie_coefficient_per_pa": _pairs([coefficient] * 3),
         "velocity_m_per_s": run["sliding"]["velocity_m_per_s"],
         "cycle": cycle,

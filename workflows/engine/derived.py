@@ -52,7 +52,7 @@ def last_slope(sample: Mapping[str, Any]) -> float:
 def rolling_coefficient_for_solver(coefficient: float, rolling_radius: str, contact: str) -> float:
     """Return the rolling friction coefficient (-) that makes LIGGGHTS apply the torque meant.
 
-    LIGGGHTS' cdt and epsd2 limit the torque to mu_r F_n R_reduced, R_reduced = R1 R2 / (R1 + R2): half the
+    LIGGGHTS' rolling models limit the torque to mu_r F_n R_reduced, R_reduced = R1 R2 / (R1 + R2): half the
     radius for two equal spheres, the whole radius against a wall. A coefficient calibrated with the full
     radius (`rolling_radius` full: M_r = mu_r R F_n, Yan 2022, Eq 3.3) is therefore doubled between particles
     and unchanged at walls. For unequal spheres the factor is a compromise (radii 1.2 to 0.8: the torque is

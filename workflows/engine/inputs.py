@@ -60,7 +60,7 @@ def run_digest(case: Case, parameters: Parameters, bed: Parameters | None) -> st
             for section, values in sections.items()
         },
     }
-    return state.digest(consumed, *(case.deck(parameters, bed, span, restart="") for span in spans))
+    return state.digest(consumed, *case.sample_decks(parameters, bed))
 
 
 def inputs_digest(chain: Chain) -> str:

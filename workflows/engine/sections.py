@@ -30,10 +30,14 @@ def run_kernels(run: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     return law_kernels(run["wear"]["law"], law_parameters(run))
 
 
-def solver_section(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the section, with the stride of sampled contacts only where contacts are sampled."""
+def template_sections(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the sections that reach templates whole: `solver`, and `deck` with the user's own words, if any.
+
+    The stride of sampled contacts is there only where contacts are sampled.
+    """
     sampled = settings["ledger"] == "dumps"
-    return {k: v for k, v in settings["solver"].items() if sampled or k != "sampling_interval_steps"}
+    solver = {k: v for k, v in settings["solver"].items() if sampled or k != "sampling_interval_steps"}
+    return {"solver": solver, "deck": settings.get("deck", {})}
 
 
 def particle_section(name: str, materials: Mapping[str, Any], scale: float) -> dict[str, Any]:

@@ -20,6 +20,9 @@ UNDEFINED = "\u2013"  # shown for numbers that are not there
 UNITS = (
     ("_per_pa", "1/Pa"),
     ("_kg_per_m3", "kg/m³"),
+    ("_j_per_m3", "J/m³"),
+    ("_n_per_m", "N/m"),
+    ("_pa_s", "Pa s"),
     ("_m_per_s", "m/s"),
     ("_fraction", NO_UNIT),
     ("_steps", "steps"),

@@ -13,7 +13,8 @@ import pytest
 from postproc.statistics.factors import Factor, coded_table, factors_of
 from postproc.statistics.screening_design import coded_design, design_rows, design_text, main, parse_factor
 from tests import REPOSITORY
-from workflows.config.validation import load_schema, read_design
+from workflows.config.schema import load_schema
+from workflows.config.validation import read_design
 
 COUNTS = range(4, 13)
 ROUNDING = 1e-12  # of logarithms of levels that double

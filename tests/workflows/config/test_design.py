@@ -422,6 +422,7 @@ def test_velocity_and_pattern_do_not_make_another_bed(config):
         {"solver": {"rolling_friction": "epsd2"}},
         {"solver": {"rolling_radius": "reduced"}},
         {"solver": {"rayleigh_fraction": 0.1}},
+        {"solver": {"contact_model": "hooke", "characteristic_velocity_m_per_s": 1.0}},
     ],
 )
 def test_what_settles_differently_is_another_bed(config, overrides):
@@ -454,6 +455,8 @@ def test_another_contact_or_distribution_is_another_bed(config, old, new):
         {"wear": {"acceleration": 3}},
         {"sliding": {"cycles": 5}},
         {"solver": {"picture_interval_mm": 7}},
+        {"solver": {"ranks": 2}},
+        {"solver": {"characteristic_velocity_m_per_s": 2.0}},
     ],
 )
 def test_what_does_not_touch_the_bed_keeps_it(config, overrides):

@@ -10,7 +10,8 @@ from postproc.wear.laws import LAWS
 from workflows.config.design import load_study
 from workflows.config.layers import ConfigError, command_line_layer, dotted, merge, read_yaml
 from workflows.config.readme import readme
-from workflows.config.validation import ALL_SUFFIXES, SCHEMA_FOLDER, UNIT_OF_SUFFIX, check_layer, leaves, load_schema
+from workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
+from workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
 from workflows.engine.case import case_names, find_case
 from workflows.engine.decks import LEDGERS
 from workflows.engine.ledgers import PRODUCERS
@@ -87,8 +88,8 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, rows, materials, ledger, wear, remeshing, solver, sample, pattern, bed, sliding,"
-        " packing, design.",
+        " allowed are particle_scale, rows, materials, ledger, wear, remeshing, solver, deck, sample, pattern, bed,"
+        " sliding, packing, design.",
     ),
     (
         OWN_SETTINGS,
@@ -249,14 +250,15 @@ BAD_VALUES = [
     (
         SETTINGS,
         "rolling_friction: cdt",
-        "rolling_friction: epsd",
-        "config/default.yaml, line 15: solver.rolling_friction is 'epsd', allowed is one of cdt, epsd2.",
+        "rolling_friction: epsd4",
+        "config/default.yaml, line 17: solver.rolling_friction is 'epsd4', allowed is one of none, cdt, epsd, epsd2,"
+        " epsd3.",
     ),
     (
         SETTINGS,
         "ledger: solver",
         "ledger: dump",
-        "config/default.yaml, line 18: ledger is 'dump', allowed is one of solver, dumps.",
+        "config/default.yaml, line 20: ledger is 'dump', allowed is one of solver, dumps.",
     ),
     (
         SETTINGS,
@@ -474,7 +476,7 @@ BAD_COMBINATIONS = [
     (
         {"title": "x"},
         "command line: title ('x') is no known key, allowed are fidelity, particle_scale, rows, materials, ledger,"
-        " wear, remeshing, solver, sample, pattern, bed, sliding, packing.",
+        " wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
     ),
 ]
 

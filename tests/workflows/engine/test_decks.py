@@ -1,18 +1,22 @@
 """Templates and their parameters: complete, documented, and one golden deck."""
 
 import re
+import shutil
 
 import pytest
 
 from tests import DATA
 from tests.support.law_cases import long_slip_registered, wear_settings
 from tests.support.tiny import tiny_study
-from workflows.config.design import list_studies, load_study
+from workflows.config.design import ConfigError, list_studies, load_study
 from workflows.engine import decks as deck
+from workflows.engine import templates
+from workflows.engine.chain import bed_deck_text
 from workflows.engine.schedule import known_spans
+from workflows.engine.templates import TEMPLATES, DeckError, render, template_sources, template_variables
 
-TEMPLATES = sorted(path.name.removesuffix(".in.j2") for path in deck.TEMPLATES.glob("*.in.j2"))
-README = (deck.TEMPLATES / "README.md").read_text()
+NAMES = sorted(path.name.removesuffix(".in.j2") for path in TEMPLATES.glob("*.in.j2"))
+README = (TEMPLATES / "README.md").read_text()
 RESET = 'if "${begin_step} == 0" then "reset_timestep 0"'  # a later piece goes on counting
 GOLDEN = DATA / "golden_sliding_sample.in"
 
@@ -26,7 +30,7 @@ def run_and_bed(study, name="R9_convex"):
 
 def test_every_variable_of_the_templates_is_in_their_readme():
     """The table has each variable of the templates once, and no other."""
-    used = set().union(*(deck.template_variables(name) for name in TEMPLATES))
+    used = set().union(*(template_variables(name) for name in NAMES))
     listed = re.findall(r"^\| `(\w+)` \|", README.split("## Variables")[1], re.MULTILINE)
     assert sorted(listed) == sorted(used)
 
@@ -41,12 +45,12 @@ def test_every_deck_of_every_sliding_study_renders(name, rolling_friction, ledge
     """No deck has an open word, a missing or an unused parameter, or a tab."""
     changes = {"solver": {"rolling_friction": rolling_friction}, "ledger": ledger, "bed": {"ends": ends}}
     study = load_study(name, overrides=changes)
-    texts = [deck.render("settled_bed", deck.settled_bed(bed)) for bed in study.beds.values()]
+    texts = [render("settled_bed", deck.settled_bed(bed)) for bed in study.beds.values()]
     for run in study.runs:
         parameters, bed = run_and_bed(study, run.name)
-        texts.append(deck.render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")))
+        texts.append(render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")))
         texts.append(
-            deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart"))
+            render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart"))
         )
     for text in texts:
         assert f"rolling_friction {rolling_friction}" in text
@@ -56,7 +60,7 @@ def test_every_deck_of_every_sliding_study_renders(name, rolling_friction, ledge
 def test_golden_deck():
     """The deck of the tiny chain's second cycle, word for word; a change of it is a decision."""
     parameters, bed = run_and_bed(tiny_study())
-    text = deck.render(
+    text = render(
         "sliding_sample",
         deck.sliding_sample(parameters, bed, cycle(parameters, 2), "../cycle_001/run.restart"),
     )
@@ -71,9 +75,9 @@ def test_ranks_share_a_bed_as_its_geometry_wants(ends, grid):
     study = tiny_study(bed={"ends": ends, "ahead_mm": 60, "exchange_mm": 60})
     parameters, bed = run_and_bed(study)
     texts = [
-        deck.render("settled_bed", deck.settled_bed(bed)),
-        deck.render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
-        deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
+        render("settled_bed", deck.settled_bed(bed)),
+        render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
+        render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
     ]
     for text in texts:
         assert re.findall(r"^processors +(\S+ \S+ \S+)", text, re.MULTILINE) == [grid]
@@ -86,7 +90,7 @@ def cycle(parameters, number):
 
 def cycle_deck(**changes):
     parameters, bed = run_and_bed(tiny_study(**changes))
-    return deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 2), "run.restart"))
+    return render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 2), "run.restart"))
 
 
 def position(text, start):
@@ -139,10 +143,10 @@ def test_the_producer_adds_its_own_parameters_only():
     """A parameter of the other producer is one that is never used."""
     parameters, bed = run_and_bed(tiny_study())
     given = deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")
-    with pytest.raises(deck.DeckError, match=r"parameter contact_format is never used"):
-        deck.render("sliding_sample", {**given, "contact_format": "%g"})
-    with pytest.raises(deck.DeckError, match=r"parameter ledger_kernels is not given"):
-        deck.render("sliding_sample", {key: value for key, value in given.items() if key != "ledger_kernels"})
+    with pytest.raises(DeckError, match=r"parameter contact_format is never used"):
+        render("sliding_sample", {**given, "contact_format": "%g"})
+    with pytest.raises(DeckError, match=r"parameter ledger_kernels is not given"):
+        render("sliding_sample", {key: value for key, value in given.items() if key != "ledger_kernels"})
 
 
 @pytest.mark.parametrize(
@@ -152,6 +156,8 @@ def test_the_producer_adds_its_own_parameters_only():
         ({"kind": "one"}, {"kind", "often", "a", "c"}),
         ({"kind": "two"}, {"kind", "often", "b", "c"}),
         ({"kind": "one", "often": 3}, {"kind", "often", "a", "c"}),
+        ({"solver": {"model": "two"}}, {"kind", "often", "a", "b", "c"}),
+        ({"solver": {"model": "one"}}, {"kind", "often", "a", "b", "c", "d"}),
     ],
 )
 def test_a_branch_not_taken_asks_for_nothing(tmp_path, words, used):
@@ -159,29 +165,31 @@ def test_a_branch_not_taken_asks_for_nothing(tmp_path, words, used):
     (tmp_path / "case.in.j2").write_text(
         '{% if kind == "one" %}{% include "part.in.j2" %}{% else %}{{ b }}{% endif %}\n'
         "{% if often > 2 %}{{ c }}{% endif %}"
+        '{% if solver.model in ("one", "three") %}{{ d }}{% endif %}'
     )
     (tmp_path / "part.in.j2").write_text("{{ a }}")
-    assert deck.template_variables("case", tmp_path, words) == used
+    words = {"solver": {"model": "two"}} | words
+    assert template_variables("case", tmp_path, words) == used | {"solver"}
 
 
 def test_missing_and_unused_parameters_are_errors():
     """The message names template and parameter."""
     given = deck.settled_bed(run_and_bed(tiny_study())[1])
-    with pytest.raises(deck.DeckError, match=r"templates/settled_bed\.in\.j2: parameter skin_m is not given"):
-        deck.render("settled_bed", {key: value for key, value in given.items() if key != "skin_m"})
-    with pytest.raises(deck.DeckError, match=r"templates/settled_bed\.in\.j2: parameter colour is never used"):
-        deck.render("settled_bed", {**given, "colour": "red"})
+    with pytest.raises(DeckError, match=r"templates/settled_bed\.in\.j2: parameter skin_m is not given"):
+        render("settled_bed", {key: value for key, value in given.items() if key != "skin_m"})
+    with pytest.raises(DeckError, match=r"templates/settled_bed\.in\.j2: parameter colour is never used"):
+        render("settled_bed", {**given, "colour": "red"})
 
 
 def test_decks_begin_with_their_case_and_keep_the_order_of_blocks():
     """Header with source, axes and files; then the blocks in one order in every deck."""
     order = ["domain", "materials", "contact model", "geometry", "particles", "integration", "output", "run"]
-    for name in TEMPLATES:
-        text = "".join(deck.template_sources(name)[part] for part in [f"{name}.in.j2"])
+    for name in NAMES:
+        text = "".join(template_sources(name)[part] for part in [f"{name}.in.j2"])
         for word in ("Runs by hand:", "Axes:", "Source of the case:", "Writes:"):
             assert word in text.split("\n\n")[0]
         blocks = {found: index for index, found in enumerate(order)}
-        whole = re.sub(r'\{% include "(.*?)" %\}', lambda found, name=name: deck.template_sources(name)[found[1]], text)
+        whole = re.sub(r'\{% include "(.*?)" %\}', lambda found, name=name: template_sources(name)[found[1]], text)
         titles = [title for title in re.findall(r"^# --- ([a-z ]+?)(?::.*)? -", whole, re.MULTILINE) if title in blocks]
         assert [blocks[title] for title in titles] == sorted(blocks[title] for title in titles)
         assert {"domain", "materials", "contact model", "geometry", "integration", "output", "run"} <= set(titles)
@@ -216,9 +224,9 @@ def test_a_periodic_bed_has_no_ends():
     parameters, bed = run_and_bed(tiny_study(bed={"ends": "periodic", "ahead_mm": 80}))
     settled = deck.settled_bed(bed)
     texts = [
-        deck.render("settled_bed", settled),
-        deck.render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
-        deck.render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
+        render("settled_bed", settled),
+        render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
+        render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
     ]
     for text in texts:
         assert "boundary        p p fm" in text
@@ -227,3 +235,91 @@ def test_a_periodic_bed_has_no_ends():
         assert "shear y ${velocity}" in text and "v_bed_pace" in text
     assert settled["domain_end_m"] - settled["domain_start_m"] == pytest.approx(0.02 + 0.04 + 0.08, rel=1e-12)
     assert settled["fill_gap_m"] == 0.0
+
+
+# ---------------------------------------------------------------- words of the user's own
+
+
+@pytest.fixture
+def edited(tmp_path, monkeypatch):
+    """A function that adds a line to a template of a copy, from which decks are made during a test."""
+    shutil.copytree(TEMPLATES, tmp_path / "templates")
+    original = templates._environment
+    monkeypatch.setattr(templates, "_environment", lambda folder: original(tmp_path / "templates"))
+
+    def add(name, line):
+        with open(tmp_path / "templates" / f"{name}.in.j2", "a") as stream:
+            stream.write(line + "\n")
+
+    return add
+
+
+def test_a_word_of_the_users_own_reaches_its_template_as_it_is_written(edited):
+    """Also one whose name ends in a unit. Templates without it take no notice; beds that do not use it are shared."""
+    edited("sliding_sample", 'print "{{ gap_mm }} {{ kind }}"')
+    study = tiny_study(deck={"gap_mm": 5, "kind": "vermilion"})
+    parameters, bed = run_and_bed(study)
+    text = render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart"))
+    assert text.splitlines()[-1] == 'print "5 vermilion"'
+    assert bed == run_and_bed(tiny_study(deck={"gap_mm": 6, "kind": "vermilion"}))[1]
+    assert "vermilion" not in render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart"))
+
+
+def test_a_word_in_the_template_of_beds_is_part_of_a_bed(edited):
+    """Two values make two beds, and the word stands in the bed's deck."""
+    edited("settled_bed", "# {{ my_word }}")
+    beds = [tiny_study(deck={"my_word": value}).beds["bed_1"] for value in (1, 2)]
+    assert beds[0] != beds[1]
+    assert bed_deck_text(beds[1]).endswith("# 2\n")
+
+
+def test_a_word_that_no_template_uses_is_refused(config):
+    """One sentence names file, line and word, before the solver; so for a word of a fidelity's block."""
+    config.edit("studies/small.yaml", "    particle_scale: 2.0\n", "    particle_scale: 2.0\n    deck: {my_word: 3}\n")
+    with pytest.raises(ConfigError) as caught:
+        load_study("small", config.root)
+    assert str(caught.value) == (
+        "config/studies/small.yaml, line 9, fidelity quick: deck.my_word stands in no template, allowed is a word that"
+        " one of lowered_bed, sliding_sample, settled_bed, packed_container, bed_contacts, collision uses."
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "word", "template"),
+    [
+        ("demo", "velocity_m_per_s", "lowered_bed"),
+        ("demo", "level_m", "settled_bed"),
+        ("demo", "solver", "lowered_bed"),
+        ("pin_on_disc", "pin_radius_m", "pin_set_down"),
+        ("circular_tester", "steady_steps", "tester_bed"),
+        ("calibration", "rest_energy_j", "shear_box"),
+    ],
+)
+def test_a_word_of_ours_is_refused(name, word, template):
+    """No word of the user's own changes a parameter, in no case."""
+    with pytest.raises(ConfigError) as caught:
+        load_study(name, overrides={"deck": {word: 3}})
+    fault = f"parameter {word} is one of ours, no word of deck may be called so."
+    assert str(caught.value) == f"command line: templates/{template}.in.j2: {fault}"
+
+
+@pytest.mark.parametrize(
+    ("words", "fault"),
+    [
+        ({"bad-name": 1}, "deck is 'bad-name', allowed is a name of letters, digits and underscores"),
+        ({"several": [1, 2]}, "deck.several is [1, 2], allowed is a number, text, true or false"),
+    ],
+)
+def test_words_are_names_and_values(words, fault):
+    """Names that Jinja could not read and values that are no word are refused."""
+    with pytest.raises(ConfigError) as caught:
+        load_study("demo", overrides={"deck": words})
+    assert str(caught.value) == f"command line: {fault}."
+
+
+def test_a_setting_that_is_not_given_is_named():
+    """A template that asks for a setting of the solver that there is not says which."""
+    given = deck.settled_bed(run_and_bed(tiny_study())[1])
+    solver = {key: value for key, value in given["solver"].items() if key != "rolling_radius"}
+    with pytest.raises(DeckError, match=r"settled_bed\.in\.j2: parameter solver\.rolling_radius is not given"):
+        render("settled_bed", {**given, "solver": solver})

@@ -7,7 +7,8 @@ import pytest
 
 from tests.support.tiny import tiny_study
 from tests.support.tiny_tester import tiny_tester
-from workflows.engine import decks, inputs
+from workflows.cases.sliding_sample import case
+from workflows.engine import chain, inputs, templates
 from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
 
 
@@ -56,8 +57,8 @@ def test_changed_wear_code_changes_the_hash(study, monkeypatch):
 def test_an_edited_template_changes_the_hash(study, monkeypatch):
     """A word more in a deck makes another run and another bed."""
     before = digest_of(study, "R9_convex"), bed_digest(study.case, study.beds["bed_1"])
-    render = decks.render
-    monkeypatch.setattr(decks, "render", lambda *given: render(*given) + "# a word more\n")
+    for module in (case, chain):
+        monkeypatch.setattr(module, "render", lambda *given: templates.render(*given) + "# a word more\n")
     assert digest_of(study, "R9_convex") != before[0]
     assert bed_digest(study.case, study.beds["bed_1"]) != before[1]
 

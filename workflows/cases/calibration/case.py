@@ -13,7 +13,7 @@ from workflows.config.run_checks import Check, CheckedRun, Fault
 from workflows.engine import bulk_tests
 from workflows.engine.bulk_simulations import simulation_bytes
 from workflows.engine.case import Case, Parameters, Run, register
-from workflows.engine.sections import particle_section, wall_section
+from workflows.engine.sections import particle_section, template_sections, wall_section
 from workflows.engine.work import Work
 
 PUBLISHED = Path(__file__).resolve().parents[3] / "config" / "published"
@@ -114,14 +114,20 @@ class Calibration(Case):
     ) -> dict[str, Any]:
         """Return the settings of a box size with its materials: all that its simulations depend on besides the pair."""
         sections = ("shear_box", "draw_down", "rest", "calibration")
-        solver = {key: settings["solver"][key] for key in ("rayleigh_fraction", "rolling_friction", "rolling_radius")}
         return {
             **{name: settings[name] for name in sections},
-            "solver": solver,
+            **template_sections(settings),
             "particle": particle_section(settings["bulk"]["material"], materials, settings["particle_scale"]),
             "walls": {name: wall_section(name, materials) for name in materials["walls"]},
             "varied": factors["varied"],
         }
+
+    def sample_decks(self, parameters: Parameters, bed: Parameters | None) -> list[str]:
+        """Return the decks of the tests."""
+        from workflows.cases.calibration.driver import test_of
+
+        seed = parameters["calibration"]["seed"]
+        return [bulk_tests.deck_text(test_of(parameters, kind, {}, seed)) for kind in self.run_templates]
 
     def table_columns(self, parameters: Parameters) -> dict[str, Any]:
         """Return particle scale, and the box's width as simulated."""

@@ -24,6 +24,7 @@ from workflows.engine.bulk_simulations import answer, simulate_all
 from workflows.engine.bulk_tests import simulated_width
 from workflows.engine.case import Parameters
 from workflows.engine.progress import Progress
+from workflows.engine.templates import used_sections
 
 SIMULATIONS = "simulations"
 FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
@@ -56,7 +57,7 @@ def test_of(parameters: Parameters, kind: str, values: Mapping[str, float], seed
         "box": {**box, "width_m": simulated_width(box, parameters["particle"])},
         "rest": dict(parameters["rest"]),
         "particle": parameters["particle"],
-        "solver": dict(parameters["solver"]),
+        **used_sections(kind, parameters, front_and_back=box.get("front_and_back")),
         "seed": seed,
     }
     return with_values(test, values)

@@ -17,12 +17,12 @@ from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester import work as tester_work
 from workflows.cases.circular_tester.checks import TESTER_CHECKS
 from workflows.cases.circular_tester.parameters import bed_parameters, run_parameters
-from workflows.engine import decks as deck
 from workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Piece, Run, register
 from workflows.engine.geometry import convex_pattern
 from workflows.engine.pieces import piece_ends
 from workflows.engine.schedule import Span
 from workflows.engine.solver import LOG
+from workflows.engine.templates import render
 from workflows.engine.work import Stage
 
 if TYPE_CHECKING:
@@ -115,8 +115,8 @@ class CircularTester(Case):
     def deck(self, parameters: Parameters, bed: Parameters | None, span: Span | None, restart: str) -> str:
         """Return the deck of a wear cycle, or of the run-in."""
         if span is None:
-            return deck.render("tester_run_in", tester_deck.tester_run_in(parameters, bed, restart))
-        return deck.render("circular_tester", tester_deck.circular_tester(parameters, bed, span, restart))
+            return render("tester_run_in", tester_deck.tester_run_in(parameters, bed, restart))
+        return render("circular_tester", tester_deck.circular_tester(parameters, bed, span, restart))
 
     def piece_ends(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> list[int]:
         """Return where the pieces of a cycle end; a look at the wear that falls on one would be overwritten."""

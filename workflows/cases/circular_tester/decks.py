@@ -106,11 +106,10 @@ def look_steps(run: Parameters, span: Span) -> int:
 
 def _cycle(run: Parameters, bed: Parameters, cycle: int, last: int) -> dict[str, Any]:
     """Return what the decks of all cycles need; last: their last step."""
-    derived, solver = run["derived"], run["solver"]
-    materials = {**derived, **{key: solver[key] for key in ("rolling_radius", "rolling_friction")}}
+    derived = run["derived"]
     return {
-        **integration(solver, derived["time_step_s"], run["particle"], last),
-        **material_tables(run["particle"], run["sample_material"], run["floor_material"], materials),
+        **integration(run, derived["time_step_s"], run["particle"], last),
+        **material_tables(run["particle"], run["sample_material"], run["floor_material"], derived),
         **_walls(bed, cycle, run["wear"]["accelerated_wear_coefficient_per_pa"], "../", "surface.stl"),
         "report_steps": derived["report_steps"],
         "end_step": last,

@@ -16,7 +16,8 @@ from workflows.engine.derived import (
     smallest_rayleigh_time,
     whole_steps,
 )
-from workflows.engine.sections import particle_section, solver_section, wall_section, wear_section
+from workflows.engine.sections import particle_section, template_sections, wall_section, wear_section
+from workflows.engine.templates import used_sections
 
 REPORTS_PER_REVOLUTION = 60  # lines of a log, of which the coefficient of variation of a revolution is made
 PATTERN = ("major_radius_m", "minor_radius_m", "height_m", "column_spacing_m")
@@ -41,7 +42,7 @@ def run_parameters(settings: Mapping[str, Any], materials: Mapping[str, Any]) ->
         },
         "wear": wear_section(settings["wear"], particle),
         "remeshing": settings["remeshing"],
-        "solver": solver_section(settings),
+        **template_sections(settings),
         "particle": particle_section(settings["bed"]["material"], materials, settings["particle_scale"]),
         "sample_material": wall_section(sample["material"], materials),
         "floor_material": wall_section(settings["bed"]["floor_material"], materials),
@@ -121,9 +122,7 @@ def bed_parameters(parameters: Mapping[str, Any], headroom: float) -> dict[str, 
         "headroom_m": headroom,
         "velocity_m_per_s": sliding["velocity_m_per_s"],
         "seed": parameters["bed"]["seed"],
-        "rolling_friction": parameters["solver"]["rolling_friction"],
-        "rolling_radius": parameters["solver"]["rolling_radius"],
-        "rayleigh_fraction": parameters["solver"]["rayleigh_fraction"],
+        **used_sections("tester_bed", parameters, shape=tester["shape"]),
         "rolling_friction_for_solver": derived["rolling_friction_for_solver"],
         "youngs_modulus_pa": derived["youngs_modulus_pa"],
         "coefficient_per_pa": 1.0,  # of the solver's own wear, which nobody reads here

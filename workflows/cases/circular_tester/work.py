@@ -10,6 +10,7 @@ from meshes.estimate import sample_triangles
 from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester.decks import HOLDER_SIZE
 from workflows.engine import decks as deck
+from workflows.engine.derived import neighbour_skin
 from workflows.engine.geometry import convex_pattern
 from workflows.engine.work import (
     CYCLE_BYTES,
@@ -68,9 +69,8 @@ def triangles(run: Parameters) -> float:
 
 def builds_per_step(run: Parameters) -> float:
     """Return the builds of the neighbour list per time step (-): one when particles have moved by half its skin."""
-    derived, particle = run["derived"], run["particle"]
-    skin = deck.integration(run["solver"], derived["time_step_s"], particle, 1)["skin_m"]
-    return 2.0 * run["sliding"]["velocity_m_per_s"] * derived["time_step_s"] / skin
+    skin = neighbour_skin(run["particle"])
+    return 2.0 * run["sliding"]["velocity_m_per_s"] * run["derived"]["time_step_s"] / skin
 
 
 def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:

@@ -16,10 +16,10 @@ from workflows.cases.pin_on_disc import decks as pin_deck
 from workflows.cases.pin_on_disc import work as pin_work
 from workflows.cases.pin_on_disc.checks import PIN_CHECKS, ROUNDING
 from workflows.cases.pin_on_disc.parameters import run_parameters
-from workflows.engine import decks as deck
 from workflows.engine.case import SETUP_LOADS, Case, Parameters, Piece, register
 from workflows.engine.schedule import Span
 from workflows.engine.solver import LOG
+from workflows.engine.templates import render
 from workflows.engine.work import Stage
 
 if TYPE_CHECKING:
@@ -100,8 +100,8 @@ class PinOnDisc(Case):
     def deck(self, parameters: Parameters, bed: Parameters | None, span: Span | None, restart: str) -> str:
         """Return the deck of a wear cycle, or of setting the pin down."""
         if span is None:
-            return deck.render("pin_set_down", pin_deck.pin_set_down(parameters))
-        return deck.render("pin_on_disc", pin_deck.pin_on_disc(parameters, span, restart))
+            return render("pin_set_down", pin_deck.pin_set_down(parameters))
+        return render("pin_on_disc", pin_deck.pin_on_disc(parameters, span, restart))
 
     def piece(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> Piece:
         """Return the stretch of the disc that the pin can touch in a cycle."""

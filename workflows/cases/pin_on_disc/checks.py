@@ -21,6 +21,11 @@ def one_rank(run: CheckedRun) -> Fault | None:
     return None if run.settings["solver"]["ranks"] == 1 else ("solver.ranks", "1 for a single pin")
 
 
+def hertzian(run: CheckedRun) -> Fault | None:
+    """A pin's contact is Hertz': caps, time steps and rest times follow from its overlap."""
+    return None if run.settings["solver"]["contact_model"] == "hertz" else ("solver.contact_model", "hertz for a pin")
+
+
 def track_on_disc(run: CheckedRun) -> Fault | None:
     """The track lies on the disc, and the pin's contact with it too; the ring inside the track has a hole."""
     disc = run.parameters["disc"]
@@ -67,6 +72,7 @@ def element_resolves_contact(run: CheckedRun) -> Fault | None:
 PIN_CHECKS = (
     summed_by_the_solver,
     one_rank,
+    hertzian,
     track_on_disc,
     element_resolves_contact,
     whole_cycles,

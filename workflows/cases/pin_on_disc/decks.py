@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from workflows.cases.pin_on_disc.parameters import PIN_RADII_BESIDE_TRACK, REST_OSCILLATIONS, SETTLING_OSCILLATIONS
-from workflows.engine.decks import REPORTS_PER_RUN, STEP_CHECK_MARGIN, exact_ledger, steps
+from workflows.engine.decks import REPORTS_PER_RUN, STEP_CHECK_MARGIN, exact_ledger, steps, whole_sections
 from workflows.engine.schedule import Span
 
 SKIN_OVER_RADIUS = 0.2  # -, neighbour skin over the pin's radius
@@ -36,7 +36,7 @@ def pin_on_disc(run: Parameters, span: Span, restart: str) -> dict[str, Any]:
     return {
         **_both(run, span.cycle),
         "time_step_s": time_step,
-        "rayleigh_fraction": run["solver"]["rayleigh_fraction"] / span.substeps,
+        "solver": {**run["solver"], "rayleigh_fraction": run["solver"]["rayleigh_fraction"] / span.substeps},
         "report_steps": window,
         "force_interval_steps": window,
         "run_restart": restart,
@@ -68,11 +68,11 @@ def revolutions(run: Parameters, steps_done: int) -> float:
 def _both(run: Parameters, cycle: int) -> dict[str, Any]:
     """Return what both decks need: time step, load, and the tables of the types pin and disc."""
     pin, disc, moduli = run["particle"], run["sample_material"], run["derived"]["youngs_modulus_pa"]
-    contact, solver = disc["contact"], run["solver"]
+    contact = disc["contact"]
     return {
+        **whole_sections(run),
         "time_step_s": run["derived"]["time_step_s"],
-        "rayleigh_fraction": solver["rayleigh_fraction"],
-        "largest_time_fraction": STEP_CHECK_MARGIN * solver["rayleigh_fraction"],
+        "largest_time_fraction": STEP_CHECK_MARGIN * run["solver"]["rayleigh_fraction"],
         "skin_m": SKIN_OVER_RADIUS * run["pin"]["radius_m"],
         "load_n": run["pin"]["load_n"],
         "track_radius_m": run["disc"]["track_radius_m"],
@@ -83,8 +83,6 @@ def _both(run: Parameters, cycle: int) -> dict[str, Any]:
         "restitution": _table(contact["restitution"]),
         "sliding_friction": _table(contact["sliding_friction"]),
         "rolling_friction_coefficient": _table(contact["rolling_friction"]),
-        "rolling_friction_model": solver["rolling_friction"],
-        "rolling_radius": solver["rolling_radius"],
         "finnie_coefficient_per_pa": _table(run["wear"]["accelerated_wear_coefficient_per_pa"]),
     }
 

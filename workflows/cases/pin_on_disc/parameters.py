@@ -8,7 +8,7 @@ from typing import Any
 
 from postproc.reference.sphere_contact import effective_modulus, hertz_overlap
 from workflows.engine.derived import physical_patch_factor, rayleigh_time, whole_steps, youngs_modulus
-from workflows.engine.sections import solver_section, wall_section, wear_section
+from workflows.engine.sections import template_sections, wall_section, wear_section
 
 FORCE_WINDOW = math.radians(0.25)  # rad of the track over which a row of forces.csv is a mean
 SETTLING_OSCILLATIONS = 60  # of the pin on its contact, until it rests on the flat disc; each leaves 0.83 at e = 0.9
@@ -36,7 +36,7 @@ def run_parameters(settings: Mapping[str, Any], materials: Mapping[str, Any]) ->
         },
         "wear": wear_section(wear, material),
         "remeshing": settings["remeshing"],
-        "solver": solver_section(settings),
+        **template_sections(settings),
         "particle": {
             "name": pin["material"],
             **{k: v for k, v in material.items() if k != "physical_shear_modulus_pa"},

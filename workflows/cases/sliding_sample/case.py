@@ -30,8 +30,9 @@ from workflows.engine.derived import (
 from workflows.engine.geometry import sample_surface
 from workflows.engine.pieces import piece_ends
 from workflows.engine.schedule import Span
-from workflows.engine.sections import particle_section, solver_section, wall_section, wear_section
+from workflows.engine.sections import particle_section, template_sections, wall_section, wear_section
 from workflows.engine.solver import LOG
+from workflows.engine.templates import render, used_sections
 from workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class SlidingSample(Case):
     checks = SLIDING_CHECKS
     run_templates = ("lowered_bed", "sliding_sample")
     bed_template = "settled_bed"
+    more_templates = ("packed_container", "bed_contacts", "collision")
     shared_figures = ("worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")
@@ -77,7 +79,7 @@ class SlidingSample(Case):
             "sliding": _sliding(settings["sliding"], factors["velocity_m_per_s"], settings["wear"]["acceleration"]),
             "wear": wear_section(settings["wear"], materials["particles"][settings["bed"]["material"]]),
             "remeshing": settings["remeshing"],
-            "solver": solver_section(settings),
+            **template_sections(settings),
             "particle": particle_section(settings["bed"]["material"], materials, scale),
             "sample_material": wall_section(settings["sample"]["material"], materials),
             "floor_material": wall_section(settings["bed"]["floor_material"], materials),
@@ -117,8 +119,8 @@ class SlidingSample(Case):
     def deck(self, parameters: Parameters, bed: Parameters | None, span: Span | None, restart: str) -> str:
         """Return the deck of a wear cycle, or of lowering and run-in."""
         if span is None:
-            return deck.render("lowered_bed", deck.lowered_bed(parameters, bed, restart))
-        return deck.render("sliding_sample", deck.sliding_sample(parameters, bed, span, restart))
+            return render("lowered_bed", deck.lowered_bed(parameters, bed, restart))
+        return render("sliding_sample", deck.sliding_sample(parameters, bed, span, restart))
 
     def further_work(self, study: Any) -> tuple[Work, ...]:
         """Return the containers in which the particles of a study of particle size are packed."""
@@ -303,9 +305,7 @@ def bed_parameters(run: Run) -> dict[str, Any]:
         "ends": parameters["bed"]["ends"],
         "thickness_m": parameters["bed"]["thickness_m"],
         "seed": parameters["bed"]["seed"],
-        "rolling_friction": parameters["solver"]["rolling_friction"],
-        "rolling_radius": parameters["solver"]["rolling_radius"],
-        "rayleigh_fraction": parameters["solver"]["rayleigh_fraction"],
+        **used_sections("settled_bed", parameters, ends=parameters["bed"]["ends"]),
         "rolling_friction_for_solver": {
             name: derived["rolling_friction_for_solver"][name] for name in ("particle", "floor_material")
         },

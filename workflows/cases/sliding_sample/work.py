@@ -9,7 +9,7 @@ from typing import Any
 from meshes.estimate import sample_triangles
 from postproc.wear.caps import GRAVITY
 from workflows.engine import decks as deck
-from workflows.engine.derived import ADAPTIVE, RAMP, WINDOW
+from workflows.engine.derived import ADAPTIVE, RAMP, WINDOW, neighbour_skin
 from workflows.engine.geometry import convex_pattern
 from workflows.engine.work import (
     CYCLE_BYTES,
@@ -72,9 +72,8 @@ def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
 
 def builds_per_step(run: Parameters) -> float:
     """Return the builds of the neighbour list per time step (-): one when particles have moved by half its skin."""
-    derived, particle = run["derived"], run["particle"]
-    skin = deck.integration(run["solver"], derived["time_step_s"], particle, 1)["skin_m"]
-    return 2.0 * run["sliding"]["velocity_m_per_s"] * derived["time_step_s"] / skin
+    skin = neighbour_skin(run["particle"])
+    return 2.0 * run["sliding"]["velocity_m_per_s"] * run["derived"]["time_step_s"] / skin
 
 
 def exchanges_per_step(run: Parameters) -> float:

@@ -14,8 +14,7 @@ from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester.work import surface_triangles
 from workflows.config.design import ConfigError, load_study
 from workflows.engine.case import find_case
-from workflows.engine.chain import Chain, deck_text, write_bed
-from workflows.engine.decks import render
+from workflows.engine.chain import Chain, bed_deck_text, deck_text, write_bed
 from workflows.engine.schedule import known_spans
 from workflows.forecast.forecast import work_of
 
@@ -33,7 +32,7 @@ def chain_of(study, run, folder):
 def test_every_deck_of_every_fidelity_renders(fidelity, tmp_path):
     """Bed, run-in and first cycle of every run, with nothing left open; a ring has a trough, a channel has walls."""
     study = load_study("circular_tester", overrides={"fidelity": fidelity})
-    texts = {name: render(study.case.bed_template, study.case.bed_deck(bed)) for name, bed in study.beds.items()}
+    texts = {name: bed_deck_text(study.case, bed) for name, bed in study.beds.items()}
     for run in study.runs:
         chain = chain_of(study, run.name, tmp_path)
         for span in (None, known_spans(run.parameters)[0]):
@@ -57,8 +56,7 @@ def test_no_mesh_of_a_run_has_the_fix_id_of_its_bed(tmp_path):
     study = tiny_tester(tester={"shape": "ring"})
     chain = chain_of(study, "convex", tmp_path)
     spans = known_spans(chain.parameters)[:2]
-    bed = render(chain.case.bed_template, chain.case.bed_deck(chain.bed))
-    texts = [bed, *(deck_text(chain, span) for span in (None, *spans))]
+    texts = [bed_deck_text(chain.case, chain.bed), *(deck_text(chain, span) for span in (None, *spans))]
     ids = [set(re.findall(r"^fix +(\w+) +all mesh/surface", text, re.MULTILINE)) for text in texts]
     assert [len(found) for found in ids] == [3] * 4
     assert len(set().union(*ids)) == 12

@@ -28,6 +28,7 @@ from workflows.engine.ledgers import summed_by_solver
 from workflows.engine.progress import Progress
 from workflows.engine.schedule import first_span, known_spans
 from workflows.engine.solver import run_deck
+from workflows.engine.templates import TEMPLATES, _environment, render
 
 WINDOW = {
     "particle_scale": 6,
@@ -129,7 +130,7 @@ def test_the_forecast_of_a_window_grows_with_the_travel_only():
 def test_decks_of_a_window_keep_ids_and_the_strip():
     """Contacts are found by ids, which deleting must not renumber; the strip is held after gravity acts."""
     for name, parameters in zip(("lowered_bed", "sliding_sample"), decks(window_study())[0], strict=False):
-        text = deck.render(name, parameters)
+        text = render(name, parameters)
         assert "delete_atoms    group wake compress no" in text
         assert text.index("fix  gravity") < text.index("fix  strip_held")
         assert "boundary        p p fm" in text and "upstream_end" not in text
@@ -139,7 +140,7 @@ def test_other_beds_do_not_know_of_exchanges():
     """Without a window the travel between exchanges is no parameter, and no deck exchanges anything."""
     one, other = (tiny_study(bed={"exchange_mm": travel}).run("R9_convex").parameters for travel in (30, 50))
     assert one == other and "exchange_m" not in one["bed"]
-    for text in (deck.render("lowered_bed", decks(tiny_study())[0][0]),):
+    for text in (render("lowered_bed", decks(tiny_study())[0][0]),):
         assert not re.search(r"strip|exchange|packing", text)
 
 
@@ -161,7 +162,7 @@ class Window:
             "period_m": period,
             "packing_file": "packing.dump",
         }
-        text = deck._environment(deck.TEMPLATES).get_template("_shared/fresh_bed.in.j2").render(words)
+        text = _environment(TEMPLATES).get_template("_shared/fresh_bed.in.j2").render(words)
         command = re.search(r"^shell +(awk .*?fresh_bed\.data\")$", text.replace("&\n", ""), re.MULTILINE)[1]
         self.command = command.replace("\"'", "'").replace("'\"", "'").replace('"> ', "> ").removesuffix('"')
 

@@ -1,7 +1,7 @@
 """Collisions of single particles with LIGGGHTS: does a scaled one do the same as a real one (Yan 2022, section 4.2)?
 
-The parameters of a test, all SI: particle, wall_material, solver as those of a bulk test (bulk_tests.py), and collision
-with speed_m_per_s and sideways_speed_m_per_s, before contact.
+The parameters of a test, all SI: particle, wall_material, solver and deck as those of a bulk test (bulk_tests.py), and
+collision with speed_m_per_s and sideways_speed_m_per_s, before contact.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from workflows.engine import decks as deck
 from workflows.engine.bulk_tests import bulk_materials, time_step
 from workflows.engine.derived import WALLS, derived_materials, youngs_modulus
 from workflows.engine.solver import DECK, run_deck
+from workflows.engine.templates import render
 
 GAP_RADII = 0.005  # -, between the spheres at the start
 DOMAIN_RADII = 10.0  # -, half the domain's width
@@ -24,10 +25,10 @@ NUMBER_FORMAT = " ".join(["%.12g"] * (len(COLUMNS) - 1))
 
 def collision(test: Mapping[str, Any]) -> dict[str, Any]:
     """Return the parameters of the deck of collisions."""
-    particle, solver, asked = test["particle"], test["solver"], test["collision"]
+    particle, asked = test["particle"], test["collision"]
     spheres, step = spheres_of(test), time_step(test)
-    materials = {**derived_materials(bulk_materials({**test, "floor_material": test["wall_material"]})), **solver}
-    integration = {**deck.integration(solver, step, particle, 1), "gravity_m_per_s2": 0.0}
+    materials = derived_materials(bulk_materials({**test, "floor_material": test["wall_material"]}))
+    integration = {**deck.integration(test, step, particle, 1), "gravity_m_per_s2": 0.0}
     integration.pop("report_steps")
     return {
         **integration,
@@ -73,6 +74,6 @@ def _longest(test: Mapping[str, Any]) -> float:
 def simulate(test: Mapping[str, Any], folder: Path) -> Path:
     """Run a test in a folder and return the path of its dump. Raises SolverError."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / DECK).write_text(deck.render("collision", collision(test)))
+    (folder / DECK).write_text(render("collision", collision(test)))
     run_deck(folder)
     return folder / DUMP

@@ -23,6 +23,7 @@ from workflows.engine.chain import RESTART
 from workflows.engine.derived import WINDOW
 from workflows.engine.solver import DECK, run_deck
 from workflows.engine.state import read_state
+from workflows.engine.templates import render, used_sections
 
 if TYPE_CHECKING:
     from workflows.config.design import Study
@@ -31,7 +32,6 @@ MODELS = ("cdt", "epsd2")  # rolling types A and C
 COLLISION = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}  # before contact: of beds at rest and in motion
 EXACT_STEP = 0.002  # -, of the Rayleigh time: collisions are then within 0.1 % of the closed form
 DRAWN_POINTS = 400  # of a collision's history
-SOLVER_KEYS = ("rayleigh_fraction", "rolling_friction", "rolling_radius")
 REST_KEYS = ("energy_fraction", "check_interval_s", "calm_checks", "longest_s")
 END_DIAMETERS = 5.0  # -, of a bed next to its end walls, left out
 LEAVING_DIAMETERS = 2.0  # -, of the wake next to where it leaves a window, left out: it may slide into the room there
@@ -53,11 +53,8 @@ def collision_tests(runs: Mapping[str, Parameters]) -> list[dict[str, Any]]:
         {
             "particle": run["particle"],
             "wall_material": run["sample_material"],
-            "solver": {
-                "rayleigh_fraction": EXACT_STEP,
-                "rolling_friction": model,
-                "rolling_radius": run["solver"]["rolling_radius"],
-            },
+            "solver": {**run["solver"], "rayleigh_fraction": EXACT_STEP, "rolling_friction": model},
+            "deck": run["deck"],
             "collision": COLLISION,
         }
         for model in MODELS
@@ -104,7 +101,7 @@ def container(run: Parameters, packing: Mapping[str, Any]) -> dict[str, Any]:
         "particle": run["particle"],
         "wall_material": run["floor_material"],
         "floor_material": run["floor_material"],
-        "solver": {key: run["solver"][key] for key in SOLVER_KEYS},
+        **used_sections("packed_container", run),
         "seed": run["bed"]["seed"],
     }
 
@@ -133,7 +130,7 @@ def packing_costs(runs: Mapping[str, Parameters], packing: Mapping[str, Any], fo
 def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:
     """Return the particles of a restart file of a sliding sample with their contacts, as the solver counts them."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / DECK).write_text(deck.render("bed_contacts", deck.bed_contacts(run, str(restart.resolve()))))
+    (folder / DECK).write_text(render("bed_contacts", deck.bed_contacts(run, str(restart.resolve()))))
     run_deck(folder)
     return read_snapshot(folder / "bed.dump")
 

@@ -39,9 +39,13 @@ def asked(scale, model="cdt", fraction=EXACT_STEP):
         "median_diameter_m": scale * real["median_diameter_m"],
         "diameters_m": [scale * diameter for diameter in real["diameters_m"]],
     }
-    solver = {"rayleigh_fraction": fraction, "rolling_friction": model, "rolling_radius": "full"}
-    motion = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}
-    return {"particle": particle, "wall_material": parameters["walls"]["steel"], "solver": solver, "collision": motion}
+    return {
+        "particle": particle,
+        "wall_material": parameters["walls"]["steel"],
+        "solver": {**parameters["solver"], "rayleigh_fraction": fraction, "rolling_friction": model},
+        "deck": parameters["deck"],
+        "collision": {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5},
+    }
 
 
 def measured(test, folder):

@@ -14,6 +14,7 @@ from workflows.engine import decks as deck
 from workflows.engine.bulk_simulations import FILLED, simulated
 from workflows.engine.bulk_tests import deck_text, packed_container, time_step
 from workflows.engine.solver import DECK, run_deck
+from workflows.engine.templates import render, used_sections
 
 SCALE = 8.0
 DIGITS = 0.02  # -, of the contacts: positions printed with six digits lose or invent a few. Measured: 2e-3
@@ -45,7 +46,7 @@ def container(axis="y", seconds=0.1):
             "axis": axis,
         },
         "particle": particle,
-        "solver": {"rayleigh_fraction": 0.25, "rolling_friction": "epsd2", "rolling_radius": "full"},
+        **used_sections("packed_container", parameters),
         "seed": 20220317,
     }
 
@@ -98,7 +99,7 @@ def test_contacts_of_a_bed_come_from_its_restart_file(tmp_path):
     chain = tiny_chain(study, tmp_path)
     folder = tmp_path / "contacts"
     folder.mkdir()
-    text = deck.render("bed_contacts", deck.bed_contacts(chain.parameters, str(chain.bed_restart)))
+    text = render("bed_contacts", deck.bed_contacts(chain.parameters, str(chain.bed_restart)))
     (folder / DECK).write_text(text)
     run_deck(folder)
     bed, width = read_snapshot(folder / "bed.dump"), chain.bed["width_m"]

@@ -3,6 +3,7 @@
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
+from workflows.report.figures import bumps_and_particles, figures_of, page_parameters
 
 from tests.support.finished_runs import leave_runs
 from workflows.cases.sliding_sample.key_numbers import sizes
@@ -20,7 +21,6 @@ from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     wear_lines,
 )
 from workflows.config.design import REPOSITORY, load_study
-from workflows.report.figures import bumps_and_particles, figures_of, page_parameters
 from workflows.report.page import environment
 
 PUBLISHED = REPOSITORY / "config" / "published"

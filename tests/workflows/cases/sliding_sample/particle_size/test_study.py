@@ -2,6 +2,7 @@
 
 import pandas as pd
 import pytest
+from workflows.report.figures import PARTICLE_SIZE, bumps_and_particles, figures_of, page_parameters, published_flow
 
 from workflows.cases.sliding_sample.particle_size.collision_tests import collision
 from workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance
@@ -22,7 +23,6 @@ from workflows.cases.sliding_sample.particle_size.work import packing_work
 from workflows.config.design import ConfigError, load_study
 from workflows.config.units import to_si
 from workflows.engine.bulk_tests import deck_text
-from workflows.report.figures import PARTICLE_SIZE, bumps_and_particles, figures_of, page_parameters, published_flow
 from workflows.report.text import number, setting_rows
 
 ROUNDING = 1e-9  # relative
@@ -99,7 +99,7 @@ def test_containers_and_collisions_are_of_the_studys_particles():
         assert "packed container" in deck_text(test).lower()
     tests = collision_tests(runs)
     assert len(tests) == len(MODELS) * len(ROWS["quick"])
-    assert collision(tests[0])["rolling_friction_model"] == MODELS[0]
+    assert collision(tests[0])["solver"]["rolling_friction"] == MODELS[0]
 
 
 def test_pieces_of_bed_lie_where_they_are_said_to():

@@ -1,0 +1,107 @@
+"""The schemas of the configuration: where they lie, what of them is filled in from registries, and their keys."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+
+from postproc.wear.laws import LAWS
+from workflows.config.layers import KeyPath, read_yaml
+from workflows.engine.case import case_names
+
+SCHEMA_FOLDER = Path(__file__).parent / "schemas"
+CASES_FOLDER = Path(__file__).parents[1] / "cases"
+
+
+def _is_number(_checker: Any, value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _is_integer(_checker: Any, value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+_TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
+Validator = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=_TYPES)
+
+
+def schema_file(name: str) -> Path:
+    """Return the file of a schema, which of a case (cases/<case>/<kind>) lies in its folder."""
+    folder = CASES_FOLDER.parent if name.startswith("cases/") else SCHEMA_FOLDER
+    return folder / f"{name}.schema.yaml"
+
+
+@cache
+def load_schema(name: str) -> dict[str, Any]:
+    """Return the schema of that name. Raises jsonschema.SchemaError if it is no schema."""
+    schema = read_yaml(schema_file(name), SCHEMA_FOLDER).values
+    if name == "settings":
+        schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
+    if name == "study":
+        schema["properties"]["case"]["enum"] = case_names()
+    Validator.check_schema(schema)
+    return schema
+
+
+def joined(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of blocks with the keys of both; a block that both have is joined in turn."""
+    properties = dict(first.get("properties", {}))
+    for key, inner in second["properties"].items():
+        properties[key] = joined(properties[key], inner) if key in properties else inner
+    required = list(dict.fromkeys([*first.get("required", []), *second.get("required", [])]))
+    return {**second, **first, "properties": properties, "required": required}
+
+
+@cache
+def case_schema(case: str, kind: str) -> dict[str, Any]:
+    """Return the schema of a case's settings or studies: what all cases share, and its own."""
+    own = f"cases/{case}/{kind}"
+    return joined(load_schema(kind), load_schema(own)) if schema_file(own).is_file() else load_schema(kind)
+
+
+def without_required(schema: Any) -> Any:
+    """Return the schema with nothing required: for a layer that overrides some keys."""
+    if isinstance(schema, dict):
+        return {key: without_required(value) for key, value in schema.items() if key != "required"}
+    return [without_required(value) for value in schema] if isinstance(schema, list) else schema
+
+
+def subschema(schema: dict[str, Any], path: KeyPath) -> dict[str, Any] | None:
+    """Return the schema of the key at a path, None where the schema does not know it."""
+    for key in path:
+        inner = schema.get("properties", {}).get(key, schema.get("additionalProperties"))
+        schema = schema.get("items") if isinstance(key, int) else inner
+        if not isinstance(schema, dict):
+            return None
+    return schema
+
+
+def leaves(schema: dict[str, Any], path: KeyPath = ()) -> Iterator[tuple[KeyPath, dict[str, Any]]]:
+    """Yield (key path, schema) of every key that holds a value; `<name>` stands for a free name."""
+    for key, inner in _children(schema):
+        if "x-allowed" not in inner and any(True for _ in _children(inner)):
+            yield from leaves(inner, (*path, key))
+        else:
+            yield (*path, key), inner
+
+
+def _children(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    yield from schema.get("properties", {}).items()
+    if isinstance(schema.get("additionalProperties"), dict):
+        yield "<name>", schema["additionalProperties"]
+
+
+def coerce_numbers(values: Any, schema: dict[str, Any] | None) -> Any:
+    """Return the values with every `number` as float, so that 2 and 2.0 give the same parameters."""
+    if schema is None:
+        return values
+    if isinstance(values, dict):
+        return {key: coerce_numbers(inner, subschema(schema, (key,))) for key, inner in values.items()}
+    if isinstance(values, list):
+        return [coerce_numbers(inner, schema.get("items")) for inner in values]
+    return float(values) if schema.get("type") == "number" else values

@@ -1,0 +1,177 @@
+"""Render the templates of templates/ into decks that run by hand.
+
+A deck's parameters are SI numbers and words; what a template does not use, and what it uses but is not given, is an
+error. Two sections reach templates whole, and need not be used up: `solver`, as one mapping, and `deck`, the user's own
+words.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import jinja2
+import jinja2.meta
+
+TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+SOLVER, OWN = "solver", "deck"  # sections of a run, a bed or a test that reach its templates whole
+TESTS = {"eq": operator.eq, "ne": operator.ne, "in": lambda value, several: value in several}  # of branches
+
+
+class DeckError(ValueError):
+    """A template and its parameters do not fit; the message names the template and the parameter."""
+
+
+@cache
+def _environment(folder: Path) -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(folder),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters |= {"table": pair_table, "particles_and_walls": particles_and_walls}
+    return environment
+
+
+def pair_table(rows: Sequence[Sequence[float]]) -> str:
+    """Return a square table as the continued lines of a LIGGGHTS command."""
+    return " &\n".join("     " + " ".join(f"{value:.9g}" for value in row) for row in rows)
+
+
+def particles_and_walls(particles: float, walls: float, type_names: Sequence[str]) -> list[list[float]]:
+    """Return the table of a property of all contacts between particles, the first type, and of all others."""
+    return [[particles if i == j == 0 else walls for j, _ in enumerate(type_names)] for i, _ in enumerate(type_names)]
+
+
+def _trees(template: str, folder: Path, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Template]:
+    """Return {file name: syntax tree} of a template and its partials, without branches that `words` do not take.
+
+    That is decided for branches `{% if name == "word" %}` whose name, or `solver.name`, `words` has, and for those with
+    `!=` and `in ("word", "other")`; all others count as taken.
+    """
+    environment = _environment(folder)
+    trees: dict[str, jinja2.nodes.Template] = {}
+    names = [f"{template}.in.j2"]
+    for name in names:
+        try:
+            source = environment.loader.get_source(environment, name)[0]
+        except jinja2.TemplateNotFound as missing:
+            raise DeckError(f"templates/{missing.name}: no such template.") from missing
+        trees[name] = environment.parse(source)
+        for branch in trees[name].find_all(jinja2.nodes.If):
+            _prune(branch, words)
+        found = jinja2.meta.find_referenced_templates(trees[name])
+        names.extend(part for part in found if part and part not in names)
+    return trees
+
+
+def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> None:
+    """Empty the part of a branch that `words` do not take."""
+    test = branch.test
+    if not isinstance(test, jinja2.nodes.Compare) or len(test.ops) != 1 or test.ops[0].op not in TESTS:
+        return
+    if not isinstance(test.ops[0].expr, jinja2.nodes.Literal):
+        return
+    name, held = test.expr, words
+    if _is_solver_setting(name):
+        name, held = jinja2.nodes.Name(name.attr, "load"), words.get(SOLVER, {})
+    if isinstance(name, jinja2.nodes.Name) and name.name in held:
+        taken = TESTS[test.ops[0].op](held[name.name], test.ops[0].expr.as_const())
+        branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
+
+
+def _is_solver_setting(node: jinja2.nodes.Node) -> bool:
+    """Return whether a node is `solver.name`."""
+    return (
+        isinstance(node, jinja2.nodes.Getattr) and isinstance(node.node, jinja2.nodes.Name) and node.node.name == SOLVER
+    )
+
+
+def _solver_settings(node: jinja2.nodes.Node, chosen_by: str = "") -> Iterator[tuple[str, str]]:
+    """Yield (name, setting that the branch asks for in which it stands) of each `solver.name` below a node."""
+    if _is_solver_setting(node):
+        yield node.attr, chosen_by
+    for child in node.iter_child_nodes():
+        in_branch = isinstance(node, jinja2.nodes.If) and child is not node.test
+        asked = next((name for name, _ in _solver_settings(node.test)), "") if in_branch else ""
+        yield from _solver_settings(child, asked or chosen_by)
+
+
+@cache  # a study asks for the same few templates once per run
+def template_parts(template: str, folder: Path = TEMPLATES) -> tuple[str, ...]:
+    """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
+    return tuple(_trees(template, folder, {}))
+
+
+def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
+    """Return {file name: text} of a template and its partials: what a deck depends on besides its parameters."""
+    return {name: (folder / name).read_text() for name in template_parts(template, folder)}
+
+
+def template_variables(
+    template: str, folder: Path = TEMPLATES, words: Mapping[str, Any] = MappingProxyType({})
+) -> set[str]:
+    """Return the names of all parameters that a template and its partials use, in the branches that `words` take."""
+    return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, folder, words).values()))
+
+
+def solver_settings(
+    template: str, folder: Path = TEMPLATES, words: Mapping[str, Any] = MappingProxyType({})
+) -> dict[str, str]:
+    """Return {setting of the solver's section that a template uses: the one whose value makes it do so}.
+
+    words: as for `template_variables`; "" for what is used whatever the others are
+    """
+    found: dict[str, str] = {}
+    for tree in _trees(template, folder, words).values():
+        for name, chosen_by in _solver_settings(tree):
+            found[name] = chosen_by if found.get(name, chosen_by) else ""
+    return found
+
+
+def whole_sections(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the sections of a run, a bed or a test that reach its templates whole."""
+    return {name: parameters[name] for name in (SOLVER, OWN)}
+
+
+def used_sections(template: str, parameters: Mapping[str, Any], **words: Any) -> dict[str, Any]:
+    """Return these sections with what the deck of a template depends on: beds that differ in nothing else are equal.
+
+    words: further ones that choose branches
+    """
+    words = {**whole_sections(parameters), **words}
+    kept = {"rayleigh_fraction", *solver_settings(template, words=words)}  # `integration` uses that one too
+    own = template_variables(template, words=words)
+    return {
+        SOLVER: {name: value for name, value in parameters[SOLVER].items() if name in kept},
+        OWN: {name: value for name, value in parameters[OWN].items() if name in own},
+    }
+
+
+def render(template: str, parameters: Mapping[str, Any], folder: Path = TEMPLATES) -> str:
+    """Return the deck of a template, e.g. "settled_bed"; parameters hold its `whole_sections` too.
+
+    Raises DeckError for missing and for unused parameters, and for an own word that is one of the other parameters.
+    """
+    own = parameters.get(OWN, {})
+    given = {name: value for name, value in parameters.items() if name != OWN}
+    wanted = template_variables(template, folder, given)
+    missing = {f"solver.{name}" for name in solver_settings(template, folder, given)}
+    missing -= {f"solver.{name}" for name in given.get(SOLVER, {})}
+    for names, fault in (
+        ((wanted - {*given, *own}) | missing, "is not given"),
+        (set(given) - wanted - {SOLVER}, "is never used"),
+        (set(given) & set(own), "is one of ours, no word of deck may be called so"),
+    ):
+        if names:
+            raise DeckError(f"templates/{template}.in.j2: parameter {', '.join(sorted(names))} {fault}.")
+    try:
+        return _environment(folder).get_template(f"{template}.in.j2").render({**given, **own})
+    except jinja2.TemplateError as fault:
+        raise DeckError(f"templates/{template}.in.j2: {fault}.") from fault
