@@ -60,7 +60,8 @@ TOUCHING = 1e-4  # relative, of a capillary force; the elastic one of an overlap
 
 def block(**solver):
     """The block of a deck as it is rendered with these settings."""
-    text = bed_deck_text(tiny_study(solver=solver).beds["bed_1"])
+    study = tiny_study(solver=solver)
+    text = bed_deck_text(study.case, study.beds["bed_1"])
     return text[text.index("# --- contact model") : text.index("# --- geometry")]
 
 
@@ -130,7 +131,7 @@ def test_a_model_needs_no_property_of_another(choice, needed):
     """What is listed for a model is all that it needs, in every case."""
     solver = dict([choice]) | {key: PROPERTIES[key] for key in needed}
     for name in list_studies():
-        if choice[0] != "contact_model" or load_study(name).case != "pin_on_disc":
+        if choice[0] != "contact_model" or load_study(name).case.name != "pin_on_disc":
             assert load_study(name, overrides={"solver": solver}).runs
 
 

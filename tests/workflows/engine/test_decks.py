@@ -21,7 +21,7 @@ RESET = 'if "${begin_step} == 0" then "reset_timestep 0"'  # a later piece goes 
 GOLDEN = DATA / "golden_sliding_sample.in"
 
 
-SLIDING = [name for name in list_studies() if load_study(name).case == "sliding_sample"]
+SLIDING = [name for name in list_studies() if load_study(name).case.name == "sliding_sample"]
 
 
 def run_and_bed(study, name="R9_convex"):
@@ -268,9 +268,10 @@ def test_a_word_of_the_users_own_reaches_its_template_as_it_is_written(edited):
 def test_a_word_in_the_template_of_beds_is_part_of_a_bed(edited):
     """Two values make two beds, and the word stands in the bed's deck."""
     edited("settled_bed", "# {{ my_word }}")
-    beds = [tiny_study(deck={"my_word": value}).beds["bed_1"] for value in (1, 2)]
+    studies = [tiny_study(deck={"my_word": value}) for value in (1, 2)]
+    beds = [study.beds["bed_1"] for study in studies]
     assert beds[0] != beds[1]
-    assert bed_deck_text(beds[1]).endswith("# 2\n")
+    assert bed_deck_text(studies[1].case, beds[1]).endswith("# 2\n")
 
 
 def test_a_word_that_no_template_uses_is_refused(config):
