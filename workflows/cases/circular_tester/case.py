@@ -48,7 +48,7 @@ class CircularTester(Case):
     checks = TESTER_CHECKS
     run_templates = ("tester_run_in", "circular_tester")
     bed_template = "tester_bed"
-    figure_modules = ()
+    figure_modules = ("figures", "flow_figures")
     shared_figures = ("worn_surface", "wear_updates")
     geometry = ("sample", "pattern")
     consumed = ("wear", "remeshing", "sliding", "tester")

@@ -7,7 +7,8 @@ import pandas as pd
 
 from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.tables.summary import PLAIN
-from workflows.cases.circular_tester.volume import CONVEX, element_increments
+from workflows.cases.circular_tester.runs import SIZE, VOLUME, WORN_OUT
+from workflows.cases.circular_tester.volume import CONVEX, chosen, chosen_fit, element_increments, of_surface
 
 MACHINE = ["shape", "particle_scale"]
 WORN_OUT_SHARE = 0.05  # of the pattern's volume: what is left of it then counts as nothing
@@ -17,13 +18,13 @@ MEAN_SHARE = 20  # of a run's cycles: a twentieth of them is averaged where rate
 def ratios_by_revolution(volumes: pd.DataFrame) -> pd.DataFrame:
     """What convex samples lose over what plain ones lose, in each revolution of equal machine and particles.
 
-    volumes: at whole revolutions, as from `tester_runs.volumes`. Columns: shape, particle_scale, revolution (the
+    volumes: at whole revolutions, as from `volumes`. Columns: shape, particle_scale, revolution (the
     earlier of both ends), plain_mm3, convex_mm3 (lost in it), ratio (-). Nothing for machines without a pair.
     """
     parts = []
     for machine, rows in volumes.groupby(MACHINE, sort=False):
         grown = element_increments(rows)
-        of = {surface: grown[grown["surface"] == surface] for surface in (PLAIN, CONVEX)}
+        of = {surface: of_surface(grown, surface) for surface in (PLAIN, CONVEX)}
         both = of[PLAIN].merge(of[CONVEX], on="revolution", suffixes=("_plain", "_convex"))
         table = pd.DataFrame(
             {
@@ -53,16 +54,16 @@ def mean_ratios(ratios: pd.DataFrame, shared: bool) -> pd.DataFrame:
 
 
 def pattern_left(volumes: pd.DataFrame, coefficient: float, plain_per_revolution: float) -> pd.DataFrame:
-    """How much of the pattern is left against revolutions at one coefficient (1/Pa), of convex runs.
+    """How much of the pattern is left against revolutions at one coefficient (1/Pa), of runs with a pattern.
 
     Archard's volume is coefficient times work: a revolution at a coefficient k times as large wears like k of them.
     plain_per_revolution: mm3 that the plain sample loses at it. Columns: run, particle_scale, coefficient, revolution
     (as if at `coefficient`), pattern_share (-), lost_mm3, lost_per_revolution_mm3 (since the row before, per revolution
     as if at `coefficient`), mean_per_revolution_mm3 (of it, over a MEAN_SHARE of the rows), plain_per_revolution_mm3.
     """
-    convex = volumes[volumes["surface"] == CONVEX]
+    patterned = of_surface(volumes, CONVEX)
     parts = []
-    for run, rows in convex.groupby("run", sort=False):
+    for run, rows in patterned.groupby("run", sort=False):
         revolution = rows["revolution"] * rows["coefficient"] / coefficient
         lost = CUBIC_MILLIMETRES * rows["law_volume_m3"]
         table = pd.DataFrame({"revolution": revolution, "lost_mm3": lost})
@@ -74,6 +75,19 @@ def pattern_left(volumes: pd.DataFrame, coefficient: float, plain_per_revolution
         same = {"run": run, "particle_scale": rows["particle_scale"], "coefficient": rows["coefficient"]}
         parts.append(table.assign(**same)[[*same, *table.columns]])
     return pd.concat(parts, ignore_index=True)
+
+
+def patterns_left(lost: pd.DataFrame, fits: pd.DataFrame, coefficient: float) -> pd.DataFrame | None:
+    """What is left of patterns that are worn right off, and of others in equal beds, against revolutions at
+    `coefficient` (1/Pa), as from `pattern_left`; None without a run for that.
+    """
+    scales = chosen(lost, WORN_OUT)["particle_scale"].unique()
+    beside = fits[fits["particle_scale"].isin(scales) & (fits["surface"] == PLAIN)]["run"]
+    if beside.empty:
+        return None
+    shown = chosen(lost, VOLUME, SIZE, WORN_OUT)
+    rate = float(chosen_fit(fits, beside.iloc[0])[0])
+    return pattern_left(shown[shown["particle_scale"].isin(scales)], coefficient, rate)
 
 
 def worn_out_at(left: pd.DataFrame) -> pd.DataFrame:

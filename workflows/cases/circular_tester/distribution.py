@@ -1,4 +1,4 @@
-"""Where a sample in the circular wear tester wears: by columns along the travel, by bumps, and by mesh.
+"""Where a sample in the circular wear tester wears: by columns along the travel, by bumps, by mesh and in sections.
 
 A column is what Yan 2022 (Fig 6.1) calls one: a strip across the travel, column 1 where the bed arrives. The bumps of a
 column are those of one `row` of labels; plain samples have the strips alone.
@@ -6,19 +6,35 @@ column are those of one `row` of labels; plain samples have the strips alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, centroids
+from postproc.mesh import SurfaceMesh, centroids, read_surface
+from postproc.readers.cycle_folders import cycle_folders
 from postproc.scans.comparison import bump_names, bump_sections, largest_losses
 from postproc.tables.depths import WORN_VOLUME
 from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
+from postproc.tables.summary import PLAIN
 from postproc.wear.update import worn_faces
+from workflows.cases.circular_tester.runs import MESH, SIZE, SURFACE, VOLUME, TesterRun
+from workflows.cases.circular_tester.volume import chosen
 
 COLUMNS = 5  # of the sample of 100 x 100 mm (Fig 6.1)
 NOTHING = np.empty((0, 3))  # no scan
+SHOWN_BUMPS = ["C11", "C13", "C15"]  # of Fig 6.5 and 6.16
+MESH_BUMP = "C15"  # of Fig 6.9
+LEDGER = "ledger.parquet"
+CHOSEN_SURFACES = 4  # revolutions of which contours are drawn, evenly spaced up to the last one
+
+
+def top_of(mesh: SurfaceMesh) -> SurfaceMesh:
+    """The faces of a sample that wear, with all its nodes; the holder's bottom would be in the way of sections."""
+    kept = worn_faces(mesh)
+    return SurfaceMesh(
+        mesh.points, mesh.triangles[kept], {name: data[kept] for name, data in mesh.cell_data.items()}, mesh.point_data
+    )
 
 
 def column_numbers(mesh: SurfaceMesh, columns: int = COLUMNS) -> np.ndarray:
@@ -74,6 +90,17 @@ def force_by_column(mesh: SurfaceMesh, impulse: np.ndarray, duration: float, col
     return table.rename(columns={"base": "base_N", "bumps": "bumps_N"})
 
 
+def volumes_of_meshes(lost: pd.DataFrame) -> pd.DataFrame | None:
+    """Volumes after equal revolutions of runs that differ in their elements, finest first; None without any."""
+    of_meshes = chosen(lost, MESH)
+    if of_meshes.empty:
+        return None
+    same = of_meshes.groupby("run")["revolution"].max().min()
+    at = chosen(lost, MESH, VOLUME, SIZE)
+    at = at[np.isclose(at["revolution"], same) & at["particle_scale"].isin(of_meshes["particle_scale"])]
+    return at.sort_values("element_size_mm")
+
+
 def mesh_size_effect(volumes: pd.DataFrame) -> pd.DataFrame:
     """Volume against mesh size, over that of the plain sample on the finest mesh (Fig 6.8).
 
@@ -81,7 +108,7 @@ def mesh_size_effect(volumes: pd.DataFrame) -> pd.DataFrame:
     relative_percent; per surface also mean_percent and deviation_percent over the meshes. Raises ValueError without a
     plain sample.
     """
-    plain = volumes[volumes["surface"] == "plain"]
+    plain = volumes[volumes["surface"] == PLAIN]
     if plain.empty:
         raise ValueError("the effect of mesh size needs a plain sample, found none")
     finest = plain.loc[plain["element_size_mm"].idxmin(), "volume_m3"]
@@ -102,7 +129,50 @@ def worn_contours(pristine: SurfaceMesh, worn: Mapping[str, SurfaceMesh], bumps:
     return kept.melt(["bump", "view", "along_mm"], list(names.values()), "name", "height_mm")
 
 
+def contours_by_mesh(runs: Sequence[TesterRun], revolution: float) -> pd.DataFrame:
+    """Sections of MESH_BUMP (of the first bump where a sample is too small to have it) after a revolution on the meshes
+    of runs with a pattern, finest first, as from `worn_contours`.
+    """
+    runs = sorted((run for run in runs if run.surface != PLAIN), key=lambda run: run.element_size_mm)
+    worn = {f"{run.element_size_mm:g} mm": next(iter(cycle_surfaces(run, [revolution]).values())) for run in runs}
+    pristine = top_of(read_surface(runs[0].folder / SURFACE))
+    there = bump_names(pristine)["bump"].tolist()
+    return worn_contours(pristine, worn, [MESH_BUMP if MESH_BUMP in there else there[0]])
+
+
 def contour_losses(pristine: SurfaceMesh, worn: SurfaceMesh, bumps: list[str]) -> pd.Series:
     """Largest vertical loss (mm) in the sections of bumps, by bump; flanks too steep for it do not count (Fig 6.5)."""
     losses = largest_losses(bump_sections(NOTHING, pristine, {"worn": worn}, 0.0)).set_index("bump")["worn_um"]
     return losses[[bump for bump in bumps if bump in losses.index]] * (MILLIMETRES / MICROMETRES)
+
+
+def cycle_surfaces(run: TesterRun, revolutions: Sequence[float] | None = None) -> dict[str, SurfaceMesh]:
+    """Worn tops after about these revolutions of wear, by their number; evenly spaced ones without."""
+    wear = pd.read_csv(run.folder / "wear.csv", usecols=["cycle", "revolution"])
+    last = wear["revolution"].iloc[-1]
+    wanted = revolutions if revolutions is not None else np.linspace(0.0, last, CHOSEN_SURFACES + 1)[1:]
+    rows = [wear.loc[(wear["revolution"] - each).abs().idxmin()] for each in wanted]
+    return {
+        f"{row['revolution']:.3g}": top_of(read_surface(run.folder / f"cycle_{int(row['cycle']):03d}" / SURFACE))
+        for row in rows
+    }
+
+
+def surfaces_alike(runs: Sequence[TesterRun]) -> tuple[float, dict[str, SurfaceMesh]]:
+    """The revolution of wear that all runs have reached, and their worn tops after it, by run."""
+    last = min(float(pd.read_csv(run.folder / "wear.csv", usecols=["revolution"]).iloc[-1, 0]) for run in runs)
+    return last, {run.name: next(iter(cycle_surfaces(run, [last]).values())) for run in runs}
+
+
+def mean_force_by_column(run: TesterRun, columns: int = COLUMNS) -> pd.DataFrame:
+    """Normal force by column, mean over the wear cycles: run, column, base_N, bumps_N, deviation_N (of the cycles)."""
+    before, parts = run.folder / SURFACE, []
+    durations = np.diff(pd.read_csv(run.folder / "wear.csv")["time_s"], prepend=0.0)
+    for folder, duration in zip(cycle_folders(run.folder)[1:], durations, strict=True):
+        impulse = pd.read_parquet(folder / LEDGER, columns=["normal_impulse_N_s"])["normal_impulse_N_s"]
+        parts.append(force_by_column(read_surface(before), impulse, duration, columns))
+        before = folder / SURFACE
+    table = pd.concat(parts).assign(total=lambda rows: rows["base_N"] + rows["bumps_N"])
+    grouped = table.groupby("column")
+    mean = grouped[["base_N", "bumps_N"]].mean()
+    return mean.assign(deviation_N=grouped["total"].std().fillna(0.0)).reset_index().assign(run=run.name)

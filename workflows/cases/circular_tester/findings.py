@@ -1,6 +1,6 @@
 """Which findings of Yan 2022, chapter 6, the runs of a circular wear tester confirm, with the numbers that decide.
 
-Verdicts are those of `findings`; the keys are those of config/published/circular_tester_findings.csv.
+Verdicts are those of `postproc.statistics.verdicts`, keys those of config/published/circular_tester_findings.csv.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
 from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.comparison import mean_ratios
 from workflows.cases.circular_tester.distribution import share_of_bumps
-from workflows.cases.circular_tester.volume import CONVEX, SURE, TERMS, volume_at
+from workflows.cases.circular_tester.flow import FORCE, SPIN, VELOCITY
+from workflows.cases.circular_tester.volume import CONVEX, SURE, TERMS, of_surface, volume_at
 
 LEAST_R_SQUARED = 0.99
 SIZE_SPREAD = 0.14  # -, largest from smallest of the plain sample's volumes over particle scales, Fig 6.10
@@ -29,14 +30,14 @@ FEW_REVOLUTIONS = 3  # with fewer a trend or R2 says nothing
 class Evidence:
     """What the runs found.
 
-    fits: one plain and one convex run per particle scale, as from `tester_volume.volume_fits`; predictions, crossings,
-    ratios: as from `tester_volume.predictions`, `tester_figures.crossings` and `tester_comparison.ratios_by_revolution`
-    columns, bumps: wear by column of the main runs with `surface`, and by bump of the main convex run
-    means: of spin, velocity and force per revolution of wear of the main runs, see `tester_flow.revolution_means`
-    steady: of them, as from `tester_flow.steady_revolutions`
-    meshes: as from `tester_distribution.mesh_size_effect`, None without a series of meshes
-    worn_out: as from `tester_comparison.worn_out_at`, None without a pattern that is worn right off
-    main: particle scale of the main runs; short, long: hours of the tests
+    fits: one plain run and one with a pattern per particle scale, as from `volume.volume_fits`
+    predictions, crossings, ratios: as from `volume.predictions`, `tables.crossings`, `comparison.ratios_by_revolution`
+    columns, bumps: wear by column of the pair of runs with `surface`, and by bump of the one with a pattern
+    means: of spin, velocity and force per revolution of wear of the pair, as from `flow.flow_means`
+    steady: of them, as from `flow.steady_revolutions`
+    meshes: as from `distribution.mesh_size_effect`, None without a series of meshes
+    worn_out: as from `comparison.worn_out_at`, None without a pattern that is worn right off
+    main: particle scale of the pair; short, long: hours of the tests
     """
 
     fits: pd.DataFrame
@@ -70,9 +71,8 @@ def _verdict(found: str, holds: object, reason: str = "") -> Verdict:
 
 
 def _fit(evidence: Evidence, surface: str, order: str) -> pd.Series:
-    fits = evidence.fits
-    chosen = (fits["surface"] == surface) & (fits["fit"] == order) & np.isclose(fits["particle_scale"], evidence.main)
-    return fits[chosen].iloc[0]
+    fits = of_surface(evidence.fits, surface)
+    return fits[(fits["fit"] == order) & np.isclose(fits["particle_scale"], evidence.main)].iloc[0]
 
 
 def _too_few(row: pd.Series) -> str:
@@ -102,8 +102,8 @@ def _convex_quadratic(evidence: Evidence) -> Verdict:
 
 
 def _less(evidence: Evidence, hours: float) -> Verdict:
-    table = evidence.predictions
-    of = table[(table["surface"] == CONVEX) & np.isclose(table["hours"], hours)]
+    of = of_surface(evidence.predictions, CONVEX)
+    of = of[np.isclose(of["hours"], hours)]
     row = of[np.isclose(of["particle_scale"], evidence.main)].iloc[0]
     words = f"{row['reduction_percent']:.3g} % less after {row['revolution']:.3g} revolutions"
     holds = row["reduction_percent"] > 0.0
@@ -113,9 +113,8 @@ def _less(evidence: Evidence, hours: float) -> Verdict:
 
 def _volumes(evidence: Evidence, surface: str) -> pd.Series:
     """Volumes (mm3) after the short test by particle scale, in rising order."""
-    table = evidence.predictions
-    of = table[(table["surface"] == surface) & np.isclose(table["hours"], evidence.short)]
-    return of.groupby("particle_scale")["volume_mm3"].mean().sort_index()
+    of = of_surface(evidence.predictions, surface)
+    return of[np.isclose(of["hours"], evidence.short)].groupby("particle_scale")["volume_mm3"].mean().sort_index()
 
 
 def _by_size(evidence: Evidence, surface: str, holds: Callable[[pd.Series], object]) -> Verdict:
@@ -142,13 +141,12 @@ def _overtakes(evidence: Evidence) -> Verdict:
 
 
 def _bump_share(evidence: Evidence) -> Verdict:
-    columns = evidence.columns
-    share = share_of_bumps(columns[columns["surface"] == CONVEX]).iloc[0]
+    share = share_of_bumps(of_surface(evidence.columns, CONVEX)).iloc[0]
     return _verdict(f"{100.0 * share:.3g} %", share > 0.5)
 
 
 def _total_by_column(evidence: Evidence, surface: str) -> pd.Series:
-    of = evidence.columns[evidence.columns["surface"] == surface].set_index("column")
+    of = of_surface(evidence.columns, surface).set_index("column")
     return of["base_mm3"] + of["bumps_mm3"]
 
 
@@ -186,7 +184,7 @@ def _steady(evidence: Evidence) -> Verdict:
 def _flow(evidence: Evidence, measure: str, above: bool, falls: bool) -> Verdict:
     """Whether convex lies above (or below) plain in the mean, and falls, surely by a straight line."""
     table = evidence.means[evidence.means["measure"] == measure].sort_values("revolution")
-    of = {surface: table[table["surface"] == surface]["mean"].to_numpy() for surface in (PLAIN, CONVEX)}
+    of = {surface: of_surface(table, surface)["mean"].to_numpy() for surface in (PLAIN, CONVEX)}
     ratio = of[CONVEX].mean() / of[PLAIN].mean()
     found = f"convex over plain {ratio:.3g}"
     holds = (ratio > 1.0) == above
@@ -194,7 +192,7 @@ def _flow(evidence: Evidence, measure: str, above: bool, falls: bool) -> Verdict
         return _verdict(found, holds)
     if len(of[CONVEX]) < FEW_REVOLUTIONS:
         return _verdict(found, holds, f"at least {FEW_REVOLUTIONS} revolutions are needed")
-    revolution = table[table["surface"] == CONVEX]["revolution"].to_numpy()
+    revolution = of_surface(table, CONVEX)["revolution"].to_numpy()
     line = linregress(revolution, of[CONVEX])
     change, error = (100.0 * each * np.ptp(revolution) / of[CONVEX].mean() for each in (line.slope, line.stderr))
     found += f"; convex over its revolutions {change:+.2g} ± {error:.2g} %"
@@ -241,9 +239,9 @@ TESTS: Mapping[str, Callable[[Evidence], Verdict]] = {
     "plain_columns": _plain_columns,
     "outer_bumps": _outer_bumps,
     "steady": _steady,
-    "spin": lambda each: _flow(each, "bottom_angular_speed_rad_per_s", True, True),
-    "velocity": lambda each: _flow(each, "bottom_velocity_m_per_s", False, False),
-    "force": lambda each: _flow(each, "normal_force_N", True, True),
+    "spin": lambda each: _flow(each, SPIN, True, True),
+    "velocity": lambda each: _flow(each, VELOCITY, False, False),
+    "force": lambda each: _flow(each, FORCE, True, True),
     "mesh_size": _mesh_size,
     "machines": _machines,
 }

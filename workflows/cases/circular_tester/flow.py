@@ -1,23 +1,26 @@
-"""Whether the flow in the circular wear tester is steady, and what it does from revolution to revolution.
+"""What the bed of a circular wear tester does from instant to instant and from revolution to revolution.
 
-A series has one row per instant: `run`, `surface`, `revolution` (-, since the bed began to turn) and measures such as
-`velocity_m_per_s` and `bed_height_m` of the particles over the sample, `wear_rate_m3_per_s`,
-`bottom_angular_speed_rad_per_s`, `bottom_velocity_m_per_s`, `normal_force_N`.
+A series has one row per instant and measure, see `series_of`; its revolutions are counted since the bed began to turn.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from postproc.readers.cycle_folders import LAYER_TABLE, cycle_files, cycle_folders
+from postproc.readers.solver_log import thermo_table
 from postproc.statistics.steady import FEWEST_VALUES, common_start, steady_window
-from postproc.tables.summary import PLAIN
+from workflows.cases.circular_tester.runs import LOG, TesterRun
 
 STEADINESS = ("velocity_m_per_s", "bed_height_m", "wear_rate_m3_per_s")  # the three criteria of Fig 6.7
 WHOLE = 1e-6  # revolutions that an instant may lie before a whole one and belong to the next
 FEWEST_INSTANTS = 3  # in a revolution, for a standard deviation that says anything
+# measures of Fig 6.17, 6.18 and 6.21
+SPIN, VELOCITY, FORCE = "bottom_angular_speed_rad_per_s", "bottom_velocity_m_per_s", "normal_force_N"
 
 
 def revolution_numbers(revolution: np.ndarray) -> np.ndarray:
@@ -41,7 +44,7 @@ def revolution_means(series: pd.DataFrame, measures: Sequence[str]) -> pd.DataFr
 
 
 def steady_revolutions(series: pd.DataFrame, measures: Sequence[str] = STEADINESS) -> pd.DataFrame:
-    """From which revolution on each measure of each run is steady, by the same rule as elsewhere (`analysis.steady`).
+    """From which revolution on each measure of each run is steady, by the rule of `postproc.statistics.steady`.
 
     Columns: run, surface, measure, start (revolutions), mean, drift (-), steady; measure "all" has the latest start,
     NaN where one is not steady. Raises ValueError for a run of fewer instants than FEWEST_VALUES.
@@ -63,18 +66,58 @@ def steady_revolutions(series: pd.DataFrame, measures: Sequence[str] = STEADINES
     return pd.DataFrame(rows)
 
 
-def relative_motion(particles: pd.DataFrame) -> pd.DataFrame:
-    """Speeds of the particles of a layer over the mean of the plain sample's (Fig 6.19 and 6.20).
+def series_of(run: TesterRun) -> pd.DataFrame:
+    """What a run does from instant to instant; the bed before it with a block in its place.
 
-    particles: surface, x_m, y_m, radius_m, vx_m_per_s, vy_m_per_s, angular_speed_rad_per_s. Added: relative_speed and
-    relative_angular_speed, -. Raises ValueError without a plain sample's particles.
+    Columns: run, surface, revolution (of the bed), worn_revolution (of wear, below 0 before), and measures, each in
+    rows of its own: velocity_m_per_s and bed_height_m of the particles over the sample, wear_rate_m3_per_s,
+    normal_force_N, bottom_velocity_m_per_s, bottom_angular_speed_rad_per_s.
     """
-    speed = np.hypot(particles["vx_m_per_s"], particles["vy_m_per_s"])
-    plain = particles["surface"] == PLAIN
-    if not plain.any():
-        raise ValueError("relative speeds need the particles over a plain sample, found none")
-    return particles.assign(
-        relative_speed=speed / speed[plain].mean(),
-        relative_angular_speed=particles["angular_speed_rad_per_s"]
-        / particles.loc[plain, "angular_speed_rad_per_s"].mean(),
-    )
+    parts = [_logged(run.bed_folder / LOG, run.bed_revolution_steps)]
+    folders = cycle_folders(run.folder)
+    parts.append(_after(_logged(folders[0] / LOG, run.revolution_steps), run.bed_revolutions))
+    forces = _rows(run.folder, "forces.csv")
+    over = {"velocity_over_m_per_s": "velocity_m_per_s", "height_over_m": "bed_height_m"}
+    parts.append(_after(forces.rename(columns=over)[["revolution", *over.values()]], run.before))
+    history = _rows(run.folder, "wear_history.csv")
+    duration = np.diff(history["time_s"], prepend=0.0)
+    middle = history["time_s"] - 0.5 * duration  # a stretch up to the end of a revolution belongs to it
+    wear = pd.DataFrame({"revolution": middle / run.revolution_s})
+    wear["wear_rate_m3_per_s"] = history["archard_volume_m3"] / duration
+    wear["normal_force_N"] = history["mean_normal_force_N"]
+    parts.append(_after(wear, run.before))
+    layer = _rows(run.folder, LAYER_TABLE)
+    bottom = {name: f"bottom_{name}" for name in ("velocity_m_per_s", "angular_speed_rad_per_s")}
+    parts.append(_after(layer.rename(columns=bottom)[["revolution", *bottom.values()]], run.before))
+    table = pd.concat(parts, ignore_index=True)
+    table.insert(0, "run", run.name)
+    table.insert(1, "surface", run.surface)
+    return table.assign(worn_revolution=table["revolution"] - run.before)
+
+
+def _after(table: pd.DataFrame, revolutions: float) -> pd.DataFrame:
+    return table.assign(revolution=table["revolution"] + revolutions)
+
+
+def _logged(path: Path, revolution_steps: int) -> pd.DataFrame:
+    """Velocity and height of the bed over the sample from the last run of a log, by revolution since its start."""
+    thermo = thermo_table(path)
+    last = thermo["run"] == thermo["run"].max()
+    step = thermo["Step"][last]
+    table = {
+        "revolution": (step - step[0]) / revolution_steps,
+        "velocity_m_per_s": thermo["sample_v"][last],
+        "bed_height_m": thermo["sample_h"][last],
+    }
+    return pd.DataFrame(table).iloc[1:]  # the first row is of no motion yet
+
+
+def _rows(folder: Path, name: str) -> pd.DataFrame:
+    """The rows of a table that every wear cycle has left."""
+    return pd.concat([pd.read_csv(path) for path in cycle_files(folder, name)], ignore_index=True)
+
+
+def flow_means(flow: pd.DataFrame) -> pd.DataFrame:
+    """Spin and velocity of the lowest layer and normal force per revolution of wear, as from `revolution_means`."""
+    worn = flow[flow["worn_revolution"] > 0.0]
+    return revolution_means(worn.assign(revolution=worn["worn_revolution"]), (SPIN, VELOCITY, FORCE))

@@ -1,4 +1,4 @@
-"""Key numbers of a study of the circular wear tester, from its tables."""
+"""Numbers and sentences of the page of a circular wear tester, section by section, from the study's tables."""
 
 from __future__ import annotations
 
@@ -10,30 +10,111 @@ import numpy as np
 import pandas as pd
 
 from postproc.tables.display import CUBIC_MILLIMETRES
-from workflows.cases.circular_tester.volume import LABORATORY, OURS, THESIS, THESIS_ALIKE
+from postproc.tables.summary import read_summary
+from workflows.cases.circular_tester.comparison import worn_out_at
+from workflows.cases.circular_tester.distribution import share_of_bumps
+from workflows.cases.circular_tester.flow import steady_revolutions
+from workflows.cases.circular_tester.volume import LABORATORY, OURS, TERMS, THESIS, THESIS_ALIKE
+from workflows.config.design import REPOSITORY
+from workflows.report.sections import Block, Cards, Table, Text
 from workflows.report.text import UNDEFINED
 
-TABLES = ("comparison", "time_scale", "crossings", "fits", "mean_ratios")
+PUBLISHED_FITS = REPOSITORY / "config" / "published" / "circular_tester_volume.csv"
+FIT_DIGITS = 5
+REDUCED = "At the reduced scale told at the top of the page: a finding that is not confirmed here is not thereby wrong."
+RESULTS_NOTE = (
+    "Lost: removed from the sample; per revolution: what the law takes. Normal force: on the faces that wear. Sliding: "
+    "of contacts on them, over the travel of the trough; wear is the product of both. Carried: worn by the law, not "
+    "applied to the shape."
+)
+RESULT_HEADS = {
+    "shape": ("machine", ""),
+    "lost_volume_mm3": ("lost", "mm³"),
+    "lost_per_revolution_mm3": ("lost per revolution", "mm³"),
+    "bump_share_percent": ("on bumps", "%"),
+    "mean_normal_force_N": ("mean normal force", "N"),
+    "sliding_over_travel": ("sliding over travel", "-"),
+    "bed_over_floor_velocity": ("velocity of bed over trough", "-"),
+    "linear_r_squared": ("linear fit", "R²"),
+    "carried_share_percent": ("carried", "%"),
+}
 
 
-def key_numbers(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -> dict[str, Any]:
-    """Return what the template shows: `results` (a table for download), cards, the comparison with the source."""
-    tables = {name: pd.read_csv(folder / "tester" / f"{name}.csv", keep_default_na=True) for name in TABLES}
-    tables["comparison"]["note"] = tables["comparison"]["note"].fillna("")
-    return {
-        "results": result_table(summary, tables["fits"]),
-        "cards": cards(tables),
-        "comparison": tables["comparison"].to_dict("records"),
-        "sources": [LABORATORY, THESIS, THESIS_ALIKE, OURS],
-        "scale": tables["time_scale"].iloc[0].to_dict(),
-        "machines": tables["mean_ratios"].to_dict("records"),
-        "verdicts": findings_table(folder).to_dict("records"),
-    }
+def of_study(folder: Path, name: str) -> pd.DataFrame:
+    """Return a table of the study."""
+    return pd.read_csv(folder / "tester" / f"{name}.csv")
 
 
-def findings_table(folder: Path) -> pd.DataFrame:
-    """Return finding, source, found, verdict and reason of the source's findings, words all of them."""
-    return pd.read_csv(folder / "tester" / "findings.csv", keep_default_na=False).drop(columns="key")
+def beside_the_experiment(folder: Path) -> list[Block]:
+    """Return the reductions, what sets the scale of time, and the comparison with the source."""
+    compared = of_study(folder, "comparison")
+    compared["note"] = compared["note"].fillna("")
+    scale = of_study(folder, "time_scale").iloc[0]
+    return [
+        Cards(cards(compared, of_study(folder, "crossings"))),
+        Text(
+            "The plain sample's volume after 56 h sets the scale, all else is predicted: a revolution stands for "
+            f"{scale['hours_per_revolution']:.3g} h. The coefficient that makes the source's two revolutions stand for "
+            f"56 h would be {scale['wear_coefficient']:.3g} 1/Pa (simulated {scale['simulated_coefficient']:.3g}), the "
+            f"laboratory's own, by its pressure and 121 km, is {scale['laboratory_coefficient']:.3g} 1/Pa. Distance of "
+            f"the test over that of the revolutions: {scale['distance_scale']:.3g}."
+        ),
+        Table(compared, "comparison", digits=dict.fromkeys((LABORATORY, THESIS, THESIS_ALIKE, OURS), 4)),
+    ]
+
+
+def cards(compared: pd.DataFrame, crossings: pd.DataFrame) -> list[tuple[str, str]]:
+    """Return the few numbers that answer the question: the reductions beside the measured ones, and their future."""
+    found = [
+        (
+            f"{row[OURS]:.3g} %",
+            f"less wear of the convex sample after {row['hours']:g} h; measured {row[LABORATORY]:.3g} %, thesis' model "
+            f"{row[THESIS]:.3g} %",
+        )
+        for _, row in compared[compared["quantity"] == "reduction"].iterrows()
+    ]
+    for row in crossings.itertuples():
+        never = not np.isfinite(row.crossing)
+        words = "convex never loses more" if never else "revolutions until the convex sample has lost more"
+        found.append((UNDEFINED if never else f"{row.crossing:.3g}", f"{words}, scale {row.particle_scale:g}"))
+    return found
+
+
+def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
+    """Return the source's findings with their verdicts, words all of them."""
+    table = pd.read_csv(folder / "tester" / "findings.csv", keep_default_na=False).drop(columns="key")
+    said = [*([REDUCED] if study["remarks"] else []), "A reason with a verdict is a reserve."]
+    return [Text(" ".join(said)), Table(table, "findings")]
+
+
+def fits(folder: Path) -> list[Block]:
+    """Return the fits of every run beside those of the source, and when convex overtakes plain."""
+    columns, errors = ["surface", "particle_scale", *TERMS, "r_squared"], [f"{term}_error" for term in TERMS]
+    ours = of_study(folder, "fits")[["run", "fit", *columns, *errors, "curved"]]
+    theirs = pd.read_csv(PUBLISHED_FITS)[[*columns, "source"]]
+    digits = dict.fromkeys([*TERMS, *errors, "r_squared"], FIT_DIGITS)
+    crossings = of_study(folder, "crossings")
+    never = np.isinf(crossings[["rate_crossing", "crossing"]]).any(axis=None)
+    words = f" No crossing ({UNDEFINED}) means never by the fits." if never else ""
+    return [
+        Table(ours, "fits", digits=digits),
+        Table(theirs, digits=digits),
+        Text(f"Convex faster, and more in sum, from revolution:{words}"),
+        Table(crossings),
+    ]
+
+
+def ratios(folder: Path) -> list[Block]:
+    """Return convex over plain of each machine and particle scale with its deviation."""
+    note = "Over all revolutions of a machine; deviation and standard error are those of its revolutions."
+    return [Table(of_study(folder, "mean_ratios"), "convex_over_plain", note, {"ratio": 4})]
+
+
+def every_run(folder: Path) -> list[Block]:
+    """Return the key numbers of every run."""
+    results = result_table(read_summary(folder / "summary.csv"), of_study(folder, "fits"))
+    digits = {"lost_volume_mm3": 4, "lost_per_revolution_mm3": 4, "linear_r_squared": FIT_DIGITS}
+    return [Table(results, "key_numbers", RESULTS_NOTE, digits, RESULT_HEADS)]
 
 
 def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
@@ -56,21 +137,25 @@ def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def cards(tables: Mapping[str, pd.DataFrame]) -> list[dict[str, str]]:
-    """Return the few numbers that answer the question: the reductions beside the measured ones, and their future."""
-    reductions = tables["comparison"][tables["comparison"]["quantity"] == "reduction"]
-    found = [
-        {
-            "value": f"{row[OURS]:.3g} %",
-            "label": f"less wear of the convex sample after {row['hours']:g} h; measured {row[LABORATORY]:.3g} %, "
-            f"thesis' model {row[THESIS]:.3g} %",
-        }
-        for _, row in reductions.iterrows()
-    ]
-    for row in tables["crossings"].itertuples():
-        never = not np.isfinite(row.crossing)
-        words = "convex never loses more" if never else "revolutions until the convex sample has lost more"
-        found.append(
-            {"value": UNDEFINED if never else f"{row.crossing:.3g}", "label": f"{words}, scale {row.particle_scale:g}"}
-        )
-    return found
+def steadiness(folder: Path) -> list[Block]:
+    """Return from which revolution of the bed each measure is steady."""
+    return [Table(steady_revolutions(of_study(folder, "series")))]
+
+
+def by_column(folder: Path) -> list[Block]:
+    """Return wear by column, and what the bumps bear."""
+    table = pd.read_csv(folder / "figures" / "tester_columns.csv")
+    shares = "; ".join(f"{run}: {100.0 * share:.1f} % on bumps" for run, share in share_of_bumps(table).items())
+    return [Text(f"{shares}."), Table(table)]
+
+
+def until_worn_out(folder: Path) -> list[Block]:
+    """Return when less than a twentieth of the pattern is left; nothing where no row is for that."""
+    path = folder / "figures" / "tester_worn_out.csv"
+    return [Table(worn_out_at(pd.read_csv(path)))] if path.is_file() else []
+
+
+def by_elements(folder: Path) -> list[Block]:
+    """Return what the size of elements changes; nothing where no row is for that."""
+    path = folder / "figures" / "tester_mesh.csv"
+    return [Table(pd.read_csv(path))] if path.is_file() else []

@@ -1,4 +1,5 @@
-"""The particles next to a sample in the circular wear tester: how fast they pass and turn (Yan 2022, Fig 6.17-6.20)."""
+"""The lowest layer over a sample in the circular wear tester: how fast its particles pass and turn (Yan 2022, Fig 6.17
+to 6.20)."""
 
 from __future__ import annotations
 
@@ -9,7 +10,10 @@ import numpy as np
 import pandas as pd
 
 from postproc.flow.bed import read_snapshot, snapshots
+from postproc.mesh import SurfaceMesh
 from postproc.readers.cycle_folders import LAYER_TABLE
+from postproc.tables.summary import PLAIN
+from workflows.cases.circular_tester.runs import TesterRun
 
 FIRST_SNAPSHOT = "bed_0.dump"  # of a cycle, the last one of the cycle before
 AXES = ["x_m", "y_m", "z_m"]
@@ -61,3 +65,53 @@ def reduce_layer(
         )
     pd.DataFrame(rows).to_csv(Path(cycle_folder) / LAYER_TABLE, index=False)
     return dumps[:-1]
+
+
+def layer_of(run: TesterRun) -> LayerOverSample:
+    """The lowest layer over the sample of a run."""
+    return LayerOverSample(run.width, run.length, run.layer_height, run.rotation)
+
+
+def layer_particles(run: TesterRun, revolution: float) -> pd.DataFrame:
+    """Particles of the lowest layer at the end of the wear cycle nearest to a revolution, as `relative_motion` wants
+    them: surface, x_m, y_m, radius_m, vx_m_per_s, vy_m_per_s, angular_speed_rad_per_s.
+    """
+    wear = pd.read_csv(run.folder / "wear.csv", usecols=["cycle", "revolution"])
+    cycle = int(wear.loc[(wear["revolution"] - revolution).abs().idxmin(), "cycle"])
+    found = layer_of(run).of(read_snapshot(snapshots(run.folder / f"cycle_{cycle:03d}")[-1]))
+    names = {"velocity_x_m_per_s": "vx_m_per_s", "velocity_y_m_per_s": "vy_m_per_s"}
+    kept = found.rename(columns=names)[["x_m", "y_m", "radius_m", *names.values(), "angular_speed_rad_per_s"]]
+    return kept.assign(surface=run.surface)
+
+
+def relative_motion(particles: pd.DataFrame) -> pd.DataFrame:
+    """Speeds of the particles of a layer over the mean of the plain sample's (Fig 6.19 and 6.20).
+
+    particles: surface, x_m, y_m, radius_m, vx_m_per_s, vy_m_per_s, angular_speed_rad_per_s. Added: relative_speed and
+    relative_angular_speed, -. Raises ValueError without a plain sample's particles.
+    """
+    speed = np.hypot(particles["vx_m_per_s"], particles["vy_m_per_s"])
+    plain = particles["surface"] == PLAIN
+    if not plain.any():
+        raise ValueError("relative speeds need the particles over a plain sample, found none")
+    return particles.assign(
+        relative_speed=speed / speed[plain].mean(),
+        relative_angular_speed=particles["angular_speed_rad_per_s"]
+        / particles.loc[plain, "angular_speed_rad_per_s"].mean(),
+    )
+
+
+def outlines(mesh: SurfaceMesh) -> np.ndarray:
+    """Ends (k, 2, 2) m of the edges round the parts of a pristine top, seen from above: its rim and the bumps' feet."""
+    part = mesh.cell_data["part"]
+    edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    owner = np.repeat(part, 3)
+    order = np.lexsort((owner, edges[:, 1], edges[:, 0]))
+    edges, owner = edges[order], owner[order]
+    same = (edges[1:] == edges[:-1]).all(axis=1)
+    first = np.flatnonzero(same & (owner[1:] != owner[:-1]))
+    inner = edges[first]
+    alone = np.ones(len(edges), bool)
+    alone[1:] &= ~same
+    alone[:-1] &= ~same
+    return mesh.points[np.concatenate([inner, edges[alone]])][:, :, :2]

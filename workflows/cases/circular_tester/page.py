@@ -1,18 +1,19 @@
-"""The page of a study of the circular wear tester: table of runs, remarks, what is simplified."""
+"""The page of a study of the circular wear tester: sections, table of runs, remarks, what is simplified."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from workflows.cases.circular_tester import decks as tester_deck
+from workflows.cases.circular_tester import key_numbers
+from workflows.report.sections import Pictures, Section
 from workflows.report.text import range_text
 
 if TYPE_CHECKING:
-    from workflows.config.design import Run, Study
+    from workflows.config.design import Study
 
-KEY_NUMBERS = "key_numbers_circular_tester.html.j2"
-FURTHER_TEMPLATES = ()  # that it includes
 RUNS_NOTE = (
     "Layers: over the sample, its depth over the median diameter of the (scaled) particles, and under it. Particles: "
     "estimate from the trough's volume; the solver's number is under Cost. Pressure: of a bed at rest of that depth."
@@ -22,7 +23,34 @@ DECKS = (  # {bed} and {run} are those of the first run
     ("Run-in with the sample", "{run}/cycle_000/deck.in"),
     ("First wear cycle", "{run}/cycle_001/deck.in"),
 )
-THESIS_SCALE = 3.0  # particle scale of the source's model, beside 1, 2 and 4
+
+
+def told(study: Study) -> dict[str, Any]:
+    """Return what the page is told besides what every page is: nothing."""
+    return {}
+
+
+def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the sections of a study's page: the answer beside the experiment first, then how the runs come to it."""
+    places = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
+    layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
+    parts = (
+        (
+            "Experiment, thesis' model and ours",
+            key_numbers.beside_the_experiment(folder),
+            ("tester_hours", "tester_benchmark"),
+        ),
+        ("Findings of the source", key_numbers.findings(study, folder), ()),
+        ("Volume by revolution", key_numbers.fits(folder), ("tester_volume", "tester_increments")),
+        ("Convex over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
+        ("Every run", key_numbers.every_run(folder), ("worn_surface",)),
+        ("Steadiness", key_numbers.steadiness(folder), ("tester_steadiness",)),
+        ("Where it wears", key_numbers.by_column(folder), places),
+        ("Until the pattern is gone", key_numbers.until_worn_out(folder), ("tester_worn_out",)),
+        ("The lowest layer", [], layer),
+        ("Elements", key_numbers.by_elements(folder), ("tester_mesh", "tester_mesh_contours")),
+    )
+    return [Section(title, [*blocks, Pictures(pictures)]) for title, blocks, pictures in parts]
 
 
 def remarks(study: Study) -> list[str]:
@@ -58,49 +86,6 @@ def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
         "pressure_pa": derived["bulk_pressure_pa"],
         "time_step_us": 1e6 * derived["time_step_s"],
     }
-
-
-def values_of_runs(study: Study) -> list[dict[str, Any]]:
-    """Return what the analysis of every run of a study needs to know of it."""
-    return [run_values(study, run) for run in study.runs]
-
-
-def run_values(study: Study, run: Run) -> dict[str, Any]:
-    """Return what the analysis of a run needs, JSON-able, see `workflows.cases.circular_tester.runs.TesterRun`."""
-    parameters, bed = run.parameters, study.beds[study.bed_of(run.name)]
-    sample, sliding, derived = (parameters[name] for name in ("sample", "sliding", "derived"))
-    series = next(row["series"] for row in study.design_rows if row["row"] == run.row)
-    return {
-        "name": run.name,
-        "bed": study.bed_of(run.name),
-        "surface": "convex" if parameters["pattern"] else "plain",
-        "series": series,
-        "shape": parameters["tester"]["shape"],
-        "particle_scale": parameters["particle"]["scale"],
-        "element_size_mm": 1e3 * sample["element_size_m"],
-        "coefficient": parameters["wear"]["accelerated_wear_coefficient_per_pa"],
-        "patch": patch_words(parameters["wear"]),
-        "bed_revolution_steps": round(bed["revolution_s"] / bed["time_step_s"]),
-        "revolution_steps": derived["revolution_steps"],
-        "revolution_s": derived["revolution_s"],
-        "bed_revolutions": sliding["steady_revolutions"],
-        "run_in_revolutions": sliding["run_in_revolutions"],
-        "width": sample["width_m"],
-        "length": sample["length_m"],
-        "layer_height": parameters["particle"]["median_diameter_m"],
-        "rotation": tester_deck.pose(parameters["tester"]).tolist(),
-        "distance_per_revolution": sliding["velocity_m_per_s"] * derived["revolution_s"],
-    }
-
-
-def patch_words(wear: Mapping[str, Any]) -> str:
-    """Return over what a contact wears."""
-    return {
-        "none": "single elements",
-        "simulated": "its Hertz patch in the solver",
-        "physical": "the Hertz patch of the real material",
-        "radius": f"{1e3 * wear.get('patch_radius_m', 0.0):g} mm round it",
-    }[wear["patch"]]
 
 
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -1,28 +1,24 @@
-"""Tables of the runs of a circular wear tester from what their wear cycles left; see tester_volume and tester_flow.
+"""The runs of a circular wear tester as its tables and figures know them.
 
-A revolution of wear is counted from where wear begins to be; a revolution of the bed from where it began to turn.
+A revolution of wear is counted from where wear begins to be; a revolution of the bed from where it began to turn. What
+most figures show is the pair of series `volume`, one run with a pattern and one plain one in equal machines.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
-from postproc.flow.bed import read_snapshot, snapshots
-from postproc.mesh import SurfaceMesh, read_surface
-from postproc.readers.cycle_folders import LAYER_TABLE, cycle_files, cycle_folders
-from postproc.readers.solver_log import thermo_table
-from postproc.wear.pattern_left import bump_volume
-from postproc.wear.update import worn_faces
-from workflows.cases.circular_tester.distribution import COLUMNS, force_by_column
-from workflows.cases.circular_tester.layer import LayerOverSample
+from workflows.cases.circular_tester.decks import pose
 
-LOG, SURFACE, WORN_SURFACE, LEDGER = "log.liggghts", "surface.vtu", "worn_surface.vtu", "ledger.parquet"
-CHOSEN_SURFACES = 4  # revolutions of which contours are drawn, evenly spaced up to the last one
+if TYPE_CHECKING:
+    from workflows.config.design import Run, Study
+
+LOG, SURFACE, WORN_SURFACE = "log.liggghts", "surface.vtu", "worn_surface.vtu"  # files of a run
 VOLUME, SIZE, MESH, WORN_OUT, RING = "volume", "size", "mesh", "worn_out", "ring"  # series of the design
 
 
@@ -71,160 +67,74 @@ class TesterRun:
         """Revolutions of the bed before wear is counted."""
         return self.bed_revolutions + self.run_in_revolutions
 
-    @property
-    def layer(self) -> LayerOverSample:
-        return LayerOverSample(self.width, self.length, self.layer_height, self.rotation)
+
+# ---------------------------------------------------------------- from a study to its runs
 
 
-def top_of(mesh: SurfaceMesh) -> SurfaceMesh:
-    """The faces of a sample that wear, with all its nodes; the holder's bottom would be in the way of sections."""
-    kept = worn_faces(mesh)
-    return SurfaceMesh(
-        mesh.points, mesh.triangles[kept], {name: data[kept] for name, data in mesh.cell_data.items()}, mesh.point_data
-    )
+def has_series(name: str) -> Callable[[Study], bool]:
+    """Return what says whether a study has rows of a series."""
+    return lambda study: any(row["series"] == name for row in study.design_rows)
 
 
-def volumes(runs: Sequence[TesterRun]) -> pd.DataFrame:
-    """What every run has lost after each wear cycle, from revolution 0 on, as `tester_volume` wants it.
-
-    Columns: those of `TesterRun.case`, cycle, revolution, volume_m3 (lost), law_volume_m3 (what the law takes, carried
-    included), bump_volume_m3 (of it from bumps), pattern_volume_m3 (what is left of the bumps), elements.
-    """
-    parts = []
-    for run in runs:
-        wear = pd.read_csv(run.folder / "wear.csv")
-        pristine = read_surface(run.folder / SURFACE)
-        table = pd.DataFrame(
-            {
-                "cycle": wear["cycle"],
-                "revolution": wear["revolution"],
-                "volume_m3": wear["total_applied_volume_m3"],
-                "law_volume_m3": wear["total_archard_volume_m3"],
-                "bump_volume_m3": wear["bump_archard_volume_m3"].cumsum(),
-                "pattern_volume_m3": wear["pattern_volume_m3"],
-            }
-        )
-        start = {name: [0.0] for name in table} | {"cycle": [0], "pattern_volume_m3": [bump_volume(pristine)]}
-        table = pd.concat([pd.DataFrame(start), table], ignore_index=True)
-        parts.append(
-            table.assign(**run.case, elements=int(worn_faces(pristine).sum()))[[*run.case, *table, "elements"]]
-        )
-    return pd.concat(parts, ignore_index=True)
+def values_of_runs(study: Study) -> list[dict[str, Any]]:
+    """Return what the analysis of every run of a study needs to know of it, JSON-able, see `TesterRun`."""
+    return [_values(study, run) for run in study.runs]
 
 
-def whole_revolutions(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows of a table of volumes at whole revolutions, and at the last one of each run."""
-    whole = np.isclose(table["revolution"], table["revolution"].round(), atol=1e-6)
-    last = table["revolution"] == table.groupby("run")["revolution"].transform("max")
-    return table[whole | last]
+def values_of_pair(study: Study) -> list[dict[str, Any]]:
+    """Return the same of the runs of series `volume` alone."""
+    return [values for values in values_of_runs(study) if values["series"] == VOLUME]
 
 
-def series(run: TesterRun) -> pd.DataFrame:
-    """What a run does from instant to instant, as `tester_flow` wants it; the bed before it with a block in its place.
-
-    Columns: run, surface, revolution (of the bed), worn_revolution (of wear, below 0 before), and measures, each in
-    rows of its own: velocity_m_per_s and bed_height_m of the particles over the sample, wear_rate_m3_per_s,
-    normal_force_N, bottom_velocity_m_per_s, bottom_angular_speed_rad_per_s.
-    """
-    parts = [_logged(run.bed_folder / LOG, run.bed_revolution_steps)]
-    folders = cycle_folders(run.folder)
-    parts.append(_after(_logged(folders[0] / LOG, run.revolution_steps), run.bed_revolutions))
-    forces = _rows(run.folder, "forces.csv")
-    over = {"velocity_over_m_per_s": "velocity_m_per_s", "height_over_m": "bed_height_m"}
-    parts.append(_after(forces.rename(columns=over)[["revolution", *over.values()]], run.before))
-    history = _rows(run.folder, "wear_history.csv")
-    duration = np.diff(history["time_s"], prepend=0.0)
-    middle = history["time_s"] - 0.5 * duration  # a stretch up to the end of a revolution belongs to it
-    wear = pd.DataFrame({"revolution": middle / run.revolution_s})
-    wear["wear_rate_m3_per_s"] = history["archard_volume_m3"] / duration
-    wear["normal_force_N"] = history["mean_normal_force_N"]
-    parts.append(_after(wear, run.before))
-    layer = _rows(run.folder, LAYER_TABLE)
-    bottom = {name: f"bottom_{name}" for name in ("velocity_m_per_s", "angular_speed_rad_per_s")}
-    parts.append(_after(layer.rename(columns=bottom)[["revolution", *bottom.values()]], run.before))
-    table = pd.concat(parts, ignore_index=True)
-    table.insert(0, "run", run.name)
-    table.insert(1, "surface", run.surface)
-    return table.assign(worn_revolution=table["revolution"] - run.before)
-
-
-def _after(table: pd.DataFrame, revolutions: float) -> pd.DataFrame:
-    return table.assign(revolution=table["revolution"] + revolutions)
-
-
-def _logged(path: Path, revolution_steps: int) -> pd.DataFrame:
-    """Velocity and height of the bed over the sample from the last run of a log, by revolution since its start."""
-    thermo = thermo_table(path)
-    last = thermo["run"] == thermo["run"].max()
-    step = thermo["Step"][last]
-    table = {
-        "revolution": (step - step[0]) / revolution_steps,
-        "velocity_m_per_s": thermo["sample_v"][last],
-        "bed_height_m": thermo["sample_h"][last],
-    }
-    return pd.DataFrame(table).iloc[1:]  # the first row is of no motion yet
-
-
-def _rows(folder: Path, name: str) -> pd.DataFrame:
-    """The rows of a table that every wear cycle has left."""
-    return pd.concat([pd.read_csv(path) for path in cycle_files(folder, name)], ignore_index=True)
-
-
-def cycle_surfaces(run: TesterRun, revolutions: Sequence[float] | None = None) -> dict[str, SurfaceMesh]:
-    """Worn tops after about these revolutions of wear, by their number; evenly spaced ones without."""
-    wear = pd.read_csv(run.folder / "wear.csv", usecols=["cycle", "revolution"])
-    last = wear["revolution"].iloc[-1]
-    wanted = revolutions if revolutions is not None else np.linspace(0.0, last, CHOSEN_SURFACES + 1)[1:]
-    rows = [wear.loc[(wear["revolution"] - each).abs().idxmin()] for each in wanted]
+def _values(study: Study, run: Run) -> dict[str, Any]:
+    parameters, bed = run.parameters, study.beds[study.bed_of(run.name)]
+    sample, sliding, derived = (parameters[name] for name in ("sample", "sliding", "derived"))
+    columns = study.case.table_columns(parameters)
     return {
-        f"{row['revolution']:.3g}": top_of(read_surface(run.folder / f"cycle_{int(row['cycle']):03d}" / SURFACE))
-        for row in rows
+        "name": run.name,
+        "bed": study.bed_of(run.name),
+        "series": next(row["series"] for row in study.design_rows if row["row"] == run.row),
+        **{name: columns[name] for name in ("surface", "shape", "particle_scale", "element_size_mm")},
+        "coefficient": columns["wear_coefficient_per_pa"],
+        "patch": patch_words(parameters["wear"]),
+        "bed_revolution_steps": round(bed["revolution_s"] / bed["time_step_s"]),
+        "revolution_steps": derived["revolution_steps"],
+        "revolution_s": derived["revolution_s"],
+        "bed_revolutions": sliding["steady_revolutions"],
+        "run_in_revolutions": sliding["run_in_revolutions"],
+        "width": sample["width_m"],
+        "length": sample["length_m"],
+        "layer_height": parameters["particle"]["median_diameter_m"],
+        "rotation": pose(parameters["tester"]).tolist(),
+        "distance_per_revolution": sliding["velocity_m_per_s"] * derived["revolution_s"],
     }
 
 
-def surfaces_alike(runs: Sequence[TesterRun]) -> tuple[float, dict[str, SurfaceMesh]]:
-    """The revolution of wear that all runs have reached, and their worn tops after it, by run."""
-    last = min(float(pd.read_csv(run.folder / "wear.csv", usecols=["revolution"]).iloc[-1, 0]) for run in runs)
-    return last, {run.name: next(iter(cycle_surfaces(run, [last]).values())) for run in runs}
+def patch_words(wear: Mapping[str, Any]) -> str:
+    """Return over what a contact wears."""
+    return {
+        "none": "single elements",
+        "simulated": "its Hertz patch in the solver",
+        "physical": "the Hertz patch of the real material",
+        "radius": f"{1e3 * wear.get('patch_radius_m', 0.0):g} mm round it",
+    }[wear["patch"]]
 
 
-def layer_particles(run: TesterRun, revolution: float) -> pd.DataFrame:
-    """Particles of the lowest layer at the end of the wear cycle nearest to a revolution, as `relative_motion` wants
-    them: surface, x_m, y_m, radius_m, vx_m_per_s, vy_m_per_s, angular_speed_rad_per_s.
+def runs_of_values(values: Sequence[Mapping[str, Any]], results: Path) -> list[TesterRun]:
+    """Return runs from their values, as from `values_of_runs`, below the folder of their study."""
+    return [_run_of_values(dict(each), results) for each in values]
+
+
+def _run_of_values(values: dict[str, Any], results: Path) -> TesterRun:
+    folders = {"folder": results / values["name"], "bed_folder": results / "beds" / values.pop("bed")}
+    return TesterRun(**values | folders | {"rotation": np.array(values["rotation"])})
+
+
+def pair_of(runs: Sequence[TesterRun]) -> tuple[TesterRun, TesterRun]:
+    """Return the run with a pattern and the plain one of which most figures are made; the plain one sets the scale of
+    time.
     """
-    wear = pd.read_csv(run.folder / "wear.csv", usecols=["cycle", "revolution"])
-    cycle = int(wear.loc[(wear["revolution"] - revolution).abs().idxmin(), "cycle"])
-    found = run.layer.of(read_snapshot(snapshots(run.folder / f"cycle_{cycle:03d}")[-1]))
-    names = {"velocity_x_m_per_s": "vx_m_per_s", "velocity_y_m_per_s": "vy_m_per_s"}
-    kept = found.rename(columns=names)[["x_m", "y_m", "radius_m", *names.values(), "angular_speed_rad_per_s"]]
-    return kept.assign(surface=run.surface)
+    from postproc.tables.summary import PLAIN  # slow to import, and Snakemake reads this module first
 
-
-def mean_force_by_column(run: TesterRun, columns: int = COLUMNS) -> pd.DataFrame:
-    """Normal force by column, mean over the wear cycles: run, column, base_N, bumps_N, deviation_N (of the cycles)."""
-    before, parts = run.folder / SURFACE, []
-    durations = np.diff(pd.read_csv(run.folder / "wear.csv")["time_s"], prepend=0.0)
-    for folder, duration in zip(cycle_folders(run.folder)[1:], durations, strict=True):
-        impulse = pd.read_parquet(folder / LEDGER, columns=["normal_impulse_N_s"])["normal_impulse_N_s"]
-        parts.append(force_by_column(read_surface(before), impulse, duration, columns))
-        before = folder / SURFACE
-    table = pd.concat(parts).assign(total=lambda rows: rows["base_N"] + rows["bumps_N"])
-    grouped = table.groupby("column")
-    mean = grouped[["base_N", "bumps_N"]].mean()
-    return mean.assign(deviation_N=grouped["total"].std().fillna(0.0)).reset_index().assign(run=run.name)
-
-
-def outlines(mesh: SurfaceMesh) -> np.ndarray:
-    """Ends (k, 2, 2) m of the edges round the parts of a pristine top, seen from above: its rim and the bumps' feet."""
-    part = mesh.cell_data["part"]
-    edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    owner = np.repeat(part, 3)
-    order = np.lexsort((owner, edges[:, 1], edges[:, 0]))
-    edges, owner = edges[order], owner[order]
-    same = (edges[1:] == edges[:-1]).all(axis=1)
-    first = np.flatnonzero(same & (owner[1:] != owner[:-1]))
-    inner = edges[first]
-    alone = np.ones(len(edges), bool)
-    alone[1:] &= ~same
-    alone[:-1] &= ~same
-    return mesh.points[np.concatenate([inner, edges[alone]])][:, :, :2]
+    patterned, plain = sorted((run for run in runs if run.series == VOLUME), key=lambda run: run.surface == PLAIN)
+    return patterned, plain

@@ -1,23 +1,28 @@
 """Volume worn in the circular wear tester, revolution by revolution: fits, what it says of hours, convex against plain.
 
-A table of volumes has one row per run and revolution: `run`, `surface` (plain, convex), `particle_scale` (-),
-`revolution` (-, of wear: 0 where wear begins), `volume_m3` (lost since then) and `elements` (triangles that wear). One
-revolution is one turn of the simulated sector, 150 degrees in Yan 2022 (chapter 6).
+A table of volumes, see `volumes`, has one row per run and wear cycle. One revolution is one turn of the simulated
+sector, 150 degrees in Yan 2022 (chapter 6). Surfaces are plain, or have the pattern that stands for the source's convex
+one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import read_surface
 from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.tables.published import published_value
 from postproc.tables.summary import PLAIN
 from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient
+from postproc.wear.pattern_left import bump_volume
+from postproc.wear.update import worn_faces
+from workflows.cases.circular_tester.runs import SURFACE, TesterRun
 
-CONVEX = "convex"
+CONVEX = "convex"  # the source's pattern; ours beside it are those of any pattern
 ORDERS = {"linear": 1, "quadratic": 2}  # of the fits
 CASE = ["run", "surface", "particle_scale"]  # columns that tell one case from another
 TERMS = ["linear_mm3_per_revolution", "quadratic_mm3_per_revolution2"]
@@ -29,6 +34,52 @@ SHORT, LONG = "short_test", "long_test"  # published hours
 COMPARED = ["hours", "quantity", "unit", LABORATORY, THESIS, THESIS_ALIKE, OURS, "note"]
 ALIKE = 0.1  # relative; of revolutions: wear cycles end at a few places only
 THESIS_SCALE = 1.0  # particle scale of Eq 6.2 and 6.3, which the thesis itself holds against its experiment
+
+
+def volumes(runs: Sequence[TesterRun]) -> pd.DataFrame:
+    """What every run has lost after each wear cycle, from revolution 0 of wear on.
+
+    Columns: those of `TesterRun.case`, cycle, revolution, volume_m3 (lost), law_volume_m3 (what the law takes, carried
+    included), bump_volume_m3 (of it from bumps), pattern_volume_m3 (what is left of the bumps), elements (triangles
+    that wear).
+    """
+    parts = []
+    for run in runs:
+        wear = pd.read_csv(run.folder / "wear.csv")
+        pristine = read_surface(run.folder / SURFACE)
+        table = pd.DataFrame(
+            {
+                "cycle": wear["cycle"],
+                "revolution": wear["revolution"],
+                "volume_m3": wear["total_applied_volume_m3"],
+                "law_volume_m3": wear["total_archard_volume_m3"],
+                "bump_volume_m3": wear["bump_archard_volume_m3"].cumsum(),
+                "pattern_volume_m3": wear["pattern_volume_m3"],
+            }
+        )
+        start = {name: [0.0] for name in table} | {"cycle": [0], "pattern_volume_m3": [bump_volume(pristine)]}
+        table = pd.concat([pd.DataFrame(start), table], ignore_index=True)
+        parts.append(
+            table.assign(**run.case, elements=int(worn_faces(pristine).sum()))[[*run.case, *table, "elements"]]
+        )
+    return pd.concat(parts, ignore_index=True)
+
+
+def whole_revolutions(table: pd.DataFrame) -> pd.DataFrame:
+    """The rows of a table of volumes at whole revolutions, and at the last one of each run."""
+    whole = np.isclose(table["revolution"], table["revolution"].round(), atol=1e-6)
+    last = table["revolution"] == table.groupby("run")["revolution"].transform("max")
+    return table[whole | last]
+
+
+def chosen(table: pd.DataFrame, *names: str) -> pd.DataFrame:
+    """The rows of some series."""
+    return table[table["series"].isin(names)]
+
+
+def of_surface(table: pd.DataFrame, surface: str) -> pd.DataFrame:
+    """The rows of plain samples (PLAIN), or of samples with a pattern, whichever it is (CONVEX)."""
+    return table[(table["surface"] == PLAIN) == (surface == PLAIN)]
 
 
 def origin_fit(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray, float]:
@@ -251,7 +302,7 @@ def comparison_table(
                 float(volume_at(published_terms(published_fits, surface, each), per_hour * hours))
                 for each in (THESIS_SCALE, particle_scale)
             ]
-            ours = of_hours.loc[of_hours["surface"] == surface, "volume_mm3"]
+            ours = of_surface(of_hours, surface)["volume_mm3"]
             measured = published[
                 (published["quantity"] == f"{surface}_volume_{hours:g}_h") & (published["of"] == "laboratory")
             ]["value"]

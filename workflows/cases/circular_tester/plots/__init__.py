@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of the circular wear tester, drawn from its tables."""

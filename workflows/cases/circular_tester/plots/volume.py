@@ -1,4 +1,4 @@
-"""Figures of the circular wear tester's volumes: against revolutions and hours, beside experiment and thesis."""
+"""Figures of volumes in the circular wear tester: by revolution and hours, by machine, until a pattern is gone."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from postproc.plots.style import (
     OTHER_COLOUR,
     PUBLISHED,
     SMALLEST_FONT,
+    colour,
     named_once,
     new_figure,
     printed_table,
@@ -24,6 +25,7 @@ from postproc.plots.style import (
 from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.tables.published import published_value
 from postproc.tables.summary import PLAIN
+from workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
 from workflows.cases.circular_tester.volume import (
     CONVEX,
     LABORATORY,
@@ -33,6 +35,7 @@ from workflows.cases.circular_tester.volume import (
     THESIS_ALIKE,
     chosen_fit,
     fit_at,
+    of_surface,
     published_terms,
     volume_at,
 )
@@ -42,6 +45,8 @@ NOTE_CHARACTERS = 105  # of a line over a printed table
 SCALE_STYLES = {1: "-", 2: "--", 3: "-.", 4: ":"}
 LABORATORY_COLOUR = "#CC79A7"
 BARS = 0.8  # of the space of a case
+MACHINE_STYLES = {"channel": "-", "ring": "--"}
+SHIFT = 0.05  # revolutions that two machines stand apart
 
 
 def _case_name(surface: str, scale: float) -> str:
@@ -53,7 +58,7 @@ def volume_by_revolution(
 ) -> Figure:
     """Draw lost volume (mm3) against revolutions with fits, the published ones beside, numbers below (Fig 6.11).
 
-    volumes, fits: as from `analysis.tester_volume`; published: Eq 6.2 to 6.6. Published cases that no run has are drawn
+    volumes, fits: as from `volume`; published: Eq 6.2 to 6.6. Published cases that no run has are drawn
     thin and grey.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -62,7 +67,7 @@ def volume_by_revolution(
     ours = set()
     for (run, surface, scale), of_run in volumes.groupby(["run", "surface", "particle_scale"], sort=False):
         ours.add((surface, scale))
-        look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
+        look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
         mark, look["linewidth"] = {"marker": MARKERS.get(surface, "^"), "markersize": 4}, 1.0
         axes.plot(of_run["revolution"], CUBIC_MILLIMETRES * of_run["volume_m3"], **mark, **look | {"linestyle": "none"})
         axes.plot(x, volume_at(chosen_fit(fits, run), x), **look)
@@ -102,13 +107,13 @@ def element_increments(
 ) -> Figure:
     """Draw what an element and what the sample lose per revolution (Eq 6.7, Fig 6.12).
 
-    increments: as from `analysis.tester_volume.element_increments`; crossings: particle_scale, rate_crossing and
+    increments: as from `volume.element_increments`; crossings: particle_scale, rate_crossing and
     crossing (revolutions), drawn as lines where they are inside; published: circular_tester.csv.
     """
     figure = new_figure(remarks, 4.4)
     left, right = figure.subplots(1, 2)
     for (_, surface, scale), of_run in increments.groupby(["run", "surface", "particle_scale"], sort=False):
-        look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
+        look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
         look |= {"marker": MARKERS.get(surface, "^"), "markersize": 3.5, "linewidth": 1.0}
         name = _case_name(surface, scale)
         left.plot(of_run["revolution"], of_run["element_increment_mm3"], label=name, **look)
@@ -148,7 +153,7 @@ def benchmark(
 ) -> Figure:
     """Draw volumes (mm3) after 56 hours: experiment, thesis and ours by particle scale (Fig 6.10).
 
-    predicted: as from `analysis.tester_volume.predictions`; published: circular_tester.csv; published_fits: Eq 6.2 to
+    predicted: as from `volume.predictions`; published: circular_tester.csv; published_fits: Eq 6.2 to
     6.6 at the thesis' two revolutions.
     """
     hours = published_value(published, "short_test", "laboratory")
@@ -161,7 +166,7 @@ def benchmark(
     for index, (source, surface) in enumerate(kinds):
         values = []
         for scale in scales:
-            ours = chosen[(chosen["surface"] == surface) & (chosen["particle_scale"] == scale)]["volume_mm3"]
+            ours = of_surface(chosen[chosen["particle_scale"] == scale], surface)["volume_mm3"]
             theirs = volume_at(published_terms(published_fits, surface, scale), theirs_at)
             values.append(theirs if source == THESIS else (ours.mean() if len(ours) else np.nan))
         places = np.arange(1, len(scales) + 1) + BARS * ((index + 0.5) / len(kinds) - 0.5)
@@ -186,7 +191,7 @@ def volume_by_hours(
 ) -> Figure:
     """Draw lost volume (mm3) against hours: measured points and rates, our fits, and the table below (Fig 6.4).
 
-    fits: of the runs to draw, as from `analysis.tester_volume.volume_fits`; table: as from `comparison_table`.
+    fits: of the runs to draw, as from `volume.volume_fits`; table: as from `comparison_table`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes, printed = figure.subplots(2, 1, height_ratios=(3, 2))
@@ -214,7 +219,7 @@ def volume_by_hours(
             )
     for (run, surface, scale), _ in fits.groupby(["run", "surface", "particle_scale"], sort=False):
         curve = [volume_at(fit_at(fits, run, each), each) for each in hours / hours_per_revolution]
-        look = {"color": COLOURS.get(surface, OTHER_COLOUR), "linestyle": SCALE_STYLES.get(round(scale), "-")}
+        look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
         axes.plot(hours, curve, label=f"{_case_name(surface, scale)}, ours", **look)
     axes.set_title(
         "open mark: extrapolated, plain was tested for 56 h; the plain sample sets our hours",
@@ -243,3 +248,74 @@ def _numbers(axes: Axes, table: pd.DataFrame) -> None:
     )
     axes.set_title(said, loc="left", fontsize=SMALLEST_FONT)
     printed_table(axes, ["", "", *columns], cells)
+
+
+def channel_and_ring(
+    volumes: pd.DataFrame, means: pd.DataFrame, ratios: pd.DataFrame, remarks: Sequence[str]
+) -> Figure:
+    """Draw volumes (mm3) and the ratio of convex to plain in channel and ring by revolution.
+
+    volumes: as from `volume.volumes`; ratios, means: as from `comparison`.
+    """
+    figure = new_figure(remarks, 4.4)
+    left, right = figure.subplots(1, 2)
+    for (_, surface, shape, scale), rows in volumes.groupby(["run", "surface", "shape", "particle_scale"], sort=False):
+        look = {"color": colour(surface), "linestyle": MACHINE_STYLES[shape], "marker": MARKERS.get(surface, "^")}
+        name, volume = f"{surface}, {shape}, scale {scale:g}", CUBIC_MILLIMETRES * rows["volume_m3"]
+        left.plot(rows["revolution"], volume, markersize=3, linewidth=1.0, label=name, **look)
+    said = []
+    for place, ((shape, scale), rows) in enumerate(ratios.groupby(["shape", "particle_scale"], sort=False)):
+        mean = means[(means["shape"] == shape) & (means["particle_scale"] == scale)].iloc[0]
+        said.append(f"{shape}, scale {scale:g}: {mean['ratio']:.3f} ± {mean['standard_error']:.2g}")
+        look = {"color": OTHER_COLOUR, "linestyle": MACHINE_STYLES[shape], "marker": "o^sD"[place % 4], "markersize": 4}
+        right.plot(rows["revolution"] + 0.5 + SHIFT * place, rows["ratio"], linewidth=1.0, label=said[-1], **look)
+    right.axhline(1.0, color="black", linewidth=0.8)
+    shared = int(means["revolutions"].iloc[0])
+    words = f"Mean ± standard error of the first {shared} revolution{'s' * (shared > 1)}"
+    right.set_title("\n".join([words, *said]), loc="left", fontsize=SMALLEST_FONT)
+    left.set(xlabel="Revolutions", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
+    right.set(xlabel="Revolution", ylabel="Convex over plain, lost in a revolution (-)", ylim=(0.0, None))
+    figure.legend(*named_once([left]), loc="outside upper center", ncols=3)
+    return figure
+
+
+def worn_out(left_of: pd.DataFrame, ends: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw what is left of the pattern, and what the sample loses per revolution, until the pattern is gone.
+
+    left_of, ends: as from `comparison.pattern_left` and `worn_out_at`.
+    """
+    figure = new_figure(remarks, 4.4)
+    share, rate = figure.subplots(1, 2, sharex=True)
+    styles = dict(zip(ends["run"], ("-", "--", ":", "-.") * len(ends), strict=False))
+    for run, rows in left_of.groupby("run", sort=False):
+        end = ends[ends["run"] == run].iloc[0]
+        times = rows["coefficient"].iloc[0] / left_of["coefficient"].min()
+        name = f"{run.replace('_', ' ')}{f', coefficient x {times:g}' if times > 1.0 else ''}"
+        look = {"color": COLOURS["convex"], "linestyle": styles[run], "linewidth": 1.2}
+        share.plot(rows["revolution"], 100.0 * rows["pattern_share"], label=name, **look)
+        rate.plot(rows["revolution"], rows["mean_per_revolution_mm3"], label=name, **look)
+        if np.isfinite(end["worn_out_revolution"]):
+            share.axvline(end["worn_out_revolution"], color=OTHER_COLOUR, linewidth=0.8, linestyle=styles[run])
+    share.axhline(100.0 * WORN_OUT_SHARE, color="black", linewidth=0.8, label=f"{100.0 * WORN_OUT_SHARE:g} %")
+    rate.axhline(left_of["plain_per_revolution_mm3"].iloc[0], color=COLOURS[PLAIN], linewidth=1.2, label="plain sample")
+    share.set_title("\n".join(map(_end_words, ends.itertuples())), loc="left", fontsize=SMALLEST_FONT)
+    rate.set_title("\n".join(_faster_words(row) for row in ends.itertuples()), loc="left", fontsize=SMALLEST_FONT)
+    words = "Revolutions at the study's coefficient"
+    share.set(xlabel=words, ylabel="Pattern left (% of its volume)", ylim=(0.0, None), xlim=(0.0, None))
+    rate.set(xlabel=words, ylabel="Lost per revolution (mm³)", ylim=(0.0, None))
+    figure.legend(*named_once([share, rate]), loc="outside upper center", ncols=3)
+    return figure
+
+
+def _end_words(row: tuple) -> str:
+    name = row.run.replace("_", " ")
+    if np.isfinite(row.worn_out_revolution):
+        return f"{name}: gone at {row.worn_out_revolution:.3g}"
+    return f"{name}: {100.0 * row.last_share:.3g} % left"
+
+
+def _faster_words(row: tuple) -> str:
+    name = row.run.replace("_", " ")
+    if not np.isfinite(row.faster_revolution):
+        return f"{name}: slower than plain throughout"
+    return f"{name}: first faster than plain at {row.faster_revolution:.3g}, {100.0 * row.faster_share:.2g} % left"

@@ -1,0 +1,130 @@
+"""Figures of the flow in the circular wear tester: steadiness, and what the lowest layer does over the samples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from workflows.cases.circular_tester.figures import DIGITS, PAIR, PUBLISHED, WEAR, of_study, read, runs_of
+from workflows.cases.circular_tester.runs import SURFACE
+from workflows.report.products import Job, figure
+
+OF_SERIES = {"inputs": {**of_study("series"), **PUBLISHED}, "digits": DIGITS}
+OF_PARTICLES = {"inputs": WEAR, "told": PAIR, "digits": DIGITS}
+SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
+
+
+@figure(
+    "Flow",
+    "Steadiness",
+    caption="""
+    Counterpart of Fig 6.7 (Yan 2022): standard deviation over mean (Eq 6.1) of each revolution since the trough began
+    to turn. Velocity and height are those of the particles over the sample, height twice their centre of mass over it.
+    At first a block stands in the sample's place; wear is known from where its curve begins. Steady from: by the rule
+    of all studies (marginal standard error).
+    """,
+    **OF_SERIES,
+)
+def tester_steadiness(job: Job) -> Any:
+    """Draw how much velocity, bed height and wear rate vary in each revolution (Fig 6.7)."""
+    from workflows.cases.circular_tester.flow import STEADINESS, revolution_means, steady_revolutions
+    from workflows.cases.circular_tester.plots.flow import steadiness
+
+    series, published = read(job, "series", "published")
+    means = revolution_means(series, STEADINESS)
+    return steadiness(means, steady_revolutions(series), published, job.remarks), means
+
+
+@figure(
+    "Flow",
+    "Spin of the lowest layer",
+    caption="""
+    Counterpart of Fig 6.17 (Yan 2022): angular speed of particles whose centres are within a median diameter of the
+    sample's plane, mean and standard deviation over the snapshots of a revolution of wear.
+    """,
+    **OF_SERIES,
+)
+def tester_spin(job: Job) -> Any:
+    """Draw the spin of the lowest layer by revolution (Fig 6.17)."""
+    from workflows.cases.circular_tester.flow import SPIN
+
+    return _by_revolution(job, SPIN)
+
+
+@figure(
+    "Flow",
+    "Velocity of the lowest layer",
+    caption="Counterpart of Fig 6.18 (Yan 2022): velocity along the travel of the same particles.",
+    **OF_SERIES,
+)
+def tester_velocity(job: Job) -> Any:
+    """Draw the velocity of the lowest layer by revolution (Fig 6.18)."""
+    from workflows.cases.circular_tester.flow import VELOCITY
+
+    return _by_revolution(job, VELOCITY)
+
+
+@figure(
+    "Flow",
+    "Normal force by revolution",
+    caption="""
+    Counterpart of Fig 6.21 (Yan 2022): sum of the normal forces on the faces that wear, mean and standard deviation
+    over the looks within a revolution of wear.
+    """,
+    **OF_SERIES,
+)
+def tester_force(job: Job) -> Any:
+    """Draw the normal force by revolution (Fig 6.21)."""
+    from workflows.cases.circular_tester.flow import FORCE
+
+    return _by_revolution(job, FORCE)
+
+
+def _by_revolution(job: Job, measure: str) -> Any:
+    """Draw a measure of the lowest layer by revolution."""
+    from workflows.cases.circular_tester.flow import flow_means
+    from workflows.cases.circular_tester.plots.flow import by_revolution
+
+    series, published = read(job, "series", "published")
+    means = flow_means(series)
+    means = means[means["measure"] == measure]
+    return by_revolution(means, measure, published, job.remarks), means
+
+
+@figure(
+    "Flow",
+    "Map of spin",
+    caption="""
+    Counterpart of Fig 6.19 (Yan 2022): the particles of the lowest layer at the end of the wear cycle nearest to
+    revolution 5, coloured by their angular speed over the plain sample's mean.
+    """,
+    **OF_PARTICLES,
+)
+def tester_spin_map(job: Job) -> Any:
+    """Draw how fast the particles of the lowest layer turn (Fig 6.19)."""
+    return _motion(job, "relative_angular_speed", "Angular speed over the plain sample's mean (-)")
+
+
+@figure(
+    "Flow",
+    "Map of velocity",
+    caption="Counterpart of Fig 6.20 (Yan 2022): the same particles by their speed, with arrows of their velocity.",
+    **OF_PARTICLES,
+)
+def tester_velocity_map(job: Job) -> Any:
+    """Draw how fast the particles of the lowest layer pass (Fig 6.20)."""
+    return _motion(job, "relative_speed", "Speed over the plain sample's mean (-)")
+
+
+def _motion(job: Job, quantity: str, label: str) -> Any:
+    """Draw the particles of the lowest layer over both samples by a speed of `relative_motion`."""
+    import pandas as pd
+
+    from postproc.mesh import read_surface
+    from workflows.cases.circular_tester.distribution import top_of
+    from workflows.cases.circular_tester.layer import layer_particles, outlines, relative_motion
+    from workflows.cases.circular_tester.plots.flow import relative_motion as draw
+
+    runs = runs_of(job)
+    particles = relative_motion(pd.concat([layer_particles(run, SHOWN_REVOLUTION) for run in runs], ignore_index=True))
+    lines = {run.surface: outlines(top_of(read_surface(run.folder / SURFACE))) for run in runs}
+    return draw(particles, quantity, label, lines, job.remarks), particles

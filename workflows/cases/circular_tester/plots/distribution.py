@@ -1,0 +1,149 @@
+"""Figures of where a sample in the circular wear tester wears: by columns, bumps, meshes and in sections."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib import colormaps
+from matplotlib.figure import Figure
+
+from postproc.plots.style import (
+    BASE_COLOUR,
+    BUMP_COLOUR,
+    LARGEST_HEIGHT,
+    MAP,
+    MARKERS,
+    SMALLEST_FONT,
+    colour,
+    named_once,
+    new_figure,
+)
+from postproc.tables.published import published_value
+from workflows.cases.circular_tester.distribution import share_of_bumps
+from workflows.cases.circular_tester.plots.flow import BAND_COLOUR, BANDS
+
+
+def by_column(table: pd.DataFrame, unit: str, quantity: str, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw a quantity on base and bumps per column of the sample, a panel per run (Fig 6.13, 6.22).
+
+    table: run, column, base_<unit>, bumps_<unit>, as from `distribution`; with deviation_<unit> where
+    several revolutions were averaged; quantity: what the axis says, with its unit.
+    """
+    figure = new_figure(remarks)
+    runs = list(dict.fromkeys(table["run"]))
+    grid = figure.subplots(1, len(runs), sharey=True, squeeze=False)[0]
+    base, bumps, deviation = (f"{name}_{unit}" for name in ("base", "bumps", "deviation"))
+    for axes, run in zip(grid, runs, strict=True):
+        of_run = table[table["run"] == run]
+        axes.bar(of_run["column"], of_run[base], color=BASE_COLOUR, label="base")
+        axes.bar(
+            of_run["column"],
+            of_run[bumps],
+            bottom=of_run[base],
+            color=BUMP_COLOUR,
+            hatch="//",
+            edgecolor="white",
+            label="bumps",
+        )
+        if deviation in table:
+            total = of_run[base] + of_run[bumps]
+            axes.errorbar(of_run["column"], total, of_run[deviation], fmt="none", ecolor="black", capsize=3)
+        axes.set_title(
+            f"{run.replace('_', ' ')}{_share_words(of_run, base, bumps, unit, published)}",
+            loc="left",
+            fontsize=SMALLEST_FONT,
+        )
+        axes.set_xlabel("Column, 1 where the bed arrives")
+        axes.set_xticks(of_run["column"])
+    grid[0].set_ylabel(quantity)
+    figure.legend(*named_once(grid), loc="outside upper center", ncols=2)
+    return figure
+
+
+def _share_words(of_run: pd.DataFrame, base: str, bumps: str, unit: str, published: pd.DataFrame) -> str:
+    """What the bumps bear, beside what the source says of that quantity; nothing for a plain sample."""
+    if not of_run[bumps].any():
+        return ""
+    if unit == "mm3":
+        share = share_of_bumps(of_run).iloc[0]
+        theirs = published_value(published, "share_of_bumps", "simulation")
+        return f": bumps {100.0 * share:.0f} % (Yan 2022: {theirs:g} %)"
+    first = of_run.iloc[0]
+    theirs = published_value(published, "first_column_force_share", "simulation")
+    return (
+        f": bumps of column 1 {100.0 * first[bumps] / (first[base] + first[bumps]):.0f} % (Yan 2022: over {theirs:g} %)"
+    )
+
+
+def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, remarks: Sequence[str]) -> Figure:
+    """Draw the worn volume (mm3) of every bump, columns of the sample apart, on the published ranges (Fig 6.14).
+
+    table: as from `distribution.wear_by_bump`; scale_remark: to which revolution both belong.
+    """
+    figure = new_figure(remarks)
+    axes = figure.subplots()
+    places = np.arange(len(table))
+    for row, of_row in table.groupby("row"):
+        kind = "odd" if row % 2 else "even"
+        ends = [published_value(published, f"{end}_bump_volume_{kind}", "simulation") for end in ("least", "largest")]
+        there = places[(table["row"] == row).to_numpy()]
+        axes.fill_between(
+            [there[0] - 0.5, there[-1] + 0.5],
+            *ends,
+            color=BAND_COLOUR,
+            zorder=0,
+            label="range of the column's bumps, Yan 2022",
+        )
+        axes.bar(there, of_row["volume_mm3"], color=BUMP_COLOUR)
+    axes.set_xticks(places, table["bump"], rotation=90)
+    axes.set_title(scale_remark, loc="left", fontsize=SMALLEST_FONT)
+    axes.set_ylabel("Worn volume of a bump (mm³)")
+    figure.legend(*named_once([axes]), loc="outside upper center")
+    return figure
+
+
+def mesh_size(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw the volume over that of the plain sample on the finest mesh against mesh size (Fig 6.8).
+
+    table: as from `distribution.mesh_size_effect`.
+    """
+    figure = new_figure(remarks)
+    axes = figure.subplots()
+    for surface, rows in table.groupby("surface", sort=False):
+        mean, deviation = rows["mean_percent"].iloc[0], rows["deviation_percent"].iloc[0]
+        name = f"{surface}, {mean:.3g} ± {deviation:.2g} %"
+        look = {"color": colour(surface), "marker": MARKERS.get(surface, "^"), "markersize": 5, "linewidth": 1.0}
+        axes.plot(rows["element_size_mm"], rows["relative_percent"], label=name, **look)
+        theirs = published[published["quantity"] == f"{surface}_relative_volume"]
+        for each in theirs.itertuples():
+            low, high = each.value - each.uncertainty, each.value + each.uncertainty
+            words = f"{surface}, Yan 2022: {each.value:g} ± {each.uncertainty:g} %"
+            axes.axhspan(low, high, color=colour(surface), alpha=BANDS, linewidth=0.0, label=words)
+    axes.set(
+        xlabel="Element size (mm)", ylabel="Volume over the finest plain mesh's (%)", ylim=(0.0, None), xlim=(0.0, None)
+    )
+    figure.legend(*named_once([axes]), loc="outside upper center", ncols=2)
+    return figure
+
+
+def worn_contours(contours: pd.DataFrame, title: str, remarks: Sequence[str]) -> Figure:
+    """Draw sections of bumps of several surfaces, side view above, front view below (Fig 6.9, 6.16).
+
+    contours: as from `distribution.worn_contours`; title: what the legend lists, such as "revolution".
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    bumps, names = list(dict.fromkeys(contours["bump"])), list(dict.fromkeys(contours["name"]))
+    shades = colormaps[MAP](np.linspace(0.9, 0.0, len(names)))
+    grid = figure.subplots(2, len(bumps), sharex="row", sharey=True, squeeze=False)
+    for line, (view, across) in zip(grid, {"side": "Along", "front": "Across"}.items(), strict=True):
+        for axes, bump in zip(line, bumps, strict=True):
+            for name, shade in zip(names, shades, strict=True):
+                rows = contours[(contours["bump"] == bump) & (contours["view"] == view) & (contours["name"] == name)]
+                axes.plot(rows["along_mm"], rows["height_mm"], color=shade, linewidth=1.0, label=name)
+            axes.set_title(f"{bump}, {view}", loc="left", fontsize=SMALLEST_FONT)
+        line[len(line) // 2].set_xlabel(f"{across} the travel from the middle (mm)")
+        line[0].set_ylabel("Height (mm)")
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), title=title, loc="outside right center")
+    return figure
