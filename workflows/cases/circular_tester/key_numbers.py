@@ -82,9 +82,9 @@ def cards(compared: pd.DataFrame, crossings: pd.DataFrame) -> list[tuple[str, st
 
 def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return the source's findings with their verdicts, words all of them."""
-    table = pd.read_csv(folder / "tester" / "findings.csv", keep_default_na=False).drop(columns="key")
+    table = pd.read_csv(folder / "tester" / "findings.csv", keep_default_na=False)
     said = [*([REDUCED] if study["remarks"] else []), "A reason with a verdict is a reserve."]
-    return [Text(" ".join(said)), Table(table, "findings")]
+    return [Text(" ".join(said)), Table(table[["verdict", "finding", "found", "reason", "source"]], "findings")]
 
 
 def fits(folder: Path) -> list[Block]:
@@ -95,11 +95,11 @@ def fits(folder: Path) -> list[Block]:
     digits = dict.fromkeys([*TERMS, *errors, "r_squared"], FIT_DIGITS)
     crossings = of_study(folder, "crossings")
     never = np.isinf(crossings[["rate_crossing", "crossing"]]).any(axis=None)
-    words = f" No crossing ({UNDEFINED}) means never by the fits." if never else ""
+    words = f"; no crossing ({UNDEFINED}) means never by the fits" if never else ""
     return [
         Table(ours, "fits", digits=digits),
         Table(theirs, digits=digits),
-        Text(f"Convex faster, and more in sum, from revolution:{words}"),
+        Text(f"Revolution from which convex wears faster, and from which it has lost more in sum{words}."),
         Table(crossings),
     ]
 
