@@ -1,12 +1,16 @@
-"""Tables of a circular wear tester that wears exactly as a chosen law, for analysis and figures."""
+"""Tables of a circular wear tester that wears exactly as a chosen law, and what its figures must say."""
 
 import numpy as np
 import pandas as pd
 
-from tests import REPOSITORY
+from postproc.plots.style import remarks_of, save
+from tests import PUBLISHED as TABLES
 
-PUBLISHED = pd.read_csv(REPOSITORY / "config/published/circular_tester.csv")
-PUBLISHED_FITS = pd.read_csv(REPOSITORY / "config/published/circular_tester_volume.csv")
+PUBLISHED = pd.read_csv(TABLES / "circular_tester.csv")
+PUBLISHED_FITS = pd.read_csv(TABLES / "circular_tester_volume.csv")
+PUBLISHED_FINDINGS = pd.read_csv(TABLES / "circular_tester_findings.csv")
+REMARKS = ["reduced scale, for tests"]
+SMALLEST_PICTURE = 20_000  # bytes
 REVOLUTIONS = 17
 LAWS = {("plain", 3): (75.0, 0.0), ("convex", 3): (45.0, 0.75), ("convex", 1): (30.0, 0.0)}  # mm3 per revolution, 2
 ELEMENTS = {"plain": 30_000, "convex": 40_000}
@@ -44,3 +48,19 @@ def series(revolutions=10, instants=40, settled_after=3.0, variation=0.05):
         columns = {name: value * wave * start for name, value in table.items()}
         parts.append(pd.DataFrame({"run": surface, "surface": surface, "revolution": x, **columns}))
     return pd.concat(parts, ignore_index=True)
+
+
+def missing_words(figure, path, words=()):
+    """Return which words a figure does not say anywhere; it is drawn and has its remarks."""
+    save(figure, path)
+    assert path.stat().st_size > SMALLEST_PICTURE
+    assert remarks_of(figure) == REMARKS[0]
+    said = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    said += [axes.get_title(loc="left") for axes in figure.axes]
+    said += [
+        cell.get_text().get_text()
+        for axes in figure.axes
+        for table in axes.tables
+        for cell in table.get_celld().values()
+    ]
+    return [word for word in words if not any(word in each for each in said)]

@@ -1,6 +1,12 @@
 """A circular wear tester small enough for tests: 700 particles, a sample of 40 mm, two cycles, some seconds."""
 
+import json
+from collections.abc import Iterable
+from pathlib import Path
+
+from tests import REPOSITORY
 from workflows.config.design import Study, load_study
+from workflows.report.products import job_of, outputs_of, paths_of, products_of, told_to, write_product
 
 TINY = {
     "particle_scale": 4,
@@ -35,3 +41,22 @@ def tiny_tester(**changes) -> Study:
     for key, value in changes.items():
         settings[key] = {**settings.get(key, {}), **value} if isinstance(value, dict) else value
     return load_study("circular_tester", overrides={"fidelity": "quick", "rows": list(ROWS), **settings})
+
+
+def make_products(study: Study, root: Path, names: Iterable[str], remarks: list[str]) -> None:
+    """Make figures and tables of a study by name, as their rules do; its results lie below root/results."""
+    for name in names:
+        product = products_of(study.case)[name]
+        files = {key: _below(root, paths_of(source, study)) for key, source in product.inputs.items()}
+        outputs = {key: root / path for key, path in outputs_of(product, study.name).items()}
+        for path in outputs.values():
+            path.parent.mkdir(parents=True, exist_ok=True)
+        told = json.loads(json.dumps(told_to(product, study)))
+        write_product(product, job_of(files, told, remarks), outputs)
+
+
+def _below(root: Path, paths: str | list[str]) -> str | list[str]:
+    """Return paths of results below root, and others below the repository."""
+    if isinstance(paths, list):
+        return [_below(root, path) for path in paths]
+    return str((root if paths.startswith("results/") else REPOSITORY) / paths)

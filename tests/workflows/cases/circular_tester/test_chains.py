@@ -13,21 +13,24 @@ from postproc.mesh import read_surface
 from postproc.readers.solver_log import thermo_table
 from postproc.wear.update import worn_faces
 from tests.support.tiny import tiny_chain
-from tests.support.tiny_tester import ROWS, tiny_tester
+from tests.support.tiny_tester import ROWS, make_products, tiny_tester
 from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester import distribution as tester_distribution
-from workflows.cases.circular_tester import figures as tester_figures
-from workflows.cases.circular_tester import results as tester_results
 from workflows.cases.circular_tester.key_numbers import result_table
-from workflows.cases.circular_tester.page import run_values
+from workflows.cases.circular_tester.page import sections
 from workflows.engine import cycles
 from workflows.engine.derived import neighbour_skin
 from workflows.engine.state import read_state
 from workflows.engine.tables import write_table
+from workflows.report.markdown import write_results
+from workflows.report.page_parameters import page_parameters
+from workflows.report.products import figures_of
 
 pytestmark = pytest.mark.solver
 
 REVOLUTIONS = 2
+REMARKS = ["tiny, for tests"]
+DRAWN_ELSEWHERE = ["worn_surface", "wear_updates"]  # of every case
 ROUND_OFF = 1e-9
 # Mean normal force on a plain top over the weight of the bed above it, at rest. A plough's front is loaded more; 700
 # particles, three of them above one another, arch over 40 mm. Seen 0.63; the source's model has 15 to 18 N over 12.8.
@@ -39,11 +42,12 @@ ON_TOP = 5e-4  # m, of mean contact points from the plain top: it wears by less,
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     """Both runs, finished, below one folder of results."""
-    study, folder = tiny_tester(), tmp_path_factory.mktemp("tester")
+    study, root = tiny_tester(), tmp_path_factory.mktemp("tester")
+    folder = root / "results" / study.name
     chains = {run: tiny_chain(study, folder, run) for run in ROWS}
     for chain in chains.values():
         cycles.run_chain(chain)
-    return SimpleNamespace(study=study, folder=folder, chains=chains)
+    return SimpleNamespace(study=study, root=root, folder=folder, chains=chains)
 
 
 @pytest.mark.parametrize("run", ROWS)
@@ -152,34 +156,26 @@ def test_snapshots_become_a_table_of_the_lowest_layer(finished):
 
 
 @pytest.fixture(scope="module")
-def tables(finished, repository):
-    """The tables of the study below its folder, and what a job of figures has."""
-    published = repository / "config" / "published"
-    names = {"published": "", "published_fits": "_volume", "published_findings": "_findings"}
-    paths = {key: published / f"circular_tester{name}.csv" for key, name in names.items()}
-    runs = tester_figures.tester_runs([run_values(finished.study, run) for run in finished.study.runs], finished.folder)
-    for name in ("tester", "figures"):
-        (finished.folder / name).mkdir()
-    tester_figures.write_tables(runs, finished.folder / "tester", paths)
-    return tester_figures.Drawing(
-        runs, finished.folder / "tester", finished.folder / "figures", paths, ["tiny, for tests"]
-    )
+def tables(finished):
+    """The tables of the study by name."""
+    make_products(finished.study, finished.root, ["tester_runs"], REMARKS)
+    return {path.stem: pd.read_csv(path) for path in (finished.folder / "tester").glob("*.csv")}
 
 
 def test_tables_are_made_of_the_runs(finished, tables):
     """Volumes, scale of time, comparison, series and findings."""
-    lost = tables.table("lost_volumes")
+    lost = tables["lost_volumes"]
     for run, chain in finished.chains.items():
         wear = pd.read_csv(chain.folder / "wear.csv")
         of_run = lost[lost["run"] == run]
         np.testing.assert_allclose(of_run["volume_m3"].iloc[1:], wear["total_applied_volume_m3"], rtol=1e-6)
         assert of_run["volume_m3"].iloc[0] == 0.0
-    compared = tables.table("comparison")
+    compared = tables["comparison"]
     plain = compared[(compared["hours"] == 56) & (compared["quantity"] == "plain volume")]
     assert plain["ours"].iloc[0] == pytest.approx(145.2, rel=1e-6)  # it sets the scale of time
     loss = compared[compared["quantity"] == "largest loss of C11"].iloc[0]
     assert loss["experiment"] == 0.34 and loss["ours"] > 0.0
-    series = tables.table("series")
+    series = tables["series"]
     sliding = finished.study.settings["sliding"]
     before = sliding["steady_revolutions"] + sliding["run_in_revolutions"]
     np.testing.assert_allclose(series["revolution"] - series["worn_revolution"], before, atol=1e-6)
@@ -187,33 +183,59 @@ def test_tables_are_made_of_the_runs(finished, tables):
     wear = series.dropna(subset="wear_rate_m3_per_s")
     per_revolution = wear.groupby(["run", np.floor(wear["worn_revolution"])]).size()
     assert (per_revolution == finished.study.settings["solver"]["looks_per_revolution"]).all()
-    assert (tables.table("findings")["verdict"].isin(["confirmed", "not confirmed", "cannot be said"])).all()
+    assert (tables["findings"]["verdict"].isin(["confirmed", "not confirmed", "cannot be said"])).all()
 
 
-def test_figures_and_page_are_made_of_the_tables(finished, tables, tmp_path):
-    """Every figure of a study of two rows with its table; the page of results shows them and says what was found."""
-    for name in ("tester_volumes", "tester_flow", "tester_distribution"):
-        tester_figures.JOBS[name](tables)
-    drawn = {path.stem for path in tables.folder.glob("*.png")}
-    assert drawn == {path.stem for path in tables.folder.glob("*.csv")} and len(drawn) == 14
-    folder, case = finished.folder, finished.study.case
-    write_table(folder / "design.csv", finished.study.design_table())
+@pytest.fixture(scope="module")
+def drawn(finished, tables):
+    """The names of the tester's own figures of a study of two rows, all of them drawn; runs are summed up."""
+    study, folder = finished.study, finished.folder
+    names = [product.name for product in figures_of(study) if product.name not in DRAWN_ELSEWHERE]
+    make_products(study, finished.root, names, REMARKS)
+    write_table(folder / "design.csv", study.design_table())
     wear = [chain.folder / "wear.csv" for chain in finished.chains.values()]
-    case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
-    told = result_table(pd.read_csv(folder / "summary.csv"), tables.table("fits"))
-    assert told["sliding_over_travel"].between(0.0, 1.0, inclusive="neither").all()  # contacts never outrun the trough
+    study.case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
     jobs = [*(f"worn_run_{run}" for run in ROWS), "settled_bed_bed_1"]
     pd.DataFrame({"job": jobs, "solver_s": 50.0}).to_csv(folder / "forecast.csv", index=False)
-    tester_results.write_results(folder, tmp_path, finished.study)
-    text = (tmp_path / "circular_tester_results_quick.md").read_text(encoding="utf-8")
+    return names
+
+
+def test_every_figure_has_its_table(finished, drawn):
+    """A study of one pair has fourteen figures of its own, and a table beside each."""
+    there = {path.name for path in (finished.folder / "figures").iterdir()}
+    assert there >= {f"{name}.{ending}" for name in drawn for ending in ("png", "csv")} and len(drawn) == 14
+
+
+def test_contacts_never_outrun_the_trough(finished, drawn, tables):
+    """Sliding over travel is between 0 and 1 for every run."""
+    told = result_table(pd.read_csv(finished.folder / "summary.csv"), tables["fits"])
+    assert told["sliding_over_travel"].between(0.0, 1.0, inclusive="neither").all()
+
+
+def test_every_figure_has_its_section(finished, drawn):
+    """Sections name all figures of the study but the wear updates; no section is there for a series that no row has."""
+    shown = sections(page_parameters(finished.study), finished.folder)
+    named = [name for section in shown for block in section.blocks for name in getattr(block, "names", ())]
+    assert len(named) == len(set(named)) and {*drawn, "worn_surface"} <= set(named) and "wear_updates" not in named
+    empty = [section.title for section in shown if len(section.blocks) == 1]
+    assert empty == ["Until the pattern is gone", "The lowest layer", "Elements"]
+
+
+def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
+    """It shows every figure and says what was found, without a section for a pattern that no row wears off."""
+    figures = finished.folder / "figures"
+    shutil.copy(figures / f"{drawn[0]}.png", figures / "worn_surface.png")
+    text = write_results(finished.folder, tmp_path, finished.study).read_text(encoding="utf-8")
     words = (
         "| 56 | plain volume | mm3 | 145.2 |",
+        "less wear of the convex sample after 56 h; measured 43 %",
         "R² over 0.99",
         "Eq 6.6",
         "| channel | 4 | 2 |",
         "wear rate m3 per s",
+        "% on bumps",
+        "## Durations",
     )
-    for word in (*words, "% on bumps", "## Durations"):
-        assert word in text
-    assert "Until the pattern" not in text and text.count("![") == len(drawn) + 1  # worn surfaces are drawn elsewhere
-    assert len(list(tmp_path.glob("*.png"))) == len(drawn)
+    assert [word for word in words if word not in text] == []
+    assert "Until the pattern" not in text and "Elements" not in text and text.count("![") == len(drawn) + 1
+    assert len(list(tmp_path.glob("*.png"))) == len(drawn) + 1

@@ -4,11 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.tester import submerged_pose
-from postproc.mesh import SurfaceMesh
 from workflows.cases.circular_tester.comparison import mean_ratios, pattern_left, ratios_by_revolution, worn_out_at
-from workflows.cases.circular_tester.layer import LayerOverSample
-from workflows.cases.circular_tester.runs import outlines, whole_revolutions
+from workflows.cases.circular_tester.volume import whole_revolutions
 
 EXACT = 1e-9
 
@@ -63,22 +60,3 @@ def test_when_a_pattern_that_wears_off_loses_more_than_plain():
     end = worn_out_at(left).iloc[0]  # increments 2 x - 1, means of five of them the same
     assert end["faster_revolution"] == 61.0 and end["faster_share"] == pytest.approx(0.39, rel=EXACT)
     assert end["lost_over_plain"] == pytest.approx(100.0 / 120.0, rel=EXACT)
-
-
-def test_the_layer_is_that_of_the_inclined_sample():
-    """A centre is inside by its place in the sample's own frame."""
-    turn = submerged_pose(0.0, 0.15, 0.09, np.radians(20.0))[0]
-    layer = LayerOverSample(0.1, 0.1, 0.016, turn)
-    own = np.array([[0, 0.049, 0.015], [0, 0.051, 0.008], [0, 0, 0.017], [0, 0, -0.001], [0.049, -0.049, 0.001]])
-    assert layer.inside(own @ turn.T).tolist() == [True, False, False, False, True]
-
-
-def test_outlines_are_rim_and_feet():
-    """Of a square of two parts: its four sides and the line between them."""
-    points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-    mesh = SurfaceMesh(points, np.array([[0, 1, 2], [0, 2, 3]]), {"part": np.array([0, 1])})
-    found = {tuple(sorted(map(tuple, line))) for line in outlines(mesh)}
-    assert len(found) == 5
-    assert ((0.0, 0.0), (1.0, 1.0)) in found
-    same = SurfaceMesh(points, mesh.triangles, {"part": np.array([0, 0])})
-    assert len(outlines(same)) == 4

@@ -14,7 +14,6 @@ from workflows.cases.circular_tester.distribution import mesh_size_effect
 from workflows.cases.circular_tester.findings import TESTS, Evidence, findings_table
 from workflows.cases.circular_tester.flow import revolution_means, steady_revolutions
 
-FINDINGS = pd.read_csv(study.ROOT / "config/published/circular_tester_findings.csv")
 THESIS = {  # surface, particle scale -> mm3 per revolution, per revolution2: the source's own, plain of scale 4 made up
     ("plain", 1.0): (73.64, 0.0),
     ("plain", 4.0): (70.0, 0.0),
@@ -100,12 +99,12 @@ def theirs():
 
 
 def verdicts(found):
-    return findings_table(found, FINDINGS).set_index("key")
+    return findings_table(found, study.PUBLISHED_FINDINGS).set_index("key")
 
 
 def test_every_published_finding_has_a_test():
-    assert FINDINGS["key"].tolist() == list(TESTS)
-    assert FINDINGS["source"].str.contains("Yan 2022|none").all()
+    assert study.PUBLISHED_FINDINGS["key"].tolist() == list(TESTS)
+    assert study.PUBLISHED_FINDINGS["source"].str.contains("Yan 2022|none").all()
 
 
 def test_runs_that_do_what_the_source_tells_confirm_it(theirs):

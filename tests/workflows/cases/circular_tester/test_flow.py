@@ -1,13 +1,11 @@
 """Steadiness and flow of the circular wear tester per revolution."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from tests.support import tester_study as study
 from workflows.cases.circular_tester.flow import (
     STEADINESS,
-    relative_motion,
     revolution_means,
     revolution_numbers,
     steady_revolutions,
@@ -55,20 +53,3 @@ def test_steady_from():
     assert np.isnan(table.loc[("plain", "all"), "start"])
     with pytest.raises(ValueError, match="5 instants"):
         steady_revolutions(drifting.groupby("run").head(5))
-
-
-def test_relative_motion():
-    """Over the plain sample's mean, which is then 1."""
-    particles = pd.DataFrame(
-        {
-            "surface": ["plain", "plain", "convex"],
-            "vx_m_per_s": [0.3, 0.0, 0.0],
-            "vy_m_per_s": [0.4, 0.3, 0.2],
-            "angular_speed_rad_per_s": [1.0, 3.0, 4.0],
-        }
-    )
-    table = relative_motion(particles)
-    assert table["relative_speed"].tolist() == pytest.approx([1.25, 0.75, 0.5])
-    assert table["relative_angular_speed"].tolist() == pytest.approx([0.5, 1.5, 2.0])
-    with pytest.raises(ValueError, match="plain"):
-        relative_motion(particles[particles["surface"] == "convex"])

@@ -1,0 +1,71 @@
+"""Declarations of figures of the circular wear tester: which studies have them, and what they need of the runs."""
+
+import pandas as pd
+import pytest
+
+from tests.support import tester_study as study
+from workflows.cases.circular_tester import figures
+from workflows.cases.circular_tester.comparison import ratios_by_revolution
+from workflows.cases.circular_tester.runs import pair_of, runs_of_values, values_of_pair, values_of_runs
+from workflows.config.design import load_study
+from workflows.engine.case import find_case
+from workflows.report.products import figures_of, job_of, products_of
+
+SERIES_OF = {
+    "tester_mesh": "mesh",
+    "tester_mesh_contours": "mesh",
+    "tester_worn_out": "worn_out",
+    "tester_ring": "ring",
+}
+
+
+@pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
+def test_a_figure_of_a_series_needs_rows_of_it(fidelity):
+    """Elements, worn-out patterns and machines are drawn where the design has them, all others always."""
+    of = load_study("circular_tester", overrides={"fidelity": fidelity})
+    series = {row["series"] for row in of.design_rows}
+    there = {product.name for product in figures_of(of)}
+    declared = {product.name for product in products_of(of.case).values() if product.is_figure}
+    assert declared - there == {name for name, needed in SERIES_OF.items() if needed not in series}
+
+
+def test_every_table_keeps_nine_digits():
+    """The tester's own tables are written with nine significant digits."""
+    own = [
+        product for product in products_of(find_case("circular_tester")).values() if product.name.startswith("tester")
+    ]
+    assert len(own) == 19 and {product.digits for product in own} == {figures.DIGITS}
+
+
+def test_runs_come_back_from_their_values(tmp_path):
+    """Folders lie below the study's; the pair is the one of series volume, the plain sample last."""
+    of = load_study("circular_tester", overrides={"fidelity": "quick"})
+    runs = runs_of_values(values_of_runs(of), tmp_path)
+    assert [run.name for run in runs] == [run.name for run in of.runs]
+    assert {run.folder.parent for run in runs} == {tmp_path}
+    assert {run.bed_folder.name for run in runs} == set(of.beds)
+    patterned, plain = pair_of(runs)
+    assert (patterned.series, plain.series) == ("volume", "volume")
+    assert plain.surface == "plain" and patterned.surface != "plain"
+    assert {values["name"] for values in values_of_pair(of)} == {patterned.name, plain.name}
+    assert next(run for run in runs if run.series == "worn_out").patch == "4 mm round it"
+
+
+def test_channel_and_ring_are_compared_at_the_particles_of_the_ring(tmp_path):
+    """Runs of other particles are left out; both machines are compared over the revolutions that both have."""
+    lost = study.volumes()
+    lost = lost[lost["particle_scale"] == 3.0]
+    channel = lost.assign(shape="channel", series="volume")
+    ring = lost[lost["revolution"] < 6].assign(shape="ring", series="ring", run=lost["run"] + "_ring")
+    finer = channel.assign(particle_scale=2.0, run=lost["run"] + "_finer")
+    table = pd.concat([channel, ring, finer], ignore_index=True)
+    files = {"lost_volumes": tmp_path / "lost.csv", "ratios": tmp_path / "ratios.csv"}
+    table.to_csv(files["lost_volumes"], index=False)
+    ratios_by_revolution(table).to_csv(files["ratios"], index=False)
+    figure, means = figures.tester_ring(job_of(files, {}, study.REMARKS))
+    assert means[["shape", "particle_scale", "revolutions"]].to_numpy().tolist() == [
+        ["channel", 3.0, 5],
+        ["ring", 3.0, 5],
+    ]
+    assert means["ratio"].to_numpy() == pytest.approx([0.65, 0.65])
+    assert not any("scale 2" in text.get_text() for legend in figure.legends for text in legend.get_texts())
