@@ -1,6 +1,6 @@
 """Findings of the source on runs that do what it tells, and on runs that do not."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pandas as pd
@@ -13,6 +13,7 @@ from workflows.cases.circular_tester.comparison import ratios_by_revolution
 from workflows.cases.circular_tester.distribution import mesh_size_effect
 from workflows.cases.circular_tester.findings import TESTS, Evidence, findings_table
 from workflows.cases.circular_tester.flow import revolution_means, steady_revolutions
+from workflows.cases.circular_tester.tables import crossings
 
 THESIS = {  # surface, particle scale -> mm3 per revolution, per revolution2: the source's own, plain of scale 4 made up
     ("plain", 1.0): (73.64, 0.0),
@@ -196,3 +197,17 @@ def test_a_force_that_wavers_does_not_fall(theirs):
     means.loc[convex, "mean"] = 20.0 + 0.1 * (-1.0) ** np.arange(convex.sum())
     found = verdicts(replace(theirs, means=means)).loc["force"]
     assert found["verdict"] == REFUTED and verdicts(theirs).loc["force", "verdict"] == CONFIRMED
+
+
+def test_a_pattern_of_another_name_is_judged_as_the_convex_one(theirs):
+    """Whatever is not plain stands for the source's convex sample."""
+
+    def renamed(value):
+        return value.replace({"surface": {"convex": "dimples"}}) if isinstance(value, pd.DataFrame) else value
+
+    other = replace(theirs, **{field.name: renamed(getattr(theirs, field.name)) for field in fields(theirs)})
+    assert "dimples" in set(other.fits["surface"])
+    assert verdicts(other)["verdict"].tolist() == verdicts(theirs)["verdict"].tolist()
+    crossing = crossings(theirs.fits[theirs.fits["particle_scale"] == 1.0])
+    pd.testing.assert_frame_equal(crossings(other.fits[other.fits["particle_scale"] == 1.0]), crossing)
+    assert len(crossing) == 1
