@@ -14,7 +14,8 @@ from postproc.tables.summary import read_summary
 from workflows.cases.circular_tester.comparison import worn_out_at
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.flow import steady_revolutions
-from workflows.cases.circular_tester.volume import LABORATORY, OURS, TERMS, THESIS, THESIS_ALIKE
+from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
+from workflows.cases.circular_tester.volume import TERMS
 from workflows.config.design import REPOSITORY
 from workflows.report.sections import Block, Cards, Table, Text
 from workflows.report.text import UNDEFINED

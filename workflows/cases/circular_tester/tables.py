@@ -1,9 +1,10 @@
-"""Tables of a study of the circular wear tester from its runs, and what its findings are judged by."""
+"""Tables of a study of the circular wear tester: beside experiment and thesis, and what findings are judged by."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
 import pandas as pd
 
 from postproc.mesh import read_surface
@@ -12,9 +13,24 @@ from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester import comparison, distribution, flow, volume
 from workflows.cases.circular_tester.findings import Evidence, findings_table
 from workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, WORN_SURFACE, TesterRun, pair_of
-from workflows.cases.circular_tester.volume import chosen, chosen_fit, whole_revolutions
+from workflows.cases.circular_tester.volume import (
+    CONVEX,
+    LONG,
+    SHORT,
+    chosen,
+    chosen_fit,
+    of_surface,
+    published_terms,
+    volume_at,
+    whole_revolutions,
+)
 
-TOLD_HOURS = (volume.SHORT, volume.LONG)
+LABORATORY, THESIS, OURS = "experiment", "thesis' model", "ours"
+THESIS_ALIKE = "thesis, our particle scale"
+COMPARED = ["hours", "quantity", "unit", LABORATORY, THESIS, THESIS_ALIKE, OURS, "note"]
+ALIKE = 0.1  # relative; of revolutions: wear cycles end at a few places only
+THESIS_SCALE = 1.0  # particle scale of Eq 6.2 and 6.3, which the thesis itself holds against its experiment
+TOLD_HOURS = (SHORT, LONG)
 
 
 def tables_of_runs(
@@ -31,7 +47,7 @@ def tables_of_runs(
     predicted = volume.predictions(fits, scale, hours)
     main = predicted[predicted["run"].isin([patterned.name, plain.name])]
     compared = [
-        volume.comparison_table(main, published, published_fits, plain.particle_scale),
+        comparison_table(main, published, published_fits, plain.particle_scale),
         _measured_losses(patterned, published, scale.revolutions(hours[-1])),
     ]
     ratios = comparison.ratios_by_revolution(whole_revolutions(chosen(lost, VOLUME, SIZE, RING)))
@@ -49,12 +65,72 @@ def tables_of_runs(
     return tables | {"findings": findings_table(_evidence(runs, tables, hours), published_findings)}
 
 
+def comparison_table(
+    predicted: pd.DataFrame, published: pd.DataFrame, published_fits: pd.DataFrame, particle_scale: float
+) -> pd.DataFrame:
+    """Experiment, the thesis' model and ours side by side, one row per hours and quantity.
+
+    predicted: as from `volume.predictions`; published, published_fits: config/published/circular_tester.csv and
+    circular_tester_volume.csv; particle_scale: -, of our runs. The thesis' volumes come from its own fits at its own
+    two revolutions for 56 h: of particle scale 1, which it holds against its experiment, and, where published, of ours.
+    Columns: hours, quantity, unit, <the four>, note.
+    """
+    per_hour = published_value(published, "revolutions_of_short_test", "simulation") / published_value(
+        published, SHORT, "laboratory"
+    )
+    rows = []
+    for hours, of_hours in predicted[predicted["particle_scale"] == particle_scale].groupby("hours"):
+        volumes = {}
+        for surface in (PLAIN, CONVEX):
+            theirs = [
+                float(volume_at(published_terms(published_fits, surface, each), per_hour * hours))
+                for each in (THESIS_SCALE, particle_scale)
+            ]
+            ours = of_surface(of_hours, surface)["volume_mm3"]
+            measured = published[
+                (published["quantity"] == f"{surface}_volume_{hours:g}_h") & (published["of"] == "laboratory")
+            ]["value"]
+            volumes[surface] = [
+                measured.iloc[0] if len(measured) else np.nan,
+                *theirs,
+                ours.iloc[0] if len(ours) else np.nan,
+            ]
+        reduction = 100.0 * (1.0 - np.array(volumes[CONVEX]) / np.array(volumes[PLAIN]))
+        beyond = "ours extrapolated" if of_hours["extrapolated"].any() else ""
+        rows += [[hours, f"{surface} volume", "mm3", *values, beyond] for surface, values in volumes.items()]
+        rows.append([hours, "reduction", "%", *reduction, beyond])
+    table = pd.DataFrame(rows, columns=COMPARED)
+    short, long = (table["hours"] == published_value(published, name, "laboratory") for name in (SHORT, LONG))
+    printed = published_value(published, "reduction_56_h", "simulation")
+    _note(table, short & (table["unit"] == "%"), f"the thesis' text has {printed:g} % for its model")
+    _note(table, long & (table["unit"] == "mm3"), "the thesis' text swaps experiment and model here")
+    return table
+
+
+def _note(table: pd.DataFrame, where: pd.Series, words: str) -> None:
+    """Put words before the notes of some rows."""
+    table.loc[where, "note"] = [f"{words}; {said}" if said else words for said in table.loc[where, "note"]]
+
+
 def _measured_losses(patterned: TesterRun, published: pd.DataFrame, wanted: float) -> pd.DataFrame:
     """Return rows of the comparison: the largest loss of the bumps that were scanned, after `wanted` revolutions."""
     (revolution, worn), *_ = distribution.cycle_surfaces(patterned, [wanted]).items()
     pristine = distribution.top_of(read_surface(patterned.folder / SURFACE))
     losses = distribution.contour_losses(pristine, worn, distribution.SHOWN_BUMPS)
-    return volume.loss_rows(losses, published, float(revolution), wanted)
+    return loss_rows(losses, published, float(revolution), wanted)
+
+
+def loss_rows(losses: pd.Series, published: pd.DataFrame, revolution: float, wanted: float) -> pd.DataFrame:
+    """Rows of a comparison table for the largest vertical loss (mm) of bumps after the long test (Fig 6.5).
+
+    losses: by bump, of the surface after `revolution`; wanted: revolutions that the long test stands for.
+    """
+    hours = published_value(published, LONG, "laboratory")
+    short = revolution < wanted * (1.0 - ALIKE)
+    note = f"ours after {revolution:.3g} revolutions, {hours:g} h are {wanted:.3g}" if short else ""
+    table = pd.DataFrame({"quantity": [f"largest loss of {bump}" for bump in losses.index], OURS: losses.to_numpy()})
+    table[LABORATORY] = [published_value(published, f"largest_loss_{bump}", "laboratory") for bump in losses.index]
+    return table.assign(hours=hours, unit="mm", note=note).reindex(columns=COMPARED)
 
 
 def _evidence(runs: Sequence[TesterRun], tables: Mapping[str, pd.DataFrame], hours: Sequence[float]) -> Evidence:

@@ -1,24 +1,17 @@
 """Volumes of the circular wear tester: known laws come back, and the source's own numbers fit together as stated."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from postproc.tables.published import published_value
 from tests.support import tester_study as study
 from workflows.cases.circular_tester.volume import (
-    LABORATORY,
-    OURS,
     TERMS,
-    THESIS,
-    THESIS_ALIKE,
     chosen_fit,
-    comparison_table,
     crossing,
     element_increments,
     fit_at,
     fit_up_to,
-    loss_rows,
     origin_fit,
     predictions,
     published_terms,
@@ -165,32 +158,6 @@ def test_a_curve_that_flattens_is_not_followed_beyond_its_run():
     scale = time_scale(fit_up_to(fits, "plain_3", 145.2), COEFFICIENT, study.PUBLISHED, SECTOR, AREA)
     table = predictions(fits, scale, [56.0, 184.0])
     assert table["volume_mm3"].to_list() == pytest.approx([145.2, 145.2 * 184.0 / 56.0]) and table["extrapolated"].all()
-
-
-def test_comparison_table(fits, scale):
-    """Three columns beside each other; the thesis' model from its equations at its own two revolutions per 56 h."""
-    predicted = predictions(fits, scale, [56.0, 184.0])
-    table = comparison_table(predicted, study.PUBLISHED, study.PUBLISHED_FITS, 3.0).set_index(["hours", "quantity"])
-    columns = [LABORATORY, THESIS, THESIS_ALIKE, OURS]
-    assert table.loc[(56.0, "plain volume"), columns].to_list() == pytest.approx([145.2, 147.28, 154.06, 145.2])
-    assert table.loc[(56.0, "convex volume"), THESIS_ALIKE] == pytest.approx(2 * 47.12 + 4 * 0.78)
-    assert table.loc[(184.0, "reduction"), THESIS] == pytest.approx(56.0, abs=0.2)
-    assert table.loc[(184.0, "reduction"), LABORATORY] == pytest.approx(49.4, abs=0.1)
-    assert table.loc[(56.0, "reduction"), OURS] == pytest.approx(100.0 * (1.0 - (45.0 + 0.75 * 145.2 / 75.0) / 75.0))
-    assert "swaps" in table.loc[(184.0, "convex volume"), "note"]
-    assert table.loc[(56.0, "convex volume"), "note"] == ""
-    assert table.loc[(56.0, "reduction"), "note"] == "the thesis' text has 68.9 % for its model"
-
-
-def test_losses_stand_beside_the_scanned_ones():
-    """Largest loss of each bump in mm after 184 h; a run that ends earlier says where."""
-    losses = pd.Series({"C11": 0.5, "C15": 0.6})
-    table = loss_rows(losses, study.PUBLISHED, 6.5, 6.57).set_index("quantity")
-    assert table[LABORATORY].to_dict() == {"largest loss of C11": 0.34, "largest loss of C15": 0.35}
-    assert table[OURS].to_list() == [0.5, 0.6] and (table["note"] == "").all()
-    assert (table["hours"] == 184.0).all() and table[THESIS].isna().all()
-    short = loss_rows(losses, study.PUBLISHED, 4.0, 6.57)
-    assert short["note"].iloc[0] == "ours after 4 revolutions, 184 h are 6.57"
 
 
 def test_published_tables_are_whole():

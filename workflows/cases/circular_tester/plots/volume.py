@@ -26,13 +26,10 @@ from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.tables.published import published_value
 from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
+from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from workflows.cases.circular_tester.volume import (
     CONVEX,
-    LABORATORY,
-    OURS,
     TERMS,
-    THESIS,
-    THESIS_ALIKE,
     chosen_fit,
     fit_at,
     of_surface,
@@ -191,7 +188,7 @@ def volume_by_hours(
 ) -> Figure:
     """Draw lost volume (mm3) against hours: measured points and rates, our fits, and the table below (Fig 6.4).
 
-    fits: of the runs to draw, as from `volume.volume_fits`; table: as from `comparison_table`.
+    fits: of the runs to draw, as from `volume.volume_fits`; table: as from `tables.comparison_table`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes, printed = figure.subplots(2, 1, height_ratios=(3, 2))

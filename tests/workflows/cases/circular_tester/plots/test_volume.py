@@ -9,9 +9,9 @@ from tests.support.tester_study import REMARKS, missing_words
 from workflows.cases.circular_tester.comparison import mean_ratios, pattern_left, ratios_by_revolution, worn_out_at
 from workflows.cases.circular_tester.plots import volume as tester_volume
 from workflows.cases.circular_tester.plots.volume import channel_and_ring, worn_out
+from workflows.cases.circular_tester.tables import comparison_table
 from workflows.cases.circular_tester.volume import (
     chosen_fit,
-    comparison_table,
     crossing,
     element_increments,
     predictions,
