@@ -22,6 +22,15 @@ from workflows.report.text import UNDEFINED
 
 PUBLISHED_FITS = REPOSITORY / "config" / "published" / "circular_tester_volume.csv"
 FIT_DIGITS = 5
+FIT_HEADS = {
+    TERMS[0]: ("linear", "mm³ per revolution"),
+    TERMS[1]: ("quadratic", "mm³ per revolution²"),
+    f"{TERMS[0]}_error": ("error of linear", "mm³ per revolution"),
+    f"{TERMS[1]}_error": ("error of quadratic", "mm³ per revolution²"),
+    "r_squared": ("R²", "-"),
+}
+CROSSING_HEADS = {"rate_crossing": ("faster from", "revolution"), "crossing": ("more in sum from", "revolution")}
+STEADY_HEADS = {"start": ("start", "revolution"), "mean": ("mean", "of the measure"), "drift": ("drift", "-")}
 REDUCED = "At the reduced scale told at the top of the page: a finding that is not confirmed here is not thereby wrong."
 RESULTS_NOTE = (
     "Lost: removed from the sample; per revolution: what the law takes. Normal force: on the faces that wear. Sliding: "
@@ -98,10 +107,10 @@ def fits(folder: Path) -> list[Block]:
     never = np.isinf(crossings[["rate_crossing", "crossing"]]).any(axis=None)
     words = f"; no crossing ({UNDEFINED}) means never by the fits" if never else ""
     return [
-        Table(ours, "fits", digits=digits),
-        Table(theirs, digits=digits),
+        Table(ours, "fits", digits=digits, heads=FIT_HEADS),
+        Table(theirs, digits=digits, heads=FIT_HEADS),
         Text(f"Revolution from which convex wears faster, and from which it has lost more in sum{words}."),
-        Table(crossings),
+        Table(crossings, heads=CROSSING_HEADS),
     ]
 
 
@@ -140,7 +149,7 @@ def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
 
 def steadiness(folder: Path) -> list[Block]:
     """Return from which revolution of the bed each measure is steady."""
-    return [Table(steady_revolutions(of_study(folder, "series")))]
+    return [Table(steady_revolutions(of_study(folder, "series")), heads=STEADY_HEADS)]
 
 
 def by_column(folder: Path) -> list[Block]:
