@@ -7,10 +7,10 @@ from pathlib import Path
 from postproc.mesh import SurfaceMesh, read_surface, write_surface
 from postproc.readers.solver_log import thermo_table
 from workflows.config.design import Study, load_study
+from workflows.config.patterns import sample_surface
 from workflows.engine import state
 from workflows.engine.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
 from workflows.engine.cycles import fill_bed, run_cycle
-from workflows.engine.geometry import sample_surface
 from workflows.engine.inputs import inputs_digest
 from workflows.engine.progress import Progress
 from workflows.engine.schedule import first_span

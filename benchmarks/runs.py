@@ -9,10 +9,10 @@ from typing import Any
 from postproc.mesh import write_surface
 from workflows.config.design import Run
 from workflows.config.layers import merge
+from workflows.config.patterns import sample_surface
 from workflows.engine.chain import Chain
 from workflows.engine.cycles import fill_bed, run_chain
 from workflows.engine.derived import derived_parameters
-from workflows.engine.geometry import sample_surface
 
 
 def changed(run: Run, change: Mapping[str, Any]) -> Run:

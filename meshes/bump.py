@@ -1,4 +1,4 @@
-"""The shell of one bump: the upper half of an ellipsoid, with nodes evenly spaced along its foot."""
+"""The shell of one bump: the upper half of an ellipsoid, which stands upright at its foot."""
 
 from __future__ import annotations
 
@@ -8,37 +8,11 @@ import numpy as np
 
 from meshes.gmsh_model import gmsh_model
 from meshes.relax import relax
+from meshes.shell import SWEEPS, Shell, foot_nodes
 from postproc.mesh import volume_above_plane
 
-FINE_EDGES = 4  # edges along the smaller radius of the foot that are fine enough: 26 or more round the foot
-COARSE_EDGES = 2  # fewest edges along the smaller radius of the foot: 12 or more round the foot
-SWEEPS = 60  # of relaxation; angles stop improving after about 40
-ARC_SAMPLES = 20_001  # points on the foot from which arc length is summed; its error is below 1e-8
 
-
-def bump_element_size(half_width: float, half_length: float, element_size: float) -> float:
-    """Edge length on a bump (m): the element size, halved on small bumps.
-
-    With r the foot's smaller radius: elements up to r/4 are used as they are; longer ones are shortened to
-    r/4, but to no less than half the element size; on no account are they longer than r/2.
-    """
-    radius = min(half_width, half_length)
-    return min(element_size, max(element_size / 2, radius / FINE_EDGES), radius / COARSE_EDGES)
-
-
-def foot_nodes(half_width: float, half_length: float, element_size: float) -> np.ndarray:
-    """Nodes on the foot ellipse, evenly spaced in arc length, anticlockwise from +x, (f, 2) m; f is even."""
-    angle = np.linspace(0.0, 2 * math.pi, ARC_SAMPLES)
-    steps = np.hypot(half_width * np.diff(np.cos(angle)), half_length * np.diff(np.sin(angle)))
-    arc = np.concatenate([[0.0], np.cumsum(steps)])
-    count = 2 * math.ceil(arc[-1] / element_size / 2)
-    at = np.interp(np.arange(count) * arc[-1] / count, arc, angle)
-    return np.column_stack([half_width * np.cos(at), half_length * np.sin(at)])
-
-
-def bump_shell(
-    half_width: float, half_length: float, height: float, element_size: float
-) -> tuple[np.ndarray, np.ndarray, int]:
+def bump_shell(half_width: float, half_length: float, height: float, element_size: float) -> Shell:
     """Mesh the semi-ellipsoid x2/half_width2 + y2/half_length2 + z2/height2 = 1, z >= 0; all arguments in m.
 
     Returns points (p, 3) m on the ellipsoid, triangles (t, 3) with outward normals, and the number f of foot

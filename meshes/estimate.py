@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 from meshes import disc, plane
-from meshes.bump import bump_element_size
-from meshes.pattern import ConvexPattern, bump_centres
+from meshes.lattice import Pattern, pattern_centres
 from meshes.sample import skirt_width
+from meshes.shell import shell_element_size
 
 EQUILATERAL = math.sqrt(3.0) / 4.0  # area of an equilateral triangle over its edge squared
-THOMSEN = 1.6075  # exponent of K. Thomsen's formula for the area of an ellipsoid; its error is below 1.1 %
 # Mean area of a triangle over that of the equilateral one with the target edge, measured on meshes of the studies.
 SAMPLE_AREA, DISC_AREA = 0.90, 0.86
 
@@ -19,7 +18,7 @@ def sample_triangles(
     width: float,
     length: float,
     element_size: float,
-    pattern: ConvexPattern | None,
+    pattern: Pattern | None,
     height_above_floor: float,
     skirt_slope: float,
     skirt_radius: float = 0.0,
@@ -30,24 +29,18 @@ def sample_triangles(
     rim = 2.0 * (width + length) + 4.0 * frame  # half way across the frame
     count = width * length / element_size**2 + rim * frame / (element_size * outer)
     if pattern is not None:
-        bumps = len(bump_centres(pattern, width, length)[0])
-        count += bumps * _bump_over_plane(pattern, element_size)
+        count += len(pattern_centres(pattern, width, length)[0]) * _shape_over_plane(pattern, element_size)
     return count / (EQUILATERAL * SAMPLE_AREA)
 
 
-def _bump_over_plane(pattern: ConvexPattern, element_size: float) -> float:
-    """What a bump adds: its shell less its foot, and finer elements round it, over the square of their edge."""
-    a, b, edge = (
-        pattern.half_width,
-        pattern.half_length,
-        bump_element_size(pattern.half_width, pattern.half_length, element_size),
-    )
-    pairs = ((a * b) ** THOMSEN, (a * pattern.height) ** THOMSEN, (b * pattern.height) ** THOMSEN)
-    shell = 2.0 * math.pi * (sum(pairs) / 3.0) ** (1.0 / THOMSEN)
+def _shape_over_plane(pattern: Pattern, element_size: float) -> float:
+    """What a shape adds: its shell less its foot, and finer elements round it, over the square of their edge."""
+    a, b = pattern.half_width, pattern.half_length
+    edge = shell_element_size(a, b, element_size)
     grown = (element_size - edge) / plane.GROWTH
     foot = math.pi * (3.0 * (a + b) - math.sqrt((3.0 * a + b) * (a + 3.0 * b)))  # perimeter; Ramanujan 1914
     round_it = foot * ((1.0 / edge - 1.0 / element_size) / plane.GROWTH - grown / element_size**2)
-    return shell / edge**2 - math.pi * a * b / element_size**2 + round_it
+    return pattern.shell_area / edge**2 - math.pi * a * b / element_size**2 + round_it
 
 
 def disc_triangles(

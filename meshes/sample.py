@@ -1,6 +1,6 @@
-"""The patterned sample: plane, bumps and ramped skirt as one conforming surface.
+"""The patterned sample: plane, bumps or dimples, and ramped skirt as one conforming surface.
 
-All bumps are alike: one shell is meshed (`meshes.bump`) and copied. The plane is meshed round the feet, whose
+All shapes of a pattern are alike: one shell is meshed and copied. The plane is meshed round the feet, whose
 nodes are prescribed (`meshes.plane`), and the parts share nodes by index. Nothing is matched by distance.
 """
 
@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.bump import bump_element_size, bump_shell
-from meshes.pattern import ConvexPattern, bump_centres, bump_rows, pattern_faults
+from meshes.lattice import Pattern, millimetres, pattern_centres, pattern_faults, pattern_rows
 from meshes.plane import PlaneMesh, mesh_plane, rectangle_rim
 from postproc.mesh import SurfaceMesh, nonmanifold_edges, smallest_angles
 
@@ -23,7 +22,7 @@ HOLDER = -1  # label `part` of the skirt
 
 
 @dataclass(frozen=True, eq=False)
-class _Bumps:
+class _Shapes:
     """Shell (p, 3) m, first `feet` nodes on the foot; triangles (t, 3); centres (k, 2) m; column, row."""
 
     shell: np.ndarray
@@ -61,8 +60,8 @@ def skirt_fall(
     return np.minimum(top + between + foot, drop)
 
 
-def sample_top(width: float, length: float, element_size: float, pattern: ConvexPattern | None) -> SurfaceMesh:
-    """The top of a sample, plane at z = 0 with its bumps, without a skirt.
+def sample_top(width: float, length: float, element_size: float, pattern: Pattern | None) -> SurfaceMesh:
+    """The top of a sample, plane at z = 0 with its pattern, without a skirt.
 
     width (x), length (y), element_size: m; pattern None gives a plain sample. Cell data: `part`, `column` and
     `row`. Raises ValueError for a pattern that does not fit, or when a triangle would be too acute.
@@ -74,7 +73,7 @@ def sliding_sample(
     width: float,
     length: float,
     element_size: float,
-    pattern: ConvexPattern | None,
+    pattern: Pattern | None,
     height_above_floor: float,
     skirt_slope: float,
     skirt_radius: float = 0.0,
@@ -84,10 +83,11 @@ def sliding_sample(
     The skirt falls at `skirt_slope` (rad) from the rim to 0.2 heights below the floor; its `part` is -1. With a
     `skirt_radius` (m) it begins and ends level, curved by that radius, and is nowhere steeper than the slope.
     Other arguments, data and errors as in `sample_top`; the height must be > 0, the slope in (0, pi/4], the radius
-    not below 0.
+    not below 0. A pattern ends above the floor.
     """
     if not height_above_floor > 0:
         raise ValueError(f"height_above_floor must be greater than 0 m, found {height_above_floor}")
+    check_depth(pattern, height_above_floor, "sample's height above the floor")
     if not 0 < skirt_slope <= LARGEST_SKIRT_SLOPE:
         raise ValueError(f"skirt_slope must be in (0, {LARGEST_SKIRT_SLOPE:.4f}] rad, found {skirt_slope}")
     if not skirt_radius >= 0:
@@ -104,18 +104,27 @@ def _flat_sample(
     width: float,
     length: float,
     element_size: float,
-    pattern: ConvexPattern | None,
+    pattern: Pattern | None,
     frame_width: float,
     fine_frame: bool = False,
 ) -> SurfaceMesh:
-    """Plane and bumps, top at z = 0, with a frame of `frame_width` (m, 0 for none), coarse or fine, in that plane."""
+    """Plane at z = 0 and pattern, with a frame of `frame_width` (m, 0 for none), coarse or fine, in that plane."""
     for name, value in (("width", width), ("length", length), ("element_size", element_size)):
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"{name} of a sample must be greater than 0 m, found {value}")
-    bumps = _place_bumps(pattern, width, length, element_size)
-    holes = bumps.centres[:, None] + bumps.shell[None, : bumps.feet, :2]
+    shapes = _place_shapes(pattern, width, length, element_size)
+    holes = shapes.centres[:, None] + shapes.shell[None, : shapes.feet, :2]
     rim = rectangle_rim(width, length, _rim_element_size(width, length, element_size, holes))
-    return _join(mesh_plane(rim, holes, element_size, frame_width, fine_frame), len(rim), bumps)
+    return _join(mesh_plane(rim, holes, element_size, frame_width, fine_frame), len(rim), shapes)
+
+
+def check_depth(pattern: Pattern | None, room: float, name: str) -> None:
+    """Raise ValueError for a pattern at least as deep as `room` (m), which is the sample's `name`."""
+    if pattern is not None and pattern.deepest_point >= room:
+        raise ValueError(
+            f"a {pattern.noun} is {millimetres(pattern.deepest_point)} deep, allowed is less than the {name}, "
+            f"{millimetres(room)}"
+        )
 
 
 def _rim_element_size(width: float, length: float, element_size: float, holes: np.ndarray) -> float:
@@ -135,45 +144,44 @@ def _checked(mesh: SurfaceMesh, element_size: float) -> SurfaceMesh:
     if angle >= SMALLEST_ANGLE:
         return mesh
     raise ValueError(
-        f"a gap between bumps, rim and skirt is too narrow for elements of {1e3 * element_size:.4g} mm: "
+        f"a gap between pattern, rim and skirt is too narrow for elements of {1e3 * element_size:.4g} mm: "
         f"smallest angle {angle:.3g} degrees, allowed are {SMALLEST_ANGLE:g} or more"
     )
 
 
-def _place_bumps(pattern: ConvexPattern | None, width: float, length: float, element_size: float) -> _Bumps:
-    """Shell and places of the bumps, none for a plain sample. Raises ValueError when they do not fit."""
+def _place_shapes(pattern: Pattern | None, width: float, length: float, element_size: float) -> _Shapes:
+    """Shell and places of the shapes, none for a plain sample. Raises ValueError when they do not fit."""
     none = np.empty(0, dtype=np.int64)
     if pattern is None:
-        return _Bumps(np.empty((0, 3)), np.empty((0, 3), dtype=np.int64), 0, np.empty((0, 2)), none, none)
+        return _Shapes(np.empty((0, 3)), np.empty((0, 3), dtype=np.int64), 0, np.empty((0, 2)), none, none)
     fault = pattern_faults(pattern, width, length)
     if fault:
         raise ValueError(f"the pattern does not fit the sample: {fault}")
-    size = bump_element_size(pattern.half_width, pattern.half_length, element_size)
-    shell, triangles, feet = bump_shell(pattern.half_width, pattern.half_length, pattern.height, size)
-    centres, column = bump_centres(pattern, width, length)
-    return _Bumps(shell, triangles, feet, centres, column, bump_rows(pattern, width, length))
+    shell, triangles, feet = pattern.shell(element_size)
+    centres, column = pattern_centres(pattern, width, length)
+    return _Shapes(shell, triangles, feet, centres, column, pattern_rows(pattern, width, length))
 
 
-def _join(plane: PlaneMesh, n_rim: int, bumps: _Bumps) -> SurfaceMesh:
-    """Plane and copies of the shell, joined by node index; triangles in the order base, bumps, frame."""
-    count, n_plane = len(bumps.centres), len(plane.points)
-    inner = bumps.shell[bumps.feet :]
+def _join(plane: PlaneMesh, n_rim: int, shapes: _Shapes) -> SurfaceMesh:
+    """Plane and copies of the shell, joined by node index; triangles in the order base, shapes, frame."""
+    count, n_plane = len(shapes.centres), len(plane.points)
+    inner = shapes.shell[shapes.feet :]
     copies = np.tile(inner, (count, 1))
-    copies[:, :2] += np.repeat(bumps.centres, len(inner), axis=0)
+    copies[:, :2] += np.repeat(shapes.centres, len(inner), axis=0)
     points = np.concatenate([np.column_stack([plane.points, np.zeros(n_plane)]), copies])
-    foot_nodes = n_rim + np.arange(count * bumps.feet).reshape(count, bumps.feet)
+    foot_nodes = n_rim + np.arange(count * shapes.feet).reshape(count, shapes.feet)
     inner_nodes = n_plane + np.arange(len(copies)).reshape(count, len(inner))
     nodes = np.concatenate([foot_nodes, inner_nodes], axis=1)
-    triangles = np.concatenate([plane.base, nodes[:, bumps.triangles].reshape(-1, 3), plane.frame])
-    return SurfaceMesh(points, triangles, _labels(plane, bumps))
+    triangles = np.concatenate([plane.base, nodes[:, shapes.triangles].reshape(-1, 3), plane.frame])
+    return SurfaceMesh(points, triangles, _labels(plane, shapes))
 
 
-def _labels(plane: PlaneMesh, bumps: _Bumps) -> dict[str, np.ndarray]:
-    """`part`, `column` and `row` of every triangle, int64: base, then bump by bump, then frame."""
+def _labels(plane: PlaneMesh, shapes: _Shapes) -> dict[str, np.ndarray]:
+    """`part`, `column` and `row` of every triangle, int64: base, then shape by shape, then frame."""
 
-    def label(per_bump: np.ndarray, frame: int) -> np.ndarray:
-        on_bumps = np.repeat(per_bump, len(bumps.triangles))
-        return np.concatenate([np.zeros(len(plane.base)), on_bumps, np.full(len(plane.frame), frame)]).astype(np.int64)
+    def label(per_shape: np.ndarray, frame: int) -> np.ndarray:
+        on_shapes = np.repeat(per_shape, len(shapes.triangles))
+        return np.concatenate([np.zeros(len(plane.base)), on_shapes, np.full(len(plane.frame), frame)]).astype(np.int64)
 
-    part = label(np.arange(1, len(bumps.centres) + 1), HOLDER)
-    return {"part": part, "column": label(bumps.column, 0), "row": label(bumps.row, 0)}
+    part = label(np.arange(1, len(shapes.centres) + 1), HOLDER)
+    return {"part": part, "column": label(shapes.column, 0), "row": label(shapes.row, 0)}

@@ -12,9 +12,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshes.pattern import ConvexPattern
+from meshes.lattice import Pattern
 from meshes.plane import mesh_plane
-from meshes.sample import HOLDER, sample_top
+from meshes.sample import HOLDER, check_depth, sample_top
 from postproc.mesh import SurfaceMesh, boundary_edges
 
 WHOLE_TURN = 2.0 * math.pi
@@ -171,7 +171,7 @@ def sample_block(
     length: float,
     thickness: float,
     element_size: float,
-    pattern: ConvexPattern | None,
+    pattern: Pattern | None,
     holder_size: float | None = None,
 ) -> SurfaceMesh:
     """A whole submerged sample: `sample_top` with upright sides and a bottom `thickness` below it, one closed surface.
@@ -181,6 +181,7 @@ def sample_block(
     Raises ValueError as that.
     """
     _checked(thickness=thickness)
+    check_depth(pattern, thickness, "sample's thickness")
     holder_size = holder_size or element_size
     top = sample_top(width, length, element_size, pattern)
     rim = np.sort(boundary_edges(top.triangles)[:, 0])  # the first nodes, anticlockwise: see `meshes.plane`

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+PLAIN = "plain"  # name of a sample's surface without a pattern; one with a pattern has the pattern's name
 RIGHT_ANGLE = 1e-9  # -, cosine of an angle that counts as right
 STL_FACETS_PER_BLOCK = 20_000  # facets formatted at once: bounds the memory of a write
 _FACET = (

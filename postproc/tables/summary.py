@@ -8,10 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import read_surface
+from postproc.mesh import PLAIN, read_surface
 from postproc.wear.update import lost_volume
-
-PLAIN = "plain"
 
 SUMMED = (
     "archard_volume_m3",

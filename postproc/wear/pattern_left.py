@@ -1,4 +1,4 @@
-"""How much of the bumps of a sample is left."""
+"""How much of a sample's pattern is left."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from postproc.mesh import SurfaceMesh, area_vectors
 
 
 def bump_volume(mesh: SurfaceMesh) -> float:
-    """Return the volume (m3) of all bumps, each above the mean height of its own foot; 0 without bumps.
+    """Return the volume (m3) of all bumps, each above the mean height of its own foot; 0 without any.
 
-    A bump is the faces of one `part` above 0; its foot is the nodes that they share with faces of another part.
+    That of hollows is negative. A bump, or hollow, is the faces of one `part` above 0; its foot is the nodes that they
+    share with faces of another part.
     """
     part = mesh.cell_data["part"]
     bump = part > 0

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.special import ellipe
 
-from meshes.bump import bump_element_size, bump_shell, foot_nodes
+from meshes.bump import bump_shell
 from meshes.relax import flip_to_delaunay, relax
+from meshes.shell import foot_nodes, shell_element_size
 from postproc.mesh import (
     areas,
     boundary_edges,
@@ -70,7 +71,7 @@ def test_volume_converges_with_the_square_of_the_edge(shape):
 @pytest.mark.parametrize("element_size", [2e-3, 1e-3, 0.5e-3])
 def test_angles(shape, element_size):
     """Angles: none below 20 degrees, one in a hundred below 30."""
-    size = bump_element_size(shape[0], shape[1], element_size)
+    size = shell_element_size(shape[0], shape[1], element_size)
     angles = smallest_angles(*bump_shell(*shape, size)[:2])
     assert angles.min() > 20
     assert np.percentile(angles, 1) > 30
@@ -100,8 +101,8 @@ def test_foot_nodes_are_even_on_the_ellipse():
 )
 def test_element_size_on_small_bumps(radius, element_size, expected):
     """Fine elements stay, middling ones are halved at most, coarse ones end at half the smaller radius."""
-    assert bump_element_size(radius, 8e-3, element_size) == pytest.approx(expected)
-    assert bump_element_size(8e-3, radius, element_size) == pytest.approx(expected)
+    assert shell_element_size(radius, 8e-3, element_size) == pytest.approx(expected)
+    assert shell_element_size(8e-3, radius, element_size) == pytest.approx(expected)
 
 
 def test_flip_takes_the_short_diagonal():

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes.pattern import ConvexPattern, bump_centres, bump_rows, pattern_faults
+from meshes.lattice import pattern_centres, pattern_faults, pattern_rows
+from meshes.pattern import ConvexPattern
 
 R5 = ConvexPattern(4e-3, 8e-3, 6e-3, row_spacing=40e-3, column_spacing=60e-3)
 R9 = ConvexPattern(8e-3, 2e-3, 6e-3, row_spacing=40e-3, column_spacing=20e-3)
@@ -15,7 +16,7 @@ ROUNDING = 1e-12  # m: coordinates of 0.1 m in float64
 
 def per_row(pattern, width, length):
     """Number of bumps in each row."""
-    return np.bincount(bump_rows(pattern, width, length))[1:].tolist()
+    return np.bincount(pattern_rows(pattern, width, length))[1:].tolist()
 
 
 @pytest.mark.parametrize(
@@ -36,7 +37,7 @@ def test_rows(pattern, size, counts):
 def test_every_bump_is_whole_and_no_place_is_left():
     """Feet keep the margin to the rim, and the next row or bump of the lattice would not."""
     for pattern in (R5, R9, R12, replace(R9, major_axis="across_travel", column_spacing=25e-3)):
-        centres, _ = bump_centres(pattern, 0.2, 0.15)
+        centres, _ = pattern_centres(pattern, 0.2, 0.15)
         half = np.array([pattern.half_width, pattern.half_length]) + pattern.rim_margin
         room = np.array([0.1, 0.075]) - half
         assert (np.abs(centres) <= room + 1e-9).all()
@@ -48,7 +49,7 @@ def test_every_bump_is_whole_and_no_place_is_left():
 
 def test_half_offset_is_symmetric():
     """With an offset of one half the pattern is its own mirror image in x and y."""
-    centres, _ = bump_centres(R5, 0.2, 0.2)
+    centres, _ = pattern_centres(R5, 0.2, 0.2)
     for mirror in ((-1, 1), (1, -1)):
         order = np.lexsort((centres * mirror).round(9).T)
         assert (centres * mirror)[order] == pytest.approx(centres[np.lexsort(centres.round(9).T)], abs=ROUNDING)
@@ -57,20 +58,20 @@ def test_half_offset_is_symmetric():
 def test_offset_shifts_every_second_row():
     """Neighbouring rows differ by the offset times the column spacing, rows two apart by nothing."""
     pattern = replace(R9, row_offset=0.25)
-    centres, _ = bump_centres(pattern, 0.2, 0.2)
-    row = bump_rows(pattern, 0.2, 0.2)
+    centres, _ = pattern_centres(pattern, 0.2, 0.2)
+    row = pattern_rows(pattern, 0.2, 0.2)
     phase = np.mod(centres[:, 0] / pattern.column_spacing + 1e-6, 1.0)
     assert phase == pytest.approx(np.where(row % 2 == 0, 0.25, 0.0) + 1e-6, abs=1e-9)
 
 
 def test_column_and_order():
     """Columns count the distinct x from 1; bumps run row by row from -y, in a row from -x."""
-    centres, column = bump_centres(R9, 0.1, 0.1)
+    centres, column = pattern_centres(R9, 0.1, 0.1)
     assert column.dtype == np.int64
     assert sorted(set(column.tolist())) == list(range(1, 10))  # -40 to 40 mm every 10 mm
     assert centres[:, 0] == pytest.approx((column - 5) * 10e-3, abs=ROUNDING)
     assert (np.lexsort(centres.round(9).T) == np.arange(len(centres))).all()
-    assert (np.diff(bump_rows(R9, 0.1, 0.1)) >= 0).all()
+    assert (np.diff(pattern_rows(R9, 0.1, 0.1)) >= 0).all()
 
 
 def test_major_axis_turns_the_foot():
@@ -118,5 +119,5 @@ def test_overlap_is_exact():
 def test_only_neighbours_that_exist_can_overlap():
     """A spacing too small for two bumps is no fault on a sample that holds only one."""
     alone = replace(R12, column_spacing=12e-3, row_spacing=7e-3)
-    assert len(bump_centres(alone, 0.019, 0.019)[0]) == 1
+    assert len(pattern_centres(alone, 0.019, 0.019)[0]) == 1
     assert pattern_faults(alone, 0.019, 0.019) is None

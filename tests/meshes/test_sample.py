@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes.bump import foot_nodes
-from meshes.pattern import ConvexPattern, bump_centres
+from meshes.lattice import pattern_centres
+from meshes.pattern import ConvexPattern
 from meshes.sample import SKIRT_DEPTH, sample_top, skirt_fall, skirt_width, sliding_sample
+from meshes.shell import foot_nodes
 from postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
 
 HEIGHT, SLOPE = 0.3e-3, math.radians(3)  # m, rad: the defaults of the sliding study
@@ -54,7 +55,7 @@ def check_geometry(pattern, size, element_size=MM):
     """Footprint, volume, angles, topology and labels of a square sliding sample."""
     mesh = sliding_sample(size, size, element_size, pattern, HEIGHT, SLOPE)
     part, vectors = mesh.cell_data["part"], area_vectors(mesh.points, mesh.triangles)
-    centres, _ = bump_centres(pattern, size, size)
+    centres, _ = pattern_centres(pattern, size, size)
     assert (np.unique(part) == np.arange(-1, len(centres) + 1)).all()
     assert vectors[part >= 0, 2].sum() == pytest.approx(size**2, rel=ROUNDING)
     volumes = [volume_above_plane(mesh.points, mesh.triangles[part == k], HEIGHT) for k in (1, len(centres))]
@@ -122,7 +123,7 @@ def test_base_has_holes_of_the_size_of_the_feet():
             np.column_stack([np.roll(foot, -1, axis=0), 0 * foot[:, 0]]),
         )[:, 2].sum()
     )
-    bumps = len(bump_centres(pattern, 100 * MM, 100 * MM)[0])
+    bumps = len(pattern_centres(pattern, 100 * MM, 100 * MM)[0])
     base = area_vectors(mesh.points, mesh.triangles)[mesh.cell_data["part"] == 0, 2].sum()
     assert base == pytest.approx(0.01 - bumps * polygon, rel=ROUNDING)
 
@@ -177,7 +178,7 @@ def test_labels():
     """Each bump's triangles stand on its foot and carry its column and row, base and skirt 0."""
     pattern = pattern_of("R9")
     mesh = sliding_sample(100 * MM, 100 * MM, 2 * MM, pattern, HEIGHT, SLOPE)
-    centres, column = bump_centres(pattern, 100 * MM, 100 * MM)
+    centres, column = pattern_centres(pattern, 100 * MM, 100 * MM)
     labels = mesh.cell_data
     assert all(label.dtype == np.int64 for label in labels.values())
     on_bump = labels["part"] > 0

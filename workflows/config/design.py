@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from workflows.config.law_settings import check_law, law_settings
-from workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
-from workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_own_words, check_run
+from workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml, with_row
+from workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
 from workflows.config.schema import case_schema, coerce_numbers, joined, leaves, load_schema, without_required
 from workflows.config.units import to_si
 from workflows.config.validation import (
@@ -203,7 +203,7 @@ def _rows_to_confirm(sources: _Sources, study: str, root: Path) -> list[Layer]:
     path = root / confirmation_design(study)
     if not path.is_file():
         raise ConfigError(f"{display_name(path, root)}: there is no such file yet, `snakemake {study}` writes it.")
-    return read_design(path, root, load_schema(f"cases/{sources.case.name}/design"))
+    return read_design(path, root, sources.design_schema)
 
 
 def _materials_file(settings: dict[str, Any], root: Path) -> Path:
@@ -226,6 +226,13 @@ class _Sources:
     @property
     def study_settings(self) -> Layer:
         return self.study.part(set(self.study.values) - set(case_schema(self.case.name, "study")["properties"]))
+
+    @property
+    def design_schema(self) -> dict[str, Any]:
+        """The schema of a design row, with the columns that the study's surfaces need."""
+        schema, case = load_schema(f"cases/{self.case.name}/design"), self.case
+        needed = {column for surface in case.surfaces(self.study.values) for column in case.needed_columns(surface)}
+        return {**schema, "required": [c for c in schema["properties"] if c in needed or c in schema["required"]]}
 
     def block(self, fidelity: str) -> Layer:
         return self.study.inner(("fidelities", fidelity), f"fidelity {fidelity}")
@@ -296,7 +303,7 @@ def _design_rows(sources: _Sources, fidelity: str, root: Path) -> list[Layer]:
     there = sorted(path.name for path in folder.glob("*.csv"))
     if name not in there:
         raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
-    rows = read_design(folder / name, root, load_schema(f"cases/{sources.case.name}/design"))
+    rows = read_design(folder / name, root, sources.design_schema)
     if fault := sources.case.design_fault([row.values for row in rows]):
         raise ConfigError(f"{display_name(folder / name, root)}: {fault}.")
     return rows
@@ -321,6 +328,11 @@ def _factors(sources: _Sources, rows: list[Layer]) -> dict[str, str]:
     """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError."""
     factors = sources.study.values.get(FACTORS, {})
     for name, column in factors.items():
+        if any(column not in row.values for row in rows):
+            raise ConfigError(
+                f"{sources.study.where((FACTORS, name))}: {FACTORS}.{name} is {column}, allowed are columns that the"
+                " design gives in every row."
+            )
         levels = {row.values[column] for row in rows}
         if len(levels) < 2:
             raise ConfigError(
@@ -361,6 +373,8 @@ def _checked_run(
     case = sources.case
     columns = row_overrides(row, load_schema(f"cases/{sources.case.name}/design"))
     of_row = with_row(settings, row, columns)
+    schema = case_schema(sources.case, "settings")
+    check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
     check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks))
     name = row.values["row"]
@@ -371,13 +385,3 @@ def row_overrides(row: Layer, schema: dict[str, Any]) -> dict[str, str]:
     """Return {setting: column} of the settings that a design row overrides: the schema of such a column names one."""
     named = {inner["x-setting"]: column for (column,), inner in leaves(schema) if "x-setting" in inner}
     return {setting: column for setting, column in named.items() if column in row.values}
-
-
-def with_row(settings: dict[str, Any], row: Layer, columns: dict[str, str]) -> dict[str, Any]:
-    """Return the settings of one design row."""
-    for setting, column in columns.items():
-        value = row.values[column]
-        for key in reversed(setting.split(".")):
-            value = {key: value}
-        settings = merge(settings, value)
-    return settings

@@ -11,14 +11,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from meshes.pattern import pattern_faults
+from meshes.lattice import pattern_faults
 from postproc.wear.caps import GRAVITY
 from workflows.config.layers import ConfigError, Layer
+from workflows.config.patterns import highest_point, pattern_of
 from workflows.config.schema import load_schema
 from workflows.config.units import to_si
 from workflows.config.validation import allowed_text, locate, show
 from workflows.engine.derived import ADAPTIVE, PERIODIC, THIN_BED_LAYERS, WINDOW, window_lengths
-from workflows.engine.geometry import convex_pattern
 from workflows.engine.schedule import LEAST_CYCLE_STEPS
 from workflows.engine.templates import DeckError, solver_settings, template_variables
 
@@ -60,6 +60,16 @@ def check_run(run: CheckedRun, checks: tuple[Check, ...]) -> None:
                 raise ConfigError(f"{run.row.where()}: {allowed}.")
             found = f"{show(_value(run, key))}{_for_row(run, key)}"
             raise ConfigError(f"{_where(run, key)} is {found}, allowed is {allowed}.")
+
+
+def check_needed(
+    layers: tuple[Layer, ...], settings: dict[str, Any], schema: dict[str, Any], block: str, keys: list[str]
+) -> None:
+    """Raise ConfigError if a block of a run's settings lacks one of the keys that its surface needs."""
+    for key in (key for key in keys if key not in settings[block]):
+        allowed = allowed_text(schema["properties"][block]["properties"][key])
+        where = locate(layers, (block,))
+        raise ConfigError(f"{where}: {block}.{key} is missing, allowed is {allowed}, which its surface needs.")
 
 
 def _where(run: CheckedRun, key: str) -> str:
@@ -210,18 +220,18 @@ def no_particle_between(run: CheckedRun) -> Fault | None:
     )
 
 
-def element_resolves_bump(run: CheckedRun) -> Fault | None:
-    """A bump's footprint is at least two elements across its narrow side.
+def element_resolves_pattern(run: CheckedRun) -> Fault | None:
+    """The feet of a pattern are at least two elements across their narrow side.
 
-    The height sets no limit: a low bump is a gentle slope, which large elements follow.
+    Height and depth set no limit: a low bump is a gentle slope, which large elements follow.
     """
-    pattern = run.parameters["pattern"]
+    pattern = pattern_of(run.parameters["pattern"])
     if pattern is None:
         return None
-    radius = min(pattern["major_radius_m"], pattern["minor_radius_m"])
+    radius = min(pattern.half_width, pattern.half_length)
     if run.parameters["sample"]["element_size_m"] <= radius:
         return None
-    return "sample.element_size_mm", f"at most {millimetres(radius)}, the smaller radius of a bump"
+    return "sample.element_size_mm", f"at most {millimetres(radius)}, the smaller radius of a {pattern.noun}"
 
 
 def element_resolves_sample(run: CheckedRun) -> Fault | None:
@@ -236,12 +246,25 @@ def element_resolves_sample(run: CheckedRun) -> Fault | None:
     )
 
 
-def bump_in_bed(run: CheckedRun) -> Fault | None:
-    """A bump is lower than the bed is thick."""
-    pattern, thickness = run.parameters["pattern"], run.parameters["bed"]["thickness_m"]
-    if pattern is None or pattern["height_m"] < thickness:
+def pattern_in_bed(run: CheckedRun) -> Fault | None:
+    """The bed is thicker than a pattern is high."""
+    highest = highest_point(run.parameters["pattern"])
+    if highest < run.parameters["bed"]["thickness_m"]:
         return None
-    return "height_mm", f"below {millimetres(thickness)}, bed_thickness_mm"
+    return "bed_thickness_mm", f"above {millimetres(highest)}, the height of the pattern"
+
+
+def pattern_above_floor(run: CheckedRun) -> Fault | None:
+    """A pattern is less deep than the sample's top is above the floor."""
+    return deeper_than(run, "height_above_floor")
+
+
+def deeper_than(run: CheckedRun, length: str) -> Fault | None:
+    """Return the fault of a pattern at least as deep as a length of the sample."""
+    pattern, room = pattern_of(run.parameters["pattern"]), run.parameters["sample"][f"{length}_m"]
+    if pattern is None or pattern.deepest_point < room:
+        return None
+    return f"sample.{length}_mm", f"above {millimetres(pattern.deepest_point)}, the depth of a {pattern.noun}"
 
 
 def cycle_long_enough(run: CheckedRun) -> Fault | None:
@@ -309,11 +332,10 @@ def physical_modulus_known(run: CheckedRun) -> Fault | None:
 
 
 def pattern_fits(run: CheckedRun) -> Fault | None:
-    """Bumps neither overlap nor leave the sample (meshes.pattern decides)."""
-    section, sample = run.parameters["pattern"], run.parameters["sample"]
-    if section is None:
+    """The shapes of a pattern neither overlap nor leave the sample (meshes.lattice decides)."""
+    pattern, sample = pattern_of(run.parameters["pattern"]), run.parameters["sample"]
+    if pattern is None:
         return None
-    pattern = convex_pattern(section)
     fault = pattern_faults(pattern, sample["width_m"], sample["length_m"])
     return None if fault is None else ("", fault)
 
@@ -321,8 +343,9 @@ def pattern_fits(run: CheckedRun) -> Fault | None:
 COMMON_CHECKS: tuple[Check, ...] = (model_properties_given,)
 SLIDING_CHECKS: tuple[Check, ...] = (
     enough_layers,
-    bump_in_bed,
+    pattern_in_bed,
     pattern_fits,
+    pattern_above_floor,
     no_particle_between,
     sample_in_bed,
     skirt_in_bed,
@@ -330,7 +353,7 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     floor_drives_bed,
     exchange_holds,
     element_resolves_sample,
-    element_resolves_bump,
+    element_resolves_pattern,
     travel_within_reason,
     cycle_long_enough,
     sampled_in_cycle,

@@ -12,6 +12,7 @@ import jsonschema
 
 from postproc.wear.laws import LAWS
 from workflows.config.layers import KeyPath, read_yaml
+from workflows.config.patterns import with_patterns
 from workflows.engine.case import case_names
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
@@ -39,7 +40,7 @@ def schema_file(name: str) -> Path:
 @cache
 def load_schema(name: str) -> dict[str, Any]:
     """Return the schema of that name. Raises jsonschema.SchemaError if it is no schema."""
-    schema = read_yaml(schema_file(name), SCHEMA_FOLDER).values
+    schema = with_patterns(read_yaml(schema_file(name), SCHEMA_FOLDER).values)
     if name == "settings":
         schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
     if name == "study":

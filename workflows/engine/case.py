@@ -103,6 +103,14 @@ class Case:
         """Return the surfaces of which each design row makes a run; `head` holds the keys that are the study's own."""
         return ("",)
 
+    def needed_columns(self, surface: str) -> Sequence[str]:
+        """Return the columns that a design needs for such a surface, besides those that its schema requires."""
+        return ()
+
+    def needed_pattern_keys(self, settings: Mapping[str, Any], surface: str) -> list[str]:
+        """Return the keys that the section `pattern` of the settings needs for a run, besides those always required."""
+        return []
+
     def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
         """Return what is wrong with a design as a whole, a phrase after the table's name, or None."""
         return None

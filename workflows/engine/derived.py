@@ -9,9 +9,10 @@ from typing import Any
 from meshes.sample import skirt_width
 from postproc.reference.size_ratios import equivalent_size_ratio
 from postproc.wear.caps import GRAVITY
+from workflows.config.patterns import highest_point, pattern_of
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
-HEADROOM_DIAMETERS = 0.1  # between the highest bump and the bed that settles above it, in largest diameters
+HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
 # Values of bed.ends: two walls that push the bed along, none, or a window that travels with the sample.
 WALLS, PERIODIC, WINDOW = "walls", "periodic", "window"
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
@@ -113,11 +114,11 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 def size_ratio(parameters: dict[str, Any]) -> float | None:
-    pattern = parameters["pattern"]
-    if pattern is None:
+    """Return alpha_ER, the particle's size over a bump's (-); None for a surface that has none."""
+    pattern = pattern_of(parameters["pattern"])
+    if pattern is None or pattern.bump_axes is None:
         return None
-    lengths = (pattern["major_radius_m"], pattern["minor_radius_m"], pattern["height_m"])
-    return equivalent_size_ratio(parameters["particle"]["median_diameter_m"], *lengths)
+    return equivalent_size_ratio(parameters["particle"]["median_diameter_m"], *pattern.bump_axes)
 
 
 def physical_patch_factor(parameters: dict[str, Any]) -> float:
@@ -182,7 +183,7 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
         "bed_start_m": sample["length_m"] / 2.0 + bed["behind_m"] - length,
         "bed_travel_m": travel,
         "highest_point_m": sample["height_above_floor_m"]
-        + (parameters["pattern"] or {"height_m": 0.0})["height_m"]
+        + highest_point(parameters["pattern"])
         + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
         "bed_mass_kg": solid_volume * particle["density_kg_per_m3"],
         "bed_particles": round(solid_volume * per_volume),

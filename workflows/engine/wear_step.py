@@ -248,7 +248,7 @@ def wear_row(
 
 
 def load_sums(surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray) -> dict[str, float]:
-    """Return the loads and the wear law's volume, summed over the faces that wear: all, base and bumps.
+    """Return the loads and the wear law's volume, summed over the faces that wear: all, base and pattern.
 
     ledger: a row per triangle of the surface; volume: (m,) m3 per triangle
     """

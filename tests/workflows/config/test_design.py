@@ -194,6 +194,7 @@ def test_settings_and_factors_arrive_in_si(config):
     assert p["sample"]["height_above_floor_m"] == 0.0003
     assert p["sample"]["skirt_slope_rad"] == pytest.approx(math.pi / 60, rel=ROUNDING)
     assert p["pattern"] == {
+        "shape": "convex",
         "major_axis": "along_travel",
         "row_spacing_m": 0.04,
         "row_offset_fraction": 0.5,
@@ -572,7 +573,7 @@ def test_factors_of_a_regression(config):
 @pytest.mark.parametrize(
     ("factors", "design", "sentence"),
     [
-        ("{a: major_radius_mm, b: radius_mm}", "", "factors.b is 'radius_mm', allowed is one of major_radius_mm,"),
+        ("{a: major_radius_mm, b: colour}", "", "factors.b is 'colour', allowed is one of major_radius_mm,"),
         ("{a: major_radius_mm}", "", "factors"),
         ("{a: major_radius_mm, b: minor_radius_mm}", "", "found a design of 2 rows, allowed are 5 or more."),
         (

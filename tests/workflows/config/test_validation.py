@@ -6,9 +6,11 @@ import re
 
 import pytest
 
+from meshes.pattern import PATTERNS
 from postproc.wear.laws import LAWS
 from workflows.config.design import load_study
 from workflows.config.layers import ConfigError, command_line_layer, dotted, merge, read_yaml
+from workflows.config.patterns import SURFACES
 from workflows.config.readme import readme
 from workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
 from workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
@@ -28,6 +30,7 @@ SCHEMAS = sorted(
     path.relative_to(SCHEMA_FOLDER).as_posix().removesuffix(SUFFIX) for path in SCHEMA_FOLDER.rglob("*.yaml")
 )
 QUICK = "config/studies/small.yaml, line 9, fidelity quick"
+ONE_PATTERN = f"a list of one pattern ({', '.join(PATTERNS)}), plain, or both"
 WIDTH_RANGE = "a number from 5 to 2000 mm"
 
 # (file, text that stands there once, its replacement, the whole message)
@@ -186,20 +189,19 @@ BAD_VALUES = [
         STUDY,
         "[convex, plain]",
         "[convex, flat]",
-        "config/studies/small.yaml, line 4: surfaces[2] is 'flat', allowed is one of convex, plain.",
+        f"config/studies/small.yaml, line 4: surfaces[2] is 'flat', allowed is one of {', '.join(SURFACES)}.",
     ),
     (
         STUDY,
         "[convex, plain]",
         "[]",
-        "config/studies/small.yaml, line 4: surfaces is [], allowed is a list of convex and plain, each at most once.",
+        f"config/studies/small.yaml, line 4: surfaces is [], allowed is {ONE_PATTERN}.",
     ),
     (
         STUDY,
         "[convex, plain]",
         "[plain, plain]",
-        "config/studies/small.yaml, line 4: surfaces is ['plain', 'plain'],"
-        " allowed is a list of convex and plain, each at most once.",
+        f"config/studies/small.yaml, line 4: surfaces is ['plain', 'plain'], allowed is {ONE_PATTERN}.",
     ),
     (
         STUDY,
@@ -340,7 +342,11 @@ BAD_ROWS = [
         "R9,8,2,20,6,0",
         f"{ROW_9}: found 8 values, allowed are 7, one per column, with a point in decimals.",
     ),
-    ("R9,8,2,20,6.0", "R9,8,2,20,60", f"{ROW_9}: height_mm is 60, allowed is below 40 mm, bed_thickness_mm."),
+    (
+        "R9,8,2,20,6.0",
+        "R9,8,2,20,60",
+        f"{ROW_9}: bed_thickness_mm is 40, allowed is above 60 mm, the height of the pattern.",
+    ),
     (
         "R5,",
         "R9,",
@@ -386,7 +392,8 @@ BAD_TABLES = [
     (
         "row,height_mm\nR9,6\n",
         "config/designs/small.csv, header: column major_radius_mm is missing,"
-        f" allowed are {TABLE_HEADER.replace(',', ', ')}.",
+        " allowed are row, major_radius_mm, minor_radius_mm, height_mm, column_spacing_mm, velocity_m_per_s,"
+        " bed_thickness_mm.",
     ),
 ]
 
@@ -658,6 +665,33 @@ def test_a_plain_sample_needs_elements_too(config):
     assert message_of(config, {"sample": {"element_size_mm": 20, "width_mm": 70}}) == (
         "command line: sample.element_size_mm is 20 for row R9, allowed is at most 17.5 mm,"
         " a quarter of the sample's shorter side."
+    )
+
+
+def test_columns_of_a_pattern_are_needed_by_its_surface_only(config):
+    """A plain study's design has no dimensions of a bump, and no pattern is asked for words that describe one."""
+    config.edit(STUDY, "[convex, plain]", "[plain]")
+    config.write(TABLE, "row,column_spacing_mm,velocity_m_per_s,bed_thickness_mm\nR9,20,1.0,40\n")
+    config.edit(OWN_SETTINGS, "major_axis: along_travel, ", "")
+    assert [run.parameters["pattern"] for run in load_study("small", config.root).runs] == [None]
+
+
+def test_a_pattern_lacks_no_word_that_describes_it(config):
+    """A key of the section `pattern` that only some surfaces need is named where one of them lacks it."""
+    config.edit(OWN_SETTINGS, "major_axis: along_travel, ", "")
+    assert message_of(config) == (
+        "config/cases/sliding_sample.yaml, line 9: pattern.major_axis is missing,"
+        " allowed is one of along_travel, across_travel, which its surface needs."
+    )
+
+
+def test_a_factor_is_a_column_of_the_design(config):
+    """A regression on a dimension that the design does not give is refused."""
+    config.edit(STUDY, "[convex, plain]", "[plain]\nfactors: {t: bed_thickness_mm, h: height_mm}")
+    config.write(TABLE, "row,column_spacing_mm,velocity_m_per_s,bed_thickness_mm\nR9,20,1.0,40\nR5,20,1.0,50\n")
+    assert message_of(config) == (
+        "config/studies/small.yaml, line 5: factors.h is height_mm,"
+        " allowed are columns that the design gives in every row."
     )
 
 

@@ -8,9 +8,9 @@ from postproc.mesh import SurfaceMesh, areas, read_surface, write_surface
 from postproc.wear.mesh_faults import with_target_edges
 from postproc.wear.remesh import RemeshError
 from tests.support.tiny import tiny_study
+from workflows.config.patterns import sample_surface
 from workflows.engine import wear_step
 from workflows.engine.chain import Chain
-from workflows.engine.geometry import sample_surface
 from workflows.engine.schedule import first_span
 
 RUN = "R9_convex"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshes.tester import placed, sample_block
-from postproc.mesh import SurfaceMesh
+from postproc.mesh import PLAIN, SurfaceMesh
 from postproc.readers.cycle_folders import LAYER_TABLE
 from postproc.readers.solver_log import thermo_rows
 from postproc.wear.caps import GRAVITY, gap_closing_step
@@ -17,8 +17,8 @@ from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester import work as tester_work
 from workflows.cases.circular_tester.checks import TESTER_CHECKS
 from workflows.cases.circular_tester.parameters import bed_parameters, run_parameters
+from workflows.config.patterns import dimension_columns, option_keys, pattern_of, surface_name
 from workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Piece, Run, register
-from workflows.engine.geometry import convex_pattern
 from workflows.engine.pieces import piece_ends
 from workflows.engine.schedule import Span
 from workflows.engine.solver import LOG
@@ -57,16 +57,21 @@ class CircularTester(Case):
     leftovers = (SETUP_LOADS, SETUP_BED)
     kept = (LAYER_TABLE,)
 
+    def needed_pattern_keys(self, settings: Mapping[str, Any], surface: str) -> list[str]:
+        """Return what describes the pattern of the row's surface."""
+        named = settings["sample"]["surface"]
+        return [*dimension_columns(named), *option_keys(named)]
+
     def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
-        """Return a phrase unless one plain and one convex row are of series volume, of which most figures are made, in
-        equal machines with equal particles.
+        """Return a phrase unless one plain and one patterned row are of series volume, of which most figures are made,
+        in equal machines with equal particles.
         """
         main = [row for row in rows if row["series"] == VOLUME]
         found = sorted(row["surface"] for row in main)
-        if found == ["convex", "plain"]:
+        if len(found) == 2 and found.count(PLAIN) == 1:
             apart = [name for name in ("shape", "particle_scale") if main[0].get(name) != main[1].get(name)]
             return f"rows of series {VOLUME} differ in {' and '.join(apart)}, allowed are equal ones" if apart else None
-        return f"series {VOLUME} has {' and '.join(found) or 'no row'}, allowed is one convex and one plain row"
+        return f"series {VOLUME} has {' and '.join(found) or 'no row'}, allowed is one patterned and one plain row"
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
@@ -92,7 +97,7 @@ class CircularTester(Case):
         """Return all that rows may differ in."""
         derived = parameters["derived"]
         return {
-            "surface": "convex" if parameters["pattern"] else "plain",
+            "surface": surface_name(parameters["pattern"]),
             "shape": parameters["tester"]["shape"],
             "particle_scale": parameters["particle"]["scale"],
             "element_size_mm": 1e3 * parameters["sample"]["element_size_m"],
@@ -104,7 +109,7 @@ class CircularTester(Case):
 
     def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
         """Return the whole sample in its own frame, its top at z = 0."""
-        sample, pattern = geometry["sample"], convex_pattern(geometry["pattern"])
+        sample, pattern = geometry["sample"], pattern_of(geometry["pattern"])
         lengths = (sample["width_m"], sample["length_m"], sample["thickness_m"], sample["element_size_m"])
         return sample_block(*lengths, pattern, tester_deck.HOLDER_SIZE)
 
@@ -199,7 +204,7 @@ class CircularTester(Case):
         return reduce_layer(folder, layer, start, 1.0 / parameters["derived"]["revolution_steps"])
 
     def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
-        """Return what is left of the pattern, the volume of its bumps over their feet."""
+        """Return what is left of the pattern: its volume over its feet, negative where it lies below them."""
         from postproc.wear.pattern_left import bump_volume
 
         return {"pattern_volume_m3": bump_volume(worn)}

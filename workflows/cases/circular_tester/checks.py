@@ -8,7 +8,8 @@ from workflows.cases.circular_tester.decks import CHANNEL, channel_length, half_
 from workflows.config.run_checks import (
     CheckedRun,
     Fault,
-    element_resolves_bump,
+    deeper_than,
+    element_resolves_pattern,
     element_resolves_sample,
     millimetres,
     pattern_fits,
@@ -80,12 +81,12 @@ def enough_layers_under(run: CheckedRun) -> Fault | None:
 
 
 def consolidator_on_bed(run: CheckedRun) -> Fault | None:
-    """The consolidator levels above the sample's bumps."""
+    """The consolidator levels above the sample's highest point."""
     tester = run.parameters["tester"]
     least = tester["bed_height_m"] - tester["depth_m"] + run.parameters["derived"]["headroom_m"]
     if tester["consolidator_level_m"] > least:
         return None
-    return "tester.consolidator_level_mm", f"above {millimetres(least)}, the highest bump"
+    return "tester.consolidator_level_mm", f"above {millimetres(least)}, the sample's highest point"
 
 
 def whole_cycles(run: CheckedRun) -> Fault | None:
@@ -107,6 +108,11 @@ def cycle_long_enough(run: CheckedRun) -> Fault | None:
     return "sliding.cycles_per_revolution", f"at most {most}, so that a cycle has {LEAST_CYCLE_STEPS} time steps"
 
 
+def pattern_in_sample(run: CheckedRun) -> Fault | None:
+    """The pattern is less deep than the sample is thick."""
+    return deeper_than(run, "thickness")
+
+
 TESTER_CHECKS = (
     summed_by_the_solver,
     radii_in_order,
@@ -116,8 +122,9 @@ TESTER_CHECKS = (
     enough_layers_under,
     consolidator_on_bed,
     element_resolves_sample,
-    element_resolves_bump,
+    element_resolves_pattern,
     pattern_fits,
+    pattern_in_sample,
     whole_cycles,
     cycle_long_enough,
     physical_modulus_known,

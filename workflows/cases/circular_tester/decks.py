@@ -203,7 +203,7 @@ def pose(tester: Parameters) -> np.ndarray:
 
 
 def block_mesh(bed: Parameters) -> SurfaceMesh:
-    """Return the block in the sample's place, as high as the highest bump of the study and a little more."""
+    """Return the block in the sample's place, as high as the highest sample of the study and a little more."""
     width, length, above = bed["sample_width_m"], bed["sample_length_m"], bed["headroom_m"]
     mesh = sample_block(width, length, bed["thickness_m"] + above, max(width, length) / 4.0, None)
     raised = placed(mesh, np.eye(3), np.array([0.0, 0.0, above]))

@@ -8,6 +8,7 @@ from typing import Any
 
 from postproc.wear.caps import GRAVITY
 from workflows.cases.circular_tester.decks import bed_length, half_width, mean_radius
+from workflows.config.patterns import highest_point, pattern_section
 from workflows.engine.derived import (
     HEADROOM_DIAMETERS,
     derived_materials,
@@ -20,7 +21,6 @@ from workflows.engine.sections import particle_section, template_sections, wall_
 from workflows.engine.templates import used_sections
 
 REPORTS_PER_REVOLUTION = 60  # lines of a log, of which the coefficient of variation of a revolution is made
-PATTERN = ("major_radius_m", "minor_radius_m", "height_m", "column_spacing_m")
 
 
 def run_parameters(settings: Mapping[str, Any], materials: Mapping[str, Any]) -> dict[str, Any]:
@@ -32,7 +32,7 @@ def run_parameters(settings: Mapping[str, Any], materials: Mapping[str, Any]) ->
     parameters = {
         "ledger": settings["ledger"],
         "sample": sample,
-        "pattern": settings["pattern"] if surface == "convex" else None,
+        "pattern": pattern_section(surface, settings["pattern"]),
         "tester": tester,
         "bed": settings["bed"],
         "sliding": {
@@ -64,8 +64,7 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
         "bed_length_m": bed_length(tester),
         "bed_particles": bed_particles(parameters),
         "bulk_pressure_pa": bulk * GRAVITY * tester["depth_m"],
-        "headroom_m": (parameters["pattern"] or {"height_m": 0.0})["height_m"]
-        + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
+        "headroom_m": highest_point(parameters["pattern"]) + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
         **_derived_times(parameters),
     }
 

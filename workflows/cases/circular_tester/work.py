@@ -9,9 +9,9 @@ from typing import Any
 from meshes.estimate import sample_triangles
 from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester.decks import HOLDER_SIZE
+from workflows.config.patterns import pattern_of
 from workflows.engine import decks as deck
 from workflows.engine.derived import neighbour_skin
-from workflows.engine.geometry import convex_pattern
 from workflows.engine.work import (
     CYCLE_BYTES,
     EMPTY_DIAMETERS,
@@ -44,7 +44,7 @@ def surface_triangles(run: Parameters) -> float:
     """Return about how many triangles a run's sample has: its top, and the coarse holder."""
     sample = run["sample"]
     lengths = (sample["width_m"], sample["length_m"], sample["element_size_m"])
-    top = sample_triangles(*lengths, convex_pattern(run["pattern"]), 0.0, math.pi / 4.0)
+    top = sample_triangles(*lengths, pattern_of(run["pattern"]), 0.0, math.pi / 4.0)
     bottom = sample_triangles(*lengths[:2], HOLDER_SIZE, None, 0.0, math.pi / 4.0)
     rim = 2.0 * (sample["width_m"] + sample["length_m"])
     sides = rim / sample["element_size_m"] + 2.0 * rim / HOLDER_SIZE * (sample["thickness_m"] / HOLDER_SIZE)

@@ -1,4 +1,4 @@
-"""A sample, convex or plain, that slides through a bed of particles (Yan 2022, chapters 3, 4 and 6)."""
+"""A sample, patterned or plain, that slides through a bed of particles (Yan 2022, chapters 3, 4 and 6)."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from postproc.readers.solver_log import exchanges, thermo_rows, thermo_table
 from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows.cases.sliding_sample import work as sliding_work
 from workflows.cases.sliding_sample.study import varies_scale
+from workflows.config.patterns import dimension_columns, option_keys, pattern_section, sample_surface
 from workflows.config.run_checks import SLIDING_CHECKS
 from workflows.config.units import to_si
 from workflows.engine import decks as deck
@@ -27,7 +28,6 @@ from workflows.engine.derived import (
     flow_measures,
     window_lengths,
 )
-from workflows.engine.geometry import sample_surface
 from workflows.engine.pieces import piece_ends
 from workflows.engine.schedule import Span
 from workflows.engine.sections import particle_section, template_sections, wall_section, wear_section
@@ -63,8 +63,16 @@ class SlidingSample(Case):
     kept = (FLOW_TABLE, SPIN_TABLE)
 
     def surfaces(self, head: Mapping[str, Any]) -> Sequence[str]:
-        """Return convex, plain, or both, as the study says."""
+        """Return the surfaces that the study names."""
         return head["surfaces"]
+
+    def needed_columns(self, surface: str) -> Sequence[str]:
+        """Return the dimensions of the surface's pattern."""
+        return dimension_columns(surface)
+
+    def needed_pattern_keys(self, settings: Mapping[str, Any], surface: str) -> list[str]:
+        """Return what else describes the surface's pattern."""
+        return option_keys(surface)
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
@@ -74,7 +82,7 @@ class SlidingSample(Case):
         parameters = {
             "ledger": settings["ledger"],
             "sample": settings["sample"],
-            "pattern": _pattern(settings["pattern"], factors) if surface == "convex" else None,
+            "pattern": pattern_section(surface, {**settings["pattern"], **factors}),
             "bed": {**_bed(settings["bed"]), "thickness_m": factors["bed_thickness_m"]},
             "sliding": _sliding(settings["sliding"], factors["velocity_m_per_s"], settings["wear"]["acceleration"]),
             "wear": wear_section(settings["wear"], materials["particles"][settings["bed"]["material"]]),
@@ -89,7 +97,7 @@ class SlidingSample(Case):
     def beds(self, runs: Sequence[Run]) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
         """Return the beds of a study; runs with equal parameters share one.
 
-        Beds settle on a temporary floor (`temporary_floor_m`) above the highest bump of the whole study.
+        Beds settle on a temporary floor (`temporary_floor_m`) above the highest point of the whole study's samples.
         """
         beds: dict[str, dict[str, Any]] = {}
         bed_of = {}
@@ -101,7 +109,7 @@ class SlidingSample(Case):
         return beds, bed_of
 
     def table_columns(self, parameters: Parameters) -> dict[str, Any]:
-        """Return particle scale, layers and alpha_ER, the particle's size over the bump's (Yan 2022, Eq 4.18)."""
+        """Return particle scale, layers and alpha_ER, the particle's size over a bump's (Yan 2022, Eq 4.18)."""
         return {
             "particle_scale": parameters["particle"]["scale"],
             "layers": parameters["derived"]["layers"],
@@ -280,11 +288,6 @@ def _sliding(sliding: Mapping[str, Any], velocity: float, acceleration: float) -
 def _bed(bed: Mapping[str, Any]) -> dict[str, Any]:
     """Return the section without the travel between exchanges where there are none: it then changes nothing."""
     return {key: value for key, value in bed.items() if bed["ends"] == WINDOW or key != "exchange_m"}
-
-
-def _pattern(pattern: Mapping[str, Any], factors: Mapping[str, Any]) -> dict[str, Any]:
-    names = ("major_radius_m", "minor_radius_m", "height_m", "column_spacing_m")
-    return {**pattern, **{name: factors[name] for name in names}}
 
 
 def bed_parameters(run: Run) -> dict[str, Any]:

@@ -8,9 +8,9 @@ from typing import Any
 
 from meshes.estimate import sample_triangles
 from postproc.wear.caps import GRAVITY
+from workflows.config.patterns import pattern_of
 from workflows.engine import decks as deck
 from workflows.engine.derived import ADAPTIVE, RAMP, WINDOW, neighbour_skin
-from workflows.engine.geometry import convex_pattern
 from workflows.engine.work import (
     CYCLE_BYTES,
     EMPTY_DIAMETERS,
@@ -37,7 +37,7 @@ def surface_triangles(run: Parameters) -> float:
     """Return about how many triangles a run's sample has."""
     sample = run["sample"]
     lengths = (sample["width_m"], sample["length_m"], sample["element_size_m"])
-    return sample_triangles(*lengths, convex_pattern(run["pattern"]), *(sample[key] for key in RAMP))
+    return sample_triangles(*lengths, pattern_of(run["pattern"]), *(sample[key] for key in RAMP))
 
 
 def settled_particles(run: Parameters) -> float:
