@@ -13,7 +13,7 @@ include: "workflows/engine/rules.smk"
 include: "workflows/report/rules.smk"
 # include: "workflows/cases/sliding_sample/screening/rules.smk"
 # include: "workflows/cases/sliding_sample/particle_size/rules.smk"
-# include: "workflows/cases/pin_on_disc/rules.smk"
+include: "workflows/cases/pin_on_disc/rules.smk"
 # include: "workflows/cases/calibration/rules.smk"
 include: "workflows/submissions.smk"
 

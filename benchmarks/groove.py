@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
 
@@ -28,10 +29,10 @@ from tests.verification.groove_cases import (
     SECTIONS,
     TRACK,
     Groove,
+    section_profile,
     worn_groove,
 )
 from tests.verification.ledger_cases import LOAD, PARTICLE_MODULUS, RADIUS, hertz_overlap
-from workflows.cases.pin_on_disc.groove import largest_differences, section_profile, stroke_table
 
 PLACES = np.linspace(-0.45, 0.45, 361) * PLATE[0]  # m, of the profiles in the table
 
@@ -77,6 +78,40 @@ def study() -> tuple[pd.DataFrame, pd.DataFrame]:
         parts.append(tables(scheme, edges, groove))
     strokes, sections = zip(*parts, strict=True)
     return pd.concat(strokes, ignore_index=True), pd.concat(sections, ignore_index=True)
+
+
+def stroke_table(strokes: pd.DataFrame, shown: Sequence[tuple[str, int]]) -> pd.DataFrame:
+    """Return one row per scheme, chosen stroke and mesh: depth, width and volumes after that many strokes.
+
+    strokes: one row per `scheme`, `edges_per_width` and `stroke`; of this stroke `depth_m`, `width_m`, `work_J` and
+        `load_times_distance_J`; since the start `removed_volume_m3`, `carried_volume_m3` and `law_volume_m3`
+    shown: pairs of scheme and number of strokes, in the order of the rows, the coarsest mesh first
+    """
+    parts = [strokes[(strokes["scheme"] == scheme) & (strokes["stroke"] == number)] for scheme, number in shown]
+    chosen = pd.concat([part.sort_values("edges_per_width") for part in parts], ignore_index=True)
+    law = chosen["law_volume_m3"]
+    return pd.DataFrame(
+        {
+            "scheme": chosen["scheme"],
+            "strokes": chosen["stroke"],
+            "edges_per_width": chosen["edges_per_width"],
+            "depth_um": 1e6 * chosen["depth_m"],
+            "width_mm": 1e3 * chosen["width_m"],
+            "removed_over_archard": chosen["removed_volume_m3"] / law,
+            "accounted_over_archard": (chosen["removed_volume_m3"] + chosen["carried_volume_m3"]) / law,
+            "work_over_load_times_distance": chosen["work_J"] / chosen["load_times_distance_J"],
+        }
+    )
+
+
+def largest_differences(table: pd.DataFrame) -> pd.DataFrame:
+    """Return, per scheme and number of strokes, how far depth and width differ between meshes, largest over least - 1.
+
+    table: as from `stroke_table`; columns `depth_difference` and `width_difference`, -
+    """
+    grouped = table.groupby(["scheme", "strokes"])[["depth_um", "width_mm"]]
+    ratio = grouped.max() / grouped.min() - 1.0
+    return ratio.set_axis(["depth_difference", "width_difference"], axis=1).reset_index()
 
 
 def remarks(strokes: pd.DataFrame) -> list[str]:

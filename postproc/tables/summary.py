@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN, read_surface
-from postproc.wear.update import lost_volume
+from postproc.mesh import PLAIN
 
 SUMMED = (
     "archard_volume_m3",
@@ -59,35 +58,6 @@ def summary_table(design: str | Path, wear_files: Sequence[str | Path]) -> pd.Da
     """Return the totals of every run, and its wear over that of the plain run of its row."""
     table = totals_of_runs(design, wear_files)
     return table.assign(wear_over_plain=relative_wear(table))
-
-
-def pin_summary_table(
-    design: str | Path,
-    wear_files: Sequence[str | Path],
-    pristine: Sequence[str | Path],
-    worn: Sequence[str | Path],
-) -> pd.DataFrame:
-    """Return the totals of every run of a pin on a disc beside what should come out.
-
-    design: has columns wear_coefficient_per_pa, load_n and sliding_distance_m; pristine, worn: surfaces of the runs
-
-    Columns more: `alpha_F_L_volume_m3`, coefficient times load times distance (Archard 1953); `excess_volume_m3`, taken
-    off beyond what the law asks; `removed_volume_m3`, pristine less worn volume; `mean_vertical_force_N`, contacts.
-    """
-    table = totals_of_runs(design, wear_files)
-    wear = [pd.read_csv(path) for path in wear_files]
-    lost = [
-        lost_volume(read_surface(before), read_surface(after))[0] for before, after in zip(pristine, worn, strict=True)
-    ]
-    return table.assign(
-        alpha_F_L_volume_m3=table["wear_coefficient_per_pa"] * table["load_n"] * table["sliding_distance_m"],
-        excess_volume_m3=[rows["excess_volume_m3"].sum() for rows in wear],
-        centroid_path_volume_m3=[rows["centroid_path_volume_m3"].sum() for rows in wear],
-        touched_centroid_path_volume_m3=[rows["touched_centroid_path_volume_m3"].sum() for rows in wear],
-        removed_volume_m3=lost,
-        mean_vertical_force_N=[rows["mean_vertical_force_N"].mean() for rows in wear],
-        most_contacts_per_step=[rows["contacts_per_step"].max() for rows in wear],
-    )
 
 
 def read_summary(path: str | Path) -> pd.DataFrame:

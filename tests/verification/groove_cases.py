@@ -21,7 +21,7 @@ from postproc.wear.laws import worn_volume
 from postproc.wear.patch import ContactPatch, hertz_disc
 from postproc.wear.update import CARRIED_VOLUME, lost_volume, wear_update
 from tests.verification.ledger_cases import LOAD, PIN_MOTION, RADIUS, hertz_overlap, pin, run_case
-from workflows.cases.pin_on_disc.groove import mean_section
+from workflows.cases.pin_on_disc.contours import AREA_SHARE
 
 EDGES_PER_WIDTH = (5, 10, 20)
 GROOVE_WIDTH = 2.1e-3  # m, width that holds 95 % of the section of a groove of radius RADIUS, DEPTH deep, rounded
@@ -36,6 +36,7 @@ TIME_STEP = 2e-6  # s, 170 to an oscillation on a flat plate, some 60 in the gro
 SETTLING = 1500  # steps at rest before each stroke: nine oscillations, each damped to less than a half
 EDGE_FRACTION = 0.25  # -, cap of the step over the shortest edge
 OVERLAP_FRACTION = 0.5  # -, cap of the step over the overlap on a flat plate (41 um)
+PROFILE_POINTS = 2001  # of a section's profile between its ends
 FELT_REACH = 0.4  # -, of the pin's radius: how far round its axis the surface is looked at for the height it starts at
 
 
@@ -182,3 +183,51 @@ def worn_once(groove: Groove, columns, coefficient: float, scheme: str) -> Groov
         **section,
     }
     return Groove(worn, groove.pristine, [*groove.strokes, row])
+
+
+def section_profile(mesh: SurfaceMesh, y: float, x: np.ndarray) -> np.ndarray:
+    """Depth (k,) m of a surface under z = 0 in the plane across the track at `y` (m), at the places `x` (k,) m.
+
+    For surfaces that lie over the plane z = 0 without overhang; depth >= 0 is below it, beyond the surface it is 0.
+    Raises ValueError when the plane misses the surface.
+    """
+    corners = mesh.points[mesh.triangles]
+    side = corners[:, :, 1] - y
+    cut = (side < 0.0) != (np.roll(side, -1, axis=1) < 0.0)  # edges that the plane cuts: none or two of each triangle
+    if not cut.any():
+        raise ValueError(f"the plane at y = {y} m misses the surface, allowed is a plane that cuts it")
+    start, end = corners[cut], np.roll(corners, -1, axis=1)[cut]
+    share = ((y - start[:, 1]) / (end[:, 1] - start[:, 1]))[:, None]
+    crossing = (1.0 - share) * start + share * end
+    order = np.argsort(crossing[:, 0], kind="stable")
+    return np.interp(x, crossing[order, 0], -crossing[order, 2], left=0.0, right=0.0)
+
+
+def width_of_area(x: np.ndarray, depth: np.ndarray, share: float = AREA_SHARE) -> float:
+    """Width (m) that holds a share of the area of a section, the rest lying half on either side.
+
+    x : (k,) m, increasing; depth : (k,) m, >= 0, linear between the places.
+    Raises ValueError for a share that is not between 0 and 1, and for a section without area.
+    """
+    if not 0.0 < share < 1.0:
+        raise ValueError(f"share of the area is {share}, allowed is above 0 and below 1")
+    pieces = 0.5 * (depth[1:] + depth[:-1]) * np.diff(x)
+    area = np.concatenate([[0.0], np.cumsum(pieces)])
+    if not area[-1] > 0.0:
+        raise ValueError("the section has no area, allowed is one that is worn")
+    left, right = np.interp((0.5 * (1.0 - share), 0.5 * (1.0 + share)), area / area[-1], x)
+    return float(right - left)
+
+
+def mean_section(mesh: SurfaceMesh, places: np.ndarray) -> dict[str, float]:
+    """Mean over sections at `places` (k,) m along the track: `depth_m` (deepest point), `width_m`, `area_m2`.
+
+    Raises ValueError as `section_profile` and `width_of_area`.
+    """
+    x = np.linspace(mesh.points[:, 0].min(), mesh.points[:, 0].max(), PROFILE_POINTS)
+    depths = [section_profile(mesh, y, x) for y in places]
+    return {
+        "depth_m": float(np.mean([depth.max() for depth in depths])),
+        "width_m": float(np.mean([width_of_area(x, depth) for depth in depths])),
+        "area_m2": float(np.mean([np.trapezoid(depth, x) for depth in depths])),
+    }

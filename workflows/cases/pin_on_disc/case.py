@@ -13,9 +13,7 @@ from meshes.disc import track_disc, track_stretch
 from postproc.mesh import SurfaceMesh
 from postproc.reference.sphere_contact import safe_time_step, stable_time_step, touching_reach
 from workflows.cases.pin_on_disc import decks as pin_deck
-from workflows.cases.pin_on_disc import work as pin_work
-from workflows.cases.pin_on_disc.checks import PIN_CHECKS, ROUNDING
-from workflows.cases.pin_on_disc.parameters import run_parameters
+from workflows.cases.pin_on_disc.parameters import PIN_CHECKS, ROUNDING, run_parameters
 from workflows.engine.case import SETUP_LOADS, Case, Parameters, Piece, register
 from workflows.engine.schedule import Span
 from workflows.engine.solver import LOG
@@ -46,7 +44,7 @@ class PinOnDisc(Case):
     material_keys = (("pin", "material", "pins"), ("disc", "material", "walls"))
     checks = PIN_CHECKS
     run_templates = ("pin_set_down", "pin_on_disc")
-    figure_modules = ()
+    figure_modules = ("volume_figures", "groove_figures")
     consumed = ("wear", "remeshing", "sliding", "pin", "disc")
     run_rules = ("surface_mesh", "worn_run", "track_tables")
     geometry = ("disc",)
@@ -116,11 +114,11 @@ class PinOnDisc(Case):
 
     def run_stages(self, parameters: Parameters, bed: Parameters | None) -> tuple[Stage, ...]:
         """Return setting the pin down and the wear cycles; how much a groove widens the stretch is left out."""
-        return pin_work.run_stages(parameters, HEADROOM_OVERLAPS, 2.0 * SET_DOWN_ARC)
+        return pin_deck.run_stages(parameters, HEADROOM_OVERLAPS, 2.0 * SET_DOWN_ARC)
 
     def run_bytes(self, parameters: Parameters) -> float:
         """Return what a run leaves on disk."""
-        return pin_work.run_bytes(parameters, self.run_stages(parameters, None)[-1].triangles)
+        return pin_deck.run_bytes(parameters, self.run_stages(parameters, None)[-1].triangles)
 
     def forces(self, parameters: Parameters, span: Span, folder: Path) -> pd.DataFrame:
         """Return means over windows of the track: force on the disc, sum of normal forces, contacts at once."""
@@ -207,9 +205,9 @@ class PinOnDisc(Case):
         self, design: Path, wear: Sequence[Path], pristine: Sequence[Path], worn: Sequence[Path]
     ) -> pd.DataFrame:
         """Return each run's totals beside alpha F L and the volume that its geometry has lost."""
-        from postproc.tables.summary import pin_summary_table
+        from workflows.cases.pin_on_disc.volume import summary_table
 
-        return pin_summary_table(design, wear, pristine, worn)
+        return summary_table(design, wear, pristine, worn)
 
 
 register(PinOnDisc())

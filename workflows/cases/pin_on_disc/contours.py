@@ -1,4 +1,4 @@
-"""Radial contours of a worn disc: how deep and how wide the track is at every degree.
+"""Radial contours of a worn disc: how deep and how wide the track is at every degree, and sections of it.
 
 The disc's pristine surface is the plane z = 0 about the z axis; a contour is its section with the half-plane at an
 angle, anticlockwise from +x. Depth is the largest vertical displacement in a contour, width is taken two ways: the
@@ -7,21 +7,28 @@ opening, as Y. Yan (TU Delft 2022, section 5.4.2) has it, and the width that hol
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, boundary_edges, directed_edges
+from postproc.mesh import SurfaceMesh, boundary_edges, directed_edges, read_surface
 from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.cases.pin_on_disc.groove import AREA_SHARE
+from workflows.cases.pin_on_disc.runs import SCHEMES, common_revolution, whole_revolutions
 
 CONTOURS = 360  # 1 degree apart (Yan 2022, section 5.4.2; the 0.5 degrees of the text would make 720)
 OPENING_LEVEL = 0.1  # -, of a contour's depth: right at the rim the groove fades out over one edge of the mesh
+AREA_SHARE = 0.95  # -, of the section's area: the width that holds it does not hang on where the rim fades out
 RADIAL_SPACING = 5e-6  # m, of the places along a contour; a fiftieth of a 0.25 mm contact
 WIDEST_SIDE = 3.0e-3  # m, of the window either side of the track
 SECTION_SPACING = 10e-6  # m, of the places of a section that is drawn
 RIM_SHARE = 0.98  # -, of the way to the edge of the disc that the window may reach: the edge is a polygon
+EXAMPLE_ANGLES = tuple(range(20, 380, 45))  # degrees, of the eight sections that are shown
+MESH_ANGLE = 90  # degrees, of the section that is shown of every mesh
+LAST_REVOLUTIONS = 3  # shown on top of each other
+MAP_SPACING = 20e-6  # m, of the places across the unrolled track
+MAP_SIDE = 1.2e-3  # m, shown either side of the track
 
 
 def track_radii(mesh: SurfaceMesh, track_radius: float, spacing: float = RADIAL_SPACING) -> np.ndarray:
@@ -117,8 +124,7 @@ def _crossing(excess: np.ndarray, radii: np.ndarray, within: np.ndarray, beyond:
 def width_of_area(depth: np.ndarray, radii: np.ndarray, share: float = AREA_SHARE) -> np.ndarray:
     """Width (n,) m that holds a share of each contour's area, the rest lying half on either side.
 
-    depth : (n, k) m at radii (k,) m. As `analysis.groove.width_of_area` for many sections at once; 0 for a contour
-    that is not worn.
+    depth : (n, k) m at radii (k,) m; 0 for a contour that is not worn.
     """
     pieces = 0.5 * (depth[:, 1:] + depth[:, :-1]) * np.diff(radii)
     area = np.concatenate([np.zeros((len(depth), 1)), np.cumsum(np.maximum(pieces, 0.0), axis=1)], axis=1)
@@ -165,3 +171,47 @@ def section_table(mesh: SurfaceMesh, track_radius: float, angles: Sequence[int])
             "depth_um": MICROMETRES * depth.ravel(),
         }
     )
+
+
+def track_map(mesh: SurfaceMesh, track_radius: float) -> pd.DataFrame:
+    """Depth (um) of the unrolled track: one row per radius (index `radius_mm`), one column per whole degree."""
+    radii = track_radii(mesh, track_radius, MAP_SPACING)
+    radii = radii[np.abs(radii - track_radius) <= MAP_SIDE]
+    index = pd.Index(MILLIMETRES * radii, name="radius_mm")
+    return pd.DataFrame(MICROMETRES * depth_map(mesh, radii).T, index=index, columns=range(CONTOURS))
+
+
+def track_table(maps: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """One table of the maps of each scheme, as from `track_map`: `radius_mm`, a column per degree, `scheme`."""
+    return pd.concat([shown.reset_index().assign(scheme=scheme) for scheme, shown in maps.items()])
+
+
+def _sections(folder: Path, run: pd.Series, revolution: int, angles: Sequence[int]) -> pd.DataFrame:
+    """Sections of a run after a whole revolution."""
+    ends = whole_revolutions(pd.read_csv(folder / run["run"] / "wear.csv")).set_index("revolution")["cycle"]
+    surface = read_surface(folder / run["run"] / f"cycle_{ends[revolution]:03d}" / "surface.vtu")
+    return section_table(surface, run["track_radius_m"], angles).assign(
+        run=run["run"], scheme=run["scheme"], revolution=revolution, element_size_mm=run["element_size_mm"]
+    )
+
+
+def example_sections(folder: str | Path, runs: pd.DataFrame, contours: pd.DataFrame) -> pd.DataFrame:
+    """Sections at eight angles after the last revolutions that all `runs` have, as from `section_table`."""
+    of_these = contours[contours["run"].isin(runs["run"])]
+    last = common_revolution(of_these, of_these["revolution"].max())
+    return pd.concat(
+        [
+            _sections(Path(folder), run, revolution, EXAMPLE_ANGLES)
+            for _, run in runs.iterrows()
+            for revolution in range(max(last - LAST_REVOLUTIONS + 1, 1), last + 1)
+        ],
+        ignore_index=True,
+    )
+
+
+def mesh_sections(folder: str | Path, runs: pd.DataFrame, series: pd.DataFrame) -> pd.DataFrame:
+    """One section of every mesh of the series after the first revolution (Yan 2022, Fig 5.8)."""
+    chosen = runs[runs["run"].isin(series["run"])].sort_values("element_size_mm")
+    parts = [_sections(Path(folder), run, 1, [MESH_ANGLE]) for _, run in chosen.iterrows()]
+    order = {scheme: place for place, scheme in enumerate(SCHEMES)}
+    return pd.concat(parts, ignore_index=True).sort_values("scheme", key=lambda names: names.map(order), kind="stable")

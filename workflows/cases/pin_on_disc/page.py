@@ -1,17 +1,22 @@
-"""The page of a study of a pin on a disc: table of runs, remarks, what is simplified."""
+"""The page of a study of pins on discs: its sections and key numbers, table of runs, remarks, what is simplified."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import pandas as pd
+
+from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES
+from postproc.tables.summary import read_summary
+from workflows.cases.pin_on_disc import findings
+from workflows.report.sections import Block, Cards, Pictures, Section, Table
 from workflows.report.text import range_text
 
 if TYPE_CHECKING:
     from workflows.config.design import Study
 
-KEY_NUMBERS = "key_numbers_pin_on_disc.html.j2"
-FURTHER_TEMPLATES = ()  # that it includes
 RUNS_NOTE = (
     "Overlap: of pin and flat disc as simulated (Hertz); contact radius: of the same. Time step: the stated fraction "
     "of the Rayleigh time. Empty cells of the design leave a setting as it is."
@@ -20,6 +25,92 @@ DECKS = (
     ("Setting the pin down", "{run}/cycle_000/deck.in"),
     ("First wear cycle", "{run}/cycle_001/deck.in"),
 )
+SECTIONS = (  # title, its figures, the first of which a study must have, and what makes its other blocks
+    ("Depth, width and volume", ("pin_comparison", "laboratory_contour"), findings.comparison_blocks),
+    ("What exceeds alpha F L", ("excess_volume", "force_rise", "normal_force"), findings.excess_blocks),
+    ("Fits of volume against revolutions", ("wear_volume",), findings.fit_blocks),
+    ("Wear coefficient", ("calibration",), findings.coefficient_blocks),
+    ("Run-in", ("run_in", "contour_distribution", "contour_examples"), findings.run_in_blocks),
+    ("Dependence on the mesh", ("mesh_series", "mesh_contours"), findings.mesh_blocks),
+    ("Size invariance", ("size_invariance",), findings.size_blocks),
+    ("Disc and track", ("disc_setup", "contour_extraction", "worn_disc", "unrolled_track"), lambda folder: []),
+)
+KEY_HEADS = {
+    "alpha_F_L_volume_mm3": ("alpha F L", "mm³"),
+    "law_over_alpha_F_L": ("law", "over alpha F L"),
+    "removed_over_alpha_F_L": ("removed", "over alpha F L"),
+    "centroid_path_over_alpha_F_L": ("centroid paths", "over alpha F L"),
+    "largest_depth_um": ("thickness", "largest, µm"),
+    "mean_normal_force_N": ("normal force", "mean sum, N"),
+    "mean_vertical_force_N": ("vertical force", "mean, N"),
+    "most_contacts": ("contacts", "most, mean of a cycle"),
+    "carried_share_percent": ("not applied", "%"),
+}
+KEY_DIGITS = {
+    **dict.fromkeys(("revolutions", "alpha_F_L_volume_mm3"), 4),
+    **dict.fromkeys(("mean_normal_force_N", "mean_vertical_force_N"), 5),
+    **dict.fromkeys(("law_over_alpha_F_L", "removed_over_alpha_F_L", "centroid_path_over_alpha_F_L"), 6),
+}  # significant ones, else 3
+KEY_NOTE = (
+    "alpha F L: wear coefficient times load times sliding distance, Archard's volume of a pin on a flat disc. Law: the "
+    "same with the summed normal forces of all contacts. Removed: pristine less worn disc. Centroid paths: areas of "
+    "the triangles times the paths of their centroids, summed over all updates, as Yan 2022 counts (Eq 5.8 to 5.10). A "
+    "disc that keeps its shape (series size) loses nothing."
+)
+
+
+def told(study: Study) -> dict[str, Any]:
+    """Return what the page is told besides what every page is: nothing."""
+    return {}
+
+
+def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the sections of a study's page: its key numbers, then those of which the study has the figures."""
+    found = [Section("Key numbers", key_numbers(read_summary(folder / "summary.csv")))]
+    for title, figures, blocks in SECTIONS:
+        if figures[0] in study["figures"]:
+            found.append(Section(title, [*blocks(folder), Pictures(figures)]))
+    return found
+
+
+def key_numbers(summary: pd.DataFrame) -> list[Block]:
+    """Return the cards that answer a study's question, and the numbers of every run."""
+    results = result_table(summary)
+    table = Table(results, "key_numbers", KEY_NOTE, KEY_DIGITS, KEY_HEADS)
+    return [*([Cards(found)] if (found := cards(results)) else []), table]
+
+
+def result_table(summary: pd.DataFrame) -> pd.DataFrame:
+    """Return the key numbers of each run in display units: volumes, their ratios to alpha F L, forces, contacts."""
+    due = summary["alpha_F_L_volume_m3"]
+    names = ["run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "particle_scale", "revolutions"]
+    return summary[names].assign(
+        alpha_F_L_volume_mm3=due * CUBIC_MILLIMETRES,
+        law_over_alpha_F_L=summary["archard_volume_m3"] / due,
+        removed_over_alpha_F_L=summary["removed_volume_m3"] / due,
+        centroid_path_over_alpha_F_L=summary["centroid_path_volume_m3"] / due,
+        largest_depth_um=summary["largest_depth_m"] * MICROMETRES,
+        mean_normal_force_N=summary["mean_normal_force_N"],
+        mean_vertical_force_N=summary["mean_vertical_force_N"],
+        most_contacts=summary["most_contacts_per_step"],
+        carried_share_percent=100.0 * (summary["carried_volume_m3"] / summary["archard_volume_m3"]).abs(),
+    )
+
+
+def cards(results: pd.DataFrame) -> list[tuple[str, str]]:
+    """Return (number, what it is) of the few that answer the question: the first row of the coefficients by each
+    scheme.
+    """
+    found = []
+    for scheme, words in (("conserving", "conserving"), ("per_triangle", "by the per-triangle rule")):
+        rows = results[(results["series"] == "coefficient") & (results["scheme"] == scheme)]
+        if rows.empty:
+            continue
+        row = rows.iloc[0]
+        removed = f"volume removed over coefficient x load x distance, {words}, {row['run']}"
+        found.append((f"{row['removed_over_alpha_F_L']:.4g}", removed))
+        found.append((f"{row['largest_depth_um']:.3g}", f"µm, largest thickness removed, {words}"))
+    return found
 
 
 def remarks(study: Study) -> list[str]:

@@ -1,6 +1,6 @@
 """Contours of a disc revolution by revolution: their statistics, whether they are normal, and the run-in.
 
-The table of contours has one row per run, revolution and contour (`analysis.contours.contour_table`).
+The table of contours has one row per run, revolution and contour (`contours.contour_table`).
 """
 
 from __future__ import annotations
@@ -10,21 +10,18 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from postproc.mesh import read_surface
+from postproc.tables.display import MILLIMETRES
+from postproc.tables.published import published_value
 from workflows.cases.pin_on_disc.contours import contour_table
+from workflows.cases.pin_on_disc.runs import whole_revolutions
 
 SIGNIFICANCE = 0.05  # -, a p value above passes (Yan 2022, section 5.4.3)
 FITTED_PARAMETERS = 2  # of the normal distribution: mean and standard deviation, each takes a degree of freedom
-WHOLE = 1e-6  # revolutions that a cycle may end beside a whole one
 SIZES = {"depth": "depth_m", "opening width": "opening_width_m", "width of 95 % of the area": "area_width_m"}
-
-
-def whole_revolutions(wear: pd.DataFrame) -> pd.DataFrame:
-    """Rows of wear.csv (`cycle`, `revolution`) whose cycle ends with a whole revolution, which is an integer then."""
-    number = wear["revolution"].round()
-    return wear.assign(revolution=number.astype(int))[(wear["revolution"] - number).abs() <= WHOLE]
+TESTED = {"depth": "depth_p_value", "opening width": "width_p_value"}  # size -> column of Table 5.3
+HISTOGRAM_CLASSES = 20
 
 
 def contours_of_run(folder: str | Path, track_radius: float) -> pd.DataFrame:
@@ -59,6 +56,8 @@ def chi_squared_normality(values: np.ndarray) -> float:
     `equiprobable_bins` says; degrees of freedom: classes - 1 - 2. NaN for values that are all the same.
     Yan (2022) gives no classes.
     """
+    from scipy import stats  # slow to import, and every job reads the page of its study's case
+
     spread = values.std(ddof=1) if len(values) > 1 else 0.0
     if not spread > 0.0:
         return float("nan")
@@ -99,6 +98,11 @@ def revolution_statistics(contours: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
+def statistics_of(runs: pd.DataFrame, contours: pd.DataFrame) -> pd.DataFrame:
+    """Statistics per run and revolution with the scheme of the run."""
+    return revolution_statistics(contours).merge(runs[["run", "scheme"]], on="run")
+
+
 def run_in_revolution(revolution: Sequence[int], *p_values: Sequence[float]) -> int | None:
     """First revolution from which on all p values stay above `SIGNIFICANCE`; None when the last one does not pass.
 
@@ -125,4 +129,60 @@ def run_in_table(statistics: pd.DataFrame, published: pd.DataFrame) -> pd.DataFr
     rows.append(
         {"run": "Yan 2022, Table 5.3", "run_in_revolution": found, "revolutions": published["revolution"].max()}
     )
+    return pd.DataFrame(rows)
+
+
+def run_in_words(statistics: pd.DataFrame, normality: pd.DataFrame) -> dict[str, str]:
+    """What the test says of each tested size: from which revolution on it is normal, by scheme and in the thesis.
+
+    statistics : of one run per scheme; normality : Table 5.3.
+    """
+    words = {}
+    for size, column in TESTED.items():
+        of_size = statistics[statistics["size"] == size]
+        found = {
+            scheme.replace("_", " "): run_in_revolution(rows["revolution"], rows["p_value"])
+            for scheme, rows in of_size.groupby("scheme", sort=False)
+        }
+        found["Yan"] = run_in_revolution(normality["revolution"], normality[column])
+        words[size] = "normal from: " + ", ".join(f"{name} {number or 'never'}" for name, number in found.items())
+    return words
+
+
+def size_histogram(values: np.ndarray, classes: int) -> pd.DataFrame:
+    """Counts of values (n,) in equal classes, beside those of the normal distribution of their mean and spread.
+
+    Columns: from, to (unit of the values), count, normal_count, p_value (of `chi_squared_normality`).
+    """
+    from scipy import stats
+
+    counts, edges = np.histogram(values, classes)
+    expected = len(values) * np.diff(stats.norm.cdf(edges, values.mean(), values.std(ddof=1)))
+    return pd.DataFrame({"from": edges[:-1], "to": edges[1:], "count": counts, "normal_count": expected}).assign(
+        p_value=chi_squared_normality(values)
+    )
+
+
+def histograms(contours: pd.DataFrame) -> pd.DataFrame:
+    """Histograms of depth and opening (m) of one revolution per scheme: `scheme`, `size` and as `size_histogram`."""
+    return pd.concat(
+        [
+            size_histogram(rows[SIZES[size]].to_numpy(), HISTOGRAM_CLASSES).assign(scheme=scheme, size=size)
+            for scheme, rows in contours.groupby("scheme", sort=False)
+            for size in TESTED
+        ],
+        ignore_index=True,
+    )
+
+
+def published_ranges(published: pd.DataFrame) -> pd.DataFrame:
+    """Published ranges of depth and opening after ten revolutions: `size`, `least_m`, `largest_m`, `source`."""
+    rows = []
+    for size, name in (("depth", "depth"), ("opening width", "width")):
+        least, largest = (
+            published_value(published, f"{part}_{name}_after_10", "simulation") / MILLIMETRES
+            for part in ("least", "largest")
+        )
+        source = published.loc[published["quantity"] == f"least_{name}_after_10", "source"].iloc[0]
+        rows.append({"size": size, "least_m": least, "largest_m": largest, "source": source})
     return pd.DataFrame(rows)

@@ -1,24 +1,29 @@
-"""What the figures of the pin-on-disc study read: tables of its runs put together, the runs that are shown alone."""
+"""Runs of pins on discs: those of a design, those that stand for the source's, and the forces of their pins.
+
+runs: the table that `pin_runs` reads; published: config/published/pin_on_disc.csv (`quantity`, `of`, `value`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import SurfaceMesh, read_surface
 from postproc.readers.cycle_folders import cycle_files
 from postproc.tables.display import MILLIMETRES
 from postproc.tables.published import published_value
-from workflows.cases.pin_on_disc.run_in import chi_squared_normality
-from workflows.cases.pin_on_disc.volume import COEFFICIENT_TOLERANCE
 
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "load_n", "track_radius_mm")
 SCHEMES = ("conserving", "per_triangle")  # in the order in which they are shown
 REFERENCE = "reference_wear_coefficient"  # published, of the reference simulations: Yan 2022, Fig 5.7 to 5.14
 CALIBRATED = "wear_coefficient"  # published, of the simulation with the laboratory's volume: Fig 5.17, 5.18, Table 5.4
+COEFFICIENT_TOLERANCE = 1e-6  # -, to which two wear coefficients are the same
 FORCES = ("vertical_force_N", "normal_force_N")
+WHOLE = 1e-6  # revolutions that a cycle may end beside a whole one
 WINDOW_ROUNDING = 1e-6  # revolutions by which a window of forces may end behind a whole one
 
 
@@ -34,6 +39,11 @@ def pin_runs(design: str | Path) -> pd.DataFrame:
     return runs.assign(track_radius_m=runs["track_radius_mm"] / MILLIMETRES)
 
 
+def runs_and_published(files: SimpleNamespace) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The runs of a job's `design` and the values of its `published` table."""
+    return pin_runs(files.design), pd.read_csv(files.published)
+
+
 def of_runs(runs: pd.DataFrame, files: Sequence[str | Path]) -> pd.DataFrame:
     """One table of every run behind the other, each row with the columns of its run.
 
@@ -42,6 +52,17 @@ def of_runs(runs: pd.DataFrame, files: Sequence[str | Path]) -> pd.DataFrame:
     tables = [pd.read_csv(file).assign(run=run) for run, file in zip(runs["run"], files, strict=True)]
     together = pd.concat(tables, ignore_index=True)
     return together.merge(runs[["run", *runs.columns.difference(together.columns)]], on="run")
+
+
+def whole_revolutions(wear: pd.DataFrame) -> pd.DataFrame:
+    """Rows of wear.csv (`cycle`, `revolution`) whose cycle ends with a whole revolution, which is an integer then."""
+    number = wear["revolution"].round()
+    return wear.assign(revolution=number.astype(int))[(wear["revolution"] - number).abs() <= WHOLE]
+
+
+def common_revolution(table: pd.DataFrame, at_most: int) -> int:
+    """Last revolution that all runs of a table have, not beyond `at_most`."""
+    return int(min(table.groupby("run")["revolution"].max().min(), at_most))
 
 
 def reference_runs(runs: pd.DataFrame, published: pd.DataFrame, of: str) -> dict[str, str]:
@@ -56,6 +77,28 @@ def reference_runs(runs: pd.DataFrame, published: pd.DataFrame, of: str) -> dict
     ordered = series.assign(far=far.round(9)).sort_values(["far", "element_size_mm"], kind="stable")
     first = ordered.drop_duplicates("scheme").set_index("scheme")["run"]
     return {scheme: first[scheme] for scheme in SCHEMES if scheme in first}
+
+
+def only_reference(table: pd.DataFrame, runs: pd.DataFrame, published: pd.DataFrame, of: str) -> pd.DataFrame:
+    """Rows of the runs that stand for the thesis', the conserving one first; of : as in `reference_runs`."""
+    chosen = reference_runs(runs, published, of)
+    return pd.concat([table[table["run"] == run] for run in chosen.values()], ignore_index=True)
+
+
+def reference_discs(
+    folder: str | Path, runs: pd.DataFrame, published: pd.DataFrame
+) -> tuple[dict[str, SurfaceMesh], float]:
+    """Worn discs of the runs that stand for the thesis' Fig 5.17, by scheme, and the radius (m) of their track."""
+    chosen = reference_runs(runs, published, CALIBRATED)
+    meshes = {scheme: read_surface(Path(folder) / run / "worn_surface.vtu") for scheme, run in chosen.items()}
+    track = runs.loc[runs["run"].isin(chosen.values()), "track_radius_m"]
+    return meshes, float(track.iloc[0])
+
+
+def same_coefficient(table: pd.DataFrame, coefficient: float) -> pd.DataFrame:
+    """Rows of one wear coefficient (1/Pa)."""
+    far = np.abs(table["wear_coefficient_per_pa"] / coefficient - 1.0)
+    return table[far <= COEFFICIENT_TOLERANCE]
 
 
 def coefficient_remark(shown: pd.DataFrame, published: pd.DataFrame, of: str) -> str:
@@ -80,12 +123,6 @@ def reference_remark(runs: pd.DataFrame, published: pd.DataFrame, of: str) -> st
     """As `coefficient_remark`, of the runs that stand for the thesis'."""
     chosen = reference_runs(runs, published, of)
     return coefficient_remark(runs[runs["run"].isin(chosen.values())], published, of)
-
-
-def same_coefficient(table: pd.DataFrame, coefficient: float) -> pd.DataFrame:
-    """Rows of one wear coefficient (1/Pa)."""
-    far = np.abs(table["wear_coefficient_per_pa"] / coefficient - 1.0)
-    return table[far <= COEFFICIENT_TOLERANCE]
 
 
 def window_forces(folder: str | Path) -> pd.DataFrame:
@@ -125,17 +162,3 @@ def force_boxes(forces: pd.DataFrame) -> pd.DataFrame:
                 | {"largest_N": force.max(), "outliers_percent": 100.0 * beyond.mean()}
             )
     return pd.DataFrame(rows)
-
-
-def size_histogram(values: np.ndarray, classes: int) -> pd.DataFrame:
-    """Counts of values (n,) in equal classes, beside those of the normal distribution of their mean and spread.
-
-    Columns: from, to (unit of the values), count, normal_count, p_value (of `chi_squared_normality`).
-    """
-    from scipy import stats
-
-    counts, edges = np.histogram(values, classes)
-    expected = len(values) * np.diff(stats.norm.cdf(edges, values.mean(), values.std(ddof=1)))
-    return pd.DataFrame({"from": edges[:-1], "to": edges[1:], "count": counts, "normal_count": expected}).assign(
-        p_value=chi_squared_normality(values)
-    )

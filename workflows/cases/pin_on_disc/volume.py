@@ -1,14 +1,19 @@
-"""Volume worn by a pin on a disc, revolution by revolution: fits, and what a volume above alpha F L is made of."""
+"""Volume worn by a pin on a disc, by revolution and by size: fits, and what a volume above alpha F L is made of."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from postproc.tables.display import CUBIC_MILLIMETRES
-from workflows.cases.pin_on_disc.run_in import whole_revolutions
+from postproc.mesh import read_surface
+from postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
+from postproc.tables.published import published_value
+from postproc.tables.summary import totals_of_runs
+from postproc.wear.update import lost_volume
+from workflows.cases.pin_on_disc.runs import COEFFICIENT_TOLERANCE, SCHEMES, same_coefficient, whole_revolutions
 
 VOLUMES = {
     "removed": "removed_volume_m3",
@@ -17,8 +22,8 @@ VOLUMES = {
     "alpha W": "archard_volume_m3",
 }
 SUMMED = ("centroid_path_volume_m3", "touched_centroid_path_volume_m3")  # per cycle in wear.csv
+PERCENT = 100.0
 ORDERS = {"linear": 1, "quadratic": 2}
-COEFFICIENT_TOLERANCE = 1e-6  # -, to which two wear coefficients are the same
 CONSERVING = "conserving"  # its patch moves triangles that nothing touches: Eq 5.9 can only be summed over all
 FIXED = ("wear_coefficient_per_pa", "load_n", "track_radius_m")  # of a run
 AVERAGED = ("mean_normal_force_N", "mean_vertical_force_N", "contacts_per_step")
@@ -30,6 +35,35 @@ CANDIDATES = {
     "displacement_rule": "displacement rule",
     "summing_rule": "Eq 5.9 over touched triangles",
 }
+
+
+def summary_table(
+    design: str | Path,
+    wear_files: Sequence[str | Path],
+    pristine: Sequence[str | Path],
+    worn: Sequence[str | Path],
+) -> pd.DataFrame:
+    """Return the totals of every run of a pin on a disc beside what should come out.
+
+    design: has columns wear_coefficient_per_pa, load_n and sliding_distance_m; pristine, worn: surfaces of the runs
+
+    Columns more: `alpha_F_L_volume_m3`, coefficient times load times distance (Archard 1953); `excess_volume_m3`, taken
+    off beyond what the law asks; `removed_volume_m3`, pristine less worn volume; `mean_vertical_force_N`, contacts.
+    """
+    table = totals_of_runs(design, wear_files)
+    wear = [pd.read_csv(path) for path in wear_files]
+    lost = [
+        lost_volume(read_surface(before), read_surface(after))[0] for before, after in zip(pristine, worn, strict=True)
+    ]
+    return table.assign(
+        alpha_F_L_volume_m3=table["wear_coefficient_per_pa"] * table["load_n"] * table["sliding_distance_m"],
+        excess_volume_m3=[rows["excess_volume_m3"].sum() for rows in wear],
+        centroid_path_volume_m3=[rows["centroid_path_volume_m3"].sum() for rows in wear],
+        touched_centroid_path_volume_m3=[rows["touched_centroid_path_volume_m3"].sum() for rows in wear],
+        removed_volume_m3=lost,
+        mean_vertical_force_N=[rows["mean_vertical_force_N"].mean() for rows in wear],
+        most_contacts_per_step=[rows["contacts_per_step"].max() for rows in wear],
+    )
 
 
 def volumes_of_run(folder: str | Path) -> pd.DataFrame:
@@ -151,3 +185,78 @@ def groove_volume(depth: float, width: float, track_radius: float) -> float:
     depth and width hold, whatever rule summed the published volume.
     """
     return 2.0 / 3.0 * depth * width * 2.0 * np.pi * track_radius
+
+
+def shown_factors(factors: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Rows of `excess_factors` that the figure shows: least, thesis' and largest coefficient, first and last.
+
+    Only of coefficients with a published fit; of the conserving scheme, which has little to separate, the last one,
+    and not for the least coefficient.
+    """
+    factors = factors[factors["published"].notna()]
+    coefficients = factors["wear_coefficient_per_pa"]
+    thesis = published_value(published, "wear_coefficient", "simulation")
+    wanted = dict.fromkeys((coefficients.min(), thesis, coefficients.max()))
+    parts = []
+    for scheme, coefficient in ((s, c) for s in SCHEMES for c in wanted):
+        rows = same_coefficient(factors[factors["scheme"] == scheme], coefficient)
+        if scheme == SCHEMES[0] and len(wanted) > 1 and coefficient == coefficients.min():
+            continue
+        ends = rows.sort_values("revolution").iloc[[-1] if scheme == SCHEMES[0] else [0, -1]] if len(rows) else rows
+        parts.append(ends.drop_duplicates("revolution"))
+    return pd.concat(parts, ignore_index=True)
+
+
+def published_groove(published: pd.DataFrame) -> dict[str, float]:
+    """What the published depth and width hold against the published volume (mm3) and alpha F L.
+
+    groove_volume_mm3, published_volume_mm3, alpha_F_L_volume_mm3, groove_over_published, groove_over_alpha_F_L.
+    """
+    depth, width, volume, coefficient, revolutions = (
+        published_value(published, name, "simulation")
+        for name in ("depth", "width", "volume", "wear_coefficient", "revolutions")
+    )
+    track = published_value(published, "track_radius", "laboratory") / MILLIMETRES
+    held = CUBIC_MILLIMETRES * groove_volume(depth / MILLIMETRES, width / MILLIMETRES, track)
+    load = published_value(published, "load", "laboratory")
+    law = CUBIC_MILLIMETRES * float(law_volume(coefficient, load, track, revolutions))
+    return {
+        "groove_volume_mm3": held,
+        "published_volume_mm3": volume,
+        "alpha_F_L_volume_mm3": law,
+        "groove_over_published": held / volume,
+        "groove_over_alpha_F_L": held / law,
+    }
+
+
+def groove_remark(published: pd.DataFrame) -> str:
+    """What a groove of the published depth and width would hold, in words."""
+    groove = published_groove(published)
+    return (
+        f"a round groove of the published depth and width (Yan 2022, Table 5.4) holds "
+        f"{groove['groove_volume_mm3']:.2f} mm³, {groove['groove_over_published']:.1f} times the published volume "
+        f"and {groove['groove_over_alpha_F_L']:.0f} times $\\alpha F L$"
+    )
+
+
+def size_cases(volumes: pd.DataFrame) -> pd.DataFrame:
+    """The series of scales after its last revolution, with `alpha_F_L_volume_m3`."""
+    sizes = volumes[volumes["series"] == "size"]
+    last = sizes.loc[sizes.groupby("run", sort=False)["revolution"].idxmax()]
+    fixed = (last["wear_coefficient_per_pa"], last["load_n"], last["track_radius_m"], last["revolution"])
+    return last.assign(alpha_F_L_volume_m3=law_volume(*fixed))
+
+
+def size_invariance(sizes: pd.DataFrame) -> pd.DataFrame:
+    """Simulated over theoretical volume of Archard's law against the scale of the pin, its difference in percent.
+
+    sizes : `run`, `particle_scale`, `archard_volume_m3` (alpha W), `alpha_F_L_volume_m3`, one row per run.
+    """
+    ratio = sizes["archard_volume_m3"] / sizes["alpha_F_L_volume_m3"]
+    table = sizes[["run", "particle_scale"]].assign(
+        simulated_volume_mm3=CUBIC_MILLIMETRES * sizes["archard_volume_m3"],
+        theoretical_volume_mm3=CUBIC_MILLIMETRES * sizes["alpha_F_L_volume_m3"],
+        ratio=ratio,
+        difference_percent=PERCENT * (ratio - 1.0),
+    )
+    return table.sort_values("particle_scale", kind="stable").reset_index(drop=True)

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from workflows.cases.pin_on_disc.series import comparison, mesh_series, size_invariance
 
 from tests import PUBLISHED
 from tests.support import pin_study
@@ -19,7 +20,6 @@ from workflows.cases.pin_on_disc.runs import (
     size_histogram,
     window_forces,
 )
-from workflows.cases.pin_on_disc.series import comparison, mesh_series, size_invariance
 from workflows.cases.pin_on_disc.volume import CANDIDATES, excess_factors
 
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")

@@ -4,10 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from scipy.optimize import brentq
-
-from meshes.plate import flat_plate
-from meshes.sample import sample_top
-from postproc.mesh import SurfaceMesh
 from workflows.cases.pin_on_disc.groove import (
     AREA_SHARE,
     largest_differences,
@@ -16,6 +12,10 @@ from workflows.cases.pin_on_disc.groove import (
     stroke_table,
     width_of_area,
 )
+
+from meshes.plate import flat_plate
+from meshes.sample import sample_top
+from postproc.mesh import SurfaceMesh
 
 HALF_WIDTH, DEPTH = 1.2e-3, 0.3e-3  # m, of the parabola
 RADIUS = 3.0e-3  # m, of the circle

@@ -3,10 +3,6 @@
 import numpy as np
 import pandas as pd
 import pytest
-
-from postproc.tables.published import published_value
-from tests import PUBLISHED
-from workflows.cases.pin_on_disc.run_in import SIZES
 from workflows.cases.pin_on_disc.series import (
     circular_segment,
     comparison,
@@ -14,6 +10,10 @@ from workflows.cases.pin_on_disc.series import (
     mesh_stability,
     size_invariance,
 )
+
+from postproc.tables.published import published_value
+from tests import PUBLISHED
+from workflows.cases.pin_on_disc.run_in import SIZES
 
 PUBLISHED = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 RUNS = pd.DataFrame(

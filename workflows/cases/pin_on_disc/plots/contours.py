@@ -13,9 +13,13 @@ from matplotlib.figure import Figure
 
 from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, PUBLISHED, SMALLEST_FONT, named_once, new_figure
 from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.cases.pin_on_disc.plots.style import LABORATORY_COLOUR, SCHEME_COLOURS, SCHEME_MARKERS, SCHEME_NAMES
 from workflows.cases.pin_on_disc.run_in import SIGNIFICANCE, SIZES
 
+SCHEME_COLOURS = {"conserving": "#0072B2", "per_triangle": "#D55E00"}
+SCHEME_NAMES = {"conserving": "conserving", "per_triangle": "per triangle (Yan 2022, Eq 5.7)"}
+SCHEME_MARKERS = {"conserving": "o", "per_triangle": "s"}
+LAW_COLOUR = "#009E73"
+LABORATORY_COLOUR = "#CC79A7"
 UNITS = {"depth": ("µm", MICROMETRES), "opening width": ("mm", MILLIMETRES)}
 AXIS_NAMES = {
     "depth": "Depth (µm)",
@@ -32,6 +36,13 @@ TITLE_CHARACTERS = 48  # of a line above one of two panels
 SIDE_STEP = 0.12  # revolutions that two schemes stand apart
 
 
+def coefficient_name(coefficient: float) -> str:
+    """A wear coefficient (1/Pa) as people read it."""
+    exponent = f"{coefficient:.1e}".partition("e")[2]
+    digits = coefficient / 10.0 ** int(exponent)
+    return rf"$\alpha$ = {digits:.3g}·10$^{{{int(exponent)}}}$ Pa$^{{-1}}$"
+
+
 def _axis(size: str) -> tuple[str, float]:
     """Label of a size's axis, and factor from m."""
     return AXIS_NAMES[size], UNITS.get(size, ("mm", MILLIMETRES))[1]
@@ -42,7 +53,7 @@ def run_in(
 ) -> Figure:
     """Draw depth and opening per revolution with mean, deviation and extremes, and the p values of both below.
 
-    statistics : as from `analysis.run_in.revolution_statistics`, with `scheme`, one run per scheme;
+    statistics : as from `run_in.revolution_statistics`, with `scheme`, one run per scheme;
     published : `revolution`, `depth_p_value`, `width_p_value`; found : what to say of each panel's run-in, by size.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -93,7 +104,7 @@ def contour_distribution(
     """Draw depth and opening of the 360 contours round the disc, and how they are distributed beside the normal curve.
 
     contours : `scheme`, `angle_deg` and sizes (m) after one revolution; histograms : by (scheme, size), as from
-    `analysis.pin_runs.size_histogram` in m; ranges : published ones, `size`, `least_m`, `largest_m`, `label`.
+    `run_in.size_histogram` in m; ranges : published ones, `size`, `least_m`, `largest_m`, `label`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     grid = figure.subplots(2, 2, sharey="row", width_ratios=(3, 2))
@@ -163,7 +174,7 @@ def contour_examples(sections: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def mesh_series(series: pd.DataFrame, stability: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw depth and both widths against the size of the elements, with the deviation of the contours.
 
-    series, stability : as from `analysis.pin_series`; the shaded meshes are those up to a fifth of the groove's width.
+    series, stability : as from comparison.py; the shaded meshes are those up to a fifth of the groove's width.
     """
     figure = new_figure(remarks, 4.2)
     grid = figure.subplots(1, len(SIZES), sharex=True)
@@ -226,7 +237,7 @@ def mesh_contours(sections: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def normal_force(forces: pd.DataFrame, loads: Mapping[str, float], remarks: Sequence[str]) -> Figure:
     """Draw the vertical force of the pin and the sum of its normal forces per revolution as boxes with their means.
 
-    forces : `scheme` and as from `analysis.pin_runs.window_forces`; loads : N, by scheme.
+    forces : `scheme` and as from `runs.window_forces`; loads : N, by scheme.
     """
     schemes = list(dict.fromkeys(forces["scheme"]))
     figure = new_figure(remarks, 4.4)

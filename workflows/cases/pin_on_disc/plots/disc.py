@@ -17,7 +17,7 @@ from postproc.plots.scene import load_pyvista, new_plotter, trimmed
 from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture
 from postproc.tables.display import MICROMETRES, MILLIMETRES
 from workflows.cases.pin_on_disc.contours import CONTOURS, OPENING_LEVEL, contour_table, depth_map, track_radii
-from workflows.cases.pin_on_disc.plots.style import SCHEME_COLOURS, SCHEME_NAMES
+from workflows.cases.pin_on_disc.plots.contours import SCHEME_COLOURS, SCHEME_NAMES
 
 PIN_COLOUR = "#D55E00"
 RELIEF_SPACING = 20e-6  # m, of the places across the track in 3-D
@@ -141,7 +141,7 @@ def _slice(axes, mesh: SurfaceMesh, radii: np.ndarray, angle: int) -> None:
 def unrolled_track(maps: Mapping[str, pd.DataFrame], remarks: Sequence[str]) -> Figure:
     """Draw depth (um) over angle and radius, one map per scheme, each with a scale of its own.
 
-    maps : by scheme, as from `analysis.pin_figures.track_map`.
+    maps : by scheme, as from `contours.track_map`.
     """
     figure = new_figure(remarks, 4.6)
     grid = figure.subplots(len(maps), 1, sharex=True, squeeze=False)[:, 0]

@@ -22,8 +22,8 @@ from postproc.plots.style import (
 )
 from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.wear.coefficient import scaling_factor
-from workflows.cases.pin_on_disc.figure_tables import PUBLISHED_FITS, TOUCHED
-from workflows.cases.pin_on_disc.plots.style import (
+from workflows.cases.pin_on_disc.coefficient import PUBLISHED_FITS, TOUCHED
+from workflows.cases.pin_on_disc.plots.contours import (
     LABORATORY_COLOUR,
     LAW_COLOUR,
     SCHEME_COLOURS,
@@ -47,7 +47,7 @@ VOLUME_LOOKS = {  # volume, line and what it is called
 def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw volume (mm3) against revolutions, a panel per wear coefficient: both schemes, the published fit, alpha F L.
 
-    volumes : as from `analysis.pin_volume.volumes_of_run` with `scheme`, `wear_coefficient_per_pa`, `load_n`,
+    volumes : as from `volume.volumes_of_run` with `scheme`, `wear_coefficient_per_pa`, `load_n`,
     `track_radius_m`; published : coefficients of Eq 5.11-5.15.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -84,7 +84,7 @@ def _volume_panel(axes: Axes, chosen: pd.DataFrame, coefficient: float, publishe
 def force_rise(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw the vertical and the summed normal force over the load, and the contacts at once, against revolutions.
 
-    factors : as from `analysis.pin_volume.excess_factors`, all runs of the series of coefficients.
+    factors : as from `volume.excess_factors`, all runs of the series of coefficients.
     """
     figure = new_figure(remarks)
     panels = {
@@ -113,7 +113,7 @@ def force_rise(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def excess_volume(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw what volumes over alpha F L are made of: factor upon factor on a log axis, and the published one beside.
 
-    factors : as from `analysis.pin_volume.excess_factors`, the rows to show, in order.
+    factors : as from `volume.excess_factors`, the rows to show, in order.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes, printed = figure.subplots(2, 1, height_ratios=(1, 1))
@@ -175,8 +175,8 @@ def calibration(
 ) -> Figure:
     """Draw the coefficient that makes N revolutions stand for the test, with its range, and Archard's own.
 
-    table : as from `analysis.coefficient.calibration_table`; laboratory : coefficient and error (1/Pa); limits : as
-    from `analysis.coefficient.scaling_limits`, one run per scheme.
+    table : as from `coefficient.calibration_table`; laboratory : coefficient and error (1/Pa); limits : as
+    from `coefficient.scaling_limits`, one run per scheme.
     """
     figure = new_figure(remarks, 4.6)
     axes = figure.subplots()
@@ -225,7 +225,7 @@ def _reciprocal(revolutions: float):
 def size_invariance(table: pd.DataFrame, published_percent: float, remarks: Sequence[str]) -> Figure:
     """Draw simulated over theoretical volume against the scale of the pin, and the published bound.
 
-    table : as from `analysis.pin_series.size_invariance`.
+    table : as from `volume.size_invariance`.
     """
     figure = new_figure(remarks)
     axes = figure.subplots()
@@ -259,7 +259,7 @@ def _case_colour(case: str) -> str:
 def comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw depth, width and volume of laboratory, thesis and our runs, and print them with their differences.
 
-    table : as from `analysis.pin_series.comparison`.
+    table : as from `comparison.comparison`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     units = {"depth": "mm", "width": "mm", "volume": "mm³"}

@@ -3,6 +3,8 @@
 import numpy as np
 import pandas as pd
 import pytest
+from workflows.cases.pin_on_disc.plots.style import coefficient_name
+from workflows.cases.pin_on_disc.series import comparison, mesh_series, mesh_stability, size_invariance
 
 from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, remarks_of
 from postproc.wear.coefficient import laboratory_coefficient
@@ -13,10 +15,8 @@ from workflows.cases.pin_on_disc.coefficient import scaling_limits
 from workflows.cases.pin_on_disc.plots import contours as contour_plots
 from workflows.cases.pin_on_disc.plots import disc
 from workflows.cases.pin_on_disc.plots import volume as pin_volume
-from workflows.cases.pin_on_disc.plots.style import coefficient_name
 from workflows.cases.pin_on_disc.run_in import run_in_table
 from workflows.cases.pin_on_disc.runs import REFERENCE, reference_runs, window_forces
-from workflows.cases.pin_on_disc.series import comparison, mesh_series, mesh_stability, size_invariance
 from workflows.cases.pin_on_disc.volume import excess_factors, published_volume
 
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
