@@ -6,14 +6,20 @@ Every run's groove has the pin's shape and grows by the same depth each revoluti
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from meshes.disc import track_disc
 from postproc.mesh import SurfaceMesh, write_surface
+from tests import REPOSITORY
 from workflows.cases.pin_on_disc.volume import law_volume
+from workflows.engine.case import find_case
+from workflows.report.products import Job, Product, job_of, outputs_of, paths_of, products_of_study
 
 TRACK, PIN, LOAD = 22e-3, 3e-3, 5.0  # m, m, N
 CYCLES_PER_REVOLUTION = 2
@@ -29,6 +35,8 @@ ROWS = (  # run, series, scheme, wear coefficient 1/Pa, element mm, revolutions,
 )
 EXCESS = {"conserving": 1.0, "per_triangle": 6.0}  # -, volume removed over the law's
 RISE = 1.02  # -, summed normal force over load
+REMARKS = ["pin softened", "coarse mesh"]  # of all its figures
+UPDATES = "wear updates of 30 degrees"  # what the figure of the excess is told of them
 COLUMNS = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "revolutions", "particle_scale")
 
 
@@ -105,3 +113,53 @@ def tables(folder: Path) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
         volumes_of_run(folder / run).to_csv(folder / run / "volumes.csv", index=False)
     files = ([folder / run / f"{name}.csv" for run in runs["run"]] for name in ("contours", "volumes"))
     return runs, *(of_runs(runs, each) for each in files)
+
+
+def without(folder: Path, runs: Sequence[str], target: Path) -> Path:
+    """Write a study of the runs of a written one but some into a folder; return it."""
+    design = pd.read_csv(folder / "design.csv")
+    kept = design[~design["run"].isin(runs)]
+    target.mkdir(exist_ok=True)
+    kept.to_csv(target / "design.csv", index=False)
+    for run in kept["run"]:
+        (target / run).symlink_to(folder / run)
+    return target
+
+
+def drawn(folder: Path) -> dict[str, Any]:
+    """All figures of a written study by name; what its jobs write besides lies in its folder."""
+    design = pd.read_csv(folder / "design.csv")
+    study = SimpleNamespace(
+        name=folder.name,
+        case=find_case("pin_on_disc"),
+        design_rows=design.to_dict("records"),
+        runs=[SimpleNamespace(name=run) for run in design["run"]],
+    )
+    (folder / "figures").mkdir(exist_ok=True)
+    waiting, figures = list(products_of_study(study).values()), {}
+    while waiting:
+        product = next(each for each in waiting if all(map(Path.exists, _inputs(each, study, folder))))
+        waiting.remove(product)
+        figures[product.name], table, *further = product.make(_job(product, study, folder))
+        for key, found in ({"table": table} | (further[0] if further else {})).items():
+            found.to_csv(_below(folder, outputs_of(product, study.name)[key]), index=False)
+    return figures
+
+
+def _job(product: Product, study: SimpleNamespace, folder: Path) -> Job:
+    files = {}
+    for name, source in product.inputs.items():
+        paths = paths_of(source, study)
+        files[name] = [_below(folder, path) for path in paths] if isinstance(paths, list) else _below(folder, paths)
+    return job_of(files, dict.fromkeys(product.told, UPDATES), REMARKS)
+
+
+def _inputs(product: Product, study: SimpleNamespace, folder: Path) -> list[Path]:
+    found = vars(_job(product, study, folder).files).values()
+    return [path for paths in found for path in (paths if isinstance(paths, list) else [paths])]
+
+
+def _below(folder: Path, path: str) -> Path:
+    """Where a file of a study lies that is written in a folder; others lie in the repository."""
+    start = f"results/{folder.name}/"
+    return folder / path.removeprefix(start) if path.startswith(start) else REPOSITORY / path

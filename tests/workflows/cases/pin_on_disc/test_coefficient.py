@@ -5,10 +5,22 @@ import pandas as pd
 import pytest
 
 from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
-from workflows.cases.pin_on_disc.coefficient import calibration_table, scaling_limits, step_cap_limits
+from tests import PUBLISHED
+from tests.support import pin_study
+from workflows.cases.pin_on_disc.coefficient import (
+    PUBLISHED_FITS,
+    TOUCHED,
+    calibrated,
+    calibration_table,
+    coefficient_of_laboratory,
+    scaling_limits,
+    step_cap_limits,
+)
 
 VOLUME, ERROR, LOAD, DISTANCE, REVOLUTIONS = 0.565e-9, 0.089e-9, 5.0, 180.0, 1302.5  # m3, m3, N, m, -
 CIRCLE = DISTANCE / REVOLUTIONS  # m
+VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
+FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
 
 
 def test_laboratory_coefficient():
@@ -17,6 +29,7 @@ def test_laboratory_coefficient():
     assert found == pytest.approx(6.278e-13, rel=1e-3)
     assert error == pytest.approx(0.989e-13, rel=1e-3)
     assert error / found == pytest.approx(ERROR / VOLUME)
+    assert coefficient_of_laboratory(VALUES) == pytest.approx((found, error))
 
 
 def test_scaling_factors():
@@ -73,3 +86,26 @@ def test_limit_by_the_cap_of_steps():
         {"run": "a", "revolution": [1, 2], "wear_coefficient_per_pa": 6.0e-11, "step_demand": [0.005, 0.01]}
     )
     assert step_cap_limits(volumes, 6.0e-13)["largest_factor_by_step_cap"].tolist() == [pytest.approx(1e4)]
+
+
+def test_calibration_of_all_schemes(pins):
+    """Volumes in proportion to the coefficient need the laboratory's coefficient times the scaling over the excess."""
+    *_, volumes = pins
+    table = calibrated(volumes, FITS, VALUES)
+    ours = table[table["scheme"] == "per_triangle"].iloc[-1]
+    circle = 2.0 * np.pi * pin_study.TRACK
+    expected = 0.565e-9 / (pin_study.LOAD * circle * 3 * pin_study.RISE * 6.0)
+    assert ours["wear_coefficient_per_pa"] == pytest.approx(expected, rel=1e-6)
+    touched = table[table["scheme"] == TOUCHED].iloc[-1]  # Eq 5.9 finds half: twice the coefficient
+    assert touched["wear_coefficient_per_pa"] == pytest.approx(2.0 * expected, rel=1e-6)
+    assert set(table["scheme"]) == {"conserving", "per_triangle", TOUCHED, PUBLISHED_FITS}
+
+
+@pytest.mark.parametrize(("revolutions", "theirs"), [(1, False), (2, False), (3, True)])
+def test_few_revolutions_are_calibrated_without_the_published_fits(pins, revolutions, theirs):
+    """After 1 and 2 revolutions the published fits do not grow with the coefficient: ours alone are calibrated."""
+    *_, volumes = pins
+    table = calibrated(volumes[volumes["revolution"] <= revolutions], FITS, VALUES)
+    assert set(table["revolutions"]) == {revolutions}
+    assert {"conserving", "per_triangle"} < set(table["scheme"])
+    assert (PUBLISHED_FITS in set(table["scheme"])) == theirs

@@ -3,22 +3,33 @@
 import functools
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from meshes.disc import track_disc
 from postproc.mesh import SurfaceMesh
-from workflows.cases.pin_on_disc import groove
+from tests import PUBLISHED
+from tests.verification import groove_cases
+from workflows.cases.pin_on_disc.comparison import mesh_series
 from workflows.cases.pin_on_disc.contours import (
     CONTOURS,
+    EXAMPLE_ANGLES,
     OPENING_LEVEL,
     contour_table,
     depth_map,
+    example_sections,
+    mesh_sections,
     opening_width,
     radial_crossings,
+    track_map,
     track_radii,
+    track_table,
     width_of_area,
 )
+from workflows.cases.pin_on_disc.run_in import statistics_of
+from workflows.cases.pin_on_disc.runs import reference_discs
 
+VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 TRACK, PIN = 22e-3, 3e-3  # m
 DEPTH = 0.05e-3  # m, of the groove
 HALF_WIDTH = np.sqrt(2.0 * PIN * DEPTH - DEPTH**2)  # m, of its opening at the surface
@@ -146,9 +157,9 @@ def test_rotation_moves_the_contours_and_nothing_else():
 
 
 def test_area_width_is_that_of_one_section():
-    """Many contours at once give what `analysis.groove.width_of_area` gives one by one."""
+    """Many contours at once give what `groove_cases.width_of_area` gives one by one."""
     depth = depth_map(worn(ring()), RADII)[::30]
-    single = [groove.width_of_area(RADII, np.maximum(section, 0.0)) for section in depth]
+    single = [groove_cases.width_of_area(RADII, np.maximum(section, 0.0)) for section in depth]
     np.testing.assert_allclose(width_of_area(depth, RADII), single, rtol=1e-12)
 
 
@@ -177,3 +188,46 @@ def test_window_ends_before_the_rim():
 def test_places_beside_the_disc_are_refused():
     with pytest.raises(ValueError, match="does not reach"):
         depth_map(ring(), np.linspace(19e-3, 23e-3, 11))
+
+
+def test_sections_of_the_last_revolutions(pins):
+    """Eight angles, three revolutions, nowhere less deep than the one before, and deeper on the whole."""
+    folder, runs, contours, _ = pins
+    chosen = runs[runs["run"].isin(["a", "b"])]
+    sections = example_sections(folder, chosen, contours)
+    assert set(sections["revolution"]) == {1, 2, 3}
+    deepest = sections.groupby(["scheme", "angle_deg", "revolution"])["depth_um"].max().unstack()
+    assert len(deepest) == 2 * len(EXAMPLE_ANGLES)
+    assert (np.diff(deepest, axis=1) >= 0.0).all()
+    assert (np.diff(deepest.mean()) > 0.0).all()
+
+
+def test_sections_of_the_meshes(pins):
+    """One section per mesh and scheme after one revolution, the conserving scheme first."""
+    folder, runs, contours, _ = pins
+    series = mesh_series(runs, statistics_of(runs, contours).drop(columns="scheme"))
+    sections = mesh_sections(folder, runs, series)
+    assert list(dict.fromkeys(sections["run"])) == ["c", "e", "d", "f"]
+    assert set(sections["revolution"]) == {1}
+
+
+def test_map_of_the_track(pins):
+    """Depth over radius and angle: deepest in the middle of the track, a tenth deeper at 0 than at 180 degrees."""
+    folder, runs, *_ = pins
+    meshes, track = reference_discs(folder, runs, VALUES)
+    shown = track_map(meshes["per_triangle"], track)
+    assert shown.shape[1] == 360
+    assert shown.index[0] == pytest.approx(20.8)
+    assert abs(float(shown.mean(axis=1).idxmax()) - 22.0) < 0.25  # mm, half an element
+
+
+def test_table_of_the_track_has_a_row_per_radius_and_scheme(pins):
+    """Radius first, then a column per degree, the scheme last; the depths are those of the maps."""
+    folder, runs, *_ = pins
+    meshes, track = reference_discs(folder, runs, VALUES)
+    maps = {scheme: track_map(mesh, track) for scheme, mesh in meshes.items()}
+    table = track_table(maps)
+    assert list(table) == ["radius_mm", *range(CONTOURS), "scheme"]
+    ours = table[table["scheme"] == "per_triangle"]
+    np.testing.assert_array_equal(ours[range(CONTOURS)], maps["per_triangle"])
+    np.testing.assert_array_equal(ours["radius_mm"], maps["per_triangle"].index)

@@ -14,13 +14,18 @@ from workflows.cases.pin_on_disc.run_in import (
     contours_of_run,
     equiprobable_bins,
     neighbour_correlation,
+    published_ranges,
     revolution_statistics,
     run_in_revolution,
     run_in_table,
-    whole_revolutions,
+    run_in_words,
+    size_histogram,
+    statistics_of,
 )
+from workflows.cases.pin_on_disc.runs import REFERENCE, only_reference, whole_revolutions
 
-PUBLISHED = PUBLISHED / "pin_on_disc_normality.csv"
+VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
+NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
 REPEATS = 400  # samples of a distribution
 # of 400 samples 5 % fail by chance; parameters fitted to the values, not the classes, make it a little more
 FEWEST_FAILURES, MOST_FAILURES = 0.01, 0.11
@@ -102,7 +107,7 @@ def test_run_in_by_hand(depth, width, found):
 
 def test_run_in_of_the_published_table():
     """Table 5.3 gives revolution 8 by the same rule."""
-    table = pd.read_csv(PUBLISHED)
+    table = NORMALITY
     assert run_in_revolution(table["revolution"], table["depth_p_value"], table["width_p_value"]) == 8
 
 
@@ -127,7 +132,7 @@ def test_statistics_and_run_in_of_a_run():
     last = statistics[(statistics["revolution"] == 2) & (statistics["size"] == "depth")].iloc[0]
     depth = table.loc[table["revolution"] == 2, "depth_m"]
     assert (last["mean_m"], last["least_m"], last["largest_m"]) == (depth.mean(), depth.min(), depth.max())
-    found = run_in_table(statistics, pd.read_csv(PUBLISHED))
+    found = run_in_table(statistics, NORMALITY)
     assert found["run_in_revolution"].tolist() == [2, 8]
     assert found["revolutions"].tolist() == [2, 10]
 
@@ -154,3 +159,27 @@ def test_whole_revolutions_are_whole():
     wear = pd.DataFrame({"cycle": [1, 2, 3], "revolution": [0.999, 1.0 + 1e-9, 1.5]})
     assert whole_revolutions(wear)["cycle"].tolist() == [2]
     assert whole_revolutions(wear)["revolution"].tolist() == [1]
+
+
+def test_published_ranges_are_in_metres():
+    """42 to 70 um and 0.8 to 1.6 mm (Yan 2022, Fig 5.10 and 5.11)."""
+    ranges = published_ranges(VALUES).set_index("size")
+    np.testing.assert_allclose(ranges.loc["depth", ["least_m", "largest_m"]].astype(float), [42e-6, 70e-6])
+    np.testing.assert_allclose(ranges.loc["opening width", ["least_m", "largest_m"]].astype(float), [0.8e-3, 1.6e-3])
+    assert ranges["source"].tolist() == ["Yan 2022, Fig 5.10", "Yan 2022, Fig 5.11"]
+
+
+def test_histogram_counts_every_contour():
+    """Counts add up to the sample, and so does the normal curve but for its tails."""
+    values = np.random.default_rng(3).normal(1.0, 0.1, 360)
+    bars = size_histogram(values, 20)
+    assert bars["count"].sum() == 360
+    assert 350 < bars["normal_count"].sum() < 360
+
+
+def test_words_of_the_run_in(pins):
+    """A smooth wave round the disc is not normal: never for ours, 8 for the published depth."""
+    _, runs, contours, _ = pins
+    statistics = only_reference(statistics_of(runs, contours), runs, VALUES, REFERENCE)
+    words = run_in_words(statistics, NORMALITY)
+    assert words["depth"] == "normal from: conserving never, per triangle never, Yan 8"

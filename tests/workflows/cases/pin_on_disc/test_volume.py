@@ -5,18 +5,25 @@ import pandas as pd
 import pytest
 
 from tests import PUBLISHED
+from tests.support import pin_study
 from workflows.cases.pin_on_disc.volume import (
     CANDIDATES,
     excess_factors,
+    groove_remark,
     groove_volume,
     law_volume,
     polynomial_fit,
+    published_groove,
     published_volume,
+    shown_factors,
+    size_cases,
+    size_invariance,
     volume_fits,
     volumes_of_run,
 )
 
-PUBLISHED = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
+VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
+FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
 LOAD, TRACK = 5.0, 22e-3  # N, m
 ROUNDING = 1e-9  # -, of a least-squares fit of ten points
 
@@ -55,16 +62,14 @@ def test_too_few_points_have_no_fit():
 )
 def test_published_fits_as_printed(coefficient, at_first, at_twelfth):
     """Eq 5.11, 5.13 and 5.15 at 1 and 12 revolutions (mm3), added up by hand; no fit, no value."""
-    np.testing.assert_allclose(1e9 * published_volume(PUBLISHED, coefficient, [1, 12]), [at_first, at_twelfth])
-    assert np.isnan(published_volume(PUBLISHED, 3e-11, [1, 12])).all()
+    np.testing.assert_allclose(1e9 * published_volume(FITS, coefficient, [1, 12]), [at_first, at_twelfth])
+    assert np.isnan(published_volume(FITS, 3e-11, [1, 12])).all()
 
 
 def test_published_volumes_exceed_the_law():
     """2.0, 3.1 and 5.5 times alpha F L in the first revolution, 3.6 times over twelve at 1.7e-11."""
     for coefficient, revolutions, factor in ((1e-11, 1, 2.0), (1.7e-11, 1, 3.1), (5e-11, 1, 5.5), (1.7e-11, 12, 3.6)):
-        ratio = published_volume(PUBLISHED, coefficient, revolutions) / law_volume(
-            coefficient, LOAD, TRACK, revolutions
-        )
+        ratio = published_volume(FITS, coefficient, revolutions) / law_volume(coefficient, LOAD, TRACK, revolutions)
         assert ratio == pytest.approx(factor, abs=0.05)
 
 
@@ -111,7 +116,7 @@ def test_factors_multiply_to_the_whole(tmp_path):
     """Rise, slip, share taken up, displacement rule and summing rule multiply to the volume by Eq 5.9 over touched
     triangles over alpha F L, exactly; the published volume over that product is left."""
     volumes = two_revolutions(tmp_path)
-    factors = excess_factors(volumes, PUBLISHED)
+    factors = excess_factors(volumes, FITS)
     law = law_volume(1e-11, LOAD, TRACK, [1, 2])
     np.testing.assert_allclose(factors["product"], volumes["touched_centroid_path_volume_m3"] / law, rtol=1e-12)
     np.testing.assert_allclose(factors[list(CANDIDATES)].prod(axis=1), factors["product"], rtol=1e-12)
@@ -128,7 +133,7 @@ def test_carried_wear_is_a_factor_of_its_own(tmp_path):
     product stays."""
     volumes = two_revolutions(tmp_path)
     carried = volumes.assign(carried_volume_m3=0.2 * volumes["archard_volume_m3"])
-    factors, without = (excess_factors(each, PUBLISHED) for each in (carried, volumes))
+    factors, without = (excess_factors(each, FITS) for each in (carried, volumes))
     np.testing.assert_allclose(factors["taken_up"], 0.8)
     np.testing.assert_allclose(without["taken_up"], 1.0)
     np.testing.assert_allclose(factors["displacement_rule"], 1.8 / 0.8)
@@ -146,3 +151,54 @@ def test_fits_of_every_volume(tmp_path):
 def test_volume_of_a_published_groove():
     """The published 19 um and 1.07 mm hold 1.87 mm3, 3.5 times the published 0.532 mm3."""
     assert groove_volume(19e-6, 1.07e-3, TRACK) == pytest.approx(1.873e-9, rel=1e-3)
+
+
+def test_excess_is_the_displacement_rule(pins):
+    """Of six times the law's volume six are the displacement rule's, 1.02 the rise; conserving runs have 1."""
+    *_, volumes = pins
+    factors = excess_factors(volumes[volumes["series"] == "coefficient"], FITS)
+    shown = shown_factors(factors, VALUES)
+    assert list(zip(shown["run"], shown["revolution"], strict=True)) == [
+        ("c", 3),
+        ("b", 1),
+        ("b", 3),
+        ("d", 1),
+        ("d", 3),
+    ]
+    np.testing.assert_allclose(shown["displacement_rule"], [1, 6, 6, 6, 6], rtol=ROUNDING)
+    np.testing.assert_allclose(shown["force_rise"], pin_study.RISE, rtol=ROUNDING)
+    np.testing.assert_allclose(shown["slip"], 1.0, rtol=ROUNDING)
+    np.testing.assert_allclose(shown["summing_rule"], [1, 0.5, 0.5, 0.5, 0.5], rtol=ROUNDING)  # conserving: over all
+    assert set(CANDIDATES) < set(shown)
+
+
+def test_scales_have_the_law_beside_them(pins):
+    """The series of scales: alpha W over alpha F L is the rise of the force."""
+    *_, volumes = pins
+    table = size_invariance(size_cases(volumes))
+    assert table["particle_scale"].tolist() == [8.0]
+    np.testing.assert_allclose(table["difference_percent"], 2.0, rtol=1e-6)
+
+
+def test_size_invariance_by_hand():
+    """Ratios of simulated to theoretical volume, by scale."""
+    sizes = pd.DataFrame(
+        {
+            "run": ["big", "small"],
+            "particle_scale": [8.0, 1.0],
+            "archard_volume_m3": [1.01e-9, 0.998e-9],
+            "alpha_F_L_volume_m3": 1e-9,
+        }
+    )
+    table = size_invariance(sizes)
+    assert table["run"].tolist() == ["small", "big"]
+    np.testing.assert_allclose(table["difference_percent"], [-0.2, 1.0])
+    np.testing.assert_allclose(table["theoretical_volume_mm3"], 1.0)
+
+
+def test_published_groove_holds_more_than_the_published_volume():
+    """19 um and 1.07 mm hold 1.87 mm3: 3.5 times the published volume, 13 times alpha F L."""
+    groove = published_groove(VALUES)
+    assert groove["groove_over_published"] == pytest.approx(3.52, abs=0.01)
+    assert groove["groove_over_alpha_F_L"] == pytest.approx(13.3, abs=0.1)
+    assert "1.87 mm³, 3.5 times" in groove_remark(VALUES)

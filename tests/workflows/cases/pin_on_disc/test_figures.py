@@ -1,88 +1,70 @@
 """Figures of the pin-on-disc study: what is drawn is what the tables hold, published values are drawn as published."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
-from workflows.cases.pin_on_disc.plots.style import coefficient_name
-from workflows.cases.pin_on_disc.series import comparison, mesh_series, mesh_stability, size_invariance
 
 from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, remarks_of
-from postproc.wear.coefficient import laboratory_coefficient
 from tests import PUBLISHED
 from tests.support import pin_study
-from workflows.cases.pin_on_disc import figure_tables as pin_figures
-from workflows.cases.pin_on_disc.coefficient import scaling_limits
 from workflows.cases.pin_on_disc.plots import contours as contour_plots
-from workflows.cases.pin_on_disc.plots import disc
-from workflows.cases.pin_on_disc.plots import volume as pin_volume
-from workflows.cases.pin_on_disc.run_in import run_in_table
-from workflows.cases.pin_on_disc.runs import REFERENCE, reference_runs, window_forces
-from workflows.cases.pin_on_disc.volume import excess_factors, published_volume
+from workflows.cases.pin_on_disc.plots.contours import coefficient_name
+from workflows.cases.pin_on_disc.runs import window_forces
+from workflows.cases.pin_on_disc.volume import published_volume
+from workflows.config.design import load_study
+from workflows.engine.case import find_case
+from workflows.report.products import figures_of
 
-VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
 NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
-REMARKS = ["pin softened", "coarse mesh"]
 RANGES = ["Yan 2022, Fig 5.10, revolution 10", "Yan 2022, Fig 5.11, revolution 10"]
+OF_SERIES = {"mesh": {"mesh_series", "mesh_contours"}, "size": {"size_invariance"}}  # where the design has it
 
 
-@pytest.fixture(scope="module")
-def study(tmp_path_factory):
-    """Folder, runs, contours and volumes of the small study."""
-    folder = pin_study.write_study(tmp_path_factory.mktemp("pins"))
-    return folder, *pin_study.tables(folder)
+@pytest.mark.parametrize("left_out", ["mesh", "size"])
+def test_a_design_without_a_series_has_no_figures_of_it(left_out):
+    """It leaves out the figures of that series, and no other."""
+
+    def names(*series):
+        rows = [{"series": name} for name in series]
+        return {each.name for each in figures_of(SimpleNamespace(case=find_case("pin_on_disc"), design_rows=rows))}
+
+    whole, fewer = names("coefficient", *OF_SERIES), names("coefficient", *(OF_SERIES.keys() - {left_out}))
+    assert whole - fewer == OF_SERIES[left_out] and fewer < whole
 
 
-@pytest.fixture(scope="module")
-def figures(study):
-    """All figures, by name."""
-    return drawn_figures(*study)
+def test_the_comparison_comes_first():
+    """What answers the question of a study stands before the source's other figures, all of which it has."""
+    names = [each.name for each in figures_of(load_study("pin_on_disc", overrides={"fidelity": "standard"}))]
+    assert names[:3] == ["pin_comparison", "excess_volume", "wear_volume"] and len(names) == 17
 
 
-def drawn_figures(folder, runs, contours, volumes):
-    """All figures of some runs, by name."""
-    statistics = pin_figures.statistics_of(runs, contours)
-    reference = pin_figures.only_reference(statistics, runs, VALUES, REFERENCE)
-    chosen = reference_runs(runs, VALUES, REFERENCE)
-    series = mesh_series(runs, statistics.drop(columns="scheme"))
-    last = pin_figures.only_reference(contours[contours["revolution"] == 3], runs, VALUES, REFERENCE)
-    ranges = pin_figures.published_ranges(VALUES).assign(label=RANGES)
-    compared = pin_figures.compared_runs(runs, VALUES)
-    cases = pin_figures.compared_cases(compared, contours, volumes, VALUES)
-    coefficients = volumes[volumes["series"] == "coefficient"]
-    factors = excess_factors(coefficients, FITS)
-    meshes, track = pin_figures.reference_discs(folder, runs, VALUES)
-    forces = pd.concat([window_forces(folder / run).assign(scheme=scheme) for scheme, run in chosen.items()])
-    limits = scaling_limits(run_in_table(reference, NORMALITY), 1302.5)
-    laboratory = laboratory_coefficient(*pin_figures.laboratory_volume(VALUES), 5.0, 180.0)
-    bars = dict(list(pin_figures.histograms(last).groupby(["scheme", "size"])))
-    examples = pin_figures.example_sections(folder, runs[runs["run"].isin(chosen.values())], contours)
-    sections = pin_figures.laboratory_sections(folder, compared, cases)
-    boxes, segment = pin_figures.laboratory_boxes(VALUES), pin_figures.laboratory_segment(VALUES)
-    words = pin_figures.run_in_words(reference, NORMALITY)
-    return {
-        "run_in": contour_plots.run_in(reference, NORMALITY, words, REMARKS),
-        "contour_distribution": contour_plots.contour_distribution(last, bars, ranges, REMARKS),
-        "contour_examples": contour_plots.contour_examples(examples, REMARKS),
-        "mesh_series": contour_plots.mesh_series(series, mesh_stability(series), REMARKS),
-        "mesh_contours": contour_plots.mesh_contours(pin_figures.mesh_sections(folder, runs, series), REMARKS),
-        "normal_force": contour_plots.normal_force(forces, dict.fromkeys(chosen, 5.0), REMARKS),
-        "laboratory_contour": contour_plots.laboratory_contour(sections, boxes, segment, REMARKS),
-        "wear_volume": pin_volume.wear_volume(coefficients, FITS, REMARKS),
-        "force_rise": pin_volume.force_rise(factors, REMARKS),
-        "excess_volume": pin_volume.excess_volume(pin_figures.shown_factors(factors, VALUES), REMARKS),
-        "calibration": pin_volume.calibration(
-            pin_figures.calibrated(volumes, FITS, VALUES), laboratory, 1302.5, limits, REMARKS
-        ),
-        "size_invariance": pin_volume.size_invariance(size_invariance(pin_figures.size_cases(volumes)), 0.6, REMARKS),
-        "comparison": pin_volume.comparison(comparison(VALUES, cases), REMARKS),
-        "disc_setup": disc.disc_setup(pin_study.ring(0.5), pin_study.TRACK, pin_study.PIN, 5.0, REMARKS),
-        "contour_extraction": disc.contour_extraction(next(iter(meshes.values())), track, 90, REMARKS),
-        "unrolled_track": disc.unrolled_track(
-            {scheme: pin_figures.track_map(mesh, track) for scheme, mesh in meshes.items()}, REMARKS
-        ),
-        "worn_disc": disc.worn_disc(meshes, track, REMARKS),
-    }
+def test_every_figure_is_drawn_and_leaves_its_table(figures, pins):
+    """Seventeen figures, a table beside each, and the tables that go with them."""
+    folder = pins[0] / "figures"
+    further = {"wear_volume_fits", "scaling_limits", "mesh_stability"}
+    assert {path.stem for path in folder.glob("*.csv")} == {*figures, *further} and len(figures) == 17
+
+
+def test_the_worn_disc_has_the_table_of_its_track(figures, pins):
+    """Picture and map of the track show the same depths."""
+    tables = [pd.read_csv(pins[0] / "figures" / f"{name}.csv") for name in ("worn_disc", "unrolled_track")]
+    pd.testing.assert_frame_equal(*tables)
+    assert tables[0]["scheme"].nunique() == 2
+
+
+def test_the_set_up_tells_the_run_that_is_drawn(figures, pins):
+    """One row, of the run with the thesis' coefficient, all columns of the design."""
+    row = pd.read_csv(pins[0] / "figures" / "disc_setup.csv")
+    assert row["run"].tolist() == ["c"] and set(pins[1]) == set(row)
+
+
+def test_the_excess_says_how_long_an_update_is(figures):
+    """What the published groove holds comes first, then the length of an update."""
+    said = remarks_of(figures["excess_volume"])
+    assert said.startswith("a round groove of the published depth") and f"; {pin_study.UPDATES}; " in said
 
 
 def line(axes, label):
@@ -93,7 +75,7 @@ def line(axes, label):
 def test_every_figure_says_what_is_reduced(figures):
     """Remarks below every figure, legible type, a size that a page shows."""
     for name, figure in figures.items():
-        assert remarks_of(figure) == "; ".join(REMARKS), name
+        assert remarks_of(figure).endswith("; ".join(pin_study.REMARKS)), name
         assert figure.get_figheight() <= LARGEST_HEIGHT, name
         texts = [text for axes in figure.axes for text in axes.texts if text.get_text()]
         assert all(text.get_fontsize() >= SMALLEST_FONT for text in texts), name
@@ -125,23 +107,23 @@ def test_published_ranges_are_drawn_as_published(figures):
     assert set(RANGES) < {text.get_text() for text in figure.legends[0].get_texts()}
 
 
-def test_load_is_that_of_each_scheme(study):
+def test_load_is_that_of_each_scheme(pins):
     """The line of a panel is at the load of its run."""
-    folder, *_ = study
+    folder, *_ = pins
     forces = pd.concat(
         [window_forces(folder / run).assign(scheme=name) for name, run in (("conserving", "c"), ("per_triangle", "d"))]
     )
-    figure = contour_plots.normal_force(forces, {"conserving": 5.0, "per_triangle": 4.0}, REMARKS)
+    figure = contour_plots.normal_force(forces, {"conserving": 5.0, "per_triangle": 4.0}, pin_study.REMARKS)
     lines = [line(axes, label)[0, 1] for axes, label in zip(figure.axes, ("load 5 N", "load 4 N"), strict=True)]
     assert lines == [5.0, 4.0]
 
 
 @pytest.mark.parametrize("missing", [["d"], ["b", "d", "f"], ["a", "c", "e", "g", "h"]])
-def test_designs_with_one_scheme_are_drawn(study, missing):
+def test_designs_with_one_scheme_are_drawn(pins, missing, tmp_path):
     """A coefficient that only one scheme has, or a study of one scheme alone: every figure is drawn that has runs."""
-    folder, *tables = study
-    runs, contours, volumes = (table[~table["run"].isin(missing)] for table in tables)
-    for name, figure in drawn_figures(folder, runs, contours, volumes).items():
+    figures = pin_study.drawn(pin_study.without(pins[0], missing, tmp_path))
+    assert len(figures) >= 16
+    for name, figure in figures.items():
         assert figure.axes, name
 
 
@@ -155,10 +137,9 @@ def test_published_volumes_are_drawn_as_published(figures):
     assert law[-1, 1] == pytest.approx(1e9 * 1.7e-11 * 5.0 * 2 * np.pi * 22e-3 * 3)
 
 
-def test_stacked_factors_reach_the_product(figures, study):
+def test_stacked_factors_reach_the_product(figures, pins):
     """The last coloured bar ends at the product, the hatched one at the published factor."""
-    *_, volumes = study
-    factors = pin_figures.shown_factors(excess_factors(volumes[volumes["series"] == "coefficient"], FITS), VALUES)
+    factors = pd.read_csv(pins[0] / "figures" / "excess_volume.csv")
     bars = {group.get_label(): group for group in figures["excess_volume"].axes[0].containers if group.get_label()}
     tops = [bar.get_y() + bar.get_height() for bar in bars["Eq 5.9 over touched triangles"]]
     np.testing.assert_allclose(tops, factors["product"])
@@ -168,7 +149,7 @@ def test_stacked_factors_reach_the_product(figures, study):
 
 def test_comparison_prints_the_published_differences(figures):
     """The thesis' row of the printed table: 36, 34 and -6 per cent to the laboratory."""
-    table = next(axes.tables[0] for axes in figures["comparison"].axes if axes.tables)
+    table = next(axes.tables[0] for axes in figures["pin_comparison"].axes if axes.tables)
     cells = [table.get_celld()[2, column].get_text().get_text() for column in range(4, 7)]
     assert cells == ["+36", "+34", "-6"]
 

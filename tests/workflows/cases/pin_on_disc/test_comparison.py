@@ -1,21 +1,26 @@
-"""Series of the pin-on-disc study and its comparison: selections, differences and closed forms by hand."""
+"""Runs against each other, thesis and laboratory: selections, differences and closed forms by hand."""
 
 import numpy as np
 import pandas as pd
 import pytest
-from workflows.cases.pin_on_disc.series import (
-    circular_segment,
-    comparison,
-    mesh_series,
-    mesh_stability,
-    size_invariance,
-)
 
 from postproc.tables.published import published_value
 from tests import PUBLISHED
-from workflows.cases.pin_on_disc.run_in import SIZES
+from workflows.cases.pin_on_disc.comparison import (
+    LABORATORY_ANGLES,
+    circular_segment,
+    compared_cases,
+    compared_runs,
+    comparison,
+    laboratory_boxes,
+    laboratory_sections,
+    mesh_series,
+    mesh_stability,
+)
+from workflows.cases.pin_on_disc.run_in import SIZES, statistics_of
+from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark
 
-PUBLISHED = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
+VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 RUNS = pd.DataFrame(
     [
         ("a", "coefficient", "conserving", 5e-11, 0.1),
@@ -69,22 +74,6 @@ def test_stability_counts_fine_meshes_only():
     assert not of_theirs["stable"]
 
 
-def test_size_invariance_by_hand():
-    """Ratios of simulated to theoretical volume, by scale."""
-    sizes = pd.DataFrame(
-        {
-            "run": ["big", "small"],
-            "particle_scale": [8.0, 1.0],
-            "archard_volume_m3": [1.01e-9, 0.998e-9],
-            "alpha_F_L_volume_m3": 1e-9,
-        }
-    )
-    table = size_invariance(sizes)
-    assert table["run"].tolist() == ["small", "big"]
-    np.testing.assert_allclose(table["difference_percent"], [-0.2, 1.0])
-    np.testing.assert_allclose(table["theoretical_volume_mm3"], 1.0)
-
-
 def test_segment_of_the_laboratory():
     """0.565 mm3 over a track of 138.2 mm in the shape of a 3 mm pin: 0.528 mm wide and 0.0116 mm deep."""
     depth, width = circular_segment(0.565e-9 / (2.0 * np.pi * 22e-3), 3e-3)
@@ -96,7 +85,7 @@ def test_segment_of_the_laboratory():
 def test_comparison_has_the_published_differences():
     """Table 5.4: the thesis' depth, width and volume differ from the laboratory's by 36, 34 and 6 per cent."""
     ours = pd.DataFrame([{"case": "ours", "run": "a", "depth_mm": 0.0095, "width_mm": 0.535, "volume_mm3": 0.565}])
-    table = comparison(PUBLISHED, ours).set_index("case")
+    table = comparison(VALUES, ours).set_index("case")
     to_laboratory = [f"{name}_to_laboratory_percent" for name in ("depth", "width", "volume")]
     np.testing.assert_allclose(table.loc["Yan 2022", to_laboratory].astype(float), [36, 34, -6], atol=0.5)
     assert table.loc["ours", "volume_to_laboratory_percent"] == pytest.approx(0.0)
@@ -105,4 +94,43 @@ def test_comparison_has_the_published_differences():
 
 def test_a_value_that_is_not_published_is_refused():
     with pytest.raises(ValueError, match="is there 0 times"):
-        published_value(PUBLISHED, "colour", "laboratory")
+        published_value(VALUES, "colour", "laboratory")
+
+
+def test_mesh_series_takes_its_finest_from_the_coefficients(pins):
+    """The mesh that only the series of coefficients has is that of the same coefficient."""
+    _, runs, contours, _ = pins
+    series = mesh_series(runs, statistics_of(runs, contours).drop(columns="scheme"))
+    finest = series[series["element_size_mm"] == 0.5]
+    assert set(finest["run"]) == {"c", "d"}
+    shown = runs[runs["run"].isin(series["run"])]
+    assert coefficient_remark(shown, VALUES, REFERENCE) == "wear coefficient 5e-11 1/Pa"
+
+
+def test_compared_cases(pins):
+    """Reference runs, the run whose law has the laboratory's volume, then the pin's shape, at the last revolution.
+
+    The means are those of the contours; the pin's shape has the laboratory's volume.
+    """
+    _, runs, contours, volumes = pins
+    compared = compared_runs(runs, VALUES)
+    cases = compared_cases(compared, contours, volumes, VALUES)
+    assert cases["run"].tolist() == ["a", "b", "h", ""]
+    last = contours[(contours["run"] == "b") & (contours["revolution"] == 3)]
+    assert cases.loc[1, "depth_mm"] == pytest.approx(1e3 * last["depth_m"].mean())
+    assert cases.loc[1, "case"] == "per triangle, 1.7e-11/Pa, 3 rev."
+    table = comparison(VALUES, cases)
+    assert table["case"].tolist()[:2] == ["laboratory", "Yan 2022"]
+    assert table.iloc[-1]["volume_to_laboratory_percent"] == pytest.approx(0.0)
+
+
+def test_sections_beside_the_laboratory(pins):
+    """Three angles of every compared run under the name of its case."""
+    folder, runs, contours, volumes = pins
+    compared = compared_runs(runs, VALUES)
+    cases = compared_cases(compared, contours, volumes, VALUES)
+    sections = laboratory_sections(folder, compared, cases)
+    assert list(dict.fromkeys(sections["case"])) == cases["case"].tolist()[:3]
+    assert set(sections["angle_deg"]) == set(LABORATORY_ANGLES)
+    boxes = laboratory_boxes(VALUES)
+    np.testing.assert_allclose(boxes[["depth_mm", "width_mm"]], [[0.010, 0.65], [0.014, 0.8]])
