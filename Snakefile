@@ -11,10 +11,13 @@ include: "workflows/common.smk"
 include: "workflows/forecast/rules.smk"
 include: "workflows/engine/rules.smk"
 include: "workflows/report/rules.smk"
-# include: "workflows/cases/sliding_sample/screening/rules.smk"
-# include: "workflows/cases/sliding_sample/particle_size/rules.smk"
-include: "workflows/cases/pin_on_disc/rules.smk"
-# include: "workflows/cases/calibration/rules.smk"
+
+
+for RULES_OF_CASE in sorted((ROOT / "workflows" / "cases").rglob("rules.smk")):
+
+    include: str(RULES_OF_CASE)
+
+
 include: "workflows/submissions.smk"
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
-from workflows.engine.case import find_case
 from workflows.config.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
 from workflows.cases.sliding_sample.study import plain_runs
 from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
@@ -155,34 +154,20 @@ def of_every_run(pattern):
     return paths
 
 
+def costs_of_runs(wildcards):
+    """The tables of what the wear cycles of each run took, where a study has wear cycles."""
+    return of_every_run("results/{study}/{run}/cost.csv")(wildcards) if study_of(wildcards).case.wears else []
+
+
 def regimes_of_study(wildcards):
     """The table of flow regimes of a study that has one."""
     return [f"results/{wildcards.study}/flow/regimes.csv"] if study_of(wildcards).finds_regimes else []
 
 
 def study_decks(study):
-    """The decks of a study: of its beds and its runs, or of its tests."""
-    if STUDIES[study].case.name == "calibration":
-        return [f"results/{study}/decks/{test}/deck.in" for test in find_case("calibration").run_templates]
-    names = [f"beds/{bed}" for bed in STUDIES[study].beds] + [run.name for run in STUDIES[study].runs]
-    return [f"results/{study}/decks/{name}/cycle_000/deck.in" for name in names if "/" not in name] + [
-        f"results/{study}/decks/{name}/deck.in" for name in names if "/" in name
-    ]
-
-
-def first_run(wildcards):
-    """The parameters of the first run, whose box is that of a calibration."""
-    return study_of(wildcards).all_runs[0].parameters
-
-
-def published_table(key):
-    """An input function: the published table that a setting of the calibration names."""
-    return lambda wildcards: f"{PUBLISHED_TABLES}/{first_run(wildcards)['calibration'][key]}"
-
-
-def calibration_threads(wildcards):
-    """Simulations that a calibration has at the same time."""
-    return first_run(wildcards)["calibration"]["batch"]
+    """The decks of a study, rendered without the solver."""
+    runs = [run.name for run in STUDIES[study].runs]
+    return [f"results/{study}/decks/{name}" for name in STUDIES[study].case.deck_files(runs, list(STUDIES[study].beds))]
 
 
 def used_rates(wildcards=None):

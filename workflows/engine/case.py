@@ -78,6 +78,8 @@ class Case:
     figure_modules: of its folder, that declare figures and tables (`workflows.report.products`), in a page's order
     shared_figures: names of those of `workflows.report.surfaces` that it shows, after its own
     run_rules: rules that make a job of every run
+    wears: whether its runs are wear cycles; else a study has no table of them, and what it says of its results and
+        cost is its case's alone
     """
 
     name = ""
@@ -96,6 +98,7 @@ class Case:
     figure_modules: tuple[str, ...] = ("figures",)
     shared_figures: tuple[str, ...] = ()
     run_rules: tuple[str, ...] = ("surface_mesh", "worn_run")
+    wears: bool = True
 
     # ---------------------------------------------------------------- from settings to runs
 
@@ -176,6 +179,10 @@ class Case:
         """Return in how many the solver takes each time step of a cycle whose predecessor left that row of wear.csv."""
         return 1
 
+    def deck_files(self, runs: Sequence[str], beds: Sequence[str]) -> list[str]:
+        """Return the decks of a study that are rendered without the solver, below results/<study>/decks."""
+        return [*(f"{run}/cycle_000/deck.in" for run in runs), *(f"beds/{bed}/deck.in" for bed in beds)]
+
     # ---------------------------------------------------------------- what a study will cost
 
     def work(
@@ -222,6 +229,10 @@ class Case:
         raise NotImplementedError
 
     # ---------------------------------------------------------------- what a cycle leaves
+
+    def simulation_folders(self, folder: Path, runs: Sequence[str]) -> list[Path]:
+        """Return the folders of a study's folder that hold cycles, one for each simulation; here those of its runs."""
+        return [folder / run for run in runs]
 
     def record(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> dict[str, Any]:
         """Return what the state of a cycle tells besides that of all cases."""

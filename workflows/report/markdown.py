@@ -25,7 +25,7 @@ from workflows.report.page import commit, cost_totals, jobs_of
 from workflows.report.page_parameters import page_parameters
 from workflows.report.pages import page_of
 from workflows.report.remarks import figure_remarks
-from workflows.report.sections import DIGITS, Block, Cards, Points, Table, Text, shown
+from workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Table, Text, shown
 from workflows.report.text import number
 
 SECONDS_PER_MINUTE = 60.0
@@ -80,6 +80,8 @@ def written(block: Block, name: str) -> str:
     if isinstance(block, Table):
         note = f"\n{prose(block.note)}\n" if block.note else ""
         return markdown(block.data, block.digits) + note
+    if isinstance(block, Listing):
+        return f"{block.title}:\n\n```\n{block.content.rstrip()}\n```\n"
     return "\n".join(f"![{shown.replace('_', ' ')}]({picture_file(name, shown)})\n" for shown in block.names)
 
 
@@ -100,7 +102,8 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
     parts = [HEAD.format(title=study.title, fidelity=study.fidelity, folder=study.name), provenance(folder, study)]
     for section in kept:
         parts.append(f"## {section.title}\n\n" + "\n".join(written(block, name) for block in section.blocks))
-    parts.append(f"## Durations\n\n{durations(folder, told)}")
+    if study.case.wears:
+        parts.append(f"## Durations\n\n{durations(folder, told)}")
     path = docs / f"{study.name}_results_{study.fidelity}.md"
     path.write_text("\n".join(parts), encoding="utf-8")
     for each in (each for section in kept for block in section.blocks for each in getattr(block, "names", ())):
@@ -110,11 +113,13 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
 
 def provenance(folder: Path, study: Study) -> str:
     """Return when, by which versions and at which sizes the study was simulated."""
-    states = [path for run in study.runs for path in cycle_files(folder / run.name, "state.json")]
+    simulations = study.case.simulation_folders(folder, [run.name for run in study.runs])
+    states = [path for simulation in simulations for path in cycle_files(simulation, "state.json")]
     solver = solver_words(states[0].parent / "log.liggghts")
+    number = f"{len(simulations)} {'runs' if study.case.wears else 'simulations'} of {len(study.design_rows)} rows"
     said = (
-        f"Simulated {simulated_between(states)} with {solver}, page written by {commit()}: {len(study.runs)} runs of "
-        f"{len(study.design_rows)} rows. {'; '.join(figure_remarks(study))}."
+        f"Simulated {simulated_between(states)} with {solver}, page written by {commit()}: {number}. "
+        f"{'; '.join(figure_remarks(study))}."
     )
     return f"{prose(said)}\n"
 

@@ -21,6 +21,8 @@ import pandas as pd
 from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from postproc.tables.summary import read_summary
+from workflows.engine.case import find_case
+from workflows.engine.solver import LOG
 from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs, outside_solver_share
 from workflows.report.page_parameters import REPORT_FOLDER
 from workflows.report.pages import page_of
@@ -40,6 +42,7 @@ PACKAGES = (
     "pyvista",
     "vtk",
     "matplotlib",
+    "scikit-learn",
     "snakemake",
 )
 
@@ -70,7 +73,6 @@ def environment() -> jinja2.Environment:
 def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return everything that the template shows."""
     summary, page = read_summary(folder / "summary.csv"), page_of(study["case"])
-    jobs = jobs_of(study, folder)
     sections = with_all_figures(page.sections(study, folder), list(study["figures"]))
     names = [name for section in sections for block in section.blocks for name in getattr(block, "names", ())]
     return {
@@ -87,11 +89,8 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
         "decks": decks_of(study, folder, page.DECKS),
         "warnings": solver_warnings(study, folder),
-        "jobs": solver_jobs(jobs),
-        "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
-        "totals": cost_totals(jobs),
-        "forecast_by": pd.read_csv(folder / FORECAST)["by"].iloc[0],
-        "balance": float(summary["largest_balance_error"].max()),
+        **(costs(study, folder) if study["wears"] else {}),
+        **({"balance": float(summary["largest_balance_error"].max())} if study["wears"] else {}),
     }
 
 
@@ -163,6 +162,17 @@ def run_columns(study: Mapping[str, Any]) -> list[dict[str, str]]:
 # ---------------------------------------------------------------- cost and provenance
 
 
+def costs(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return what the template shows of the cost of a study's jobs."""
+    jobs = jobs_of(study, folder)
+    return {
+        "jobs": solver_jobs(jobs),
+        "jobs_csv": data_uri(jobs.to_csv(index=False).encode(), "text/csv"),
+        "totals": cost_totals(jobs),
+        "forecast_by": pd.read_csv(folder / FORECAST)["by"].iloc[0],
+    }
+
+
 def jobs_of(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
     """Return the cost of every job behind the page, see `analysis.cost.job_costs`."""
     files = [folder / "logs" / f"{job}{BENCHMARK_SUFFIX}" for job in study["jobs"]]
@@ -210,10 +220,15 @@ def cost_totals(jobs: pd.DataFrame) -> dict[str, float]:
     }
 
 
+def simulation_folders(study: Mapping[str, Any], folder: Path) -> list[Path]:
+    """Return the folders of a study's simulations."""
+    return find_case(study["case"]).simulation_folders(folder, list(study["runs"]))
+
+
 def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
     """Return the versions of everything that made the results."""
-    log = next((folder / run / "cycle_001" / "log.liggghts" for run in study["runs"]), None)
-    said = solver_version(log) if log and log.is_file() else None
+    log = next((log for run in simulation_folders(study, folder) for log in cycle_files(run, LOG)), None)
+    said = solver_version(log) if log else None
     found = {"LIGGGHTS": said.removeprefix("Version ") if said else "not reported"}
     found["this project"] = commit()
     found["Python"] = f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
@@ -242,9 +257,9 @@ def commit(repository: Path = REPOSITORY) -> str:
 
 
 def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, Any]]:
-    """Return the solver's warnings over all cycles of all runs: what was said, how often."""
+    """Return the solver's warnings over all cycles of all simulations: what was said, how often."""
     counts: dict[str, int] = {}
-    for said, count in _warnings_of(folder / run for run in study["runs"]):
+    for said, count in _warnings_of(simulation_folders(study, folder)):
         counts[said] = counts.get(said, 0) + count
     return [{"said": said, "count": count} for said, count in sorted(counts.items(), key=lambda item: -item[1])]
 

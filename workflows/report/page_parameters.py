@@ -28,7 +28,7 @@ def job_names(study: Study) -> list[str]:
     """Return the names of all jobs behind a study's page, as their benchmark files are named."""
     return [
         "design_table",
-        "summary",
+        *(["summary"] if study.case.wears else []),
         *(f"settled_bed_{bed}" for bed in study.beds),
         *(f"{rule}_{run.name}" for run in study.runs for rule in study.case.run_rules),
         *(product.rule for product in products_of_study(study).values()),
@@ -41,6 +41,7 @@ def page_parameters(study: Study) -> dict[str, Any]:
     return {
         "name": study.name,
         "case": study.case.name,
+        "wears": study.case.wears,
         "title": study.title,
         "question": study.question,
         "fidelity": study.fidelity,

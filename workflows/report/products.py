@@ -17,6 +17,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +37,8 @@ class Product:
 
     name: of the function, and of the figure's files
     make: takes a `Job`; a figure's returns (figure, its table) or (figure, its table, {key: further table}), a job of
-        tables returns {key: table}. A figure is one of matplotlib, or a function that writes the file of a given path
+        tables returns {key: table}, where a text stands for a file that is none. A figure is one of matplotlib, or a
+        function that writes the file of a given path
     inputs: {name in `Job.files`: where it comes from}
     told: {name in `Job.told`: what of the study the function needs to know}; a change of it makes the product again
     tables: {key: path below results/<study>} of what is written besides the figure and the table of its name
@@ -169,7 +171,10 @@ def write_product(product: Product, job: Job, outputs: Mapping[str, str]) -> Non
         _write_figure(drawn, outputs["figure"])
         made = {"table": table} | (further[0] if further else {})
     for key, table in made.items():
-        table.to_csv(outputs[key], index=False, float_format=_float_format(product, key))
+        if isinstance(table, str):
+            Path(outputs[key]).write_text(table, encoding="utf-8")
+        else:
+            table.to_csv(outputs[key], index=False, float_format=_float_format(product, key))
 
 
 def _float_format(product: Product, key: str) -> str | None:

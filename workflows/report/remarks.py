@@ -12,6 +12,8 @@ def figure_remarks(study: Study) -> list[str]:
     """Return what every figure must say: what is smaller than at paper fidelity or else simpler, law, acceleration."""
     now = study.settings
     remarks = page_of(study.case.name).remarks(study)
+    if not study.case.wears:
+        return remarks
     if now["wear"]["law"] != NEUTRAL_LAW:
         given = [number_and_unit(key, value) for key, value in now["wear"].get("parameters", {}).items()]
         law = " ".join([now["wear"]["law"], *([f"({', '.join(given)})"] if given else [])])

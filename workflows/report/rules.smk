@@ -75,6 +75,10 @@ rule design_table:
         "../scripts/design_table.py"
 
 
+# a case without wear cycles declares its own
+WITH_SUMMARY = "|".join(study.name for study in STUDIES.values() if study.case.wears)
+
+
 rule summary:
     input:
         design="results/{study}/design.csv",
@@ -87,6 +91,8 @@ rule summary:
         "results/{study}/logs/summary.log",
     benchmark:
         "results/{study}/logs/summary.benchmark.tsv"
+    wildcard_constraints:
+        study=WITH_SUMMARY or "no_study",
     params:
         case=case_of,
     message:
@@ -100,7 +106,7 @@ rule report:
         lambda wildcards: product_files(study_of(wildcards)),
         summary="results/{study}/summary.csv",
         design="results/{study}/design.csv",
-        costs=of_every_run("results/{study}/{run}/cost.csv"),
+        costs=costs_of_runs,
         forecast="results/{study}/forecast.csv",
         templates=lambda wildcards: page_templates(study_of(wildcards)),
     output:

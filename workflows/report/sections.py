@@ -57,7 +57,15 @@ class Pictures:
     names: Sequence[str]
 
 
-Block = Text | Points | Cards | Table | Pictures
+@dataclass(frozen=True)
+class Listing:
+    """A file shown as it is, under its title."""
+
+    title: str
+    content: str
+
+
+Block = Text | Points | Cards | Table | Pictures | Listing
 DIGITS = 3  # significant ones of numbers in tables
 
 

@@ -58,6 +58,8 @@ def number(value: Any, digits: int = 4) -> str:
         return value.replace("_", " ")
     if isinstance(value, list):
         return ", ".join(number(item, digits) for item in value)
+    if isinstance(value, Mapping):
+        return ", ".join(f"{number(name)} {number(item, digits)}" for name, item in value.items())
     if value is None or not math.isfinite(value):
         return UNDEFINED
     if isinstance(value, bool):
@@ -112,10 +114,12 @@ def _flat(section: Mapping[str, Any]) -> dict[str, Any]:
 
 def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: ModuleType) -> list[tuple[str, str]]:
     """Return (what, how) of everything that is simpler here than on a machine, with the numbers of this
-    study. page: the words of its case.
+    study. page: the words of its case; nothing is said about wear where nothing wears.
     """
     settings = study["settings"]
     reduced = "; ".join(study["remarks"]) or "nothing: all sizes and the travel are those of the paper fidelity"
+    if not study["wears"]:
+        return [("Reduced scale", f"{reduced}."), *page.simplifications(study)]
     return [
         ("Reduced scale", f"{reduced}."),
         *_wear_simplifications(study, summary, page.further_cap(settings)),

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from workflows.cases.calibration.driver import test_of
+from workflows.cases.calibration.boxes import test_of
 from workflows.engine.bulk_tests import write_test
 from workflows.engine.job import job_log
 

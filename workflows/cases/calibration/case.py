@@ -8,10 +8,11 @@ from typing import Any
 
 import pandas as pd
 
+from workflows.cases.calibration import boxes
 from workflows.config.layers import ConfigError
 from workflows.config.run_checks import Check, CheckedRun, Fault
-from workflows.engine import bulk_tests
 from workflows.engine.bulk_simulations import simulation_bytes
+from workflows.engine.bulk_tests import deck_text
 from workflows.engine.case import Case, Parameters, Run, register
 from workflows.engine.sections import particle_section, template_sections, wall_section
 from workflows.engine.work import Work
@@ -47,7 +48,7 @@ def slot_lets_particles_pass(run: CheckedRun) -> Fault | None:
     if "draw_down" not in run.parameters["calibration"]["tests"]:
         return None
     box, particle = run.parameters["draw_down"], run.parameters["particle"]
-    wider = bulk_tests.slot_length({"box": box, "particle": particle}) - box["opening_m"]
+    wider = boxes.slot_length({"box": box, "particle": particle}) - box["opening_m"]
     low = LEAST_SLOT_DIAMETERS * particle["median_diameter_m"] - wider
     if not low <= box["opening_m"] < box["length_m"] / 2.0:
         return "draw_down.opening_mm", (
@@ -92,7 +93,6 @@ class Calibration(Case):
     """
 
     name = "calibration"
-    figure_modules = ()
     material_keys = (
         ("bulk", "material", "particles"),
         ("shear_box", "wall_material", "walls"),
@@ -107,7 +107,9 @@ class Calibration(Case):
         pairs_are_known,
         initial_below_most,
     )
-    run_templates = ("shear_box", "draw_down")
+    run_templates = tuple(boxes.KINDS)
+    run_rules = ()
+    wears = False
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
@@ -124,17 +126,23 @@ class Calibration(Case):
 
     def sample_decks(self, parameters: Parameters, bed: Parameters | None) -> list[str]:
         """Return the decks of the tests."""
-        from workflows.cases.calibration.driver import test_of
-
         seed = parameters["calibration"]["seed"]
-        return [bulk_tests.deck_text(test_of(parameters, kind, {}, seed)) for kind in self.run_templates]
+        return [deck_text(boxes.test_of(parameters, kind, {}, seed)) for kind in self.run_templates]
 
     def table_columns(self, parameters: Parameters) -> dict[str, Any]:
         """Return particle scale, and the box's width as simulated."""
         return {
             "particle_scale": parameters["particle"]["scale"],
-            "simulated_width_m": bulk_tests.simulated_width(parameters["shear_box"], parameters["particle"]),
+            "simulated_width_m": boxes.simulated_width(parameters["shear_box"], parameters["particle"]),
         }
+
+    def deck_files(self, runs: Sequence[str], beds: Sequence[str]) -> list[str]:
+        """Return the decks of both tests."""
+        return [f"{test}/deck.in" for test in self.run_templates]
+
+    def simulation_folders(self, folder: Path, runs: Sequence[str]) -> list[Path]:
+        """Return the folders of all bulk tests, each with a single cycle."""
+        return sorted(path for path in (folder / boxes.SIMULATIONS).iterdir() if path.is_dir())
 
     def work(
         self, runs: Sequence[Run], beds: Mapping[str, Parameters], bed_of: Mapping[str, str], ranks: int
@@ -143,12 +151,10 @@ class Calibration(Case):
 
         The calibration is that of `calibration.most` simulations; it may stop before.
         """
-        from workflows.cases.calibration import work as found
-
         parallel = runs[0].parameters["calibration"]["batch"]
         jobs = {
-            "calibrated_parameters": found.calibration_stages(runs[0].parameters),
-            "box_sizes": found.sizes_stages([run.parameters for run in runs]),
+            "calibrated_parameters": boxes.calibration_stages(runs[0].parameters),
+            "box_sizes": boxes.sizes_stages([run.parameters for run in runs]),
         }
         return tuple(
             Work(rule, (), stages, parallel=parallel, disk_bytes=simulation_bytes(stages))

@@ -15,22 +15,17 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.flow.bulk_test import RESPONSES
-from workflows.cases.calibration.driver import SIMULATIONS, repeated
-from workflows.cases.calibration.responses import RECOMMENDED
+from postproc.inference.problem import Problem
+from workflows.cases.calibration.boxes import DRAW_DOWN, SIMULATIONS, simulated_width
+from workflows.cases.calibration.driver import repeated
+from workflows.cases.calibration.responses import RECOMMENDED, repeat_table, with_bands
 from workflows.config.design import load_study
 from workflows.engine import state
-from workflows.engine.bulk_tests import simulated_width
 from workflows.engine.case import Parameters
 from workflows.engine.progress import Progress
 
 CHECKED = "checked_pairs.csv"
-MARKS = [
-    "pair",
-    "test",
-    "seed",
-    "particle_scale",
-    "width_mm",
-]  # columns that tell one row from another, with the parameters
+MARKS = ["pair", "test", "seed", "particle_scale", "width_mm"]  # tell one row from another, with the parameters
 
 
 def pair_found(repeats: pd.DataFrame, pair: str, names: list[str]) -> dict[str, float]:
@@ -58,11 +53,23 @@ def check_pair(parameters: Parameters, pair: str, folder: Path, workers: int) ->
     return table
 
 
+def checked_means(rows: pd.DataFrame, problem: Problem) -> pd.DataFrame:
+    """Return the means of such rows beside the measured bands; only packings of one pair, test, scale and width count
+    together."""
+    names = [name for name in problem.measured if name in rows]
+    same = [*(name for name in MARKS if name not in ("pair", "seed")), *problem.names]
+    tables = [
+        with_bands(repeat_table(group, names), problem.measured).assign(**dict(zip(same, values, strict=True)))
+        for values, group in rows.groupby(same, sort=False)
+    ]
+    return pd.concat(tables, ignore_index=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--study", default="calibration")
     parser.add_argument("--pair", default=RECOMMENDED)
-    parser.add_argument("--test", default="draw_down", choices=RESPONSES)
+    parser.add_argument("--test", default=DRAW_DOWN, choices=RESPONSES)
     parser.add_argument("--fidelity", default="standard")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--workers", type=int, default=1, help="simulations at the same time")

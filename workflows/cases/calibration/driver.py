@@ -1,12 +1,11 @@
 """Calibrate contact parameters on bulk tests: from a study's parameters to simulations, and from these to tables.
 
-Parameters are those of a run of `case: calibration` (cases/calibration.py), SI; the first run's box is the
-calibration's, all runs' are compared by size. One job each, resumable: a simulation that was done is not done again.
+Parameters are those of a run, SI; the first run's box is the calibration's, all runs' are compared by size. One job
+each, resumable: a simulation that was done is not done again.
 """
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,17 +17,15 @@ import pandas as pd
 from postproc.flow.bulk_test import RESPONSES
 from postproc.inference.loop import Posterior, Request, calibrate, packing_seed, posterior
 from postproc.inference.problem import Experiment, Parameter, Problem
+from workflows.cases.calibration.boxes import SHEAR_BOX, SIMULATIONS, simulated_width, test_of
 from workflows.cases.calibration.responses import RECOMMENDED, read_measured
+from workflows.cases.calibration.simulations import answer, simulate_all
 from workflows.engine import state
-from workflows.engine.bulk_simulations import answer, simulate_all
-from workflows.engine.bulk_tests import simulated_width
 from workflows.engine.case import Parameters
 from workflows.engine.progress import Progress
-from workflows.engine.templates import used_sections
 
-SIMULATIONS = "simulations"
 FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
-SHEAR_BOX, SHEAR_ANGLE = "shear_box", "shear_angle_deg"
+SHEAR_ANGLE = "shear_angle_deg"
 
 
 def problem_of(parameters: Parameters, measured: str | Path) -> Problem:
@@ -44,35 +41,6 @@ def problem_of(parameters: Parameters, measured: str | Path) -> Problem:
         surrogate_share=asked["surrogate_share"],
         seed=asked["seed"],
     )
-
-
-def test_of(parameters: Parameters, kind: str, values: Mapping[str, float], seed: int) -> dict[str, Any]:
-    """Return a bulk test (see bulk_tests.py) with values of the calibrated parameters, by dotted name."""
-    box, walls = dict(parameters[kind]), parameters["walls"]
-    second = box.pop("floor_material" if kind == SHEAR_BOX else "front_material")
-    test = {
-        "kind": kind,
-        "wall_material": walls[box.pop("wall_material")],
-        "floor_material": walls[second],
-        "box": {**box, "width_m": simulated_width(box, parameters["particle"])},
-        "rest": dict(parameters["rest"]),
-        "particle": parameters["particle"],
-        **used_sections(kind, parameters, front_and_back=box.get("front_and_back")),
-        "seed": seed,
-    }
-    return with_values(test, values)
-
-
-def with_values(test: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
-    """Return a test with other values at dotted names, e.g. particle.contact.sliding_friction."""
-    changed = copy.deepcopy(dict(test))
-    for name, value in values.items():
-        *sections, key = name.split(".")
-        target = changed
-        for section in sections:
-            target = target[section]
-        target[key] = value
-    return changed
 
 
 def pair_of(pairs: pd.DataFrame, row: str, names: Sequence[str], parameters: Parameters) -> dict[str, float]:

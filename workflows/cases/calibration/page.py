@@ -1,30 +1,43 @@
-"""The page of a calibration: remarks of its figures, what is simplified."""
+"""The page of a calibration: its sections, table of boxes, remarks, what is simplified."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workflows.engine.bulk_tests import simulated_width
+from workflows.cases.calibration.boxes import simulated_width
+from workflows.report.sections import Section
 
 if TYPE_CHECKING:
     from workflows.config.design import Study
 
-KEY_NUMBERS = "calibration.html.j2"  # the whole page; it has nothing of a page about wear
-FURTHER_TEMPLATES = ()  # that it includes
+RUNS_NOTE = (
+    "Each row is a box in which the shear angle is compared; the calibration uses that of the first one. Width: of the "
+    "periodic slice as simulated, at least four particle diameters."
+)
+DECKS = ()  # `snakemake <study>_decks` renders them
 
 
-def page_parameters(study: Study, remarks: list[str]) -> dict[str, Any]:
-    """Return what the page says about a study's configuration, JSON-able."""
+def told(study: Study) -> dict[str, Any]:
+    """Return what the page is told besides what every page is."""
+    return {"parameters": study.all_runs[0].parameters}
+
+
+def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the sections of a calibration's page from the tables that its jobs left."""
+    from workflows.cases.calibration.findings import read_finished, sections_of  # slow to import, and few jobs need it
+
+    return sections_of(read_finished(study, folder), study["name"])
+
+
+def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the table of boxes tells of a box's parameters."""
+    width = simulated_width(run["shear_box"], run["particle"])
     return {
-        "name": study.name,
-        "title": study.title,
-        "question": study.question,
-        "fidelity": study.fidelity,
-        "settings": study.settings,
-        "paper_settings": study.paper_settings,
-        "remarks": remarks,
-        "run": study.all_runs[0].parameters,
+        "particle_scale": run["particle"]["scale"],
+        "simulated_width_mm": 1e3 * width,
+        "width_diameters": width / run["particle"]["median_diameter_m"],
     }
 
 
@@ -46,8 +59,9 @@ def remarks(study: Study) -> list[str]:
     return said
 
 
-def simplifications(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
+def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than in the laboratory."""
+    settings = study["settings"]
     solver, draw_down = settings["solver"], settings["draw_down"]
     return [
         (

@@ -17,7 +17,30 @@ GRID_POINTS = 41  # along each of the two parameters of a map
 PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior
 PICTURE_BINS = 40  # along each parameter
 RECOMMENDED, MEASURED = "recommended", "measured"
+RESPONSE_NAMES = {
+    "shear_angle_deg": "Shear angle, shear box (°)",
+    "draw_down_shear_angle_deg": "Shear angle, draw-down (°)",
+    "repose_angle_deg": "Angle of repose (°)",
+    "discharge_time_s": "Discharge time (s)",
+}
+PARAMETER_NAMES = {
+    "particle.contact.sliding_friction": "Sliding friction, particles (-)",
+    "particle.contact.rolling_friction": "Rolling friction, particles (-)",
+    "particle.contact.restitution": "Restitution, particles (-)",
+    "wall_material.contact.sliding_friction": "Sliding friction, wall (-)",
+    "wall_material.contact.rolling_friction": "Rolling friction, wall (-)",
+}
 BAND = 1.0  # -, standard deviations of the measurement: what counts as inside its band
+
+
+def response_name(response: str) -> str:
+    """Return a response as figures and tables show it."""
+    return RESPONSE_NAMES.get(response, response.replace("_", " "))
+
+
+def parameter_name(parameter: str) -> str:
+    """Return a parameter as figures and tables show it."""
+    return PARAMETER_NAMES.get(parameter, parameter.rpartition(".")[2].replace("_", " "))
 
 
 def read_measured(path: str) -> dict[str, Measured]:

@@ -22,7 +22,7 @@ HALF_LABEL_POINTS = 44.0  # half the width of an angle's words
 def heaps(pictures: Sequence[Mapping[str, Any]], remarks: Sequence[str]) -> Figure:
     """Draw heaps from the side with their walls and the straight lines fitted to their free surfaces.
 
-    pictures: each with title, particles (x_m, y_m, z_m, radius_m), slopes (analysis.free_surface.Slope), walls (lines
+    pictures: each with title, particles (x_m, y_m, z_m, radius_m), slopes (`flow.free_surface.Slope`), walls (lines
     as ((y, z), (y, z)) in m)
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)

@@ -25,34 +25,11 @@ from postproc.plots.style import (
     facets,
     new_figure,
 )
-from workflows.cases.calibration.responses import BAND, RECOMMENDED
+from workflows.cases.calibration.responses import BAND, RECOMMENDED, parameter_name, response_name
 
 OURS, OTHERS = COLOURS["convex"], COLOURS["plain"]
 BAND_COLOUR = "#000000"
 FAMILY_COLOURS = ListedColormap(["#0072B2", "#9ecbe6"])
-RESPONSE_NAMES = {
-    "shear_angle_deg": "Shear angle, shear box (°)",
-    "draw_down_shear_angle_deg": "Shear angle, draw-down (°)",
-    "repose_angle_deg": "Angle of repose (°)",
-    "discharge_time_s": "Discharge time (s)",
-}
-PARAMETER_NAMES = {
-    "particle.contact.sliding_friction": "Sliding friction, particles (-)",
-    "particle.contact.rolling_friction": "Rolling friction, particles (-)",
-    "particle.contact.restitution": "Restitution, particles (-)",
-    "wall_material.contact.sliding_friction": "Sliding friction, wall (-)",
-    "wall_material.contact.rolling_friction": "Rolling friction, wall (-)",
-}
-
-
-def response_name(response: str) -> str:
-    """Return a response as axes show it."""
-    return RESPONSE_NAMES.get(response, response.replace("_", " "))
-
-
-def parameter_name(parameter: str) -> str:
-    """Return a parameter as axes show it."""
-    return PARAMETER_NAMES.get(parameter, parameter.rpartition(".")[2].replace("_", " "))
 
 
 # ---------------------------------------------------------------- maps
@@ -68,7 +45,7 @@ def response_maps(
 ) -> Figure:
     """Draw every response over the first two parameters, with the measured band and what was simulated.
 
-    grid: as from `analysis.calibration.response_grid`; simulations: ours; published: pairs that others simulated;
+    grid: as from `responses.response_grid`; simulations: ours; published: pairs that others simulated;
     names: of the two parameters
     """
     responses = [name for name in grid.columns if f"{name}_doubt" in grid]
@@ -170,7 +147,7 @@ def family(
 ) -> Figure:
     """Draw which parameters fit what was measured: the regions with 50 and 95 % of the posterior, for every two.
 
-    table: as from `analysis.calibration.family_table`; pairs: {name: values}, marked
+    table: as from `responses.family_table`; pairs: {name: values}, marked
     """
     kinds = list(dict.fromkeys(zip(table["first"], table["second"], strict=True)))
     figure = new_figure(remarks, 4.6 if len(kinds) == 1 else LARGEST_HEIGHT)

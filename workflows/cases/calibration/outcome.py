@@ -1,8 +1,8 @@
-"""Tables, figures and materials of a finished calibration, from the tables that its simulations left."""
+"""A finished calibration as its figures, tables and page need it, and the materials file that other studies can use."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,23 +14,11 @@ from postproc.flow.bed import read_snapshot
 from postproc.flow.bulk_test import HEAP, slope_table
 from postproc.inference.loop import Posterior
 from postproc.inference.problem import Problem
-from postproc.plots.style import save
-from workflows.cases.calibration.driver import SIMULATIONS, compared_pairs, read_posterior, repeat_seeds, test_of
-from workflows.cases.calibration.plots import responses as plots
-from workflows.cases.calibration.plots.heaps import heaps
-from workflows.cases.calibration.responses import (
-    RECOMMENDED,
-    family_table,
-    information_table,
-    interval_table,
-    repeat_table,
-    response_grid,
-    statement_table,
-)
-from workflows.engine.bulk_simulations import flowing
-from workflows.engine.bulk_tests import slot_length
+from workflows.cases.calibration.boxes import SIMULATIONS, test_of, walls_of
+from workflows.cases.calibration.driver import compared_pairs, read_posterior, repeat_seeds
+from workflows.cases.calibration.responses import RECOMMENDED, interval_table, repeat_table, statement_table
+from workflows.cases.calibration.simulations import flowing
 from workflows.engine.case import Parameters
-from workflows.report.figures import OF_CALIBRATIONS
 
 TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test"}
 
@@ -71,50 +59,15 @@ class Calibrated:
 
 def read_calibrated(parameters: Parameters, measured_file: Path, pairs_file: Path, folder: Path) -> Calibrated:
     """Return a finished calibration from simulations.csv and repeats.csv in the study's folder."""
-    problem, table, known = read_posterior(
-        parameters, measured_file, folder / "simulations.csv", folder / "repeats.csv"
-    )
+    simulations, repeats = folder / "simulations.csv", folder / "repeats.csv"
+    problem, table, known = read_posterior(parameters, measured_file, simulations, repeats)
     published = pd.read_csv(pairs_file)
     pairs = compared_pairs(problem, known, parameters, published)
-    repeats = pd.read_csv(folder / "repeats.csv")
-    return Calibrated(parameters, folder, problem, table, known, repeats, pairs, published)
+    return Calibrated(parameters, folder, problem, table, known, pd.read_csv(repeats), pairs, published)
 
 
-# ---------------------------------------------------------------- figures
-
-
-def draw_all(
-    done: Calibrated, looks: pd.DataFrame, sizes: pd.DataFrame, sizes_before: pd.DataFrame, remarks: Sequence[str]
-) -> None:
-    """Draw every figure into the study's folder, each with its table beside it."""
-    grid, fits = response_grid(done.problem, done.known), family_table(done.problem, done.simulations)
-    information = information_table(done.problem, done.known)
-    other = done.published[done.published["row"] == done.compared].iloc[0]
-    pictures, slopes = heap_pictures(done)
-    drawn = {
-        "heaps": (heaps(pictures, remarks), slopes),
-        "response_maps": (
-            plots.response_maps(
-                grid, done.everything, done.problem.measured, done.published, done.problem.names, remarks
-            ),
-            grid,
-        ),
-        "family": (plots.family(fits, done.simulations, done.pairs, remarks), fits),
-        "pairs_against_bands": (plots.pairs_against_bands(done.statements, other, remarks), done.statements),
-        "box_sizes": (plots.box_sizes(sizes, sizes_before, remarks), sizes),
-        "calibration_progress": (
-            plots.progress_and_information(looks, done.problem.surrogate_share, information, remarks),
-            pd.concat([looks, information]),
-        ),
-    }
-    for name in OF_CALIBRATIONS:
-        figure, table = drawn[name]
-        save(figure, done.folder / "figures" / f"{name}.png")
-        table.to_csv(done.folder / "figures" / f"{name}.csv", index=False, float_format="%.6g")
-
-
-def heap_pictures(done: Calibrated) -> tuple[list[dict[str, Any]], pd.DataFrame]:
-    """Return the heaps of the recommended pair, one per test, as `heaps` wants them, and a table of slopes."""
+def recommended_heaps(done: Calibrated) -> tuple[list[dict[str, Any]], list[pd.DataFrame]]:
+    """Return the heaps of the recommended pair, one per test, as `plots.heaps` wants them, and their slopes."""
     pictures, tables = [], []
     values = done.pairs[RECOMMENDED]
     for experiment in done.problem.tests:
@@ -130,22 +83,7 @@ def heap_pictures(done: Calibrated) -> tuple[list[dict[str, Any]], pd.DataFrame]
             }
         )
         tables.append(pd.DataFrame(slope_table(found)).assign(test=experiment.name))
-    return pictures, pd.concat(tables, ignore_index=True)
-
-
-def walls_of(test: Mapping[str, Any]) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-    """Return the walls of a test that stand when it is over, as lines ((y, z), (y, z)) in m."""
-    length, height = test["box"]["length_m"], test["box"]["fill_height_m"]
-    if test["kind"] == "shear_box":
-        return [((0.0, 0.0), (0.0, height)), ((0.0, 0.0), (length, 0.0))]
-    low, slot = -test["box"]["lower_height_m"], slot_length(test)
-    return [
-        ((0.0, low), (0.0, height)),
-        ((length, low), (length, height)),
-        ((0.0, low), (length, low)),
-        ((0.0, 0.0), ((length - slot) / 2.0, 0.0)),
-        (((length + slot) / 2.0, 0.0), (length, 0.0)),
-    ]
+    return pictures, tables
 
 
 # ---------------------------------------------------------------- materials

@@ -1,0 +1,199 @@
+"""Figures of a calibration, its statements about pairs and its materials file: one declaration each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from workflows.report.products import Job, figure, tables
+
+if TYPE_CHECKING:
+    from workflows.cases.calibration.outcome import Calibrated
+    from workflows.config.design import Study
+
+CATEGORY = "Calibration"
+SIZES_BEFORE = "config/published/shear_box_sizes.csv"
+
+
+def _parameters(study: Study) -> dict[str, Any]:
+    """Return the parameters of the calibration: those of the first box."""
+    return study.all_runs[0].parameters
+
+
+def _measured(study: Study) -> str:
+    return f"config/published/{_parameters(study)['calibration']['measured']}"
+
+
+def _pairs_before(study: Study) -> str:
+    return f"config/published/{_parameters(study)['calibration']['simulated_before']}"
+
+
+SIMULATED = {
+    "measured": _measured,
+    "pairs": _pairs_before,
+    "simulations": "results/{study}/simulations.csv",
+    "repeats": "results/{study}/repeats.csv",
+}
+TOLD = {"parameters": _parameters}
+
+
+def _calibrated(job: Job) -> Calibrated:
+    """Return the finished calibration of a job with the inputs `SIMULATED` and told `TOLD`."""
+    from workflows.cases.calibration.outcome import read_calibrated
+
+    folder = Path(job.files.simulations).parent
+    return read_calibrated(job.told.parameters, Path(job.files.measured), Path(job.files.pairs), folder)
+
+
+@tables(
+    inputs=SIMULATED,
+    told={**TOLD, "materials": lambda study: study.materials, "study": lambda study: study.name},
+    tables={"summary": "summary.csv", "materials": "materials.yaml"},
+    digits=6,
+)
+def statements(job: Job) -> Any:
+    """Return what is said about the recommended and the compared pair, and a materials file with the former."""
+    from workflows.cases.calibration.outcome import calibrated_materials
+
+    done = _calibrated(job)
+    return {"summary": done.statements, "materials": calibrated_materials(done, job.told.materials, job.told.study)}
+
+
+@figure(
+    CATEGORY,
+    "Heaps of the recommended pair",
+    inputs=SIMULATED,
+    told=TOLD,
+    digits=6,
+    caption="""
+    Particles at rest, seen along the periodic width. The free surface is what a scanner above the heap would see; the
+    line is the robust straight fit to it (median of the gradients between all pairs of surface points), drawn over the
+    stretch that it uses: between 10 and 95 % of the slope's height, one diameter away from walls and edges. Beside it
+    the angle with its standard uncertainty.
+    """,
+)
+def heaps(job: Job) -> Any:
+    """Draw the heaps of the recommended pair, one per test, with the slopes that were fitted."""
+    import pandas as pd
+
+    from workflows.cases.calibration.outcome import recommended_heaps
+    from workflows.cases.calibration.plots.heaps import heaps as draw
+
+    pictures, slopes = recommended_heaps(_calibrated(job))
+    return draw(pictures, job.remarks), pd.concat(slopes, ignore_index=True)
+
+
+@figure(
+    CATEGORY,
+    "Responses over the parameters",
+    inputs=SIMULATED,
+    told=TOLD,
+    digits=6,
+    caption="""
+    Mean of the surrogate (colours and white lines), our simulations (circles, same colours), pairs simulated in Yan
+    2022, Tables 3.3, 3.5 and 3.6 (diamonds) and the measured value within one standard deviation (hatched, Yan 2022,
+    Table 3.1). Fig 3.6 of the source is the same map of the shear angle, on which it kept pairs between 36 and 38
+    degrees. Where a circle differs from the colour around it, its packing does: one simulation is one packing.
+    """,
+)
+def response_maps(job: Job) -> Any:
+    """Draw every response over the first two parameters."""
+    from workflows.cases.calibration.plots import responses
+    from workflows.cases.calibration.responses import response_grid
+
+    done = _calibrated(job)
+    grid = response_grid(done.problem, done.known)
+    marked = done.everything, done.problem.measured, done.published, done.problem.names
+    return responses.response_maps(grid, *marked, job.remarks), grid
+
+
+@figure(
+    CATEGORY,
+    "Pairs that fit what was measured",
+    inputs=SIMULATED,
+    told=TOLD,
+    digits=6,
+    caption="""
+    Regions that hold 50 and 95 % of the posterior: every pair in them gives the measured responses, within what
+    measurement and surrogate leave open. All pairs in the range count as equally likely before. Star: recommended, the
+    pair of the inner region nearest to the mean. Diamond: the pair of Yan 2022, Table 3.6. Rolling friction is in the
+    stated convention.
+    """,
+)
+def family(job: Job) -> Any:
+    """Draw which pairs fit what was measured."""
+    from workflows.cases.calibration.plots import responses
+    from workflows.cases.calibration.responses import family_table
+
+    done = _calibrated(job)
+    table = family_table(done.problem, done.simulations)
+    return responses.family(table, done.simulations, done.pairs, job.remarks), table
+
+
+@figure(
+    CATEGORY,
+    "Recommended and published pair",
+    inputs={"statements": "results/{study}/summary.csv", "pairs": _pairs_before},
+    told={"compared": lambda study: _parameters(study)["calibration"]["compared_pair"]},
+    digits=6,
+    caption="""
+    Responses of both pairs simulated here with several packings (mean and its standard uncertainty), what the surrogate
+    had predicted there, and the measured band (Yan 2022, Table 3.1). Open diamond: what the source simulated with its
+    pair (Yan 2022, Table 3.6).
+    """,
+)
+def pairs_against_bands(job: Job) -> Any:
+    """Draw the responses of both pairs beside the measured bands."""
+    import pandas as pd
+
+    from workflows.cases.calibration.plots import responses
+
+    said, published = pd.read_csv(job.files.statements), pd.read_csv(job.files.pairs)
+    other = published[published["row"] == job.told.compared].iloc[0]
+    return responses.pairs_against_bands(said, other, job.remarks), said
+
+
+@figure(
+    CATEGORY,
+    "Size and width of the shear box",
+    inputs={"sizes": "results/{study}/box_sizes.csv", "before": SIZES_BEFORE},
+    digits=6,
+    caption="""
+    Shear angle at sliding and rolling friction 0.24 in boxes of other lengths (filled as high as they are long) and
+    widths of the periodic slice; bars are the standard deviation between packings. Dashed: Yan 2022, Table 3.3, with
+    particles of true size in slices of 20 mm.
+    """,
+)
+def box_sizes(job: Job) -> Any:
+    """Draw the shear angle in boxes of other sizes."""
+    import pandas as pd
+
+    from workflows.cases.calibration.plots import responses
+
+    sizes = pd.read_csv(job.files.sizes)
+    return responses.box_sizes(sizes, pd.read_csv(job.files.before), job.remarks), sizes
+
+
+@figure(
+    CATEGORY,
+    "Stopping rule, and what to measure next",
+    inputs={**SIMULATED, "looks": "results/{study}/looks.csv"},
+    told=TOLD,
+    digits=6,
+    caption="""
+    Left: share of the surrogate in the variance of prediction and measurement, mean over the posterior, at every look.
+    The calibration stops where it falls below the dashed line, or at the largest number of simulations. Right: what
+    measuring a response once more is expected to tell about the parameters; 1 bit halves the family.
+    """,
+)
+def calibration_progress(job: Job) -> Any:
+    """Draw how the calibration stopped, and what each response would still tell."""
+    import pandas as pd
+
+    from workflows.cases.calibration.plots import responses
+    from workflows.cases.calibration.responses import information_table
+
+    done, looks = _calibrated(job), pd.read_csv(job.files.looks)
+    information = information_table(done.problem, done.known)
+    drawn = responses.progress_and_information(looks, done.problem.surrogate_share, information, job.remarks)
+    return drawn, pd.concat([looks, information])

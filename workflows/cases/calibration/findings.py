@@ -1,0 +1,219 @@
+"""What a finished calibration says, in sections of its page: numbers as tables and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from postproc.inference.posterior import FAMILY_SHARE
+from workflows.cases.calibration.boxes import SIMULATIONS
+from workflows.cases.calibration.case import PUBLISHED
+from workflows.cases.calibration.checked_pairs import CHECKED, checked_means
+from workflows.cases.calibration.outcome import Calibrated, read_calibrated
+from workflows.cases.calibration.responses import (
+    PARAMETER_NAMES,
+    RECOMMENDED,
+    information_table,
+    interval_table,
+    parameter_name,
+    response_name,
+)
+from workflows.cases.calibration.simulations import BLOCKED, cost_table
+from workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
+
+INSIDE = (
+    "Inside: at most one standard deviation of the measurement away; within its uncertainty: closer than that and the "
+    "simulated mean's own uncertainty together. Deviations: simulated minus measured, in standard deviations of the "
+    "measurement. Denser share: of the posterior in pairs that fit better; a pair belongs to the family when it is at "
+    "most 0.95."
+)
+INFORMATION = (
+    "What measuring a response once more is expected to tell about the parameters; 1 bit halves the family. Responses "
+    "that were not simulated are missing."
+)
+
+
+def read_finished(study: Mapping[str, Any], folder: Path) -> Calibrated:
+    """Return the finished calibration of a study's folder; study as told to its page."""
+    parameters = study["told"]["parameters"]
+    names = (parameters["calibration"][key] for key in ("measured", "simulated_before"))
+    return read_calibrated(parameters, *(PUBLISHED / name for name in names), folder)
+
+
+def sections_of(done: Calibrated, study: str) -> list[Section]:
+    """Return the sections of a calibration's page; checked pairs only where there are some."""
+    intervals = interval_table(done.problem, done.known, done.pairs[done.compared])
+    checked = (done.folder / CHECKED).is_file()
+    return [
+        Section(
+            "The family and the recommended pair",
+            [Cards(cards(done, intervals)), Table(_named(intervals)), Pictures(["family"])],
+        ),
+        Section("Against what was measured", against_measured(done)),
+        Section("What to measure next", next_measurement(done)),
+        Section("Responses over both frictions", [*simulations(done), Pictures(["response_maps"])]),
+        Section("At the pairs that others simulated", [at_published(done)]),
+        Section("Size and width of the box", [Table(sizes(done.folder)), Pictures(["box_sizes"])]),
+        *([Section("Pairs in tests that the calibration did not use", checked_pairs(done))] if checked else []),
+        Section("The heap of the recommended pair", [Pictures(["heaps"])]),
+        Section("Use of the result", use(done.folder, study)),
+        Section("Cost of the simulations", cost(done.folder)),
+    ]
+
+
+def _named(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table with responses and parameters as people call them, in its cells and its columns of parameters."""
+    names = {"response": response_name, "parameter": parameter_name}
+    cells = {column: table[column].map(name) for column, name in names.items() if column in table}
+    return table.assign(**cells).rename(columns=PARAMETER_NAMES)
+
+
+# ---------------------------------------------------------------- pairs
+
+
+def cards(done: Calibrated, intervals: pd.DataFrame) -> list[tuple[str, str]]:
+    """Return the few numbers that answer the question."""
+    share = float(done.statements.set_index("pair").loc[[done.compared], "denser_share"].iloc[0])
+    other = ", ".join(f"{value:g}" for value in done.pairs[done.compared].values())
+    where = "in" if share <= FAMILY_SHARE else "outside"
+    return [
+        *(
+            (
+                f"{row.recommended:.2f}",
+                f"{parameter_name(row.parameter)}, 95 % between {row.low:.2f} and {row.high:.2f}",
+            )
+            for row in intervals.itertuples()
+        ),
+        (str(len(done.simulations)), "simulations until the stopping rule or the limit"),
+        (f"{100.0 * share:.3g} %", f"of the posterior fits better than ({other}): {where} the family"),
+    ]
+
+
+def against_measured(done: Calibrated) -> list[Block]:
+    """Return both pairs beside the measured bands, as a table and in words."""
+    table = done.statements.drop(columns=done.problem.names)
+    return [
+        Table(_named(table), "statements", INSIDE),
+        Points([*(_pair_sentence(done, pair) for pair in (RECOMMENDED, done.compared)), *sentences(done)]),
+        Pictures(["pairs_against_bands"]),
+    ]
+
+
+def _pair_sentence(done: Calibrated, pair: str) -> str:
+    part = done.statements[done.statements["pair"] == pair]
+    values = ", ".join(f"{value:.2f}" for value in done.pairs[pair].values())
+    told = "; ".join(
+        f"{response_name(row.response)} {row.simulated:.2f} ± {row.simulated_uncertainty:.2f} against"
+        f" {row.measured:g} ± {row.measured_deviation:g}, {row.inside} ({row.deviations:+.1f} standard deviations)"
+        for row in part[part["seeds"] > 0].itertuples()
+    )
+    return f"The {pair.replace('_', ' ')} pair ({values}) gives: {told}."
+
+
+def sentences(done: Calibrated) -> list[str]:
+    """Return what else is to be said of the responses: their scatter, blocked packings, what was not simulated."""
+    scatter = "; ".join(
+        f"{response_name(name)} {surrogate.seed_deviation:.2g}" for name, surrogate in done.known.surrogates.items()
+    )
+    said = [f"Standard deviation between packings, as the surrogates find it: {scatter}."]
+    blocked = int(sum(table[BLOCKED].sum() for table in (done.simulations, done.repeats) if BLOCKED in table))
+    if blocked:
+        said.append(
+            f"An arch blocked the slot in {blocked} packing(s), whose test was done again with another packing;"
+            f" {len(done.everything)} tests gave an answer."
+        )
+    unknown = [response_name(name) for name in done.problem.measured if name not in done.known.predicted]
+    if unknown:
+        names = ", ".join(unknown)
+        said.append(f"Measured but not simulated at this fidelity, so not part of the posterior: {names}.")
+    return said
+
+
+def at_published(done: Calibrated) -> Block:
+    """Return what the surrogates say about the pairs that others simulated, where the parameters are the same."""
+    names = done.problem.names
+    if not set(names) <= set(done.published):
+        return Text("The published pairs have other parameters.")
+    table = done.published[["row", *names, *(name for name in done.known.surrogates if name in done.published)]].copy()
+    points = done.problem.to_unit(table[names].to_numpy(float))
+    for name, surrogate in done.known.surrogates.items():
+        mean, variance = surrogate.predict(points)
+        table[f"{name}_here"], table[f"{name}_doubt"] = mean, np.sqrt(variance)
+    return Table(_named(table), note="Here: mean of the surrogate; doubt: its standard deviation.")
+
+
+def checked_pairs(done: Calibrated) -> list[Block]:
+    """Return pairs simulated in tests that the calibration did not use, and their means beside the measured bands."""
+    rows = pd.read_csv(done.folder / CHECKED)
+    return [
+        Table(_named(rows.astype({"seed": str})), note="Each pair has the particle scale and width that its row names."),
+        Table(_named(checked_means(rows, done.problem))),
+    ]
+
+
+# ---------------------------------------------------------------- simulations
+
+
+def next_measurement(done: Calibrated) -> list[Block]:
+    """Return how the calibration stopped, the scatter between packings, and what each measurement would still tell."""
+    looks = pd.read_csv(done.folder / "looks.csv").groupby("test", sort=False).last()
+    stopped = [_stop(str(name), row, done.problem.surrogate_share) for name, row in looks.iterrows()]
+    return [
+        Text(f"{'; '.join(stopped)}."),
+        Table(_named(information_table(done.problem, done.known)), "information", INFORMATION),
+        Table(_named(done.repeat_means[["pair", "response", "seeds", "mean", "deviation"]])),
+        Pictures(["calibration_progress"]),
+    ]
+
+
+def _stop(test: str, look: pd.Series, most: float) -> str:
+    """Return by what a test's simulations were stopped."""
+    share, count = look["surrogate_share"], int(look["simulations"])
+    why = "by the stopping rule" if share <= most else "by the limit"
+    return (
+        f"The {test.replace('_', ' ')} stopped {why} after {count} simulations, with {share:.2f} of the variance the "
+        f"surrogate's (rule: at most {most:g})"
+    )
+
+
+def simulations(done: Calibrated) -> list[Block]:
+    """Return how many simulations there were and why, and all of them."""
+    counts = done.simulations.groupby(["test", "why"], sort=False).size()
+    told = ", ".join(f"{number} {test.replace('_', ' ')} ({why})" for (test, why), number in counts.items())
+    return [Text(f"Simulations: {told}."), Table(_named(done.simulations.astype({"seed": str})), "simulations")]
+
+
+def sizes(folder: Path) -> pd.DataFrame:
+    """Return the shear angle in boxes of other sizes, ours and the published ones."""
+    ours = pd.read_csv(folder / "box_sizes.csv").drop(columns="row")
+    theirs = pd.read_csv(PUBLISHED / "shear_box_sizes.csv").rename(
+        columns={"shear_angle_deg": "mean", "deviation_deg": "deviation", "source": "varied"}
+    )
+    return pd.concat([ours, theirs], ignore_index=True)
+
+
+def use(folder: Path, study: str) -> list[Block]:
+    """Return how another study uses the recommended values, and the file with them."""
+    file = f"results/{study}/materials.yaml"
+    return [
+        Text(
+            f"The recommended values stand in {file}, with their provenance. Another study uses them with --config "
+            f"materials={file}; its rolling friction model and convention must be the same, which is checked."
+        ),
+        Listing("materials.yaml", (folder / "materials.yaml").read_text(encoding="utf-8")),
+    ]
+
+
+def cost(folder: Path) -> list[Block]:
+    """Return what the simulations took, and what was forecast if all that are allowed were needed."""
+    table, forecast = cost_table(folder / SIMULATIONS), pd.read_csv(folder / "forecast.csv")
+    note = (
+        f"LIGGGHTS took {table['solver_s'].sum():.4g} s by the clock, on whatever else the machine was doing. Forecast "
+        f"for the most simulations allowed, their time until rest estimated: {forecast['solver_s'].sum():.4g} s of "
+        f"processor time ({forecast['by'].iloc[0]})."
+    )
+    return [Table(table, note=note, digits=dict.fromkeys(("solver_s", "mean_steps"), 4))]

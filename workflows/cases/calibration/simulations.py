@@ -1,0 +1,107 @@
+"""Simulations of a calibration and what is measured on them: answers to tests, blocked packings done again, their cost.
+
+A simulation is kept by what it was made from (`workflows.engine.bulk_simulations`) and measured anew whenever it is
+asked for. A packing in which an arch blocks the slot is kept too, and another one takes its place.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from postproc.flow.bulk_test import MEASUREMENTS, Boxes, Measurement
+from postproc.flow.free_surface import FreeSurfaceError
+from postproc.flow.outflow import BlockedError, OutflowError
+from postproc.inference.loop import packing_seed
+from workflows.cases.calibration.boxes import DRAW_DOWN, slot_length
+from workflows.engine import state
+from workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
+from workflows.engine.bulk_tests import time_step
+from workflows.engine.solver import SolverError
+
+PACKINGS = 3  # of a test, before it is given up because arches block all of them
+NEXT_PACKING = 1000  # numbers on, where no calibration has a packing of its own
+BLOCKED = "blocked_packings"  # column of a table of simulations
+
+
+def boxes_of(test: Mapping[str, Any]) -> Boxes:
+    """Return what the measurement of a test needs to know of its geometry."""
+    slot = slot_length(test) if test["kind"] == DRAW_DOWN else 0.0
+    return Boxes(test["box"]["length_m"], test["box"]["width_m"], test["particle"]["median_diameter_m"], slot)
+
+
+def measured(test: Mapping[str, Any], folder: Path) -> Measurement:
+    """Return the measurement on a finished simulation.
+
+    Raises BlockedError where an arch stands over the slot, SolverError naming the folder where there is no slope.
+    """
+    try:
+        return MEASUREMENTS[test["kind"]](folder, boxes_of(test), time_step(test))
+    except BlockedError:
+        raise
+    except (FreeSurfaceError, OutflowError) as fault:
+        raise SolverError(f"{folder}: {fault}") from fault
+
+
+def flowing(test: Mapping[str, Any], root: Path, say: Callable[[str], None]) -> tuple[Measurement, Path]:
+    """Return the measurement of a test, simulated unless it was before, and its folder.
+
+    Where an arch blocks the slot those of the next packing, as in a laboratory, where the test is done again. Raises
+    SolverError when arches block PACKINGS of them.
+    """
+    for number in range(PACKINGS):
+        packing = {**test, "seed": packing_seed(test["seed"], number * NEXT_PACKING)}
+        folder = simulated(packing, root)
+        try:
+            return replace(measured(packing, folder), blocked=number), folder
+        except BlockedError as blocked:
+            fault = blocked
+            say(f"{test['kind']}: an arch blocks the slot in the packing of seed {packing['seed']}, it is kept as such")
+    raise SolverError(f"{PACKINGS} packings of one test are blocked, the last one: {fault}")
+
+
+def simulate_all(
+    tests: Sequence[Mapping[str, Any]], root: Path, parallel: int, say: Callable[[str], None]
+) -> list[Measurement]:
+    """Return the measurements of tests, up to `parallel` of them simulated at the same time. Raises SolverError."""
+    root.mkdir(parents=True, exist_ok=True)
+    started, done, lock = time.monotonic(), [], threading.Lock()
+    known = [state.finished_cycles(simulation_folder(test, root), inputs_digest(test)) > 0 for test in tests]
+
+    def one(test: Mapping[str, Any], was_known: bool) -> Measurement:
+        found, _ = flowing(test, root, say)
+        with lock:
+            if not was_known:
+                done.append(test)
+                passed = time.monotonic() - started
+                say(f"{test['kind']} {len(done)} of {known.count(False)} simulated, {passed:.0f} s so far")
+        return found
+
+    with ThreadPoolExecutor(max_workers=parallel) as pool:
+        return list(pool.map(one, tests, known))
+
+
+def answer(measurement: Measurement) -> dict[str, float]:
+    """Return a measurement as a row: value and uncertainty of each response, and the packings that were blocked."""
+    uncertainties = {f"{name}_uncertainty": value for name, value in measurement.uncertainties.items()}
+    return dict(measurement.responses) | uncertainties | {BLOCKED: measurement.blocked}
+
+
+def cost_table(folder: Path) -> pd.DataFrame:
+    """Return number, solver seconds, particles and mean steps of the simulations of each kind below a folder."""
+    states = [json.loads(path.read_text()) for path in sorted(folder.glob(f"*/cycle_000/{state.STATE}"))]
+    table = pd.DataFrame([{"test": found["test"]["kind"].replace("_", " "), **found["cost"]} for found in states])
+    return table.groupby("test", as_index=False).agg(
+        simulations=("steps", "size"),
+        solver_s=("solver_s", "sum"),
+        most_particles=("particles", "max"),
+        mean_steps=("steps", "mean"),
+    )
