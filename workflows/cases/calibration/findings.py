@@ -150,7 +150,7 @@ def checked_pairs(done: Calibrated) -> list[Block]:
     """Return pairs simulated in tests that the calibration did not use, and their means beside the measured bands."""
     rows = pd.read_csv(done.folder / CHECKED)
     return [
-        Table(_named(rows.astype({"seed": str})), note="Each pair has the particle scale and width that its row names."),
+        Table(_named(rows.astype({"seed": str})), note="Each pair has the scale and width that its row names."),
         Table(_named(checked_means(rows, done.problem))),
     ]
 

@@ -9,6 +9,9 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 import yaml
+from workflows.cases.calibration.html_page import page_context
+from workflows.cases.calibration.results import checked_text, write_results
+from workflows.cases.calibration.tables import calibrated_materials, draw_all, read_calibrated
 from workflows.report.figures import OF_CALIBRATIONS, page_templates
 
 from postproc.flow.bulk_test import RESPONSES
@@ -25,11 +28,8 @@ from workflows.cases.calibration.driver import (
     run_box_sizes,
     run_calibration,
 )
-from workflows.cases.calibration.html_page import page_context
 from workflows.cases.calibration.page import page_parameters
 from workflows.cases.calibration.responses import RECOMMENDED
-from workflows.cases.calibration.results import checked_text, write_results
-from workflows.cases.calibration.tables import calibrated_materials, draw_all, read_calibrated
 from workflows.config.design import REPOSITORY, ConfigError, load_study
 from workflows.engine.bulk_simulations import Measurement
 from workflows.engine.decks import primes

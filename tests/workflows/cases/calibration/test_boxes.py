@@ -1,0 +1,83 @@
+"""Shear box and draw-down test are what they say: decks and meshes of the boxes asked for."""
+
+import pytest
+
+from tests.support.bulk_boxes import PAIR, ROLLING, SLIDING, asked
+from workflows.cases.calibration.boxes import (
+    draw_down,
+    draw_down_surfaces,
+    shear_box,
+    shear_box_surfaces,
+    simulated_width,
+    slot_length,
+    with_values,
+)
+from workflows.engine.bulk_tests import deck_text
+
+EXACT = 1e-12  # relative: the same formula
+
+
+@pytest.mark.parametrize("kind", ["shear_box", "draw_down"])
+@pytest.mark.parametrize("front_and_back", ["periodic", "walls"])
+def test_decks_render_with_what_they_say(kind, front_and_back):
+    """The friction asked for stands in the deck, doubled for the solver's radius where it rolls; so do its walls."""
+    text = deck_text(asked(kind, draw_down={"front_and_back": front_and_back}))
+    table = text[text.index("coefficientRollingFriction") :].splitlines()[1]
+    assert float(table.split()[0]) == pytest.approx(2.0 * PAIR[ROLLING], rel=EXACT)
+    assert ("front_wall" in text) == (kind == "draw_down" and front_and_back == "walls")
+    assert text.count("label ") == 4  # two loops until rest, each with a beginning and an end
+
+
+def test_reduced_convention_is_not_converted():
+    """A coefficient for the reduced radius is the solver's own."""
+    text = deck_text(asked(solver={"rolling_radius": "reduced"}))
+    table = text[text.index("coefficientRollingFriction") :].splitlines()[1]
+    assert float(table.split()[0]) == pytest.approx(PAIR[ROLLING], rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("kind", "domain", "surfaces"),
+    [("shear_box", shear_box, shear_box_surfaces), ("draw_down", draw_down, draw_down_surfaces)],
+)
+def test_meshes_lie_in_the_domain(kind, domain, surfaces):
+    """LIGGGHTS drops what lies outside the domain: every mesh lies inside, and floors end where the walls stand."""
+    test = asked(kind)
+    box = domain(test)
+    for points, _ in surfaces(test).values():
+        assert (points[:, 1] > box["domain_back_m"]).all() and (points[:, 1] < box["domain_front_m"]).all()
+        assert (points[:, 2] > box["domain_bottom_m"]).all() and (points[:, 2] < box["domain_top_m"]).all()
+    floors = [points for name, (points, _) in surfaces(test).items() if name != "outflow"]
+    assert min(points[:, 1].min() for points in floors) == 0.0
+    assert max(points[:, 1].max() for points in floors) == pytest.approx(test["box"]["length_m"], rel=EXACT)
+
+
+def test_gate_fills_the_slot():
+    """Floor, gate and floor close the upper box without gap or overlap."""
+    found = draw_down_surfaces(asked("draw_down"))
+    ends = [found[name][0][:, 1] for name in ("back_floor", "gate", "front_floor")]
+    assert ends[0].max() == ends[1].min() and ends[1].max() == ends[2].min()
+
+
+def test_slot_keeps_what_particles_see_of_it():
+    """Coarse graining widens the slot by 1.4 times what it adds to the diameter; at true size it is the real one."""
+    real, scaled = asked("draw_down", particle_scale=1.0), asked("draw_down", particle_scale=4.0)
+    assert slot_length(real) == pytest.approx(real["box"]["opening_m"], rel=EXACT)
+    free = [slot_length(test) - 1.4 * test["particle"]["median_diameter_m"] for test in (real, scaled)]
+    assert free[0] == pytest.approx(free[1], rel=EXACT)
+
+
+def test_periodic_slices_hold_four_particles():
+    """A periodic slice is widened to four diameters, a wider one and one between walls stay."""
+    particle = {"median_diameter_m": 0.01}
+    assert simulated_width({"width_m": 0.02}, particle) == pytest.approx(0.04)
+    assert simulated_width({"width_m": 0.05}, particle) == 0.05
+    assert simulated_width({"width_m": 0.02, "front_and_back": "walls"}, particle) == 0.02
+
+
+def test_values_replace_only_what_they_name():
+    """A calibrated value reaches the place its dotted name says; the original stays as it was."""
+    test = asked()
+    changed = with_values(test, {SLIDING: 0.77})
+    assert changed["particle"]["contact"]["sliding_friction"] == 0.77
+    assert test["particle"]["contact"]["sliding_friction"] == PAIR[SLIDING]
+    assert {**changed, "particle": 0} == {**test, "particle": 0}

@@ -1,0 +1,102 @@
+"""Simulations of a calibration: run until rest, measured, not done twice, done again where an arch blocks the slot."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from postproc.flow.bulk_test import HEAP, Measurement
+from postproc.flow.outflow import BlockedError
+from postproc.inference.loop import packing_seed
+from tests.support.bulk_boxes import asked, small
+from workflows.cases.calibration import simulations
+from workflows.cases.calibration.simulations import (
+    BLOCKED,
+    NEXT_PACKING,
+    PACKINGS,
+    answer,
+    flowing,
+    measured,
+    simulate_all,
+)
+from workflows.engine import state
+from workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
+from workflows.engine.bulk_tests import rest_energy
+from workflows.engine.solver import SolverError
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A small shear box that LIGGGHTS filled, opened and ran until rest."""
+    root = tmp_path_factory.mktemp("simulations")
+    simulated(small(), root)
+    return root
+
+
+@pytest.mark.solver
+def test_a_shear_box_stands_at_rest_with_a_slope(done):
+    """What is left in the box stands at an angle between 20 and 50 degrees, slower than rest allows."""
+    test = small()
+    folder = state.cycle_folder(simulation_folder(test, done), 0)
+    angle = measured(test, folder).responses["shear_angle_deg"]
+    assert 20.0 < angle < 50.0
+    rows = np.loadtxt(folder / HEAP, skiprows=9)
+    speed = np.sqrt((rows[:, 4:7] ** 2).sum(axis=1))
+    heaviest = test["particle"]["density_kg_per_m3"] * math.pi / 6.0 * (2.0 * rows[:, -1].max()) ** 3
+    assert 0.5 * heaviest * (speed**2).mean() < 2.0 * rest_energy(test)  # the heaviest stand for all
+
+
+@pytest.mark.solver
+def test_what_was_simulated_is_not_simulated_again(done):
+    """Asked again, a simulation is read and not done."""
+    test = small()
+    folder = state.cycle_folder(simulation_folder(test, done), 0)
+    written, said = (folder / HEAP).stat().st_mtime_ns, []
+    simulate_all([test], done, 1, said.append)
+    assert (folder / HEAP).stat().st_mtime_ns == written and said == []
+
+
+@pytest.mark.solver
+def test_the_state_tells_what_was_simulated(done):
+    """Beside a simulation stand its inputs, their digest, the solver and what it cost."""
+    test = small()
+    told = json.loads((state.cycle_folder(simulation_folder(test, done), 0) / state.STATE).read_text())
+    assert told["inputs"] == inputs_digest(test) and told["test"] == json.loads(json.dumps(test))
+    assert told["cost"]["particles"] > 100 and told["solver"]
+
+
+@pytest.fixture
+def arches(monkeypatch, tmp_path):
+    """A solver in whose first packings an arch blocks the slot: {seed: blocked}, filled by the test."""
+    blocked = {}
+
+    def measure(test, folder):
+        if blocked.get(test["seed"], False):
+            raise BlockedError(f"{folder}: an arch blocks the slot")
+        return Measurement({"discharge_time_s": float(test["seed"])}, {}, {})
+
+    monkeypatch.setattr(simulations, "simulated", lambda test, root: root / str(test["seed"]))
+    monkeypatch.setattr(simulations, "measured", measure)
+    return blocked
+
+
+def test_a_blocked_packing_is_done_again_with_another(arches, tmp_path):
+    """As in a laboratory: the answer is that of the next packing that flows, and how many were blocked is told."""
+    test, said = asked("draw_down"), []
+    arches[test["seed"]] = True
+    found, folder = flowing(test, tmp_path, said.append)
+    used = found.responses["discharge_time_s"]
+    assert used != test["seed"] and folder.name == f"{used:.0f}"
+    assert answer(found)[BLOCKED] == 1 and "an arch blocks the slot" in said[0]
+    assert answer(simulate_all([test], tmp_path, 1, said.append)[0]) == answer(found)
+    arches.clear()
+    assert answer(flowing(test, tmp_path, said.append)[0]) == {"discharge_time_s": test["seed"], BLOCKED: 0}
+
+
+def test_a_test_whose_packings_are_all_blocked_is_refused(arches, tmp_path):
+    """A slot that arches again and again is too narrow for these particles."""
+    test = asked("draw_down")
+    arches.update({packing_seed(test["seed"], number * NEXT_PACKING): True for number in range(PACKINGS)})
+    with pytest.raises(SolverError, match=f"{PACKINGS} packings of one test are blocked"):
+        flowing(test, tmp_path, print)
