@@ -1,0 +1,25 @@
+"""The study of a calibration with few simulations, and a formula in the solver's place."""
+
+from postproc.flow.bulk_test import RESPONSES, Measurement
+from tests import PUBLISHED
+from workflows.config.design import load_study
+
+MEASURED, PAIRS = PUBLISHED / "gravel_tests.csv", PUBLISHED / "gravel_pairs.csv"
+SLIDING, ROLLING = "particle.contact.sliding_friction", "particle.contact.rolling_friction"
+
+
+def study(**overrides):
+    """The calibration study with few simulations."""
+    few = {"initial": {"shear_box": 5}, "most": {"shear_box": 7}, **overrides.pop("calibration", {})}
+    return load_study("calibration", overrides={"fidelity": "quick", "calibration": few, **overrides})
+
+
+def answers(tests, root, parallel, say):
+    """Measurements of a formula in the solver's place: an angle that grows with both frictions."""
+    found = []
+    for test in tests:
+        contact = test["particle"]["contact"]
+        angle = 24.0 + 30.0 * contact["sliding_friction"] + 12.0 * contact["rolling_friction"]
+        names = RESPONSES[test["kind"]]
+        found.append(Measurement(dict.fromkeys(names, angle), dict.fromkeys(names, 0.2), {name: [] for name in names}))
+    return found

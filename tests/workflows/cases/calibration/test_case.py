@@ -1,0 +1,55 @@
+"""A calibration study: what it asks for, and what is refused."""
+
+import pandas as pd
+import pytest
+
+from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
+from workflows.cases.calibration.driver import pair_of
+from workflows.config.design import ConfigError, load_study
+
+
+@pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
+def test_every_fidelity_loads(fidelity):
+    """Each fidelity is a valid study; quick takes the shear box alone, the others both tests."""
+    found = load_study("calibration", overrides={"fidelity": fidelity})
+    tests = found.runs[0].parameters["calibration"]["tests"]
+    assert tests == (["shear_box"] if fidelity == "quick" else ["shear_box", "draw_down"])
+    lengths = {run.parameters["shear_box"]["length_m"] for run in found.runs}
+    assert len(lengths) == 3  # three sizes of box
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        ({"draw_down": {"length_mm": 20}}, r"draw_down\.length_mm is 20.*allowed is at least 106"),
+        ({"draw_down": {"opening_mm": 300}}, r"draw_down\.opening_mm is 300.*allowed is from"),
+        (
+            {"calibration": {"compared_pair": "nobody"}},
+            r"calibration\.compared_pair is 'nobody'.*allowed is one of size-test",
+        ),
+        ({"calibration": {"most": {"shear_box": 3}}}, r"calibration\.most is .*allowed is for shear_box at least"),
+        ({"calibration": {"measured": "none.txt"}}, r"the name of a \.csv file in config/published"),
+    ],
+)
+def test_what_cannot_be_calibrated_is_refused(overrides, words):
+    """A fault is one sentence that names the key, the value and what is allowed, before anything is simulated."""
+    with pytest.raises(ConfigError, match=words):
+        load_study("calibration", overrides={"fidelity": "standard", **overrides})
+
+
+def test_ranges_must_be_ranges():
+    """A low above its high, or a parameter named twice, is refused."""
+    for second in ({"name": ROLLING, "low": 0.7, "high": 0.1}, {"name": SLIDING, "low": 0.1, "high": 0.7}):
+        parameters = [{"name": SLIDING, "low": 0.1, "high": 0.7}, second]
+        with pytest.raises(ConfigError, match=r"calibration\.parameters"):
+            study(calibration={"parameters": parameters})
+
+
+def test_published_data_are_those_of_the_source():
+    """The example is that of Yan 2022: four measured responses, six pairs of the draw-down test, the chosen one."""
+    measured, pairs = pd.read_csv(MEASURED), pd.read_csv(PAIRS)
+    assert dict(zip(measured["response"], measured["value"], strict=True))["shear_angle_deg"] == 36.0
+    assert measured["source"].str.contains("Table 3.1").all()
+    assert pairs["discharge_time_s"].notna().sum() == 6
+    names = [SLIDING, ROLLING]
+    assert pair_of(pairs, "calibrated", names, study().runs[0].parameters) == {SLIDING: 0.21, ROLLING: 0.4}

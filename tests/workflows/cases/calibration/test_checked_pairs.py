@@ -1,0 +1,32 @@
+"""Pairs that a calibration found, simulated in tests that it did not use."""
+
+import shutil
+
+import pandas as pd
+import pytest
+
+from tests.support.calibration_study import ROLLING, SLIDING, study
+from workflows.cases.calibration.checked_pairs import check_pair, checked_means
+from workflows.cases.calibration.responses import RECOMMENDED
+
+
+def test_a_found_pair_is_checked_in_another_test(done, formula, tmp_path):
+    """A pair is simulated in a test that the calibration left out; asked again, no row stands twice."""
+    run = study(calibration={"tests": ["draw_down"], "repeats": 2}, fidelity="standard").runs[0].parameters
+    shutil.copy(done.folder / "repeats.csv", tmp_path)
+    check_pair(run, RECOMMENDED, tmp_path, 1)
+    table = check_pair(run, RECOMMENDED, tmp_path, 1)
+    assert len(table) == 2 and (table["particle_scale"] == 4.0).all()
+    assert table[SLIDING].iloc[0] == pytest.approx(done.pairs[RECOMMENDED][SLIDING])
+    with pytest.raises(ValueError, match="no pair 'nobody', there are recommended, calibrated"):
+        check_pair(run, "nobody", tmp_path, 1)
+
+
+def test_only_packings_of_one_pair_and_test_are_averaged(done):
+    """Rows of another value of the pair, or of another width, have means of their own: 35, 37 and 39."""
+    marks = {"pair": RECOMMENDED, "test": "draw_down", "particle_scale": 4.0}
+    rows = [(1, 43.0, 0.38, 35.0), (1, 60.0, 0.38, 37.0), (1, 60.0, 0.42, 39.0), (2, 60.0, 0.42, 39.0)]
+    table = pd.DataFrame(rows, columns=["seed", "width_mm", SLIDING, "shear_angle_deg"]).assign(**marks)
+    means = checked_means(table.assign(**{ROLLING: 0.2, "shear_angle_deg_uncertainty": 1.0}), done.problem)
+    assert means[["seeds", "mean"]].to_numpy().tolist() == [[1, 35.0], [1, 37.0], [2, 39.0]]
+    assert means["width_mm"].tolist() == [43.0, 60.0, 60.0]

@@ -1,0 +1,129 @@
+"""Figures and page of a calibration are made of its tables, those of one by a formula."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import yaml
+from matplotlib.figure import Figure
+
+from tests import REPOSITORY
+from tests.support.calibration_study import study
+from workflows.cases.calibration.boxes import SIMULATIONS
+from workflows.cases.calibration.responses import RECOMMENDED
+from workflows.report import markdown
+from workflows.report.page import write_page
+from workflows.report.page_parameters import page_parameters, page_templates
+from workflows.report.pages import page_of
+from workflows.report.products import (
+    job_of,
+    outputs_of,
+    paths_of,
+    products_of_study,
+    told_to,
+    write_product,
+)
+from workflows.report.sections import Pictures, Points, Table
+
+FIGURES = ["heaps", "response_maps", "family", "pairs_against_bands", "box_sizes", "calibration_progress"]
+
+
+def make(product, folder):
+    """Make a figure or tables of the study, with a folder in the place of results/calibration."""
+
+    def here(path):
+        path = Path(path)
+        return folder / path.relative_to("results/calibration") if path.parts[0] == "results" else REPOSITORY / path
+
+    outputs = {key: here(path) for key, path in outputs_of(product, "calibration").items()}
+    for path in outputs.values():
+        path.parent.mkdir(exist_ok=True)
+    files = {key: here(paths_of(source, study())) for key, source in product.inputs.items()}
+    write_product(product, job_of(files, told_to(product, study()), ["a remark"]), outputs)
+
+
+@pytest.fixture(scope="module")
+def folder(done, tmp_path_factory):
+    """The folder of the study with figures, summary, materials, forecast and what one simulation left."""
+    folder = tmp_path_factory.mktemp("results") / "calibration"
+    shutil.copytree(done.folder, folder)
+    pd.DataFrame({"solver_s": [3.0, 4.0], "by": "rates of a test"}).to_csv(folder / "forecast.csv", index=False)
+    cycle = folder / SIMULATIONS / "shear_box_0" / "cycle_000"
+    cycle.mkdir(parents=True)
+    cost = {"steps": 1000, "solver_s": 2.0, "particles": 30}
+    told = {"test": {"kind": "shear_box"}, "cost": cost, "solver_warnings": {"a small step": 3}}
+    (cycle / "state.json").write_text(json.dumps(told))
+    (cycle / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled once)\n")
+    with pytest.MonkeyPatch.context() as patch:
+        room = "workflows.cases.calibration"
+        patch.setattr(f"{room}.outcome.recommended_heaps", lambda done: ([], [pd.DataFrame({"response": []})]))
+        patch.setattr(f"{room}.plots.heaps.heaps", lambda pictures, remarks: Figure())
+        for product in products_of_study(study()).values():
+            make(product, folder)
+    return folder
+
+
+def sections(folder):
+    """Sections of the page."""
+    found = page_of("calibration").sections(page_parameters(study()), folder)
+    return {section.title: section.blocks for section in found}
+
+
+def test_figures_are_those_of_the_case():
+    """Six figures, and a job that writes the statements as the study's summary and the materials file."""
+    products = products_of_study(study())
+    assert [name for name, product in products.items() if product.is_figure] == FIGURES
+    assert set(products["statements"].tables.values()) == {"summary.csv", "materials.yaml"}
+
+
+def test_figures_are_made_of_the_tables(folder, done):
+    """Each figure has its table; the statements that are drawn are those of the summary."""
+    assert all((folder / "figures" / f"{name}.{kind}").is_file() for name in FIGURES for kind in ("png", "csv"))
+    summary, drawn = (pd.read_csv(folder / name) for name in ("summary.csv", "figures/pairs_against_bands.csv"))
+    pd.testing.assert_frame_equal(summary, drawn)
+    assert list(summary["pair"]) == [RECOMMENDED, "calibrated"]
+    written = yaml.safe_load((folder / "materials.yaml").read_text())["particles"]["river_gravel"]["contact"]
+    assert written["sliding_friction"] == pytest.approx(done.statements.iloc[0][done.problem.names[0]], abs=1e-4)
+
+
+def test_sections_tell_every_response(folder, done):
+    """Both pairs stand beside the measured bands; what was measured but not simulated is said to be so."""
+    table, points, _ = sections(folder)["Against what was measured"]
+    assert isinstance(table, Table) and len(table.data) == 2 and isinstance(points, Points)
+    assert any("Angle of repose" in said and "not simulated" in said for said in points.items)
+    simulated = next(block for block in sections(folder)["Responses over both frictions"] if isinstance(block, Table))
+    assert len(simulated.data) == len(done.simulations)
+
+
+def test_sections_show_every_figure_once(folder):
+    """No figure is left for the end of the page."""
+    blocks = [block for found in sections(folder).values() for block in found if isinstance(block, Pictures)]
+    assert sorted(name for block in blocks for name in block.names) == sorted(FIGURES)
+
+
+def test_sections_tell_the_cost_and_its_forecast(folder):
+    """One simulation of 2 s, against the 7 s of the forecast."""
+    (table,) = sections(folder)["Cost of the simulations"]
+    assert table.data[["test", "simulations", "solver_s"]].to_numpy().tolist() == [["shear box", 1, 2.0]]
+    assert "LIGGGHTS took 2 s" in table.note and "estimated: 7 s" in table.note and "rates of a test" in table.note
+
+
+def test_the_page_is_that_of_every_study(folder):
+    """The HTML page holds the sections, boxes, versions and warnings, and nothing about wear."""
+    assert all(Path(template).is_file() for template in page_templates(study()))
+    write_page(folder / "report.html", page_parameters(study()))
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert page.count("<img ") == len(FIGURES) and "LIGGGHTS-PUBLIC 3.8.0" in page and "3 times" in page
+    assert all(f"<td>{run.name}</td>" in page for run in study().runs)
+    assert "Wear law" not in page and "Balance of volumes" not in page and 'href="#cost"' not in page
+
+
+def test_the_page_in_docs_has_the_same_sections(folder, tmp_path):
+    """It names date, version and scale, and its pictures lie beside it."""
+    path = markdown.write_results(folder, tmp_path, study())
+    page = path.read_text(encoding="utf-8")
+    assert "LIGGGHTS-PUBLIC 3.8.0, page" in page and "particles at scale 5" in page
+    assert [line[3:] for line in page.splitlines() if line.startswith("## ")] == list(sections(folder))
+    assert {found.name for found in tmp_path.glob("*.png")} == {f"calibration_quick_{name}.png" for name in FIGURES}
