@@ -15,22 +15,23 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.measure import Measure, measured
-from workflows.cases.calibration.driver import SIMULATIONS
+from workflows.cases.calibration.boxes import SIMULATIONS
 from workflows.engine import state
 from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs
 from workflows.report.markdown import markdown
-from workflows.report.page import FORECAST, FURTHER_COSTS, cost_totals
+from workflows.report.page import FORECAST, cost_totals
 
 RESULTS = Path("results")
 SECONDS_PER_HOUR = 3600.0
 UNTOLD = "fidelity not told"  # by forecasts of earlier versions
+FURTHER_COSTS = {"packing_profiles": "packings/solver_cost.csv"}  # job that calls the solver, besides beds and runs
 SIMULATED = "simulations"  # stands for all solver jobs of a calibration
 
 
 def study_jobs(folder: Path) -> pd.DataFrame:
     """Return the cost of every job that left a record in a study's folder, with its forecast where there is one.
 
-    Columns as from `analysis.cost.job_costs` and `against_forecast`; empty where the solver left no record.
+    Columns as from `report.cost.job_costs` and `against_forecast`; empty where the solver left no record.
     """
     costs = {f"worn_run_{path.parent.name}": pd.read_csv(path) for path in sorted(folder.glob("*/cost.csv"))}
     costs |= {f"settled_bed_{path.parent.name}": pd.read_csv(path) for path in sorted(folder.glob("beds/*/cost.csv"))}

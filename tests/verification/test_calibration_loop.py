@@ -6,11 +6,11 @@ import pytest
 
 from postproc.inference.loop import packing_seed
 from postproc.inference.posterior import densest, interval
+from workflows.cases.calibration.boxes import test_of as bulk_test_of
 from workflows.cases.calibration.case import PUBLISHED
 from workflows.cases.calibration.driver import compared_pairs, read_posterior, run_calibration
-from workflows.cases.calibration.driver import test_of as bulk_test_of
+from workflows.cases.calibration.simulations import simulate_all
 from workflows.config.design import load_study
-from workflows.engine.bulk_simulations import simulate_all
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 
