@@ -8,7 +8,6 @@ from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
 from workflows.config.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
-from workflows.cases.sliding_sample.study import plain_runs
 from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
 from workflows.engine.job import let_jobs_import
 from workflows.forecast.rates import rates_file
@@ -131,12 +130,6 @@ def bed_restart_of_run(folder):
         return [f"results/{wildcards.study}/{folder}/{bed}/bed.restart"] if bed else []
 
     return paths
-
-
-def restarts_of_plain_beds(wildcards):
-    """The restart files of the beds of a study's plain runs, in the order of the runs."""
-    study = study_of(wildcards)
-    return [f"results/{study.name}/beds/{study.bed_of(name)}/bed.restart" for name in plain_runs(study)]
 
 
 def same_run(wildcards):

@@ -55,6 +55,7 @@ class SlidingSample(Case):
     run_templates = ("lowered_bed", "sliding_sample")
     bed_template = "settled_bed"
     more_templates = ("packed_container", "bed_contacts", "collision")
+    figure_modules = ("figures", "particle_size.figures")
     shared_figures = ("worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")
@@ -132,8 +133,8 @@ class SlidingSample(Case):
 
     def further_work(self, study: Any) -> tuple[Work, ...]:
         """Return the containers in which the particles of a study of particle size are packed."""
-        from workflows.cases.sliding_sample.particle_size.packings import packed_runs
-        from workflows.cases.sliding_sample.particle_size.work import packing_work
+        from workflows.cases.sliding_sample.particle_size.packings import packing_work
+        from workflows.cases.sliding_sample.particle_size.study import packed_runs
 
         return (packing_work(packed_runs(study), to_si(study.settings)["packing"]),) if varies_scale(study) else ()
 

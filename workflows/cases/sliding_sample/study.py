@@ -7,7 +7,6 @@ import re
 from typing import Any
 
 from workflows.config.design import PARTICLE_SCALE, REPOSITORY, Study
-from workflows.engine.case import Run
 from workflows.engine.derived import flow_measures
 from workflows.report.text import name_and_unit
 
@@ -41,11 +40,6 @@ def varies_scale(study: Study) -> bool:
 def published_flow(study: Study) -> str:
     """Return the table of what the source tells of the flow: of its chapter 4 for particle size, else of chapter 3."""
     return f"config/published/{'particle_size' if varies_scale(study) else 'screening'}_results.csv"
-
-
-def plain_runs(study: Study) -> dict[str, Run]:
-    """Return the plain runs of a study, by name."""
-    return {run.name: run for run in study.runs if run.surface == "plain"}
 
 
 def factor_labels(study: Study) -> dict[str, str]:
@@ -104,26 +98,6 @@ def replicate_settings(study: Study) -> dict[str, str]:
         for stem, rows in zip(stems, groups.values(), strict=True)
     ]
     return {row: name for name, rows in zip(names, groups.values(), strict=True) for row in rows}
-
-
-def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
-    """Return by row pattern, real particles and scale of its convex run, see `guidance`."""
-    return {run.row: _bumps_and_particles(run.parameters) for run in study.runs if run.parameters["pattern"]}
-
-
-def _bumps_and_particles(parameters: dict[str, Any]) -> dict[str, Any]:
-    pattern, particle = parameters["pattern"], parameters["particle"]
-    lengths = ("major_radius", "minor_radius", "height", "column_spacing", "row_spacing")
-    return {
-        "pattern": {name: pattern[f"{name}_m"] for name in lengths}
-        | {"across": pattern["major_axis"] == "across_travel"},
-        "particles": {
-            "median_diameter": particle["median_diameter_m"] / particle["scale"],
-            "diameters": [diameter / particle["scale"] for diameter in particle["diameters_m"]],
-            "mass_fractions": particle["mass_fractions"],
-        },
-        "scale": particle["scale"],
-    }
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:

@@ -1,15 +1,19 @@
-"""Collisions of single particles in units of their size, which coarse graining must not change.
+"""Collisions of single particles with LIGGGHTS, in units of their size: does a scaled one do the same as a real one?
 
-Units (Yan 2022, Eq 4.6 and 4.7): lengths in the radius R, velocities in sqrt(E*/rho), so times in R sqrt(rho/E*),
-forces in E* R^2, torques in E* R^3.
+Coarse graining must not change them (Yan 2022, section 4.2). Units (Eq 4.6 and 4.7): lengths in the radius R,
+velocities in sqrt(E*/rho), so times in R sqrt(rho/E*), forces in E* R^2, torques in E* R^3.
+
+The parameters of a test, all SI: particle, wall_material, solver and deck as those of a bulk test (bulk_tests.py), and
+collision with speed_m_per_s and sideways_speed_m_per_s, before contact.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,6 +21,13 @@ import pandas as pd
 from postproc.readers.dump_text import read_frames
 from postproc.reference.collision import Collision, collision, reduced
 from postproc.reference.sphere_contact import effective_modulus
+from workflows.cases.sliding_sample.particle_size.study import by_scale
+from workflows.engine import decks as deck
+from workflows.engine.bulk_tests import bulk_materials, time_step
+from workflows.engine.case import Parameters
+from workflows.engine.derived import WALLS, derived_materials, youngs_modulus
+from workflows.engine.solver import DECK, run_deck
+from workflows.engine.templates import render
 
 DUMP = "collision.dump"
 COLUMNS = (
@@ -26,6 +37,14 @@ COLUMNS = (
 # Collision -> its first sphere and the other one, None for the wall, as numbered in templates/collision.in.j2.
 COLLISIONS = {"pair": (1, 2), "oblique pair": (3, 4), "wall": (5, None), "oblique wall": (6, None)}
 DOWN = np.array([0.0, 0.0, -1.0])  # where the wall is
+MODELS = ("cdt", "epsd2")  # rolling types A and C
+SPEEDS = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}  # before contact: of beds at rest and in motion
+EXACT_STEP = 0.002  # -, of the Rayleigh time: collisions are then within 0.1 % of the closed form
+DRAWN_POINTS = 400  # of a collision's history
+GAP_RADII = 0.005  # -, between the spheres at the start
+DOMAIN_RADII = 10.0  # -, half the domain's width
+AFTER = 1.1  # -, times the longest collision: all have parted
+NUMBER_FORMAT = " ".join(["%.12g"] * (len(COLUMNS) - 1))
 
 
 @dataclass(frozen=True)
@@ -73,6 +92,68 @@ class Spheres:
     def closed_forms(self, speed: float) -> dict[str, Collision]:
         """Return the closed form of every collision, without the oblique ones."""
         return {kind: self.closed_form(kind, speed) for kind in ("pair", "wall")}
+
+
+# ---------------------------------------------------------------- with the solver
+
+
+def collision_deck(test: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of the deck of collisions."""
+    particle, asked = test["particle"], test["collision"]
+    spheres, step = spheres_of(test), time_step(test)
+    materials = derived_materials(bulk_materials({**test, "floor_material": test["wall_material"]}))
+    integration = {**deck.integration(test, step, particle, 1), "gravity_m_per_s2": 0.0}
+    integration.pop("report_steps")
+    return {
+        **integration,
+        **deck.material_tables(particle, test["wall_material"], test["wall_material"], materials),
+        "type_names": ["particle", "wall", "wall"],
+        "ends": WALLS,
+        "radius_m": spheres.radius,
+        "smaller_radius_m": spheres.smaller_radius,
+        "gap_m": GAP_RADII * spheres.radius,
+        "speed_m_per_s": asked["speed_m_per_s"],
+        "sideways_speed_m_per_s": asked["sideways_speed_m_per_s"],
+        "spin_rad_per_s": asked["sideways_speed_m_per_s"] / spheres.radius,
+        "half_width_m": DOMAIN_RADII * spheres.radius,
+        "density_kg_per_m3": particle["density_kg_per_m3"],
+        "number_format": NUMBER_FORMAT,
+        "collision_steps": deck.steps(AFTER * _longest(test), step),
+    }
+
+
+def spheres_of(test: Mapping[str, Any]) -> Spheres:
+    """Return what is known of a test: the median particle, the smallest one, and the wall."""
+    particle, wall = test["particle"], test["wall_material"]
+    return Spheres(
+        radius=particle["median_diameter_m"] / 2.0,
+        smaller_radius=min(particle["diameters_m"]) / 2.0,
+        density=particle["density_kg_per_m3"],
+        modulus=youngs_modulus(particle["shear_modulus_pa"], particle["poissons_ratio"]),
+        poissons_ratio=particle["poissons_ratio"],
+        wall_modulus=youngs_modulus(wall["shear_modulus_pa"], wall["poissons_ratio"]),
+        wall_poissons_ratio=wall["poissons_ratio"],
+        restitution=particle["contact"]["restitution"],
+        wall_restitution=wall["contact"]["restitution"],
+    )
+
+
+def _longest(test: Mapping[str, Any]) -> float:
+    """Return how long (s) it takes from the start until all have parted."""
+    speed = test["collision"]["speed_m_per_s"]
+    lasting = [each.time[-1] for each in spheres_of(test).closed_forms(speed).values()]
+    return GAP_RADII * test["particle"]["median_diameter_m"] / 2.0 / speed + max(lasting)
+
+
+def simulate(test: Mapping[str, Any], folder: Path) -> Path:
+    """Run a test in a folder and return the path of its dump. Raises SolverError."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / DECK).write_text(render("collision", collision_deck(test)))
+    run_deck(folder)
+    return folder / DUMP
+
+
+# ---------------------------------------------------------------- what collisions left
 
 
 def read_collisions(path: str | Path, spheres: Spheres, time_step: float) -> pd.DataFrame:
@@ -169,3 +250,43 @@ def spread_over_scales(measures: pd.DataFrame) -> pd.DataFrame:
     long = measures.melt(id_vars=[*keys, "particle_scale"], var_name="measure").groupby([*keys, "measure"], sort=False)
     range_, most = long["value"].max() - long["value"].min(), long["value"].agg(lambda values: values.abs().max())
     return (range_[most > 0.0] / most[most > 0.0]).rename("spread").reset_index()
+
+
+# ---------------------------------------------------------------- the collisions of a study
+
+
+def collision_tests(runs: Mapping[str, Parameters]) -> list[dict[str, Any]]:
+    """Return collisions of a study's particles with each other and its sample, of all scales and rolling types."""
+    return [
+        {
+            "particle": run["particle"],
+            "wall_material": run["sample_material"],
+            "solver": {**run["solver"], "rayleigh_fraction": EXACT_STEP, "rolling_friction": model},
+            "deck": run["deck"],
+            "collision": SPEEDS,
+        }
+        for model in MODELS
+        for run in by_scale(runs).values()
+    ]
+
+
+def collision_tables(tests: Sequence[Mapping[str, Any]], folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Simulate collisions; return their histories, thinned out, and their measures."""
+    histories, measures = [], []
+    for test in tests:
+        model, scale = test["solver"]["rolling_friction"], test["particle"]["scale"]
+        names = {"rolling_friction": model, "particle_scale": scale}
+        dump = simulate(test, folder / f"{model}_{scale:g}")
+        found = read_collisions(dump, spheres_of(test), time_step(test))
+        dump.unlink()  # 10 MB, and one second makes it again
+        measures.append(collision_measures(found).assign(**names))
+        every = [one.iloc[:: max(len(one) // DRAWN_POINTS, 1)] for _, one in found.groupby("collision", sort=False)]
+        histories.append(pd.concat(every).assign(**names))
+    return pd.concat(histories, ignore_index=True), pd.concat(measures, ignore_index=True)
+
+
+def closed_forms(test: Mapping[str, Any]) -> dict[str, pd.DataFrame]:
+    """Return the closed form of every head-on collision of a test without unit, see `dimensionless`."""
+    spheres = spheres_of(test)
+    forms = spheres.closed_forms(test["collision"]["speed_m_per_s"])
+    return {kind: dimensionless(form, spheres.units(kind)) for kind, form in forms.items()}

@@ -1,10 +1,13 @@
-"""Packings and single contacts at every particle scale of a study (Yan 2022, sections 4.2, 4.3.1 and 4.5.1.1)."""
+"""Packings at every particle scale of a study (Yan 2022, sections 4.3.1 and 4.5.1.1): containers, with what they will
+cost the solver, and beds before and behind a sample.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
@@ -13,74 +16,36 @@ from postproc.flow.bulk_test import HEAP
 from postproc.flow.packing import MEASURES, loose_and_dense, packing_profile, within
 from postproc.readers.cycle_folders import cycle_files
 from postproc.tables.display import in_display_units
-from workflows.cases.sliding_sample.particle_size.collision import collision_measures, read_collisions
-from workflows.cases.sliding_sample.particle_size.collision_tests import simulate, spheres_of
+from postproc.wear.caps import GRAVITY
+from workflows.cases.sliding_sample.particle_size.study import by_scale
+from workflows.engine import bulk_tests
 from workflows.engine import decks as deck
-from workflows.engine.bulk_simulations import FILLED, simulated, simulation_folder
-from workflows.engine.bulk_tests import time_step
+from workflows.engine.bulk_simulations import (
+    FILLED,
+    POURED,
+    filled_particles,
+    simulated,
+    simulation_bytes,
+    simulation_folder,
+)
 from workflows.engine.case import Parameters
 from workflows.engine.chain import RESTART
 from workflows.engine.derived import WINDOW
 from workflows.engine.solver import DECK, run_deck
 from workflows.engine.state import read_state
 from workflows.engine.templates import render, used_sections
+from workflows.engine.work import EMPTY_DIAMETERS, Stage, Work
 
-if TYPE_CHECKING:
-    from workflows.config.design import Study
-
-MODELS = ("cdt", "epsd2")  # rolling types A and C
-COLLISION = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}  # before contact: of beds at rest and in motion
-EXACT_STEP = 0.002  # -, of the Rayleigh time: collisions are then within 0.1 % of the closed form
-DRAWN_POINTS = 400  # of a collision's history
 REST_KEYS = ("energy_fraction", "check_interval_s", "calm_checks", "longest_s")
 END_DIAMETERS = 5.0  # -, of a bed next to its end walls, left out
 LEAVING_DIAMETERS = 2.0  # -, of the wake next to where it leaves a window, left out: it may slide into the room there
 AT_REST_BEHIND = 0.2  # m behind the sample's back edge the bed is at rest again; measured: 0.2 to 0.4
 LOOKED_AT = 0.75  # -, of the bed's thickness, from the floor: what lies above is disturbed by the surface
-
-
-def by_scale(runs: Mapping[str, Parameters]) -> dict[float, Parameters]:
-    """Return the parameters of the first run of every particle scale, smallest first."""
-    found: dict[float, Parameters] = {}
-    for run in runs.values():
-        found.setdefault(run["particle"]["scale"], run)
-    return dict(sorted(found.items()))
-
-
-def collision_tests(runs: Mapping[str, Parameters]) -> list[dict[str, Any]]:
-    """Return collisions of a study's particles with each other and its sample, of all scales and rolling types."""
-    return [
-        {
-            "particle": run["particle"],
-            "wall_material": run["sample_material"],
-            "solver": {**run["solver"], "rayleigh_fraction": EXACT_STEP, "rolling_friction": model},
-            "deck": run["deck"],
-            "collision": COLLISION,
-        }
-        for model in MODELS
-        for run in by_scale(runs).values()
-    ]
-
-
-def collision_tables(runs: Mapping[str, Parameters], folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Simulate all collisions of a study; return their histories, thinned out, and their measures."""
-    histories, measures = [], []
-    for test in collision_tests(runs):
-        model, scale = test["solver"]["rolling_friction"], test["particle"]["scale"]
-        names = {"rolling_friction": model, "particle_scale": scale}
-        dump = simulate(test, folder / f"{model}_{scale:g}")
-        found = read_collisions(dump, spheres_of(test), time_step(test))
-        dump.unlink()  # 10 MB, and one second makes it again
-        measures.append(collision_measures(found).assign(**names))
-        every = [one.iloc[:: max(len(one) // DRAWN_POINTS, 1)] for _, one in found.groupby("collision", sort=False)]
-        histories.append(pd.concat(every).assign(**names))
-    return pd.concat(histories, ignore_index=True), pd.concat(measures, ignore_index=True)
-
-
-def packed_runs(study: Study) -> dict[str, Parameters]:
-    """Return the runs whose particles are packed in containers: those chosen, or those of the whole design."""
-    runs = study.all_runs if study.settings["packing"]["every_scale"] else study.runs
-    return {run.name: run.parameters for run in runs}
+JOB = "packing_profiles"  # rule that simulates all containers of a study, one after the other
+# How long a container takes until rest is not known before it is simulated: scaled from three that were, at particle
+# scales 8, 6 and 2.
+FILLING_FREE_FALLS = 1.45  # -, until what is poured rests, in free falls through the filling; measured 1.35 to 1.64
+RESTING_FREE_FALLS = 1.0  # -, from the end of the shaking until rest, in free falls of the filled height
 
 
 def container(run: Parameters, packing: Mapping[str, Any]) -> dict[str, Any]:
@@ -125,6 +90,31 @@ def packing_costs(runs: Mapping[str, Parameters], packing: Mapping[str, Any], fo
     tests = {scale: container(run, packing) for scale, run in by_scale(runs).items()}
     costs = [read_state(simulation_folder(test, folder), 0)["cost"] for test in tests.values()]
     return pd.DataFrame(costs, index=pd.Index(tests, name="particle_scale")).dropna(axis="columns").reset_index()
+
+
+def packing_work(runs: Mapping[str, Parameters], packing: Mapping[str, Any]) -> Work:
+    """Return the job of a container per particle scale; packing: the study's settings of it, SI."""
+    found = (container_stages(container(run, packing)) for run in by_scale(runs).values())
+    stages = tuple(stage for stages in found for stage in stages)
+    return Work(JOB, (), stages, disk_bytes=simulation_bytes(stages))
+
+
+def container_stages(test: Mapping[str, Any]) -> tuple[Stage, ...]:
+    """Return the stages of a container: filling until rest, then shaking and what follows until rest."""
+    step, filled = bulk_tests.time_step(test), filled_particles(test)
+    height = test["box"]["fill_height_m"]
+    levelled = filled * (1.0 - EMPTY_DIAMETERS * test["particle"]["median_diameter_m"] / height)
+    filling = FILLING_FREE_FALLS * free_fall(bulk_tests.packed_container(test)["fill_top_m"])
+    shaking = test["shaking"]["duration_s"] + RESTING_FREE_FALLS * free_fall(height)
+    return (
+        Stage(1, deck.steps(filling, step), POURED * filled),
+        Stage(0, deck.steps(shaking, step), levelled, moving=True),
+    )
+
+
+def free_fall(height: float) -> float:
+    """Return how long (s) a fall through a height (m) takes."""
+    return math.sqrt(2.0 * height / GRAVITY)
 
 
 def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:

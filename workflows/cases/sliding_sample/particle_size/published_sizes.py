@@ -138,7 +138,7 @@ def _measures(steady: pd.DataFrame, profiles: pd.DataFrame) -> dict[str, pd.Data
 def critical_sentences(critical: Crossing | None, published: float, wear: pd.DataFrame, unsteady: int) -> list[str]:
     """Return what a study tells of the critical scale beside the published one, with the reasons for a difference.
 
-    published: scale; wear: as from `particle_size.wear_by_scale`; unsteady: runs whose flow or wear is not steady
+    published: scale; wear: as from `wear_by_scale.wear_by_scale`; unsteady: runs whose flow or wear is not steady
     """
     scales = sorted(set(wear["particle_scale"]))
     table = wear.pivot(index="row", columns="curve", values="relative_wear")

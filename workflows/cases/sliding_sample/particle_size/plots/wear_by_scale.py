@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from postproc.plots.style import COLOURS, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
 from postproc.statistics.lines import FEWEST_POINTS, Crossing, fitted_line
-from workflows.cases.sliding_sample.particle_size.plots.packing import MARKERS, scale_colours
+from workflows.cases.sliding_sample.particle_size.plots.contacts import MARKERS, PUBLISHED_MARKS, scale_colours
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS
 
 CURVES = {  # colour, marker and name
@@ -31,7 +31,6 @@ MEASURE_NAMES = {
     "relative_velocity": "Relative velocity of\nthe particles (%)",
     "relative_wear_rate": "Wear rate over the\nlargest of all runs (%)",
 }
-PUBLISHED_MARKS = {"about": "D", "above": "^", "below": "v"}
 POINTS = 50  # of a drawn line
 ROOM = 0.08  # -, of the scales, beside them
 MOST_TICKS = 8  # round a spider chart
@@ -42,7 +41,7 @@ def wear_against_scale(
 ) -> Figure:
     """Draw relative wear (-) against particle scale with fitted lines, and the published lines beside them.
 
-    wear: as from `analysis.particle_size.wear_by_scale`; published: curve, intercept, slope, source
+    wear: as from `wear_by_scale.wear_by_scale`; published: curve, intercept, slope, source
     critical: where convex and plain meet, with its interval as a bar at the bottom; None where too few scales tell
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -115,7 +114,7 @@ def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remar
 def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw relative velocity and relative wear rate (%) in the steady window against particle scale, with deviations.
 
-    table: as from `analysis.published_sizes.steady_by_scale`; hollow where the window is not steady
+    table: as from `published_sizes.steady_by_scale`; hollow where the window is not steady
     published: quantity, surface, scale_from, scale_to, relation, value, source; of the two measures
     """
     figure = new_figure(remarks)

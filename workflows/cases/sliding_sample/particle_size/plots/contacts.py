@@ -1,8 +1,10 @@
-"""Packings: contacts per particle and porosity by layer of a container, and of a bed ahead of a sample and behind."""
+"""Contacts of particles by scale: packings of containers and of beds ahead of a sample and behind it, and single
+collisions in units of their size, one curve for all.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import matplotlib as mpl
 import pandas as pd
@@ -17,9 +19,16 @@ QUANTITIES = {"coordination_number": "Contacts of a particle (-)", "porosity": "
 WHOLE = "porosity_whole_particles"
 BED_STATES = {"before": ("#0072B2", "o"), "after": ("#D55E00", "s")}
 BED_NAMES = {"before": "ahead of the sample", "after": "behind it"}
-MARKS = {"above": "^", "below": "v", "about": "D"}
+PUBLISHED_MARKS = {"about": "D", "above": "^", "below": "v"}
 RANGE_COLOUR = "#e5e5e5"
-MARKERS = "osD^v<>P"
+MARKERS = "osD^v<>P"  # of particle scales
+MODEL_SHADES = {"cdt": "#0072B2", "epsd2": "#D55E00"}
+MODEL_NAMES = {"cdt": "type A (cdt)", "epsd2": "type C (epsd2)"}
+MARKS_PER_CURVE = 8  # of a collision
+NORMAL = {"overlap": "Overlap / R (-)", "normal_force": "Normal force / (E* R²) (-)"}
+# Not the torque: where a sphere has stopped turning, type A turns it to and fro from step to step.
+TANGENTIAL = {"tangential_force": "Tangential force\n/ (E* R²) (-)", "spin": r"Spin · $R\, /\, \sqrt{E^*/\rho}$ (-)"}
+COLLISION_TITLES = {"pair": "two particles, head-on", "wall": "particle and wall, head-on"}
 
 
 def scale_colours(scales: Sequence[float]) -> dict[float, tuple]:
@@ -31,7 +40,7 @@ def scale_colours(scales: Sequence[float]) -> dict[float, tuple]:
 def packing_profiles(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw coordination number and porosity against height (mm): loose, shaken, and their difference, by scale.
 
-    table: as from `analysis.packing.loose_and_dense`, with particle_scale and height_mm
+    table: as from `flow.packing.loose_and_dense`, with particle_scale and height_mm
     published: state, quantity, relation (above, below), value and source, drawn as grey ranges
     """
     scales = sorted(set(table["particle_scale"]))
@@ -86,7 +95,7 @@ def bed_packing(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[
         for _, bound in published[published["quantity"] == quantity].iterrows():
             shade = BED_STATES[bound["state"]][0]
             drawn = {
-                "marker": MARKS[bound["relation"]],
+                "marker": PUBLISHED_MARKS[bound["relation"]],
                 "linestyle": "-",
                 "markerfacecolor": "white",
                 "label": "_bound",
@@ -99,7 +108,66 @@ def bed_packing(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[
     if not published.empty:
         source = published["source"].iloc[0].partition(",")[0]
         for relation in dict.fromkeys(published["relation"]):
-            drawn = {"marker": MARKS[relation], "markerfacecolor": "white", "color": OTHER_COLOUR, "linewidth": 0.8}
+            drawn = {
+                "marker": PUBLISHED_MARKS[relation],
+                "markerfacecolor": "white",
+                "color": OTHER_COLOUR,
+                "linewidth": 0.8,
+            }
             handles.append(Line2D([], [], label=f"{source}: {relation}", **drawn))
     figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 5))
     return figure
+
+
+# ---------------------------------------------------------------- single collisions
+
+
+def collisions(histories: pd.DataFrame, closed: Mapping[str, pd.DataFrame], remarks: Sequence[str]) -> Figure:
+    """Draw overlap and normal force of head-on collisions, and what rolling friction acts on in an oblique one.
+
+    histories: as from `collision.read_collisions` with particle_scale and rolling_friction
+    closed: {collision: closed form, as from `collision.dimensionless`}, drawn as lines. Everything
+    without unit; where scales agree their marks lie on one curve.
+    """
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    grid = figure.subplots(2, 3, sharex="col")
+    first = histories["rolling_friction"].iloc[0]  # turns nothing in head-on collisions
+    for column, kind in enumerate(COLLISION_TITLES):
+        one = histories[(histories["collision"] == kind) & (histories["rolling_friction"] == first)]
+        for axes, (name, label) in zip(grid[:, column], NORMAL.items(), strict=True):
+            axes.plot(closed[kind]["time"], closed[kind][name], color="black", linewidth=1.0)
+            _marks(axes, one, name, "#0072B2")
+            axes.set_ylabel(label)
+        grid[0, column].set_title(COLLISION_TITLES[kind], loc="left", fontsize=SMALLEST_FONT)
+    oblique = histories[histories["collision"] == "oblique pair"]
+    for axes, (name, label) in zip(grid[:, -1], TANGENTIAL.items(), strict=True):
+        for model, one in oblique.groupby("rolling_friction", sort=False):
+            _marks(axes, one, name, MODEL_SHADES[model], joined=True)
+        axes.set_ylabel(label)
+    grid[0, -1].set_title("oblique, with spin", loc="left", fontsize=SMALLEST_FONT)
+    for axes in grid[-1]:
+        axes.set_xlabel(r"Time · $\sqrt{E^*/\rho}\, /\, R$ (-)")
+    _collision_legend(figure, histories)
+    return figure
+
+
+def _marks(axes: Axes, table: pd.DataFrame, name: str, shade: str, joined: bool = False) -> None:
+    """Mark the curve of every scale at points of its own, so that marks on one curve do not hide each other."""
+    scales = list(dict.fromkeys(table["particle_scale"]))
+    for k, scale in enumerate(scales):
+        one = table[table["particle_scale"] == scale]
+        every = max(len(one) // MARKS_PER_CURVE, 1)
+        drawn = {"color": shade, "markerfacecolor": "white", "markersize": 4, "label": f"scale {scale:g}"}
+        drawn["markevery"] = (k * every // len(scales), every)
+        drawn["linestyle"] = "-" if joined and k == 0 else "none"
+        axes.plot(one["time"], one[name], marker=MARKERS[k % len(MARKERS)], linewidth=0.8, **drawn)
+
+
+def _collision_legend(figure: Figure, histories: pd.DataFrame) -> None:
+    handles = [Line2D([], [], color="black", linewidth=1.0, label="Hertz with viscoelastic damping")]
+    for k, scale in enumerate(dict.fromkeys(histories["particle_scale"])):
+        drawn = {"marker": MARKERS[k % len(MARKERS)], "linestyle": "", "color": "#595959", "markerfacecolor": "white"}
+        handles.append(Line2D([], [], label=f"scale {scale:g}", **drawn))
+    for model in dict.fromkeys(histories["rolling_friction"]):
+        handles.append(Line2D([], [], color=MODEL_SHADES[model], label=MODEL_NAMES[model]))
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 4))

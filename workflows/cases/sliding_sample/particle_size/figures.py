@@ -1,0 +1,392 @@
+"""Figures and tables of studies of particle size: wear against scale, flow by layer, packings, single collisions."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from workflows.cases.sliding_sample.particle_size.study import (
+    bed_floors,
+    bumps_and_particles,
+    plain_runs,
+    settled_beds,
+)
+from workflows.cases.sliding_sample.study import flow_runs, varies_scale
+from workflows.config.units import to_si
+from workflows.engine.state import digest
+from workflows.engine.templates import template_sources
+from workflows.report.page_parameters import is_deformed
+from workflows.report.products import Job, OfStudy, every_run, figure, tables
+
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
+SUMMARY, PROFILES = "results/{study}/summary.csv", "results/{study}/flow/profiles.csv"
+PUBLISHED_LINES = "config/published/particle_size_lines.csv"
+PUBLISHED_SIZES = "config/published/particle_size_results.csv"
+PUBLISHED_PACKING = "config/published/packing.csv"
+PUBLISHED_SCALES = (1.0, 8.0)  # of the source
+size_figure = partial(figure, "Particle size", when=varies_scale)
+
+
+def of_template(name: str) -> OfStudy:
+    """Return what a product that runs a deck is told of its template: another text makes it again."""
+    return lambda study: digest(template_sources(name))
+
+
+def below(folder: str) -> OfStudy:
+    """Return what a product is told of the folder in which it simulates."""
+    return lambda study: f"results/{study.name}/particle_size/{folder}"
+
+
+# ---------------------------------------------------------------- wear
+
+
+@size_figure(
+    "Wear against particle scale",
+    inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
+    tables={"lines": "particle_size/lines.csv", "critical": "particle_size/critical_scale.csv"},
+    caption="""
+    Archard volume of the plain sample, of the convex sample, its base and its bumps, over that of the plain sample
+    with the smallest particles simulated. Full lines: least squares, with one standard error. Dotted: the source's
+    lines (Yan 2022, Eq 4.14 to 4.16, bumps as their difference), which are relative to scale 1. Dashed with grey: the
+    scale at which both samples wear alike, and its 95 % interval by Fieller's rule, from the difference of convex and
+    plain sample row by row. The counterpart of Yan 2022, Fig 4.14.
+    """,
+)
+def wear_against_scale(job: Job) -> Any:
+    """Draw wear against particle scale with fitted lines and the critical scale."""
+    import pandas as pd
+
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
+    from workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
+
+    wear, published = by_scale.wear_by_scale(read_summary(job.files.summary)), pd.read_csv(job.files.published)
+    critical = by_scale.critical_scale(wear)
+    reference = f"relative to the plain sample at particle scale {wear['reference_scale'].iloc[0]:g}"
+    remarks = [*job.remarks, reference, by_scale.critical_scale_text(critical)]
+    lines = by_scale.beside_published(by_scale.wear_lines(wear), published)
+    told = pd.DataFrame([asdict(critical)] if critical else [], columns=["value", "low", "high", "bounded"])
+    return drawn.wear_against_scale(wear, published, critical, remarks), wear, {"lines": lines, "critical": told}
+
+
+@size_figure(
+    "Wear against ratios of size",
+    inputs={"wear": "results/{study}/figures/wear_against_scale.csv", "published": PUBLISHED_LINES},
+    told={"rows": bumps_and_particles},
+    tables={"guidance": "particle_size/guidance.csv"},
+    caption="""
+    Wear of the convex over that of the plain sample against four ratios of the median particle to a bump (Yan 2022,
+    Eq 4.18 to 4.21). Dotted: the source's lines. With one pattern all four ratios grow together, so the figure cannot
+    tell which of them decides; the source holds that it is the equivalent radius, with wear reduced below 1. The
+    table in `particle_size/guidance.csv` has the ratios of real particles, the largest scale that they allow, and how
+    many times the wear at real size the source's line gives at the scale simulated. The counterpart of Yan 2022, Fig
+    4.17.
+    """,
+)
+def wear_against_size_ratios(job: Job) -> Any:
+    """Draw convex over plain wear against ratios of particle to bump; tell what these let expect."""
+    import numpy as np
+    import pandas as pd
+
+    from postproc.reference.size_ratios import size_ratios
+    from workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
+    from workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance_table
+    from workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
+
+    wear, lines = pd.read_csv(job.files.wear, dtype={"row": str}), pd.read_csv(job.files.published)
+    rows = job.told.rows
+    patterns = {row: Pattern(**given["pattern"]) for row, given in rows.items()}
+    real = Particles(**next(iter(rows.values()))["particles"])
+    scales = {row: given["scale"] for row, given in rows.items()}
+    ratios = {row: size_ratios(scales[row] * real.median_diameter, *patterns[row].bump) for row in rows}
+    table = by_scale.wear_by_size_ratio(wear, ratios)
+    published = by_scale.published_by_size_ratio(lines, np.linspace(*PUBLISHED_SCALES, 71))
+    picture = drawn.wear_against_size_ratios(table, published, job.remarks)
+    return picture, table, {"guidance": guidance_table(patterns, real, scales, lines)}
+
+
+@size_figure(
+    "Relative velocity and wear rate by particle scale",
+    inputs={"summary": SUMMARY, "steady": "results/{study}/flow/steady.csv", "published": PUBLISHED_SIZES},
+    caption="""
+    Relative velocity of the particles (Yan 2022, Eq 4.10) and wear rate over the largest of all runs (Eq 4.12), means
+    and standard deviations over the steady window, of 10 mm of travel each; hollow where the window is not steady by
+    the study's own criterion, and the mean then is that of what comes nearest. Open marks with dotted lines: what the
+    source's text gives. The counterpart of Yan 2022, Fig 4.13.
+    """,
+)
+def steady_by_scale(job: Job) -> Any:
+    """Draw relative velocity and wear rate in their steady windows against particle scale."""
+    import pandas as pd
+
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.particle_size import published_sizes
+    from workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
+
+    scales = read_summary(job.files.summary).set_index("run")["particle_scale"].to_dict()
+    table = published_sizes.steady_by_scale(read_summary(job.files.steady), scales)
+    return drawn.steady_by_scale(table, pd.read_csv(job.files.published), job.remarks), table
+
+
+@size_figure(
+    "Wear of the smallest and the largest particles",
+    inputs={"summary": SUMMARY, "surfaces": every_run("worn_surface.vtu")},
+    told={"deformed": is_deformed},
+    digits=6,
+    caption="""
+    The worn samples from above, by the smallest and by the largest particles simulated, all on one colour scale. The
+    source's text: scratches along the travel and paths between the bumps by small particles, wear all over the convex
+    sample by large ones. The counterpart of Yan 2022, Fig 4.15 and 4.16.
+    """,
+)
+def wear_maps(job: Job) -> Any:
+    """Draw the worn surfaces of the smallest and the largest particle scale side by side."""
+    from postproc.plots import pictures
+    from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.particle_size.wear_by_scale import smallest_and_largest
+
+    summary, deformed = read_summary(job.files.summary), job.told.deformed
+    every = dict(zip(summary["run"], job.files.surfaces, strict=True))
+    runs = smallest_and_largest(summary)
+    meshes = read_worn_surfaces(runs["run"], [every[run] for run in runs["run"]])
+    depths = depth_table(meshes, deformed)
+    remarks = [*job.remarks, carried_remark(meshes, deformed)]
+    return pictures.wear_maps(meshes, runs, deformed, depths, depth_quantity(deformed), remarks), depths
+
+
+# ---------------------------------------------------------------- flow
+
+
+@size_figure(
+    "Velocity by layer and particle scale",
+    inputs={"summary": SUMMARY, "profiles": PROFILES, "published": PUBLISHED_SIZES},
+    caption="""
+    Mean velocity of the particles over the sample in the direction in which it moves, seen from the bed at rest, as
+    the radius; the height of the layer goes clockwise round the circle. Layers are 5 mm high times the particle
+    scale. Dotted: what the source's text gives, an upper bound over the plain sample in every layer, a lower one over
+    the convex sample in the lowest layer, both for all its scales. The counterpart of Yan 2022, Fig 4.18.
+    """,
+)
+def velocity_by_layer(job: Job) -> Any:
+    """Draw the velocity with the sample round a circle of layers, a curve per particle scale."""
+    return _by_layer(job, "velocity_m_per_s", "velocity with the sample")
+
+
+@size_figure(
+    "Upward velocity by layer and particle scale",
+    inputs={"summary": SUMMARY, "profiles": PROFILES},
+    caption="""
+    Mean upward velocity of the particles over the sample as the radius; the height of the layer goes clockwise round
+    the circle. Inside the grey circle particles go down. The source's text: much smaller over the plain sample than
+    over the convex one, over which it rises to a maximum above the lowest layer and falls to the top. The counterpart
+    of Yan 2022, Fig 4.19.
+    """,
+)
+def upward_velocity_by_layer(job: Job) -> Any:
+    """Draw the upward velocity round a circle of layers, a curve per particle scale."""
+    return _by_layer(job, "upward_m_per_s", "velocity upwards")
+
+
+@size_figure(
+    "Sideways velocity by layer and particle scale",
+    inputs={"summary": SUMMARY, "profiles": PROFILES},
+    caption="""
+    Mean velocity of the particles over the sample across the travel as the radius, to +x outside the grey circle; the
+    height of the layer goes clockwise round the circle. The source's text: no tendency sideways at any scale. The
+    counterpart of Yan 2022, Fig 4.20.
+    """,
+)
+def sideways_velocity_by_layer(job: Job) -> Any:
+    """Draw the velocity across the travel round a circle of layers, a curve per particle scale."""
+    return _by_layer(job, "sideways_m_per_s", "velocity sideways")
+
+
+def _by_layer(job: Job, component: str, name: str) -> Any:
+    """Draw a component of the velocity, with what is published of it where the job has that."""
+    import pandas as pd
+
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+    from workflows.cases.sliding_sample.particle_size.wear_by_scale import over_the_sample, velocity_bounds
+
+    scales = read_summary(job.files.summary).set_index("run")["particle_scale"]
+    table = over_the_sample(read_summary(job.files.profiles), scales)
+    published = getattr(job.files, "published", None)
+    bounds = velocity_bounds(pd.read_csv(published), table) if published else None
+    labels = (f"{name} (m/s)", "height of the layer (mm)")
+    return spider_charts(table, component, "height_mm", labels, job.remarks, bounds), table
+
+
+@size_figure(
+    "Angular speed along the sample",
+    # what the snapshots of the bed were reduced to lies beside the tables of wear
+    inputs={"summary": SUMMARY, "profiles": PROFILES, "wear": every_run("wear.csv")},
+    told={"runs": flow_runs},
+    caption="""
+    Mean angular speed of the particles in the lowest layer over the sample, from its front edge, which the bed meets
+    first and which is at the top of the circle, clockwise to its rear edge. Pieces are as long as the layer is high, 5
+    mm times the particle scale, as nearly as whole ones fill the sample; means over the steady window of the relative
+    velocity, or over all of the travel where there is none. The source's text: it falls with the scale, is much higher
+    over the convex sample, and there higher at the front than at the back. The counterpart of Yan 2022, Fig 4.22.
+    """,
+)
+def angular_velocity_along_sample(job: Job) -> Any:
+    """Draw the angular speed of the lowest layer along the samples round a circle, a curve per particle scale."""
+    from postproc.tables.display import MILLIMETRES, in_display_units
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.flow_history import RunFlow, spin_profiles
+    from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+
+    summary = read_summary(job.files.summary)[["run", "row", "surface", "particle_scale"]]
+    starts = read_summary(job.files.profiles).groupby("run")["window_start_mm"].first() / MILLIMETRES
+    runs = {run: RunFlow(**values) for run, values in job.told.runs.items()}
+    folders = dict(zip(summary["run"], [Path(path).parent for path in job.files.wear], strict=True))
+    table = in_display_units(summary.merge(spin_profiles(folders, runs, starts.to_dict()), on="run"))
+    labels = ("angular speed of the lowest layer (°/s)", "distance behind the front edge (mm)")
+    return spider_charts(table, "angular_speed_deg_per_s", "along_mm", labels, job.remarks), table
+
+
+# ---------------------------------------------------------------- packings and single collisions
+
+
+def _shaken(study: Study) -> dict[str, Any]:
+    """Return what the figure of the containers says of them."""
+    packing = to_si(study.settings)["packing"]
+    return {key: packing[key] for key in ("width_diameters", "axis", "shaking_s")}
+
+
+@size_figure(
+    "Packing of a container",
+    inputs={"profiles": "results/{study}/packings/profiles.csv", "published": PUBLISHED_PACKING},
+    told={"packing": _shaken},
+    caption="""
+    Contacts of a particle with others and porosity by slabs, each four median diameters high, of a container that is
+    filled (loose) and shaken by A sin(w t), and the difference. Porosity cuts particles at the slabs' edges; dotted,
+    by the source's rule, a particle counts whole where its centre is. Grey: what the source's text gives for its
+    scales 1 to 8. The counterpart of Yan 2022, Fig 4.3 and 4.4, in a narrower container.
+    """,
+)
+def packing_profiles(job: Job) -> Any:
+    """Draw how the particles of a container per particle scale are packed."""
+    import pandas as pd
+
+    from postproc.flow.packing import slabs_remark
+    from workflows.cases.sliding_sample.particle_size.plots import contacts
+
+    table, packing = pd.read_csv(job.files.profiles, float_precision="round_trip"), job.told.packing
+    published = pd.read_csv(job.files.published).query("case == 'container'")
+    sides = f"container of {packing['width_diameters']:g} median diameters to a side"
+    remarks = [sides, f"shaken along {packing['axis']} for {packing['shaking_s']:g} s", slabs_remark(table)]
+    return contacts.packing_profiles(table, published, remarks), table
+
+
+@size_figure(
+    "Packing of the bed",
+    inputs={
+        "wear": lambda study: [f"results/{study.name}/{run}/wear.csv" for run in plain_runs(study)],
+        "beds": lambda study: list(settled_beds(study).values()),
+        "published": PUBLISHED_PACKING,
+    },
+    told={
+        "runs": plain_runs,
+        "floors": bed_floors,
+        "folder": below("beds"),
+        "template": of_template("bed_contacts"),
+    },
+    caption="""
+    Contacts of a particle and porosity in the lower three quarters of the bed: settled, before the plain sample comes,
+    and at rest again behind it. Porosity cuts particles at the slab's edges; dotted, they count whole where their
+    centre is. Triangles: bounds from the source's text. The counterpart of Yan 2022, Fig 4.9 and 4.10.
+    """,
+)
+def bed_packing(job: Job) -> Any:
+    """Count contacts in the beds of plain runs before and after the sample passed; draw them by particle scale."""
+    import pandas as pd
+
+    from workflows.cases.sliding_sample.particle_size.packings import bed_packing_table
+    from workflows.cases.sliding_sample.particle_size.plots import contacts
+
+    told = job.told
+    folders = {run: Path(path).parent for run, path in zip(told.runs, job.files.wear, strict=True)}
+    beds = {run: (Path(path), told.floors[run]) for run, path in zip(told.runs, job.files.beds, strict=True)}
+    table = bed_packing_table(told.runs, folders, beds, Path(told.folder))
+    published = pd.read_csv(job.files.published).query("case == 'bed'")
+    return contacts.bed_packing(table, published, job.remarks), table
+
+
+def _collision_tests(study: Study) -> list[dict[str, Any]]:
+    from workflows.cases.sliding_sample.particle_size.collision import collision_tests
+
+    return collision_tests({run.name: run.parameters for run in study.runs})
+
+
+@size_figure(
+    "Single collisions",
+    inputs={},
+    told={"tests": _collision_tests, "folder": below("collisions"), "template": of_template("collision")},
+    tables={"measures": "particle_size/collisions.csv"},
+    digits={"table": 6},
+    caption="""
+    Two spheres, and a sphere and the sample, that collide head-on at 1 m/s, and two that collide obliquely with spin,
+    without gravity, at every particle scale: in units of radius, modulus and density. Marks of all scales lie on one
+    curve, which is what coarse graining asks of a contact (Yan 2022, Eq 4.1 to 4.7); head-on it is that of Hertz with
+    viscoelastic damping. Gravity at a given velocity does not scale: a bed's own weight is in balance with the same
+    relative overlap, a falling particle is not.
+    """,
+)
+def collisions(job: Job) -> Any:
+    """Simulate single collisions at every particle scale; draw them in units of their size."""
+    from workflows.cases.sliding_sample.particle_size import collision
+    from workflows.cases.sliding_sample.particle_size.plots import contacts
+
+    histories, measures = collision.collision_tables(job.told.tests, Path(job.told.folder))
+    largest = collision.spread_over_scales(measures)["spread"].max()
+    closed = collision.closed_forms(job.told.tests[0])
+    remarks = [f"largest difference between scales {100.0 * largest:.1g} %"]
+    return contacts.collisions(histories, closed, remarks), histories, {"measures": measures}
+
+
+# ---------------------------------------------------------------- beside the source
+
+
+@tables(
+    inputs={
+        "wear": "results/{study}/figures/wear_against_scale.csv",
+        "critical": "results/{study}/particle_size/critical_scale.csv",
+        "guidance": "results/{study}/particle_size/guidance.csv",
+        "steady": "results/{study}/figures/steady_by_scale.csv",
+        "profiles": "results/{study}/figures/velocity_by_layer.csv",
+        "container": "results/{study}/figures/packing_profiles.csv",
+        "bed": "results/{study}/figures/bed_packing.csv",
+        "published": PUBLISHED_SIZES,
+        "published_packing": PUBLISHED_PACKING,
+    },
+    tables={"published": "particle_size/published.csv", "sentences": "particle_size/sentences.csv"},
+    when=varies_scale,
+)
+def size_findings(job: Job) -> Any:
+    """Set what a study found beside the numbers of the source; tell of its critical scale."""
+    import pandas as pd
+
+    from postproc.reference.size_ratios import PUBLISHED_CRITICAL_SCALE
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.particle_size import published_sizes
+    from workflows.cases.sliding_sample.particle_size.wear_by_scale import read_critical_scale
+
+    files = job.files
+    steady, profiles, wear = (read_summary(path) for path in (files.steady, files.profiles, files.wear))
+    critical, guidance = read_critical_scale(files.critical), pd.read_csv(files.guidance)
+    ratio = guidance["equivalent_radius"].iloc[0]  # of real particles: the pattern of all rows is one
+    table = published_sizes.beside_the_source(pd.read_csv(files.published), steady, profiles, critical, ratio)
+    packings = [pd.read_csv(path) for path in (files.published_packing, files.container, files.bed)]
+    unsteady = int((~steady["steady"]).sum())
+    said = published_sizes.critical_sentences(critical, PUBLISHED_CRITICAL_SCALE, wear, unsteady)
+    return {
+        "published": pd.concat([table, published_sizes.packing_beside_the_source(*packings)], ignore_index=True),
+        "sentences": pd.DataFrame({"sentence": said}),
+    }

@@ -1,0 +1,172 @@
+"""What the page of a study of particle size tells: its critical scale first, then what stands behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from postproc.flow.packing import inner_means
+from postproc.reference.size_ratios import size_ratios
+from postproc.tables.display import in_display_units
+from postproc.tables.summary import PLAIN, read_summary
+from workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
+from workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT, AGREES, DIFFERS, UNSAID
+from workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX
+from workflows.report.sections import Block, Pictures, Section, Table, Text
+
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
+WEAR, FORCE, RATE = "archard_volume_mm3", "mean_normal_force_N", "archard_volume_per_metre_mm3_per_m"
+BUMPS = "bump_archard_volume_mm3"
+HEADS = {  # of columns whose unit their name has in brackets
+    "wear, convex (mm3/m)": ("wear, convex", "mm³/m"),
+    "wear, plain (mm3/m)": ("wear, plain", "mm³/m"),
+    "share of the bumps (%)": ("share of the bumps", "%"),
+}
+
+
+def told(study: Study) -> dict[str, Any]:
+    """Return what the page is told besides what every page is: bumps and particles, and the costs of the packings."""
+    return {"bumps": bumps_and_particles(study), "costs": {"packing_profiles": "packings/solver_cost.csv"}}
+
+
+def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the sections of a study of particle size; folder: results/<study>."""
+    steady = ("steady_by_scale", "relative_velocity", "wear_gradient")
+    flow = (*(f"{name}velocity_by_layer" for name in ("", "upward_", "sideways_")), "angular_velocity_along_sample")
+    return [
+        Section(
+            "Up to which particle scale does the pattern help?",
+            [*critical_scale(study, folder), Pictures(["wear_against_scale"])],
+        ),
+        Section("Numbers of the source beside ours", beside_the_source(folder)),
+        Section("Relative velocity and wear rate", [*steady_windows(folder), Pictures(steady)]),
+        Section("Wear of small and of large particles", [Pictures(["wear_maps"])]),
+        Section("Guidance", [*guidance(study, folder), Pictures(["wear_against_size_ratios"])]),
+        Section("The flow by layer and along the sample", [Pictures([*flow, "flow_views"])]),
+        Section("Packing", [*packing(folder), Pictures(["packing_profiles", "bed_packing"])]),
+        Section("Single contacts", [*single_contacts(folder), Pictures(["collisions"])]),
+    ]
+
+
+def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
+    """Return what is told of the critical scale, wear and sizes of every row, and the lines beside the source's."""
+    said = pd.read_csv(folder / "particle_size" / "sentences.csv")["sentence"]
+    return [
+        Text(" ".join(said)),
+        Table(
+            wear_by_row(study, in_display_units(read_summary(folder / "summary.csv"))),
+            "wear_by_row",
+            "Wear over plain is the product of two factors: of the sums of normal forces, and of how far contacts slide"
+            " under them while the sample travels as far.",
+            heads=HEADS,
+        ),
+        Table(
+            pd.read_csv(folder / "particle_size" / "lines.csv"),
+            "lines",
+            "Straight lines of wear over that of the plain sample with the smallest particles simulated, against"
+            " particle scale, with one standard error; the source's are over its plain sample at scale 1.",
+        ),
+    ]
+
+
+def wear_by_row(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame:
+    """Return a line per row with its scale, layers and sizes, and the convex sample's wear over its plain twin's.
+
+    summary: in display units
+    """
+    convex = summary[summary["surface"] == CONVEX].set_index("row")
+    plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(convex.index)
+    over = convex[[WEAR, FORCE]] / plain[[WEAR, FORCE]]
+    derived = [study["parameters"][run]["derived"] for run in convex["run"]]
+    columns = {
+        "particle scale": convex["particle_scale"],
+        "layers of particles": [each["layers"] for each in derived],
+        "equivalent size ratio": [each["equivalent_size_ratio"] for each in derived],
+        "wear over plain": over[WEAR],
+        "normal force over plain": over[FORCE],
+        "sliding over plain": over[WEAR] / over[FORCE],
+        "wear, convex (mm3/m)": convex[RATE],
+        "wear, plain (mm3/m)": plain[RATE],
+        "share of the bumps (%)": 100.0 * convex[BUMPS] / convex[WEAR],
+    }
+    return pd.DataFrame(columns, index=convex.index).reset_index()
+
+
+def beside_the_source(folder: Path) -> list[Block]:
+    """Return every number of the source with ours and a verdict."""
+    table = pd.read_csv(folder / "particle_size" / "published.csv", dtype={"scales": str, "of_scales": str})
+    table["of_scales"] = table["of_scales"].fillna("")
+    counts = table["verdict"].value_counts().reindex([AGREES, DIFFERS, UNSAID], fill_value=0)
+    return [
+        Text(
+            f"Of {len(table)} numbers that the text of Yan 2022, chapter 4, gives ours agree with {counts[AGREES]} and"
+            f" differ from {counts[DIFFERS]}; of {counts[UNSAID]} nothing can be said."
+        ),
+        Table(
+            table,
+            "published",
+            "Low and high: range of ours over the scales simulated of those in question, of a critical value its 95 %"
+            " interval. Relative velocity and wear rate are means, or standard deviations, over steady windows."
+            f" About: within {100.0 * ABOUT:.0f} %.",
+        ),
+    ]
+
+
+def steady_windows(folder: Path) -> list[Block]:
+    """Return means, deviations and windows of all runs."""
+    table = read_summary(folder / "figures" / "steady_by_scale.csv")
+    said = f"{int(table['steady'].sum())} of {len(table)} windows are steady. Travel counts from where wear does."
+    return [Text(said), Table(table.drop(columns=["row", "surface"]), "steady_by_scale")]
+
+
+def guidance(study: Mapping[str, Any], folder: Path) -> list[Block]:
+    """Return what the sizes of real particles and bumps let expect, and the ratios at every scale."""
+    table = in_display_units(pd.read_csv(folder / "particle_size" / "guidance.csv", dtype={"row": str}))
+    ratios = []
+    for row, given in study["told"]["bumps"].items():
+        pattern, scale = given["pattern"], given["scale"]
+        bump = (pattern["major_radius"], pattern["minor_radius"], pattern["height"])
+        found = size_ratios(scale * given["particles"]["median_diameter"], *bump)
+        ratios.append({"row": row, "particle_scale": scale, **vars(found)})
+    return [
+        Text(
+            "Is the pattern expected to help, and how far may a study of it be coarse-grained? First the ratios of real"
+            " particle to bump (Yan 2022, Eq 4.18 to 4.21): the pattern is expected to help where that of the"
+            " equivalent radius is below 1, which it reaches at the largest scale. Published bias: by the source's"
+            " line (Eq 4.15), wear of the convex sample at the scale simulated over that at real size, if particle over"
+            " bump is all that matters. Then the ratios of the particles simulated."
+        ),
+        Table(table, "guidance"),
+        Table(pd.DataFrame(ratios), "size_ratios"),
+    ]
+
+
+def packing(folder: Path) -> list[Block]:
+    """Return contacts and porosity of the containers' inner slabs and of the beds."""
+    profiles = pd.read_csv(folder / "figures" / "packing_profiles.csv")
+    rows = [
+        {"particle_scale": scale, "state": state, "slabs": int(one["layer"].max()), **inner_means(one)}
+        for (scale, state), one in profiles[profiles["state"] != "difference"].groupby(["particle_scale", "state"])
+    ]
+    return [
+        Text("Containers, loose and shaken (dense), without the lowest and the highest slab; then the beds."),
+        Table(pd.DataFrame(rows), "containers"),
+        Table(pd.read_csv(folder / "figures" / "bed_packing.csv"), "bed_packing"),
+    ]
+
+
+def single_contacts(folder: Path) -> list[Block]:
+    """Return how far single contacts differ between scales: of each collision the measure that differs most."""
+    spread = spread_over_scales(pd.read_csv(folder / "particle_size" / "collisions.csv"))
+    most = spread.loc[spread.groupby(["rolling_friction", "collision"], sort=False)["spread"].idxmax()]
+    said = (
+        "Single collisions in units of their size, at all scales simulated: the measure that differs most between them,"
+        " largest minus smallest over the largest."
+    )
+    return [Text(said), Table(most, "collisions")]

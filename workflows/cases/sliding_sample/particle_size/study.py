@@ -1,0 +1,61 @@
+"""What the figures and the page of a study of particle size are told of its configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from workflows.engine.case import Parameters
+
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
+LENGTHS = ("major_radius", "minor_radius", "height", "column_spacing", "row_spacing")  # of a pattern
+
+
+def by_scale(runs: Mapping[str, Parameters]) -> dict[float, Parameters]:
+    """Return the parameters of the first run of every particle scale, smallest first."""
+    found: dict[float, Parameters] = {}
+    for run in runs.values():
+        found.setdefault(run["particle"]["scale"], run)
+    return dict(sorted(found.items()))
+
+
+def packed_runs(study: Study) -> dict[str, Parameters]:
+    """Return the runs whose particles are packed in containers: those chosen, or those of the whole design."""
+    runs = study.all_runs if study.settings["packing"]["every_scale"] else study.runs
+    return {run.name: run.parameters for run in runs}
+
+
+def plain_runs(study: Study) -> dict[str, Parameters]:
+    """Return the parameters of the plain runs, whose beds are looked at, by name."""
+    return {run.name: run.parameters for run in study.runs if run.surface == "plain"}
+
+
+def settled_beds(study: Study) -> dict[str, str]:
+    """Return the restart file of the settled bed of every plain run, by name."""
+    return {name: f"results/{study.name}/beds/{study.bed_of(name)}/bed.restart" for name in plain_runs(study)}
+
+
+def bed_floors(study: Study) -> dict[str, float]:
+    """Return the height (m) of the floor of the settled bed of every plain run, by name."""
+    return {name: study.beds[study.bed_of(name)]["temporary_floor_m"] for name in plain_runs(study)}
+
+
+def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
+    """Return by row pattern, real particles and scale of its convex run, see `guidance`."""
+    return {run.row: _bumps_and_particles(run.parameters) for run in study.runs if run.parameters["pattern"]}
+
+
+def _bumps_and_particles(parameters: Parameters) -> dict[str, Any]:
+    pattern, particle = parameters["pattern"], parameters["particle"]
+    return {
+        "pattern": {name: pattern[f"{name}_m"] for name in LENGTHS}
+        | {"across": pattern["major_axis"] == "across_travel"},
+        "particles": {
+            "median_diameter": particle["median_diameter_m"] / particle["scale"],
+            "diameters": [diameter / particle["scale"] for diameter in particle["diameters_m"]],
+            "mass_fractions": particle["mass_fractions"],
+        },
+        "scale": particle["scale"],
+    }
