@@ -17,6 +17,7 @@ from workflows.cases.sliding_sample.screening.findings import UNSURE
 from workflows.report.sections import Block, Cards, Table, Text
 from workflows.report.text import data_uri, number
 
+SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/
 TEXTS = ("model", "given", "not_in_model", "warning")  # columns of words, which may be empty
 REGRESSION_TABLES = ("models", "best_designs", "warnings")
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
@@ -78,6 +79,20 @@ def read_with_texts(path: Path, texts: Sequence[str]) -> pd.DataFrame:
     """Return a table in which empty cells of some columns are empty words, not missing numbers."""
     table = pd.read_csv(path, dtype=dict.fromkeys(texts, object))
     return table.assign(**{name: table[name].fillna("") for name in texts if name in table})
+
+
+def sizes(folder: Path) -> dict[str, Any]:
+    """Return what a study tells of its critical particle scale, its lines beside the source's, and the guidance."""
+    texts = dict.fromkeys(("row", "scales", "of_scales"), str)
+    tables = {name: pd.read_csv(folder / f"{name}.csv", dtype=texts) for name in SIZE_TABLES}
+    tables["guidance"] = in_display_units(tables["guidance"])
+    return {
+        **{name: table.to_dict("records") for name, table in tables.items() if name != "sentences"},
+        "sentences": tables["sentences"]["sentence"].tolist(),
+        "counts": tables["published"]["verdict"].value_counts().to_dict(),
+        "csv": data_uri(tables["published"].to_csv(index=False).encode(), "text/csv"),
+        "guidance_csv": data_uri(tables["guidance"].to_csv(index=False).encode(), "text/csv"),
+    }
 
 
 def findings(folder: Path) -> dict[str, Any]:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from postproc.reference.size_ratios import LARGEST_RATIO
 from workflows.cases.sliding_sample.key_numbers import key_numbers
-from workflows.cases.sliding_sample.particle_size import page as size_page
-from workflows.cases.sliding_sample.study import replicate_settings, varies_scale
+from workflows.cases.sliding_sample.study import replicate_settings
 from workflows.config.design import PARTICLE_SCALE
 from workflows.engine.derived import PERIODIC, WINDOW
 from workflows.report.sections import Pictures, Section
@@ -27,6 +26,7 @@ DECKS = (  # {bed} and {run} are those of the first run
     ("Lowering and run-in", "{run}/cycle_000/deck.in"),
     ("First wear cycle", "{run}/cycle_001/deck.in"),
 )
+SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/, of a study of particle size
 TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
 ALONG = {  # bed.ends -> what it makes of the packing along the travel
     PERIODIC: " and along it, so that it passes the sample again and again",
@@ -44,14 +44,12 @@ REDUCED = (
 
 def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is."""
-    sizes = size_page.told(study) if varies_scale(study) else {}
-    return {"replicates": replicate_settings(study), "varies_scale": bool(sizes), **sizes}
+    return {"replicates": replicate_settings(study)}
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a study's page: its key numbers, then those of screenings and of particle size."""
     return [
-        *(size_page.sections(study, folder) if study["told"]["varies_scale"] else []),
         Section("Key numbers", [*key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]),
     ]
 

@@ -7,6 +7,7 @@ import re
 from typing import Any
 
 from workflows.config.design import PARTICLE_SCALE, REPOSITORY, Study
+from workflows.engine.case import Run
 from workflows.engine.derived import flow_measures
 from workflows.report.text import name_and_unit
 
@@ -40,6 +41,11 @@ def varies_scale(study: Study) -> bool:
 def published_flow(study: Study) -> str:
     """Return the table of what the source tells of the flow: of its chapter 4 for particle size, else of chapter 3."""
     return f"config/published/{'particle_size' if varies_scale(study) else 'screening'}_results.csv"
+
+
+def plain_runs(study: Study) -> dict[str, Run]:
+    """Return the plain runs of a study, by name."""
+    return {run.name: run for run in study.runs if run.surface == "plain"}
 
 
 def factor_labels(study: Study) -> dict[str, str]:

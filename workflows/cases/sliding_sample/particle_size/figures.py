@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from workflows.cases.sliding_sample.particle_size.study import (
     bed_floors,
     bumps_and_particles,
-    plain_runs,
+    plain_parameters,
     settled_beds,
 )
-from workflows.cases.sliding_sample.study import flow_runs, varies_scale
+from workflows.cases.sliding_sample.study import flow_runs, plain_runs, varies_scale
 from workflows.config.units import to_si
 from workflows.engine.state import digest
 from workflows.engine.templates import template_sources
@@ -289,11 +289,11 @@ def packing_profiles(job: Job) -> Any:
     "Packing of the bed",
     inputs={
         "wear": lambda study: [f"results/{study.name}/{run}/wear.csv" for run in plain_runs(study)],
-        "beds": lambda study: list(settled_beds(study).values()),
+        "beds": settled_beds,
         "published": PUBLISHED_PACKING,
     },
     told={
-        "runs": plain_runs,
+        "runs": plain_parameters,
         "floors": bed_floors,
         "folder": below("beds"),
         "template": of_template("bed_contacts"),
@@ -313,7 +313,7 @@ def bed_packing(job: Job) -> Any:
 
     told = job.told
     folders = {run: Path(path).parent for run, path in zip(told.runs, job.files.wear, strict=True)}
-    beds = {run: (Path(path), told.floors[run]) for run, path in zip(told.runs, job.files.beds, strict=True)}
+    beds = dict(zip(told.runs, zip(map(Path, job.files.beds), told.floors, strict=True), strict=True))
     table = bed_packing_table(told.runs, folders, beds, Path(told.folder))
     published = pd.read_csv(job.files.published).query("case == 'bed'")
     return contacts.bed_packing(table, published, job.remarks), table

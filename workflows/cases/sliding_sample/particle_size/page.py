@@ -85,12 +85,12 @@ def wear_by_row(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame
     over = convex[[WEAR, FORCE]] / plain[[WEAR, FORCE]]
     derived = [study["parameters"][run]["derived"] for run in convex["run"]]
     columns = {
-        "particle scale": convex["particle_scale"],
-        "layers of particles": [each["layers"] for each in derived],
-        "equivalent size ratio": [each["equivalent_size_ratio"] for each in derived],
-        "wear over plain": over[WEAR],
-        "normal force over plain": over[FORCE],
-        "sliding over plain": over[WEAR] / over[FORCE],
+        "particle_scale": convex["particle_scale"],
+        "layers_of_particles": [each["layers"] for each in derived],
+        "equivalent_size_ratio": [each["equivalent_size_ratio"] for each in derived],
+        "wear_over_plain": over[WEAR],
+        "normal_force_over_plain": over[FORCE],
+        "sliding_over_plain": over[WEAR] / over[FORCE],
         "wear, convex (mm3/m)": convex[RATE],
         "wear, plain (mm3/m)": plain[RATE],
         "share of the bumps (%)": 100.0 * convex[BUMPS] / convex[WEAR],

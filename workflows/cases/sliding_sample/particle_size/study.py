@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from workflows.cases.sliding_sample.study import plain_runs
 from workflows.engine.case import Parameters
 
 if TYPE_CHECKING:
@@ -27,19 +28,19 @@ def packed_runs(study: Study) -> dict[str, Parameters]:
     return {run.name: run.parameters for run in runs}
 
 
-def plain_runs(study: Study) -> dict[str, Parameters]:
+def plain_parameters(study: Study) -> dict[str, Parameters]:
     """Return the parameters of the plain runs, whose beds are looked at, by name."""
-    return {run.name: run.parameters for run in study.runs if run.surface == "plain"}
+    return {name: run.parameters for name, run in plain_runs(study).items()}
 
 
-def settled_beds(study: Study) -> dict[str, str]:
-    """Return the restart file of the settled bed of every plain run, by name."""
-    return {name: f"results/{study.name}/beds/{study.bed_of(name)}/bed.restart" for name in plain_runs(study)}
+def settled_beds(study: Study) -> list[str]:
+    """Return the restart file of the settled bed of every plain run."""
+    return [f"results/{study.name}/beds/{study.bed_of(name)}/bed.restart" for name in plain_runs(study)]
 
 
-def bed_floors(study: Study) -> dict[str, float]:
-    """Return the height (m) of the floor of the settled bed of every plain run, by name."""
-    return {name: study.beds[study.bed_of(name)]["temporary_floor_m"] for name in plain_runs(study)}
+def bed_floors(study: Study) -> list[float]:
+    """Return the height (m) of the floor of the settled bed of every plain run."""
+    return [study.beds[study.bed_of(name)]["temporary_floor_m"] for name in plain_runs(study)]
 
 
 def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
