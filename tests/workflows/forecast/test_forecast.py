@@ -6,7 +6,8 @@ from itertools import pairwise
 import pandas as pd
 import pytest
 
-from workflows.cases.sliding_sample.particle_size.packings import by_scale, container, packed_runs
+from workflows.cases.sliding_sample.particle_size.packings import container
+from workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
 from workflows.cases.sliding_sample.work import cycles, settled_particles
 from workflows.config.design import list_studies, load_study
 from workflows.config.units import to_si

@@ -278,7 +278,7 @@ def packing_profiles(job: Job) -> Any:
     from postproc.flow.packing import slabs_remark
     from workflows.cases.sliding_sample.particle_size.plots import contacts
 
-    table, packing = pd.read_csv(job.files.profiles, float_precision="round_trip"), job.told.packing
+    table, packing = pd.read_csv(job.files.profiles), job.told.packing
     published = pd.read_csv(job.files.published).query("case == 'container'")
     sides = f"container of {packing['width_diameters']:g} median diameters to a side"
     remarks = [sides, f"shaken along {packing['axis']} for {packing['shaking_s']:g} s", slabs_remark(table)]

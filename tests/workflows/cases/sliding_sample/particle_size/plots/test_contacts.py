@@ -1,4 +1,4 @@
-"""Figures of packings show every scale, both rules of porosity, and what is published."""
+"""Figures of packings and of collisions show every scale, what is published, and the closed form."""
 
 import numpy as np
 import pandas as pd
@@ -6,7 +6,14 @@ import pytest
 
 from postproc.plots.style import remarks_of
 from tests import PUBLISHED
-from workflows.cases.sliding_sample.particle_size.plots.packing import RANGE_COLOUR, bed_packing, packing_profiles
+from tests.workflows.cases.sliding_sample.particle_size.test_collision import gravel
+from workflows.cases.sliding_sample.particle_size.collision import COLLISIONS, MODELS, dimensionless
+from workflows.cases.sliding_sample.particle_size.plots.contacts import (
+    RANGE_COLOUR,
+    bed_packing,
+    collisions,
+    packing_profiles,
+)
 
 PUBLISHED = pd.read_csv(PUBLISHED / "packing.csv")
 SCALES = [1.0, 4.0, 8.0]
@@ -56,3 +63,31 @@ def test_a_bed_is_shown_by_scale_before_and_after():
     assert len(contacts.lines) == 4 and len(pores.lines) == 4
     bounds = [line for line in contacts.lines if line.get_label() == "_bound"]
     assert [list(line.get_xdata()) for line in bounds] == [[1, 5], [6, 8]]
+
+
+def drawn_histories():
+    """Half sines in the place of simulations."""
+    time = np.linspace(0.0, 12.0, 60)
+    tables = []
+    for model in MODELS:
+        for scale in (1.0, 3.0, 8.0):
+            for kind in COLLISIONS:
+                shape = np.sin(np.pi * time / 12.0)
+                table = pd.DataFrame({"time": time, "overlap": 0.015 * shape, "normal_force": 0.0018 * shape})
+                table = table.assign(tangential_force=0.4 * table["normal_force"], spin=0.01 - 0.5 * table["overlap"])
+                tables.append(table.assign(collision=kind, particle_scale=scale, rolling_friction=model))
+    return pd.concat(tables, ignore_index=True)
+
+
+def test_the_figure_shows_every_scale_and_the_closed_form():
+    """Six panels; each head-on panel has a line of the closed form and marks of three scales; remarks are printed."""
+    spheres = gravel()
+    closed = {kind: dimensionless(each, spheres.units(kind)) for kind, each in spheres.closed_forms(1.0).items()}
+    figure = collisions(drawn_histories(), closed, ["a remark"])
+    panels = figure.axes
+    assert len(panels) == 6 and [len(axes.lines) for axes in panels] == [4, 4, 6, 4, 4, 6]
+    assert max(panels[0].lines[0].get_ydata()) == pytest.approx(closed["pair"]["overlap"].max())
+    assert panels[0].lines[1].get_linestyle() == "None"  # marks: joined, they would be a line of their own
+    assert "a remark" in remarks_of(figure)
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"scale 1", "scale 3", "scale 8"} <= set(names)

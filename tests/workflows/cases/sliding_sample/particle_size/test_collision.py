@@ -6,24 +6,26 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import remarks_of
 from workflows.cases.sliding_sample.particle_size.collision import (
-    COLLISIONS,
+    EXACT_STEP,
+    MODELS,
     Spheres,
+    collision_deck,
     collision_measures,
+    collision_tables,
+    collision_tests,
     dimensionless,
     read_collisions,
+    simulate,
+    spheres_of,
     spread_over_scales,
 )
-from workflows.cases.sliding_sample.particle_size.collision_tests import simulate, spheres_of
-from workflows.cases.sliding_sample.particle_size.plots.collision import collisions
+from workflows.cases.sliding_sample.particle_size.study import packed_runs
 from workflows.config.design import load_study
 from workflows.engine.bulk_tests import time_step
 
 SCALES = [1.0, 8.0]  # the source's smallest and largest
-MODELS = ["cdt", "epsd2"]  # rolling types A and C
 SAME = 1e-3  # -, between scales; measured: 6e-10, the digits of a dump
-EXACT_STEP = 0.002  # -, of the Rayleigh time
 CLOSED = 1e-3  # -, of the closed form at that step; measured: 2.3e-4 of overlap and force, 6e-4 of the duration
 STUDY_STEP = 0.2  # -, of the Rayleigh time, as beds use it
 COARSE = 0.03  # -, of the closed form at that step; measured: 2.7 % of the overlap of pairs
@@ -145,34 +147,6 @@ def test_units_make_the_closed_form_one():
     assert abs(largest(0.001, 2e8) / largest(0.001) - 1.0) > SAME
 
 
-def drawn_histories():
-    """Half sines in the place of simulations."""
-    time = np.linspace(0.0, 12.0, 60)
-    tables = []
-    for model in MODELS:
-        for scale in (1.0, 3.0, 8.0):
-            for kind in COLLISIONS:
-                shape = np.sin(np.pi * time / 12.0)
-                table = pd.DataFrame({"time": time, "overlap": 0.015 * shape, "normal_force": 0.0018 * shape})
-                table = table.assign(tangential_force=0.4 * table["normal_force"], spin=0.01 - 0.5 * table["overlap"])
-                tables.append(table.assign(collision=kind, particle_scale=scale, rolling_friction=model))
-    return pd.concat(tables, ignore_index=True)
-
-
-def test_the_figure_shows_every_scale_and_the_closed_form():
-    """Six panels; each head-on panel has a line of the closed form and marks of three scales; remarks are printed."""
-    spheres = gravel()
-    closed = {kind: dimensionless(each, spheres.units(kind)) for kind, each in spheres.closed_forms(1.0).items()}
-    figure = collisions(drawn_histories(), closed, ["a remark"])
-    panels = figure.axes
-    assert len(panels) == 6 and [len(axes.lines) for axes in panels] == [4, 4, 6, 4, 4, 6]
-    assert max(panels[0].lines[0].get_ydata()) == pytest.approx(closed["pair"]["overlap"].max())
-    assert panels[0].lines[1].get_linestyle() == "None"  # marks: joined, they would be a line of their own
-    assert "a remark" in remarks_of(figure)
-    names = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert {"scale 1", "scale 3", "scale 8"} <= set(names)
-
-
 def test_a_spread_of_scales_is_measured():
     """Two scales that differ by 2 % in one measure: that is the spread; measures of zero are left out."""
     table = pd.DataFrame(
@@ -180,3 +154,22 @@ def test_a_spread_of_scales_is_measured():
     ).assign(largest_torque=0.0)
     spread = spread_over_scales(table)
     assert list(spread["measure"]) == ["largest_overlap"] and math.isclose(spread["spread"].iloc[0], 0.02)
+
+
+@pytest.mark.solver
+def test_collisions_of_the_study_are_alike_and_thinned_out(tmp_path):
+    """Measures of two scales agree; histories are short enough for a table; the dumps are gone."""
+    tests = collision_tests(packed_runs(load_study("particle_size", overrides={"rows": ["S4", "S8"]})))
+    histories, table = collision_tables(tests, tmp_path)
+    first, other = (table[table["particle_scale"] == scale].reset_index(drop=True) for scale in (4.0, 8.0))
+    for name in ("restitution", "largest_overlap", "largest_force"):
+        assert (first[name] / other[name] - 1.0).abs().max() < 1e-3
+    assert len(histories) < 20_000 and not list(tmp_path.glob("*/*.dump"))
+
+
+def test_collisions_are_of_the_studys_particles():
+    """Each rolling type collides at each scale, and the deck says which."""
+    tests = collision_tests(packed_runs(load_study("particle_size")))
+    assert [each["particle"]["scale"] for each in tests] == 2 * [4.0, 6.0, 8.0]
+    models = [collision_deck(each)["solver"]["rolling_friction"] for each in tests]
+    assert models == [model for model in MODELS for _ in range(3)]

@@ -1,0 +1,148 @@
+"""The page of a study of particle size, on tables of three made-up rows."""
+
+import pandas as pd
+import pytest
+
+from tests.support.finished_runs import leave_runs
+from tests.workflows.cases.sliding_sample.particle_size.test_figures import OWN, make
+from workflows.cases.sliding_sample.particle_size.page import sections, told
+from workflows.config.design import load_study
+from workflows.report.markdown import durations, provenance, written
+from workflows.report.page import environment
+from workflows.report.page_parameters import page_parameters
+from workflows.report.sections import Pictures, shown
+
+WEAR = {4.0: 1.1, 6.0: 1.4, 8.0: 2.1}  # -, of the convex sample, over its plain twin's
+PRINTED = 0.005  # three digits of numbers around 1
+FORCE = {4.0: 1.5, 6.0: 1.6, 8.0: 1.7}  # -, of the convex sample, over its plain twin's
+LAYERS = {"S4": 4.3, "S6": 2.9, "S8": 2.2}  # 46 mm over 2.65 mm times the scale
+
+
+@pytest.fixture
+def study():
+    return load_study("particle_size")
+
+
+def summary(study):
+    rows = []
+    for run in study.runs:
+        scale, convex = run.parameters["particle"]["scale"], run.surface == "convex"
+        volume = 2e-9 * (WEAR[scale] if convex else 1.0)
+        bumps = 0.8 * volume if convex else 0.0
+        rows.append(
+            {
+                "run": run.name,
+                "row": run.row,
+                "surface": run.surface,
+                "particle_scale": scale,
+                "archard_volume_m3": volume,
+                "base_archard_volume_m3": volume - bumps,
+                "bump_archard_volume_m3": bumps,
+                "archard_volume_per_metre_m3_per_m": volume / 0.8,
+                "mean_normal_force_N": 20.0 * (FORCE[scale] if convex else 1.0),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def write_tables(folder, study, table):
+    """What the jobs of the figures leave in particle_size/ and figures/, made by them where they read tables."""
+    (folder / "figures").mkdir()
+    names = table[["run", "row", "surface", "particle_scale"]]
+    windows = {"mean_percent": 12.0, "deviation_percent": 1.0, "steady": True}
+    steady = [names.assign(measure=measure, **windows) for measure in ("relative_velocity", "relative_wear_rate")]
+    pd.concat(steady).to_csv(folder / "figures" / "steady_by_scale.csv", index=False)
+    profiles = names.assign(height_mm=10.0, velocity_m_per_s=0.3)
+    profiles.to_csv(folder / "figures" / "velocity_by_layer.csv", index=False)
+    measures = {"coordination_number": 5.2, "porosity": 0.42, "porosity_whole_particles": 0.43}
+    container = pd.DataFrame(
+        {"state": state, "particle_scale": scale, "layer": layer, "particles": 50, **measures}
+        for state in ("loose", "dense", "difference")
+        for scale in WEAR
+        for layer in (1, 2, 3)
+    )
+    bed = pd.DataFrame([{"run": "S4_plain", "particle_scale": 4.0, "state": "before", "particles": 90, **measures}])
+    container.to_csv(folder / "figures" / "packing_profiles.csv", index=False)
+    bed.to_csv(folder / "figures" / "bed_packing.csv", index=False)
+    for name in ("wear_against_scale", "wear_against_size_ratios", "size_findings"):
+        make(name, study, folder)
+    collisions = [
+        {"rolling_friction": "cdt", "collision": "pair", "particle_scale": s, "restitution": 0.45} for s in WEAR
+    ]
+    pd.DataFrame(collisions).to_csv(folder / "particle_size" / "collisions.csv", index=False)
+
+
+@pytest.fixture
+def folder(study, tmp_path):
+    """A folder with what the pages read."""
+    table = summary(study)
+    table.to_csv(tmp_path / "summary.csv", index=False)
+    write_tables(tmp_path, study, table)
+    (tmp_path / "packings").mkdir()
+    cost = {"solver_s": [40.0, 20.0], "processor_s": [36.0, 18.0], "steps": [5000, 4000], "particles": [300, 200]}
+    pd.DataFrame(cost).to_csv(tmp_path / "packings" / "solver_cost.csv", index=False)
+    leave_runs(study, tmp_path, "packing_profiles")
+    return tmp_path
+
+
+@pytest.fixture
+def page(study):
+    """What the page is told of the study."""
+    return {**page_parameters(study), "told": told(study)}
+
+
+def test_the_sections_tell_what_the_tables_do(folder, page):
+    """Every section: rows with their layers, ours beside the source, guidance."""
+    text = "\n".join(written(block, "x") for section in sections(page, folder) for block in section.blocks)
+    said = " ".join(text.split())
+    assert "and not less in S4, S6, S8" in said
+    for row, layers in LAYERS.items():
+        line = next(line for line in text.splitlines() if line.startswith(f"| {row} | {row[1]} |"))
+        cells = line.split("|")
+        assert round(float(cells[3]), 1) == layers
+        wear, force, sliding = (float(cell) for cell in cells[5:8])
+        scale = float(row[1])
+        assert [wear, force] == [WEAR[scale], FORCE[scale]]
+        assert sliding == pytest.approx(wear / force, abs=PRINTED)
+    assert "| convex | 3 |" in said and "Yan 2022, Eq 4.15" in said
+    verdicts = pd.read_csv(folder / "particle_size" / "published.csv")["verdict"].value_counts()
+    assert (
+        f"agree with {verdicts['agrees']} and differ from {verdicts['differs']}; of {verdicts['cannot be said']}"
+        in said
+    )
+    assert "12 of 12 windows are steady" in said
+    assert "| cdt | pair | restitution | 0 |" in said
+    assert "major radius mm" in said and "largest scale" in said and "| 3.46 |" in said
+    assert "| 4 | loose | 3 | 5.2 | 0.42 | 0.43 |" in said and "| S4 plain | 4 | before | 90 |" in said
+
+
+def test_the_page_counts_the_packings_among_its_costs(study, folder, page):
+    """Runs 150 s each, packings 60 s, 54 of them of its processor, of 50 s forecast."""
+    text = " ".join(durations(folder, page).split())
+    assert "took 16 minutes of wall time" in text
+    assert "| packing profiles | 300 | 9 000 | 1 | 0.9 | 0.833 | 1.08 |" in text
+    assert "6 runs of 3 rows" in " ".join(provenance(folder, study).split())
+
+
+def test_every_figure_of_particle_size_has_its_section(folder, page):
+    """What stands there besides is of the flow over any sample."""
+    blocks = [block for section in sections(page, folder) for block in section.blocks]
+    shown = [name for block in blocks if isinstance(block, Pictures) for name in block.names]
+    assert len(shown) == len(set(shown))
+    assert set(shown) == (OWN - {"size_findings"}) | {"relative_velocity", "wear_gradient", "flow_views"}
+
+
+def test_the_html_page_shows_the_same(study, folder, page):
+    """Sentences, verdicts, lines and guidance."""
+    found = [shown(section, []) for section in sections(page, folder)]
+    template = environment().get_template("sections.html.j2")
+    text = " ".join(template.render(sections=[each for each in found if each], study=page, figures={}).split())
+    assert "and not less in S4, S6, S8" in text and "<td>cannot be said</td>" in text
+    assert '<td class="n">4</td><td class="n">8</td>' in text and "<td>yes</td>" in text  # a, b in mm; it helps
+    assert "mm³/m" in text and ">nan<" not in text.lower()
+
+
+def test_figures_tell_the_layers_of_every_bed(study):
+    """Computed for every row: not all scales have the same."""
+    said = next(remark for remark in page_parameters(study)["remarks"] if remark.startswith("layers of particles"))
+    assert said == "layers of particles in the bed: S4 4.3, S6 2.9, S8 2.2"
