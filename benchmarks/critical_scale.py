@@ -31,6 +31,7 @@ from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
 from postproc.plots.style import save
 from postproc.tables.summary import run_summary
+from workflows.cases.sliding_sample.comparison import ratio_intervals
 from workflows.cases.sliding_sample.flow_history import (
     RunFlow,
     along_travel,
@@ -38,7 +39,6 @@ from workflows.cases.sliding_sample.flow_history import (
     settled_value,
     undisturbed_particles,
 )
-from workflows.cases.sliding_sample.replicates import ratio_intervals
 from workflows.engine.chain import Chain
 from workflows.engine.derived import flow_measures
 from workflows.engine.solver import SolverError, die_with

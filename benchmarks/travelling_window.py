@@ -43,7 +43,7 @@ from benchmarks.window_case import (
 )
 from postproc.plots.style import save
 from postproc.readers.cycle_folders import cycle_files, cycle_folders
-from workflows.cases.sliding_sample.replicates import ratio_intervals
+from workflows.cases.sliding_sample.comparison import ratio_intervals
 from workflows.config.design import REPOSITORY, load_study
 from workflows.engine import state
 from workflows.engine.accounting import HISTORY

@@ -152,11 +152,6 @@ def costs_of_runs(wildcards):
     return of_every_run("results/{study}/{run}/cost.csv")(wildcards) if study_of(wildcards).case.wears else []
 
 
-def regimes_of_study(wildcards):
-    """The table of flow regimes of a study that has one."""
-    return [f"results/{wildcards.study}/flow/regimes.csv"] if study_of(wildcards).finds_regimes else []
-
-
 def study_decks(study):
     """The decks of a study, rendered without the solver."""
     runs = [run.name for run in STUDIES[study].runs]

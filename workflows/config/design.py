@@ -37,7 +37,6 @@ __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies",
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
 FEWEST_RUNS = 5  # for which a regression is made: AICc needs four more than a model has terms
-PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
 ROWS = "rows"  # key of the settings
 DESIGN = "design"  # key of a study, and of its fidelity blocks
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
@@ -57,7 +56,7 @@ class Study:
 
     runs: those of its rows; all_runs: those of the whole design, where `rows` chooses some of it
     factors: {short name: column of the design} of the regression of its results; empty without one
-    finds_regimes: whether the flow regimes of its runs are found
+    head: the keys of its file that are the study's own, no settings
     confirms: the study whose best designs this one simulates, "" for all others
     """
 
@@ -73,7 +72,7 @@ class Study:
     factors: dict[str, str]
     paper_settings: dict[str, Any]
     materials: dict[str, Any]
-    finds_regimes: bool = False
+    head: dict[str, Any]
     confirms: str = ""
 
     def run(self, name: str) -> Run:
@@ -155,7 +154,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
     materials = check_materials(read_yaml(_materials_file(settings, root), root))
     check_material_names(layers, settings, materials, sources.case.material_keys)
     check_calibrated_for(layers, settings, materials, sources.case.material_keys)
-    head = sources.study.values
+    head = sources.head
     designed = _rows_to_confirm(sources, confirms, root) if confirms else _design_rows(sources, fidelity, root)
     rows = designed if confirms else _chosen_rows(layers, settings, designed)
     names = {row_layer.values["row"] for row_layer in rows}
@@ -178,8 +177,7 @@ def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | N
         factors=factors if _can_tell(factors, rows) else {},
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
         materials=materials,
-        finds_regimes=sources.case.name == "sliding_sample"
-        and bool(factors or confirms or any(PARTICLE_SCALE in row.values for row in rows)),
+        head=head,
         confirms=confirms,
     )
     first = study.runs[0]
@@ -224,8 +222,13 @@ class _Sources:
     command: Layer
 
     @property
+    def head(self) -> dict[str, Any]:
+        own = case_schema(self.case.name, "study")["properties"]
+        return {key: value for key, value in self.study.values.items() if key in own}
+
+    @property
     def study_settings(self) -> Layer:
-        return self.study.part(set(self.study.values) - set(case_schema(self.case.name, "study")["properties"]))
+        return self.study.part(set(self.study.values) - set(self.head))
 
     @property
     def design_schema(self) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import pytest
 
 from workflows.cases.sliding_sample.case import bed_parameters
 from workflows.cases.sliding_sample.page import BEYOND_BUMPS
+from workflows.cases.sliding_sample.study import finds_regimes
 from workflows.config.design import list_studies, load_study
 from workflows.config.layers import ConfigError
 from workflows.config.units import to_si
@@ -624,6 +625,7 @@ def test_best_designs_are_a_study_of_their_own(config):
     study, base = (load_study(name, config.root) for name in ("small_confirmation", "small"))
     assert [run.name for run in study.runs] == ["continuous_convex", "continuous_plain"]
     assert (study.confirms, study.factors, base.confirms) == ("small", {}, "")
+    assert finds_regimes(study) and finds_regimes(base)
     assert study.settings == base.settings
     assert study.title == "A small study: the best designs simulated"
     (folder / "design.csv").write_text(BEST + "continuous,2,4,40,3,0.5,thick\n")
@@ -656,7 +658,8 @@ def test_a_run_is_the_same_whichever_rows_are_chosen():
 def test_few_rows_have_regimes_but_no_regression():
     """A regression needs four rows and two levels of every factor; regimes need one row."""
     few = load_study("screening", overrides={"rows": ["R5", "R9"]})
-    assert few.finds_regimes and not few.factors
+    assert finds_regimes(few) and not few.factors
+    assert not finds_regimes(load_study("demo"))
     enough = load_study("screening", overrides={"rows": ["R1", "R2", "R3", "R4", "R5"]})
     assert set(enough.factors) == set("abdhvt")
 

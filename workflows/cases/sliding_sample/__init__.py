@@ -1,1 +1,1 @@
-"""TODO."""
+"""A sample, convex or plain, that slides through a bed of particles: everything of this case."""

@@ -55,7 +55,7 @@ class SlidingSample(Case):
     run_templates = ("lowered_bed", "sliding_sample")
     bed_template = "settled_bed"
     more_templates = ("packed_container", "bed_contacts", "collision")
-    figure_modules = ("figures", "particle_size.figures")
+    figure_modules = ("particle_size.figures", "screening.figures", "screening.regression_figures", "figures")
     shared_figures = ("worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")

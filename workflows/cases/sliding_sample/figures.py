@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from workflows.cases.sliding_sample.study import published_rows
+from workflows.cases.sliding_sample.study import finds_regimes, published_rows
 from workflows.report.page_parameters import is_deformed
 from workflows.report.products import Job, every_run, figure
 
@@ -107,7 +107,7 @@ VIEWS = {
     "inputs": {
         "summary": SUMMARY,
         "surfaces": SURFACES,
-        "regimes": lambda study: [f"results/{study.name}/flow/regimes.csv"] if study.finds_regimes else [],
+        "regimes": lambda study: [f"results/{study.name}/flow/regimes.csv"] if finds_regimes(study) else [],
     },
     "told": {"published_rows": published_rows},
     "digits": 6,
@@ -131,7 +131,7 @@ def flow_views(job: Job) -> Any:
 @figure(
     "Bed",
     "Views of the flow, second row",
-    when=lambda study: study.finds_regimes and len(study.design_rows) > 1,
+    when=lambda study: finds_regimes(study) and len(study.design_rows) > 1,
     **VIEWS,
 )
 def flow_views_second(job: Job) -> Any:
@@ -144,7 +144,6 @@ def _views(job: Job, place: int) -> Any:
     from postproc.flow.bed import last_snapshot, read_snapshot
     from postproc.tables.depths import read_worn_surfaces
     from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
-    from workflows.cases.sliding_sample import flow_views as views_of
     from workflows.cases.sliding_sample.plots import flow_views as figures
     from workflows.cases.sliding_sample.screening.regime_groups import published_rows_in_detail, rows_in_detail
 
@@ -157,8 +156,8 @@ def _views(job: Job, place: int) -> Any:
     files = dict(zip(summary["run"], job.files.surfaces, strict=True))
     meshes = read_worn_surfaces(shown, [files[run] for run in shown])
     snapshots = {run: read_snapshot(last_snapshot(Path(files[run]).parent)) for run in shown}
-    views = {run: views_of.flow_views(snapshots[run], meshes[run]) for run in shown}
-    lines = {run: views_of.sample_lines(mesh) for run, mesh in meshes.items()}
+    views = {run: figures.seen_particles(snapshots[run], meshes[run]) for run in shown}
+    lines = {run: figures.sample_lines(mesh) for run, mesh in meshes.items()}
     return figures.flow_views(views, lines, job.remarks), figures.flow_views_table(views)
 
 

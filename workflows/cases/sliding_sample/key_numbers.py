@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +11,11 @@ import pandas as pd
 from postproc.tables.depths import depth_summary
 from postproc.tables.display import in_display_units
 from postproc.tables.summary import read_history, read_summary
-from workflows.cases.sliding_sample.comparison import cycle_ratios
-from workflows.cases.sliding_sample.replicates import relative_wear_intervals
+from workflows.cases.sliding_sample.comparison import cycle_ratios, relative_wear_intervals
 from workflows.cases.sliding_sample.screening.findings import UNSURE
 from workflows.report.sections import Block, Cards, Table, Text
-from workflows.report.text import data_uri, number
+from workflows.report.text import number
 
-SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/
-TEXTS = ("model", "given", "not_in_model", "warning")  # columns of words, which may be empty
-REGRESSION_TABLES = ("models", "best_designs", "warnings")
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 
 
@@ -66,47 +62,6 @@ def note(settings: Mapping[str, Any], compared: bool, repeated: bool) -> str:
     if settings["wear"]["deform"]:
         said.append("Carried share: worn by the law, not applied to the shape yet, see What is simplified.")
     return " ".join(said)
-
-
-def regression(folder: Path) -> dict[str, Any]:
-    """Return models, best designs, those by regime and warnings of a study's regression, as lists of rows."""
-    tables = {name: read_with_texts(folder / "regression" / f"{name}.csv", TEXTS) for name in REGRESSION_TABLES}
-    by_regime = in_display_units(read_with_texts(folder / "confirmation" / "prediction.csv", TEXTS))
-    return {name: table.to_dict("records") for name, table in (tables | {"by_regime": by_regime}).items()}
-
-
-def read_with_texts(path: Path, texts: Sequence[str]) -> pd.DataFrame:
-    """Return a table in which empty cells of some columns are empty words, not missing numbers."""
-    table = pd.read_csv(path, dtype=dict.fromkeys(texts, object))
-    return table.assign(**{name: table[name].fillna("") for name in texts if name in table})
-
-
-def sizes(folder: Path) -> dict[str, Any]:
-    """Return what a study tells of its critical particle scale, its lines beside the source's, and the guidance."""
-    texts = dict.fromkeys(("row", "scales", "of_scales"), str)
-    tables = {name: pd.read_csv(folder / f"{name}.csv", dtype=texts) for name in SIZE_TABLES}
-    tables["guidance"] = in_display_units(tables["guidance"])
-    return {
-        **{name: table.to_dict("records") for name, table in tables.items() if name != "sentences"},
-        "sentences": tables["sentences"]["sentence"].tolist(),
-        "counts": tables["published"]["verdict"].value_counts().to_dict(),
-        "csv": data_uri(tables["published"].to_csv(index=False).encode(), "text/csv"),
-        "guidance_csv": data_uri(tables["guidance"].to_csv(index=False).encode(), "text/csv"),
-    }
-
-
-def findings(folder: Path) -> dict[str, Any]:
-    """Return the verdicts on the source's findings, their counts and its runs, as lists of rows and for download."""
-    files = {name: folder / f"{name}.csv" for name in ("findings", "runs")}
-    verdicts = pd.read_csv(files["findings"], keep_default_na=False)
-    runs = read_with_texts(files["runs"], ("published_regime", "published_wear_over_plain"))
-    return {
-        "verdicts": verdicts.to_dict("records"),
-        "counts": verdicts["verdict"].value_counts().to_dict(),
-        "runs": runs.to_dict("records"),
-        "csv": data_uri(files["findings"].read_bytes(), "text/csv"),
-        "runs_csv": data_uri(files["runs"].read_bytes(), "text/csv"),
-    }
 
 
 def result_table(

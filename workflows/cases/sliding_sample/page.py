@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from postproc.reference.size_ratios import LARGEST_RATIO
 from workflows.cases.sliding_sample.key_numbers import key_numbers
-from workflows.cases.sliding_sample.study import replicate_settings
-from workflows.config.design import PARTICLE_SCALE
+from workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
 from workflows.engine.derived import PERIODIC, WINDOW
 from workflows.report.sections import Pictures, Section
 from workflows.report.text import range_text
@@ -26,7 +25,6 @@ DECKS = (  # {bed} and {run} are those of the first run
     ("Lowering and run-in", "{run}/cycle_000/deck.in"),
     ("First wear cycle", "{run}/cycle_001/deck.in"),
 )
-SIZE_TABLES = ("sentences", "published", "lines", "guidance")  # in particle_size/, of a study of particle size
 TOLD_HOP = 0.05  # of the sample's length; a shorter hop off the ramp hides less than a row of elements or two
 ALONG = {  # bed.ends -> what it makes of the packing along the travel
     PERIODIC: " and along it, so that it passes the sample again and again",
@@ -35,6 +33,18 @@ ALONG = {  # bed.ends -> what it makes of the packing along the travel
 BEYOND_BUMPS = (
     "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17), row with scale and limit"
 )
+FIGURES_OF_ALL = {  # of every study, by section
+    "Where and when it wears": (
+        "wear_against_travel",
+        "wear_split",
+        "depth_distribution",
+        "worn_surface_3d",
+        "worn_film",
+        "wear_updates",
+    ),
+    "Bed and forces": ("bed", "flow_views", "forces"),
+    "Wear laws": ("wear_law_comparison",),
+}
 REDUCED = (
     ("bed", "width_mm", "bed width"),
     ("bed", "ahead_mm", "bed ahead of the sample"),
@@ -44,14 +54,48 @@ REDUCED = (
 
 def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is."""
-    return {"replicates": replicate_settings(study)}
+    from workflows.cases.sliding_sample.particle_size import page as particle_size
+    from workflows.cases.sliding_sample.screening import page as screening
+
+    by_regime, by_scale = finds_regimes(study), varies_scale(study)
+    return {
+        "replicates": replicate_settings(study),
+        "finds_regimes": by_regime,
+        "varies_scale": by_scale,
+        **(screening.told(study) if by_regime else {}),
+        **(particle_size.told(study) if by_scale else {}),
+    }
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
-    """Return the sections of a study's page: its key numbers, then those of screenings and of particle size."""
-    return [
-        Section("Key numbers", [*key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]),
-    ]
+    """Return the sections of a study's page: key numbers, what its kind of study asks, then wear and bed of any."""
+    from workflows.cases.sliding_sample.particle_size import page as particle_size
+    from workflows.cases.sliding_sample.screening import page as screening
+
+    of_study = study["told"]
+    return _each_figure_once(
+        [
+            Section("Key numbers", [*key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]),
+            *(particle_size.sections(study, folder) if of_study["varies_scale"] else []),
+            *(screening.sections(study, folder) if of_study["finds_regimes"] else []),
+            *(Section(title, [Pictures(names)]) for title, names in FIGURES_OF_ALL.items()),
+        ]
+    )
+
+
+def _each_figure_once(found: list[Section]) -> list[Section]:
+    """Return sections whose figures stand where they are named first: several kinds of study show some of them."""
+    seen: set[str] = set()
+    kept = []
+    for section in found:
+        blocks = []
+        for block in section.blocks:
+            if isinstance(block, Pictures):
+                block = Pictures([name for name in block.names if name not in seen])
+                seen |= set(block.names)
+            blocks.append(block)
+        kept.append(Section(section.title, blocks))
+    return kept
 
 
 def remarks(study: Study) -> list[str]:
@@ -80,7 +124,7 @@ def remarks(study: Study) -> list[str]:
         ends = " to ".join(lengths[:: max(len(lengths) - 1, 1)])
         said.append(f"bed in a window of {ends} mm that travels with the sample")
     layers = {run.row: run.parameters["derived"]["layers"] for run in study.runs}
-    if any(PARTICLE_SCALE in row for row in study.design_rows):
+    if varies_scale(study):
         said.append(f"layers of particles in the bed: {', '.join(f'{row} {each:.1f}' for row, each in layers.items())}")
     elif thin := {run.row: layers[run.row] for run in study.runs if run.parameters["derived"]["thin_bed"]}:
         rows = ", ".join(f"{row} ({each:.1f})" for row, each in thin.items())

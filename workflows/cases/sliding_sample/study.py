@@ -6,12 +6,13 @@ import csv
 import re
 from typing import Any
 
-from workflows.config.design import PARTICLE_SCALE, REPOSITORY, Study
+from workflows.config.design import FACTORS, REPOSITORY, Study
 from workflows.engine.case import Run
 from workflows.engine.derived import flow_measures
 from workflows.report.text import name_and_unit
 
 PUBLISHED_DESIGN = REPOSITORY / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
+PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
 CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")  # columns that are no property of the pattern
 PATTERN = (  # columns that make two rows the same
     "major_radius_mm",
@@ -23,9 +24,26 @@ PATTERN = (  # columns that make two rows the same
 )
 
 
+def compares_rows(study: Study) -> bool:
+    """Return whether a study sets convex over plain wear of several design rows side by side."""
+    return len(study.design_rows) > 1 and bool(plain_runs(study))
+
+
+def varies_scale(study: Study) -> bool:
+    """Return whether a study is one of particle size: the rows of its sliding samples give their particle scale."""
+    return any(PARTICLE_SCALE in row for row in study.design_rows)
+
+
+def finds_regimes(study: Study) -> bool:
+    """Return whether the flow regimes of a study's runs are found: it names factors, whether or not its rows can tell
+    of them, confirms a study that does, or is one of particle size.
+    """
+    return bool(study.head.get(FACTORS)) or varies_scale(study)
+
+
 def has_findings(study: Study) -> bool:
     """Return whether a study can be held against the source's findings: it has some of its rows, and their regimes."""
-    return study.case.name == "sliding_sample" and study.finds_regimes and bool(published_rows(study))
+    return finds_regimes(study) and bool(published_rows(study))
 
 
 def regression_table(study: Study, name: str) -> str | list[str]:
@@ -33,14 +51,14 @@ def regression_table(study: Study, name: str) -> str | list[str]:
     return f"results/{study.name}/regression/{name}.csv" if study.factors else []
 
 
-def varies_scale(study: Study) -> bool:
-    """Return whether a study is one of particle size: the rows of its sliding samples give their particle scale."""
-    return study.case.name == "sliding_sample" and any(PARTICLE_SCALE in row for row in study.design_rows)
-
-
 def published_flow(study: Study) -> str:
     """Return the table of what the source tells of the flow: of its chapter 4 for particle size, else of chapter 3."""
     return f"config/published/{'particle_size' if varies_scale(study) else 'screening'}_results.csv"
+
+
+def run_in(study: Study) -> float:
+    """Return the travel (mm) before wear counts."""
+    return study.settings["sliding"]["run_in_mm"]
 
 
 def plain_runs(study: Study) -> dict[str, Run]:

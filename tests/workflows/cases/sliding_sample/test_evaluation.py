@@ -1,4 +1,4 @@
-"""Wear gradients, relative wear, wear rate and regimes, on histories in closed form."""
+"""Wear gradients, relative wear, wear rate, regimes and steady windows, on histories in closed form."""
 
 import numpy as np
 import pandas as pd
@@ -7,16 +7,20 @@ import pytest
 from workflows.cases.sliding_sample.evaluation import (
     CONTINUOUS,
     DISCONTINUOUS,
+    MEASURES,
     UNDECIDED,
     flow_regime,
     gradient_history,
     regime_table,
     relative_to_largest,
+    steady_table,
     wear_gradient,
     wear_rate,
 )
 
 ROUNDING = 1e-12
+TRAVEL = np.arange(0.0, 1000.0, 10.0)
+NAMES = {"row": "R1", "surface": "convex", "travel_mm": TRAVEL}
 
 
 def history_of(**volumes):
@@ -81,3 +85,44 @@ def test_regimes_by_run():
     """A run without a surcharge is not called discontinuous."""
     table = regime_table({"R5_convex": 0.3, "R2_convex": 0.97, "R4_convex": 0.97}, {"R5_convex": 1.4, "R2_convex": 1.8})
     assert table["regime"].tolist() == [CONTINUOUS, DISCONTINUOUS, UNDECIDED]
+
+
+def wavy(mean):
+    """A measure that alternates by 1 % about its mean."""
+    return mean * (1.0 + 0.01 * (-1.0) ** np.arange(len(TRAVEL)))
+
+
+@pytest.fixture
+def table():
+    """R1_convex becomes steady after 300 mm in its flow alone; R1_plain wears ever more."""
+    flow = np.where(TRAVEL < 300.0, 0.1 * TRAVEL, wavy(30.0))
+    along = [pd.DataFrame({"run": run, **NAMES, MEASURES[0]: flow}) for run in ("R1_convex", "R1_plain")]
+    gradients = [
+        pd.DataFrame({"run": "R1_convex", **NAMES, MEASURES[1]: wavy(0.5)}),
+        pd.DataFrame({"run": "R1_plain", **NAMES, MEASURES[1]: TRAVEL}),
+    ]
+    return steady_table(pd.concat(along), pd.concat(gradients), (500.0, 900.0)).set_index(["run", "measure"])
+
+
+def test_both_measures_must_be_steady(table):
+    """Together they are steady from the later start on; where one drifts there is no such place."""
+    assert table["steady"].tolist() == [True, True, True, False]
+    assert 270.0 <= table.loc[("R1_convex", MEASURES[0]), "start_mm"] <= 320.0
+    starts = table["common_start_mm"].groupby("run").first()
+    assert starts["R1_convex"] == table.loc[("R1_convex", MEASURES[0]), "start_mm"]
+    assert np.isnan(starts["R1_plain"])
+
+
+def test_the_given_window_stands_beside(table):
+    """Its mean is that of the values inside; a window that the travel does not fill has none."""
+    assert table.loc[("R1_convex", MEASURES[0]), "published_mean"] == pytest.approx(30.0, rel=1e-3)
+    line = pd.DataFrame({"run": "R1_convex", **NAMES, MEASURES[0]: 1.0, MEASURES[1]: 1.0})
+    assert steady_table(line, line, (500.0, 1700.0))["published_mean"].isna().all()
+
+
+def test_few_values_are_not_steady():
+    """Of three values there is no window, and no claim."""
+    line = pd.DataFrame({"run": "R1_convex", **NAMES, MEASURES[0]: 1.0, MEASURES[1]: 1.0})[:3]
+    found = steady_table(line, line, (500.0, 900.0))
+    assert found["steady"].tolist() == [False, False]
+    assert found[["mean", "common_start_mm"]].isna().all(axis=None)

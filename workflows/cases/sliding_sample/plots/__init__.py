@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of sliding samples: the only place of the case that draws, besides those of its studies."""

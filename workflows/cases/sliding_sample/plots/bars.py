@@ -42,7 +42,7 @@ def _run_axis(axes: Axes, runs: Sequence[str]) -> np.ndarray:
 def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw each run's wear on base and bumps, stacked, over the wear of its plain run (dashed line at 1).
 
-    split: as from `analysis.comparison.wear_split`. Of many runs, plain ones (1 by definition) are left out.
+    split: as from `comparison.wear_split`. Of many runs, plain ones (1 by definition) are left out.
     """
     if len(split) > MANY_RUNS and (split["surface"] != PLAIN).any():
         split = split[split["surface"] != PLAIN].reset_index(drop=True)
@@ -86,7 +86,7 @@ def relative_wear(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
     """Draw convex over plain wear per setting, lowest first, with its interval or else its range over the cycles, and
     alpha_ER written in.
 
-    table: as from `analysis.replicates.by_setting`; published: row, relation, value (-) and source; may be empty
+    table: as from `comparison.by_setting`; published: row, relation, value (-) and source; may be empty
     """
     figure = new_figure(remarks, 4.6)
     axes = figure.subplots()
@@ -139,7 +139,7 @@ def _published_marks(axes: Axes, places: Mapping[str, float], published: pd.Data
 def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw the volume (mm3) of each run by Archard's law and by the solver's own Finnie model on a log axis.
 
-    table: as from `analysis.comparison.law_comparison`. Volumes of zero are not drawn.
+    table: as from `comparison.law_comparison`. Volumes of zero are not drawn.
     """
     figure = new_figure(remarks, 4.2)
     axes = figure.subplots()
@@ -168,7 +168,7 @@ def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def mean_forces(summary: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw mean vertical and drag force (N) per run with the 10th to 90th percentile along the travel.
 
-    summary: as from `analysis.history.force_summary`. For studies of many rows.
+    summary: as from `history.force_summary`. For studies of many rows.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     panels = figure.subplots(2, 1, sharex=True)

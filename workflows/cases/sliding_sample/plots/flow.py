@@ -101,7 +101,7 @@ def _apart(values: np.ndarray, step: float, highest: float) -> np.ndarray:
 def velocity_profiles(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw velocity with the sample, sideways and upward ratio against height (mm), a line of panels per design row.
 
-    table: as from `analysis.flow_history.row_profiles`, in display units
+    table: as from `flow_history.row_profiles`, in display units
     published: row, surface, zone, layer (of 5 mm), quantity, relation, value and source; may be empty
     """
     rows = list(dict.fromkeys(table["row"]))

@@ -10,7 +10,7 @@ import pandas as pd
 
 from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
 from postproc.tables.summary import PLAIN
-from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, RIDES_ALONG
+from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES, RIDES_ALONG
 from workflows.cases.sliding_sample.screening.findings import (
     CENTRAL,
     PERCENT,
@@ -23,7 +23,6 @@ from workflows.cases.sliding_sample.screening.findings import (
     side_of_one,
     unsteady,
 )
-from workflows.cases.sliding_sample.steady_table import MEASURES
 
 NO_TWIN = "no row has a plain twin with a result"
 EXCEPTION, BEST, BEST_DISCONTINUOUS = "R12", "R5", "R2"

@@ -16,9 +16,9 @@ import pandas as pd
 from postproc.statistics.regression import CONSTANT
 from postproc.tables.display import MILLIMETRES
 from postproc.tables.summary import PLAIN
+from workflows.cases.sliding_sample.comparison import relative_wear_intervals
 from workflows.cases.sliding_sample.evaluation import CONTINUOUS
-from workflows.cases.sliding_sample.replicates import relative_wear_intervals
-from workflows.cases.sliding_sample.screening.published_model import has_factors
+from workflows.cases.sliding_sample.screening.regression_tables import has_factors
 from workflows.cases.sliding_sample.screening.regression_warnings import confounded
 from workflows.cases.sliding_sample.screening.study_regression import Screening
 

@@ -1,16 +1,16 @@
-"""Every table of a screening study's regression, from the study's summary."""
+"""Every table of a screening study's regression, from the study's summary, and the source's regression beside it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 
 from postproc.statistics.factors import Factor, factor_of
-from postproc.statistics.model_terms import aliasing, candidate_terms
+from postproc.statistics.model_terms import aliasing, candidate_terms, parse_term, term_columns
+from postproc.statistics.regression import CONSTANT
 from postproc.tables.summary import PLAIN
-from workflows.cases.sliding_sample.screening.published_model import has_factors, published_wear
 from workflows.cases.sliding_sample.screening.regression_warnings import confounded, screening_warnings
 from workflows.cases.sliding_sample.screening.study_regression import (
     Screening,
@@ -57,7 +57,7 @@ def strongest_factor(study: Screening) -> Factor | None:
 def best_designs(study: Screening) -> pd.DataFrame:
     """Return the best design inside all ranges, and at each level of the strongest factor, which sets the regime.
 
-    As `screening.best_design_table`, with the wear over the largest of the study, and `given` first: what was held.
+    As `study_regression.best_design_table`, with the wear over the largest of the study, and `given` first: what was held.
     Factors that are aliased with a nuisance are held at their middle in all cases: nothing is claimed about them.
     """
     aliased = {name for factors in confounded(study).values() for name in factors}
@@ -75,7 +75,7 @@ def best_designs(study: Screening) -> pd.DataFrame:
 
 
 def contour_table(study: Screening, coefficients: pd.DataFrame, pairs: pd.DataFrame) -> pd.DataFrame:
-    """Return the response over pairs of factors, see `screening.response_surface`, with published_wear beside it.
+    """Return the response over pairs of factors, see `study_regression.response_surface`, with published_wear beside it.
 
     coefficients: of the published regression; pairs: x_factor and y_factor of its contours
     The study's own pairs follow the published ones, MOST_PAIRS in all. Of a study without the published factors there
@@ -114,3 +114,37 @@ def regression_tables(study: Screening, coefficients: pd.DataFrame, pairs: pd.Da
         "best_designs": best_designs(study),
         "warnings": pd.DataFrame({"warning": screening_warnings(study)}, dtype=str),
     }
+
+
+# ---------------------------------------------------------------- the source's regression
+
+
+def has_factors(coefficients: pd.DataFrame, names: Sequence[str]) -> bool:
+    """Return whether a study has all factors of a published regression; coefficients: with term."""
+    terms = coefficients.loc[coefficients["term"] != CONSTANT, "term"]
+    return {name for term in terms for name in term.removesuffix("^2").split("*")} <= set(names)
+
+
+def published_wear(coefficients: pd.DataFrame, names: Sequence[str], coded: np.ndarray) -> np.ndarray:
+    """Return the normalised wear (k,) that a published regression predicts at places (k, factors) in coded units.
+
+    coefficients: term and coefficient of ln(normalised wear); names: short names of the factors, which it has all
+    """
+    terms = coefficients[coefficients["term"] != CONSTANT]
+    constant = float(coefficients.loc[coefficients["term"] == CONSTANT, "coefficient"].iloc[0])
+    parsed = [parse_term(term, names) for term in terms["term"]]
+    return np.exp(constant + term_columns(parsed, coded) @ terms["coefficient"].to_numpy(dtype=float))
+
+
+def published_wear_by_row(
+    design: pd.DataFrame, coefficients: pd.DataFrame, columns: Mapping[str, str]
+) -> dict[str, float]:
+    """Return the normalised wear (-) by row of a design by the published regression; {} without its factors.
+
+    columns: {short name: column of the design}
+    """
+    if not has_factors(coefficients, list(columns)):
+        return {}
+    levels = {name: design[column].to_numpy(dtype=float) for name, column in columns.items()}
+    coded = np.column_stack([factor_of(name, values).coded(values) for name, values in levels.items()])
+    return dict(zip(design["row"].astype(str), published_wear(coefficients, list(columns), coded), strict=True))

@@ -7,8 +7,15 @@ import pytest
 from meshes.pattern import ConvexPattern
 from meshes.sample import sliding_sample
 from postproc.plots.style import remarks_of
-from workflows.cases.sliding_sample.flow_views import ACROSS, BOTTOM, SIDE, flow_views, sample_lines
-from workflows.cases.sliding_sample.plots import flow_views as figures
+from workflows.cases.sliding_sample.plots.flow_views import (
+    ACROSS,
+    BOTTOM,
+    SIDE,
+    flow_views,
+    flow_views_table,
+    sample_lines,
+    seen_particles,
+)
 
 REMARKS = ["particles at scale 4", "sample 40 x 40 mm of 200 x 200 mm"]
 WIDTH = 0.04  # m
@@ -34,7 +41,7 @@ def particles():
 
 def test_each_view_is_one_layer(particles, sample):
     """Side view: particles at x = 0; cross-section: at y = 0; bottom view: the lowest; in the axes of the view."""
-    views = flow_views(particles, sample)
+    views = seen_particles(particles, sample)
     columns, lines, layers = 51, 51, 5
     counts = views.groupby("view", sort=False).size().to_dict()
     assert counts == {SIDE: lines * layers, BOTTOM: lines * columns, ACROSS: columns * layers}
@@ -49,7 +56,7 @@ def test_each_view_is_one_layer(particles, sample):
 def test_far_particles_are_left_out(particles, sample):
     """Beyond one and a half lengths of the sample from its middle nothing is shown."""
     far = particles.assign(y_m=particles["y_m"] + 0.2)
-    assert flow_views(far, sample).empty
+    assert seen_particles(far, sample).empty
 
 
 def test_lines_are_the_samples(sample):
@@ -68,9 +75,9 @@ def test_lines_are_the_samples(sample):
 
 def test_figure_shows_all_views_of_all_runs(particles, sample):
     """A column per run, a panel per view with units; circles as tabled; colours by angular speed in degrees."""
-    views = {"R9_convex": flow_views(particles, sample), "R9_plain": flow_views(particles, sample)}
+    views = {"R9_convex": seen_particles(particles, sample), "R9_plain": seen_particles(particles, sample)}
     lines = dict.fromkeys(views, sample_lines(sample))
-    figure = figures.flow_views(views, lines, REMARKS)
+    figure = flow_views(views, lines, REMARKS)
     *panels, bar = figure.axes
     assert len(panels) == 6
     assert "(°/s)" in bar.get_ylabel()
@@ -84,7 +91,7 @@ def test_figure_shows_all_views_of_all_runs(particles, sample):
     np.testing.assert_allclose(circles.get_offsets(), 1e3 * side[["horizontal_m", "vertical_m"]])
     np.testing.assert_allclose(circles.get_array(), np.degrees(side["angular_speed_rad_per_s"]))
     assert remarks_of(figure) == "; ".join(REMARKS)
-    table = figures.flow_views_table(views)
+    table = flow_views_table(views)
     assert list(table) == [
         "view",
         "id",

@@ -9,12 +9,14 @@ import pytest
 from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID
 from tests import REPOSITORY as ROOT
 from tests.support.screening_study import FACTORS
-from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS
+from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES
 from workflows.cases.sliding_sample.screening.finding_tests import findings_table
 from workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source, side_of_one
-from workflows.cases.sliding_sample.screening.published_model import published_wear_by_row
-from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
-from workflows.cases.sliding_sample.steady_table import MEASURES
+from workflows.cases.sliding_sample.screening.regression_tables import (
+    published_wear_by_row,
+    regression_tables,
+    screen_summary,
+)
 
 PUBLISHED = ROOT / "config" / "published"
 DIGITS = 0.01  # -, relative: coefficients of Table 3.10 have three digits

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of screening studies: the only place of them that draws."""

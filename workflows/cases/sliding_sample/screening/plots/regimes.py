@@ -1,4 +1,4 @@
-"""Figures of a screening study that set convex runs beside their plain twins, a panel per flow regime."""
+"""Figures by flow regime: convex runs beside their plain twins, and best designs beside what was predicted of them."""
 
 from __future__ import annotations
 
@@ -10,19 +10,31 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from postproc.plots.style import BASE_COLOUR, BUMP_COLOUR, LARGEST_HEIGHT, SMALLEST_FONT, colour, new_figure
+from postproc.plots.style import (
+    BASE_COLOUR,
+    BUMP_COLOUR,
+    LARGEST_HEIGHT,
+    MARKERS,
+    OTHER_COLOUR,
+    SMALLEST_FONT,
+    colour,
+    new_figure,
+    scaled,
+)
 from postproc.tables.summary import PLAIN
+from workflows.cases.sliding_sample.screening.confirmation import interval_reach
 
 BAR = 0.4  # -, width of a bar over the distance of rows
 PLAIN_FILL = "#f4c9a8"  # of the plain samples' bars
 ERROR_BARS = {"fmt": "none", "ecolor": "black", "elinewidth": 0.9, "capsize": 2}
 HEADROOM = 1.08  # -, of the highest bar
+ROOM = 1.05  # -, of the largest value on the axis of a confirmation
 
 
 def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw relative wear of convex (base and bumps, stacked) and plain samples, rows of least convex wear first.
 
-    table: as from `analysis.regime_groups.wear_by_group`, with interval_low and interval_high, NaN where not known.
+    table: as from `regime_groups.wear_by_group`, with interval_low and interval_high, NaN where not known.
     """
     highest = np.nanmax([1.0, *table["interval_high"]])
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -51,7 +63,7 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def normal_force_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw the mean normal force (N) on convex and plain samples with its deviation along the travel, if known.
 
-    table: as from `analysis.regime_groups.force_by_group`.
+    table: as from `regime_groups.force_by_group`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     for axes, shown in _panels(figure, table, "mean_normal_force_N"):
@@ -98,3 +110,32 @@ def _panels(figure: Figure, table: pd.DataFrame, column: str) -> list[tuple[Axes
         axes.set_xlabel("Design row")
         panels.append((axes, shown.assign(place=shown["row"].map(rows.index))))
     return panels
+
+
+def confirmation(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw the predicted wear per metre (mm3/m) of each best design with its interval, and what the runs wear.
+
+    table: as from `confirmation.confirmation_table`.
+    """
+    figure = new_figure(remarks, 2.6 + 0.7 * len(table))
+    axes = figure.subplots()
+    lines = -np.arange(len(table), dtype=float)
+    drawn = {"fmt": "D", "color": OTHER_COLOUR, "markerfacecolor": "white", "capsize": 5}
+    label = "predicted, with the interval of one run (95 %)"
+    axes.errorbar(table["predicted_mm3_per_m"], lines, xerr=interval_reach(table), label=label, **drawn)
+    for surface, column in (("convex", "simulated_mm3_per_m"), (PLAIN, "plain_mm3_per_m")):
+        marks = {"color": colour(surface), "markersize": 8, "linestyle": "", "label": f"simulated, {surface}"}
+        axes.plot(table[column], lines, MARKERS[surface], zorder=3, **marks)
+    for place, inside, ratio in zip(lines, table["inside"], table["over_predicted"], strict=True):
+        words = f"{'inside' if inside else 'outside'}, {ratio:.2f} of the prediction"
+        axes.text(1.0, place + 0.18, words, transform=axes.get_yaxis_transform(), ha="right", fontsize=SMALLEST_FONT)
+    largest = float(table.filter(like="mm3_per_m").max(axis=None))
+    unit, ticks = scaled("mm³/m", largest)
+    axes.set_xlim(0.0, ROOM * largest)
+    axes.xaxis.set_major_formatter(ticks)
+    axes.set_xlabel(f"Wear per length of travel ({unit})")
+    axes.set_yticks(lines, table["row"])
+    axes.set_ylim(lines[-1] - 0.5, 0.5)
+    axes.set_ylabel("Best design for")
+    figure.legend(loc="outside upper center", ncols=3)
+    return figure

@@ -14,8 +14,6 @@ from matplotlib.ticker import NullLocator
 
 from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, facet_columns, new_figure
 from postproc.statistics.regression import CONSTANT
-from workflows.cases.sliding_sample.screening.published_model import has_factors
-from workflows.cases.sliding_sample.screening.study_regression import Screening
 
 BRIGHT = "#ffb000"  # of lines on the colour map
 OURS, PUBLISHED = "#0072B2", "#D55E00"
@@ -27,18 +25,12 @@ CONTOURS = 9
 PUBLISHED_LEVELS = (0.02, 0.05, 0.1, 0.2, 0.5)  # of dashed lines
 LINE = 0.42  # inches, of a term of the coefficient figure
 SHIFT = 0.2  # of a line of the coefficient figure, between ours and published
-DRAWN = {  # figure -> the table that it draws
-    "coefficients": "coefficients",
-    "residuals": "residuals",
-    "half_normal": "effects",
-    "contours": "surface",
-}
 
 
 def coefficients(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw coefficients in coded units with their standard errors, published ones beside them, p values at the edge.
 
-    table: as from `analysis.screening.chosen_coefficients`; published: term, coefficient, p_value, source.
+    table: as from `study_regression.chosen_coefficients`; published: term, coefficient, p_value, source.
     """
     terms = list(dict.fromkeys([*table["term"], *published["term"]]))
     figure = new_figure(remarks, min(LARGEST_HEIGHT, 1.9 + LINE * len(terms)))
@@ -81,7 +73,7 @@ def coefficients(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence
 def residual_plots(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw residuals of ln(normalised wear) as a normal probability plot and against the fitted value.
 
-    table: as from `analysis.screening.residuals`. The line is that of normal residuals of the same deviation.
+    table: as from `study_regression.residuals`. The line is that of normal residuals of the same deviation.
     """
     figure = new_figure(remarks)
     normal, fitted = figure.subplots(1, 2)
@@ -103,7 +95,7 @@ def residual_plots(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def half_normal(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw sizes of contrasts against half-normal scores; the line is where contrasts of pure error would lie.
 
-    table: as from `analysis.effects.half_normal_table`.
+    table: as from `effects.half_normal_table`.
     """
     figure = new_figure(remarks)
     axes = figure.subplots()
@@ -128,7 +120,7 @@ def response_contours(
     """Draw contours of the predicted normalised wear over pairs of factors, others at their middle level; those of the
     published regression, if known, as dashed lines at the same levels.
 
-    surface: as from `analysis.screening_tables.contour_table`; labels: {short name: name and unit for the axis}
+    surface: as from `regression_tables.contour_table`; labels: {short name: name and unit for the axis}
     log_factors: short names of factors whose levels double; their axes are logarithmic
     """
     pairs = list(surface.groupby(["x_factor", "y_factor"], sort=False))
@@ -186,25 +178,3 @@ def _name_points(axes: Axes, x: pd.Series, y: pd.Series, names: pd.Series) -> No
     axes.margins(ROOM)
     for place, height, name in zip(x, y, names, strict=True):
         axes.annotate(_typeset(name), (place, height), (6, -3), textcoords="offset points", fontsize=SMALLEST_FONT)
-
-
-def regression_figures(
-    study: Screening,
-    tables: Mapping[str, pd.DataFrame],
-    published: pd.DataFrame,
-    labels: Mapping[str, str],
-    remarks: Sequence[str],
-) -> dict[str, Figure]:
-    """Return the figures of a study's regression by the names of DRAWN.
-
-    tables: as from `analysis.screening_tables.regression_tables`; published: coefficients to show beside, left out
-    unless the study has all their factors; labels: {short name: name and unit for an axis}
-    """
-    beside = published if has_factors(published, study.names) else published[:0]
-    doubling = [factor.name for factor in study.factors if factor.spacing == "log"]
-    return {
-        "coefficients": coefficients(tables["coefficients"], beside, remarks),
-        "residuals": residual_plots(tables["residuals"], remarks),
-        "half_normal": half_normal(tables["effects"], remarks),
-        "contours": response_contours(tables["surface"], labels, doubling, remarks),
-    }

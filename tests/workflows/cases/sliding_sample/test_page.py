@@ -1,0 +1,121 @@
+"""The page of a study of sliding samples: key numbers, what is simplified, and which figures it has."""
+
+import numpy as np
+import pytest
+
+from tests.support.finished_samples import CYCLES, embedded, finished_page
+from workflows.cases.sliding_sample.study import published_rows, replicate_settings
+from workflows.config.design import load_study
+from workflows.report.page_parameters import page_parameters
+from workflows.report.products import figures_of
+
+RELATIVE = 1e-9  # numbers pass through CSV text
+
+
+def names_of(study):
+    """The names of a study's figures."""
+    return [product.name for product in figures_of(study)]
+
+
+@pytest.fixture
+def study(config):
+    """A study of two design rows, each convex and plain."""
+    return load_study("small", config.root)
+
+
+@pytest.fixture
+def page(study, tmp_path):
+    """The text of its page."""
+    return finished_page(tmp_path / "results" / study.name, study)
+
+
+def test_key_numbers(page, study):
+    """Relative wear, wear per metre, share of the bumps and carried share follow from what the runs wear."""
+    results = embedded(page, f"{study.name}_key_numbers.csv").set_index("run")
+    convex = results.loc["R9_convex"]
+    assert convex["wear_over_plain"] == pytest.approx(0.8, rel=RELATIVE)
+    assert convex["archard_volume_per_metre_mm3_per_m"] == pytest.approx(CYCLES * 0.8 / (CYCLES * 0.04), rel=RELATIVE)
+    assert convex["bump_share_percent"] == pytest.approx(25.0, rel=RELATIVE)
+    assert convex["carried_share_percent"] == pytest.approx(50.0, rel=RELATIVE)
+    assert convex["lowest_cycle_ratio"] == pytest.approx(0.8, rel=RELATIVE)
+    assert results.loc["R9_plain", "wear_over_plain"] == 1.0
+
+
+def test_real_volume_is_without_acceleration(config, tmp_path):
+    """A study accelerated 1e4 times prints volumes per metre as simulated and divided by 1e4."""
+    page = finished_page(tmp_path / "small", load_study("small", config.root, {"wear": {"acceleration": 1e4}}))
+    results = embedded(page, "small_key_numbers.csv")
+    ratio = results["archard_volume_per_metre_mm3_per_m"] / results["real_volume_per_metre_mm3_per_m"]
+    np.testing.assert_allclose(ratio, 1e4, rtol=RELATIVE)
+    assert "accelerated 10000 times" in page
+
+
+def test_the_page_says_how_the_loads_were_summed(config, page, tmp_path):
+    """Sampled contacts are a simplification with their interval; the solver's sum of every step is none."""
+    assert "sampled" not in page
+    study = load_study("small", config.root, {"ledger": "dumps", "solver": {"sampling_interval_steps": 40}})
+    assert "contacts sampled every 40 steps" in finished_page(tmp_path / "sampled", study)
+
+
+def test_the_page_tells_the_law(config, page, tmp_path):
+    """Archard's words or Finnie's; the solver's own measure beside Archard's only; figures name another law."""
+    assert "Archard: volume = coefficient times normal force" in page and "wears nothing" in page
+    study = load_study("small", config.root, {"wear": {"law": "finnie"}})
+    text = finished_page(tmp_path / "finnie", study)
+    assert "Finnie: volume = coefficient times a function of the impact angle" in text and "wears nothing" not in text
+    assert any("worn by the law finnie" in remark for remark in page_parameters(study)["remarks"])
+
+
+def test_single_row_has_no_figure_of_rows(config):
+    """A figure that compares design rows is left out where there is one row, and where nothing is plain."""
+    assert names_of(load_study("small", config.root))[0] == "relative_wear"
+    config.edit("studies/small.yaml", "surfaces: [convex, plain]", "surfaces: [convex]")
+    assert "relative_wear" not in names_of(load_study("small", config.root))
+    config.edit("studies/small.yaml", "surfaces: [convex]", "surfaces: [convex, plain]")
+    config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30\n", "")
+    assert "relative_wear" not in names_of(load_study("small", config.root))
+
+
+def test_only_what_deforms_has_updates_and_a_film(config):
+    """The wear updates and the film, a GIF, are of studies that apply wear to the shape."""
+    deforming = figures_of(load_study("small", config.root))
+    rigid = names_of(load_study("small", config.root, {"wear": {"deform": False}}))
+    further = {product.name: product.suffix for product in deforming if product.name not in rigid}
+    assert further == {"wear_updates": "png", "worn_film": "gif"}
+
+
+def test_published_rows_have_the_published_factors(config):
+    """A row is a published one by its factors, whatever its name; R5 of another thickness is none."""
+    config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "own,8,2,20,6.0,1.0,40")
+    assert published_rows(load_study("small", config.root)) == {"own": "R9"}
+    screening = published_rows(load_study("screening"))
+    assert len(screening) == 13 and all(ours == theirs for ours, theirs in screening.items())
+
+
+REPLICATES = """\
+row,major_radius_mm,minor_radius_mm,column_spacing_mm,height_mm,velocity_m_per_s,bed_thickness_mm,seed
+R9-1,8,2,20,6.0,1.0,40,1000
+R9-2,8,2,20,6.0,1.0,40,2000
+R5,4,8,60,6.0,2.0,30,1000
+"""
+
+
+def test_rows_that_differ_in_their_seed_are_replicates(config, tmp_path, page):
+    """They share a setting, a published row and an interval on the page; without any it says what is not known."""
+    assert "scatter from packing to packing is not known" in page
+    assert "interval_low" not in embedded(page, "small_key_numbers.csv")
+    config.write("designs/small.csv", REPLICATES)
+    study = load_study("small", config.root)
+    assert replicate_settings(study) == {"R9-1": "R9", "R9-2": "R9", "R5": "R5"}
+    assert published_rows(study) == {"R9-1": "R9", "R9-2": "R9", "R9": "R9"}
+    text = finished_page(tmp_path / "small", study)
+    assert "Interval: 95 % of the mean" in text and "is not known" not in text
+    ends = (
+        embedded(text, "small_key_numbers.csv").set_index("run").loc["R9-2_convex", ["interval_low", "interval_high"]]
+    )
+    assert ends.tolist() == pytest.approx([0.8, 0.8], rel=RELATIVE)  # all convex runs wear 0.8 of plain ones
+
+
+def test_without_factors_there_is_no_regression(study):
+    """Nothing is regressed that a study does not name, and no regimes are found."""
+    assert not {"regression_coefficients", "relative_velocity"} & set(names_of(study))

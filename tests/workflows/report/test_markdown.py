@@ -1,0 +1,36 @@
+"""The page of a study for the docs: its provenance and durations, in Markdown."""
+
+import pandas as pd
+
+from tests.support.finished_runs import leave_runs
+from workflows.config.design import load_study
+from workflows.report.markdown import durations, markdown, provenance
+from workflows.report.page_parameters import page_parameters
+
+
+def test_durations_stand_beside_their_forecast(tmp_path):
+    """Wall time is that of all starts, measured over forecast that of the processor."""
+    study = load_study("screening", overrides={"rows": ["R5", "R9"]})
+    leave_runs(study, tmp_path)
+    said = durations(tmp_path, page_parameters(study))
+    assert "| worn run R5 convex | 1 000 | 6 000 | 2.5 | 1 | 0.833 | 1.2 |" in said.replace("\u202f", " ")
+    assert "took 10 minutes of wall time, 20.0 % of it outside the solver" in said
+
+
+def test_provenance_names_solver_rows_and_remarks(tmp_path):
+    """The solver's version, how many of the design's rows were run, and what is reduced."""
+    study = load_study("screening", overrides={"rows": ["R5", "R9"]})
+    leave_runs(study, tmp_path)
+    said = " ".join(provenance(tmp_path, study).split())
+    assert "LIGGGHTS-PUBLIC 3.8.0" in said and "4 runs of 2 rows" in said
+    assert "particles at scale 1.25" in said
+
+
+def test_numbers_of_a_table_have_few_digits():
+    """Three significant digits, or as many as are asked of a column; heads are words."""
+    table = pd.DataFrame({"wear_volume_mm3": [1.23456], "share": [0.98765]})
+    assert markdown(table, {"share": 4}).splitlines() == [
+        "| wear volume mm3 | share |",
+        "| --- | --- |",
+        "| 1.23 | 0.9877 |",
+    ]

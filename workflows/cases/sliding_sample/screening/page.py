@@ -1,0 +1,165 @@
+"""Sections of the page of a study whose flow regimes are found: convex beside plain, the source's findings, the flow,
+and, where the study has a regression, its models and best designs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from postproc.tables.display import in_display_units
+from postproc.tables.summary import PLAIN, read_summary
+from workflows.cases.sliding_sample.study import has_findings
+from workflows.report.sections import Block, Pictures, Points, Section, Table, Text
+
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
+TEXTS = (  # columns of words, which may be empty
+    *("model", "given", "not_in_model", "warning"),
+    *("found", "reason", "published_regime", "published_wear_over_plain"),
+)
+HEADS = {"row": ("regime", "")}  # of tables whose rows are the best designs of the regimes
+SIMULATED = "figures/confirmation.csv"
+
+
+def told(study: Study) -> dict[str, Any]:
+    """Return what the sections are told of a study."""
+    return {"factors": study.factors, "findings": has_findings(study), "confirms": study.confirms}
+
+
+def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the sections of a study; one of particle size has tables of its own of wear and steady flow, by scale."""
+    of_study, by_scale = study["told"], study["told"]["varies_scale"]
+    wear = [] if by_scale else [Table(wear_by_row(study, folder), "wear_by_row")]
+    steady = [] if by_scale else steady_windows(folder)
+    profiles = ("velocity_profiles", "angular_velocity_profiles")
+    return [
+        *([confirmed(folder)] if of_study["confirms"] else []),
+        Section("Wear over the plain twin", [*wear, Pictures(["wear_by_regime", "normal_force_by_regime"])]),
+        *(findings(study, folder) if of_study["findings"] else []),
+        Section("Steady or not", [*steady, Pictures(["relative_velocity", "wear_gradient"])]),
+        Section("The flow", [Pictures(["flow_views", "flow_views_second", *profiles])]),
+        *([regression(folder), best_designs(study["name"], folder)] if of_study["factors"] else []),
+    ]
+
+
+def read_with_texts(path: Path) -> pd.DataFrame:
+    """Return a table in which empty cells of the columns TEXTS are empty words, not missing numbers."""
+    table = pd.read_csv(path, dtype=dict.fromkeys((*TEXTS, "row"), object))
+    return table.assign(**{name: table[name].fillna("") for name in TEXTS if name in table})
+
+
+def wear_by_row(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
+    """Return wear, forces and regime of every row, convex beside plain."""
+    summary = in_display_units(read_summary(folder / "summary.csv"))
+    regimes = read_summary(folder / "flow" / "regimes.csv").set_index("run")
+    convex = summary[summary["surface"] != PLAIN].set_index("row")
+    plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(convex.index)
+    flow = regimes.reindex(convex["run"]).set_index(convex.index)
+    rate = "archard_volume_per_metre_mm3_per_m"
+    table = pd.DataFrame(
+        {
+            "particle_scale": [study["parameters"][run]["particle"]["scale"] for run in convex["run"]],
+            "regime": flow["regime"],
+            "flow_steady": flow["steady"].map({True: "yes", False: "no"}),
+            "relative_velocity_percent": 100.0 * flow["relative_velocity"],
+            "wear_over_plain": convex["wear_over_plain"],
+            "convex_wear_mm3_per_m": convex[rate],
+            "plain_wear_mm3_per_m": plain[rate],
+            "bump_share_percent": 100.0 * convex["bump_archard_volume_mm3"] / convex["archard_volume_mm3"],
+            "normal_force_over_plain": convex["mean_normal_force_N"] / plain["mean_normal_force_N"],
+        },
+        index=convex.index,
+    )
+    return table.reset_index()
+
+
+def steady_windows(folder: Path) -> list[Block]:
+    """Return the steady window of the flow and the wear of every run."""
+    table = read_summary(folder / "flow" / "steady.csv")
+    return [
+        Text(f"{int(table['steady'].sum())} of {len(table)} windows are steady. Travel counts from where wear does."),
+        Table(table.drop(columns=["row", "surface", "published_mean", "published_deviation"]), "steady"),
+    ]
+
+
+def findings(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the source's findings with their verdicts, and its rows beside ours."""
+    verdicts = read_with_texts(folder / "findings" / "findings.csv").drop(columns="key")
+    runs = read_with_texts(folder / "findings" / "runs.csv")
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in verdicts["verdict"].value_counts().items())
+    reserve = ", at the reduced scale told at its top: a finding that is not confirmed here is not thereby wrong"
+    asked = (
+        "Each finding of Yan 2022, chapter 3, that the runs can be asked about, with the numbers that decide. The runs "
+        f"are those of this page{reserve if study['remarks'] else ''}. Of {len(verdicts)} findings: {counts}."
+    )
+    note = (
+        "A flow counts as steady by the rule of the relative velocity; relative wear within 5 % of 1 is not told from "
+        "it without replicates."
+    )
+    beside = (
+        "The source's text tells single runs only; an empty cell is not told. Published model: exp of the regression "
+        "of its Table 3.10 at the factors of the row, which is wear over the largest of the source, as normalised wear "
+        "is over the largest here; the wear of its single runs is not in its text. Intervals: 95 %, of rows that are "
+        "repeated with another packing."
+    )
+    return [
+        Section("Findings of the source", [Text(asked), Table(verdicts, "findings", note)]),
+        Section("Run by run beside the source", [Table(runs, "findings_runs", beside)]),
+    ]
+
+
+def regression(folder: Path) -> Section:
+    """Return the models within reach of the best, its coefficients, and what a reader must know."""
+    models, coefficients, warnings = (
+        read_with_texts(folder / "regression" / f"{name}.csv") for name in ("models", "coefficients", "warnings")
+    )
+    said = (
+        "Models of ln(wear / largest wear) of the patterned samples, all within 2 of the lowest AICc of their "
+        "heredity; the data do not tell them apart. Then the coefficients of the first, in coded units."
+    )
+    figures = [f"regression_{name}" for name in ("coefficients", "residuals", "half_normal", "contours")]
+    blocks = [
+        Text(said),
+        Points([f"Mind: {warning}." for warning in warnings["warning"]]),
+        Table(models, "regression_models"),
+        Table(coefficients),
+        Pictures(figures),
+    ]
+    return Section("Regression of the wear", blocks)
+
+
+def best_designs(name: str, folder: Path) -> Section:
+    """Return the designs of least wear as predicted, and what a run of each wore where there is one."""
+    inside = read_with_texts(folder / "regression" / "best_designs.csv")
+    predicted = in_display_units(read_with_texts(folder / "confirmation" / "prediction.csv"))
+    run = folder.with_name(f"{folder.name}_confirmation") / SIMULATED
+    of_ranges = (
+        "Least wear inside the ranges by the first of these models, over the largest wear of the study, with the "
+        "interval in which one further run falls at 95 %. Factors have the units of the design table; those that the "
+        "model does not have stand at their middle."
+    )
+    of_regimes = (
+        "Least wear in each flow regime, at the velocity and thickness, of those at which a run had it, where the "
+        "least is predicted; per metre of travel, with the interval of one further run. The target "
+        f"{name}_confirmation simulates these designs and sets the result against the prediction."
+    )
+    simulated = [Text("Simulated:"), Table(read_with_texts(run), heads=HEADS)] if run.is_file() else []
+    blocks = [
+        Text(of_ranges),
+        Table(inside.assign(given=inside["given"].replace("", "nothing")), "best_designs"),
+        Text(of_regimes),
+        Table(predicted, "best_designs_by_regime", heads=HEADS),
+        *(simulated or [Text("Not simulated.")]),
+    ]
+    return Section("Best designs", blocks)
+
+
+def confirmed(folder: Path) -> Section:
+    """Return what one run of each best design wears beside what was predicted of it."""
+    table = Table(read_with_texts(folder / SIMULATED), heads=HEADS)
+    return Section("Best designs, predicted and simulated", [table, Pictures(["confirmation"])])

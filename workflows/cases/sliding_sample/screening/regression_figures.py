@@ -1,0 +1,214 @@
+"""Figures and tables of a screening's regression: what it says of the factors, the best designs that it predicts, and
+one run of each of these against the prediction.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from workflows.cases.sliding_sample.figures import SUMMARY
+from workflows.cases.sliding_sample.screening.figures import REGIMES
+from workflows.cases.sliding_sample.study import CONDITIONS, PATTERN, factor_labels
+from workflows.report.products import Job, figure, tables
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from workflows.cases.sliding_sample.screening.study_regression import Screening
+
+COEFFICIENTS = "config/published/screening_coefficients.csv"
+OF_REGRESSION = {"told": {"factors": lambda study: study.factors}, "when": lambda study: bool(study.factors)}
+FIDELITY = {"fidelity": lambda study: study.fidelity}
+
+
+@figure(
+    "Regression",
+    "Best designs, predicted and simulated",
+    inputs={
+        "summary": SUMMARY,
+        "regimes": REGIMES,
+        "prediction": lambda study: f"results/{study.confirms}/confirmation/prediction.csv",
+    },
+    told=FIDELITY,
+    when=lambda study: bool(study.confirms),
+    caption="""
+    The design of least wear inside the ranges of the factors for each flow regime that was found, by the best model of
+    the screening's regression: predicted wear per length of travel, with the interval in which one further run falls
+    at 95 %, and what one run of it wears, with its plain twin. Velocity and thickness stand at the pair, of those at
+    which a run of the screening had the regime, where the least is predicted. The interval takes the terms of the
+    model as given; they were chosen with the same runs, so it is too narrow. A run inside it does not prove the model,
+    one outside it refutes it at these levels.
+    """,
+)
+def confirmation(job: Job) -> Any:
+    """Draw what the runs of the best designs wear against what was predicted of them."""
+    import pandas as pd
+
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.screening.confirmation import (
+        check_fidelity,
+        confirmation_remarks,
+        confirmation_table,
+    )
+    from workflows.cases.sliding_sample.screening.plots import regimes as figures
+
+    predictions = pd.read_csv(job.files.prediction)
+    check_fidelity(predictions, job.told.fidelity, job.files.prediction)
+    table = confirmation_table(predictions, read_summary(job.files.summary), read_summary(job.files.regimes))
+    return figures.confirmation(table, [*job.remarks, *confirmation_remarks(table)]), table
+
+
+@tables(
+    inputs={
+        "summary": SUMMARY,
+        "published": COEFFICIENTS,
+        "published_contours": "config/published/screening_contours.csv",
+    },
+    tables={
+        name: f"regression/{name}.csv"
+        for name in (
+            "coefficients",
+            "models",
+            "residuals",
+            "effects",
+            "surface",
+            "aliasing",
+            "best_designs",
+            "warnings",
+        )
+    },
+    **OF_REGRESSION,
+)
+def regression(job: Job) -> dict[str, pd.DataFrame]:
+    """Regress the wear of a study on its factors."""
+    import pandas as pd
+
+    from workflows.cases.sliding_sample.screening.regression_tables import regression_tables
+
+    published = pd.read_csv(job.files.published), pd.read_csv(job.files.published_contours)
+    return regression_tables(_screening(job)[0], *published)
+
+
+@figure(
+    "Regression",
+    "Coefficients of the regression",
+    inputs={
+        "summary": SUMMARY,
+        "table": "results/{study}/regression/coefficients.csv",
+        "published": COEFFICIENTS,
+    },
+    **OF_REGRESSION,
+    caption="""
+    Least-squares coefficients of ln(wear / largest wear) of the patterned samples on the factors in coded units, where
+    -1, 0 and 1 are the low, middle and high level, with one standard error. The terms are those of the best model by
+    AICc of all models of up to four main effects, squares and two-factor interactions, without heredity. The first p
+    value is computed as if these terms had been given beforehand and is therefore too small; the one by permutation is
+    the share of random assignments of the results to the runs in which the same search finds a term with as large a t
+    value. Hollow: the published regression (Yan 2022, Table 3.10), of other runs. Models as good as this one stand in
+    the table of the page.
+    """,
+)
+def regression_coefficients(job: Job) -> Any:
+    """Draw the coefficients beside the published ones, where the study has all their factors."""
+    import pandas as pd
+
+    from workflows.cases.sliding_sample.screening.plots import regression as figures
+    from workflows.cases.sliding_sample.screening.regression_tables import has_factors
+
+    (study, remarks), table, published = _screening(job), _exactly(job.files.table), pd.read_csv(job.files.published)
+    beside = published if has_factors(published, study.names) else published[:0]
+    return figures.coefficients(table, beside, remarks), table
+
+
+@figure(
+    "Regression",
+    "Residuals of the regression",
+    inputs={"summary": SUMMARY, "table": "results/{study}/regression/residuals.csv"},
+    **OF_REGRESSION,
+    caption="""
+    Residuals of the best model. Left: against the scores of a normal distribution; on the line they would be normal.
+    Right: against the fitted value; a pattern would say that terms are missing. The runs with the largest residuals
+    are named. The counterpart of Yan 2022, Fig 3.23.
+    """,
+)
+def regression_residuals(job: Job) -> Any:
+    """Draw the residuals."""
+    from workflows.cases.sliding_sample.screening.plots import regression as figures
+
+    table = _exactly(job.files.table)
+    return figures.residual_plots(table, _screening(job)[1]), table
+
+
+@figure(
+    "Regression",
+    "Half-normal plot of effects",
+    inputs={"summary": SUMMARY, "table": "results/{study}/regression/effects.csv"},
+    **OF_REGRESSION,
+    caption="""
+    Sizes of orthogonal contrasts of ln(wear / largest wear), each time the largest that is left, against half-normal
+    scores. Contrasts of pure error would lie along the line, whose slope is the pseudo standard error; effects stand
+    above it. There are more candidate terms than runs, so a point's name is that of the term that fits best, not of
+    the only one that could.
+    """,
+)
+def regression_half_normal(job: Job) -> Any:
+    """Draw the sizes of contrasts."""
+    from workflows.cases.sliding_sample.screening.plots import regression as figures
+
+    table = _exactly(job.files.table)
+    return figures.half_normal(table, _screening(job)[1]), table
+
+
+@figure(
+    "Regression",
+    "Contours of the predicted wear",
+    inputs={"summary": SUMMARY, "table": "results/{study}/regression/surface.csv"},
+    told={**OF_REGRESSION["told"], "labels": factor_labels},
+    when=OF_REGRESSION["when"],
+    caption="""
+    Wear over the largest wear as the best model predicts it over pairs of factors, all others at their middle level.
+    Factors whose levels double have logarithmic axes. The counterpart of Yan 2022, Fig 3.24: its four pairs come
+    first, then those that tell most about the best model here; a factor that is not in the model changes nothing.
+    Dashed: the published regression (Table 3.10), over the source's own largest wear.
+    """,
+)
+def regression_contours(job: Job) -> Any:
+    """Draw the response over pairs of factors."""
+    from workflows.cases.sliding_sample.screening.plots import regression as figures
+
+    (study, remarks), table = _screening(job), _exactly(job.files.table)
+    doubling = [factor.name for factor in study.factors if factor.spacing == "log"]
+    return figures.response_contours(table, job.told.labels, doubling, remarks), table
+
+
+@tables(
+    inputs={"summary": SUMMARY, "regimes": REGIMES},
+    tables={"design": "confirmation/design.csv", "prediction": "confirmation/prediction.csv"},
+    told={**OF_REGRESSION["told"], **FIDELITY},
+    when=OF_REGRESSION["when"],
+)
+def best_designs(job: Job) -> dict[str, pd.DataFrame]:
+    """Make a design table of the best design of each flow regime, which <study>_confirmation simulates."""
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.screening.confirmation import best_of_regimes, design_of
+
+    summary, regimes = read_summary(job.files.summary), read_summary(job.files.regimes)
+    found = best_of_regimes(_screening(job)[0], summary, regimes, job.told.factors, CONDITIONS)
+    return {"design": design_of(found, summary, PATTERN), "prediction": found.assign(fidelity=job.told.fidelity)}
+
+
+def _screening(job: Job) -> tuple[Screening, list[str]]:
+    """Return a study's regression, and what its figures must say."""
+    from postproc.tables.summary import read_summary
+    from workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+    from workflows.cases.sliding_sample.screening.regression_warnings import warnings_for_figures
+
+    study = screen_summary(read_summary(job.files.summary), job.told.factors)
+    return study, [*job.remarks, *warnings_for_figures(study)]
+
+
+def _exactly(path: str) -> pd.DataFrame:
+    """Return a table that is written again beside a figure, to the last digit."""
+    import pandas as pd
+
+    return pd.read_csv(path, dtype={"row": str}, float_precision="round_trip")
