@@ -31,6 +31,7 @@ from workflows.report.text import data_uri, decks_of, name_and_unit, number, set
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
+LONGEST_NAME = 40  # characters of a cell that is not broken into lines
 FORECAST = "forecast.csv"
 PACKAGES = (
     "numpy",
@@ -103,7 +104,9 @@ def kind(block: Block) -> str:
 
 
 def cells(table: Table) -> dict[str, Any]:
-    """Return heads and cells of a table as text: numbers with few digits, aligned to the right."""
+    """Return heads and cells of a table as text: numbers with few digits, aligned to the right; `words`: whether its
+    first column has sentences, not names.
+    """
     columns = []
     for name in table.data:
         title, unit = table.heads.get(name, name_and_unit(str(name)))
@@ -114,6 +117,7 @@ def cells(table: Table) -> dict[str, Any]:
     return {
         "columns": columns,
         "rows": list(zip(*(column["cells"] for column in columns), strict=True)),
+        "words": any(len(cell) > LONGEST_NAME for column in columns[:1] for cell in column["cells"]),
         "csv": data_uri(table.data.to_csv(index=False).encode(), "text/csv"),
     }
 

@@ -19,6 +19,10 @@ UNDEFINED = "\u2013"  # shown for numbers that are not there
 # suffix of a key -> unit; the longest that fits counts, so they stand in that order
 UNITS = (
     ("_per_pa", "1/Pa"),
+    ("_mm3_per_m", "mm³/m"),
+    ("_mm3", "mm³"),
+    ("_mm2", "mm²"),
+    ("_N", "N"),
     ("_kg_per_m3", "kg/m³"),
     ("_j_per_m3", "J/m³"),
     ("_n_per_m", "N/m"),

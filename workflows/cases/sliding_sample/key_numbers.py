@@ -30,9 +30,15 @@ def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
     acceleration = settings["wear"]["acceleration"]
     results = result_table(summary, depths, history, acceleration)
     results = results.merge(relative_wear_intervals(summary, study["told"]["replicates"]), on="run", how="left")
+    needless = [
+        *(["carried_share_percent"] if not settings["wear"]["deform"] else []),
+        *(["real_volume_per_metre_mm3_per_m"] if acceleration == 1.0 else []),
+        *(["lowest_cycle_ratio", "highest_cycle_ratio"] if settings["sliding"]["cycles"] == 1 else []),
+    ]
+    shown = results.drop(columns=["row", "surface", *needless], errors="ignore").dropna(axis="columns", how="all")
     return [
         *([Cards(found)] if (found := cards(results, acceleration)) else []),
-        Table(results.dropna(axis="columns", how="all").drop(columns=["row", "surface"]), "key_numbers"),
+        Table(shown, "key_numbers"),
         Text(note(settings, len(study["design_rows"]) > 1, bool(results["interval_low"].notna().any()))),
     ]
 
@@ -46,10 +52,9 @@ def note(settings: Mapping[str, Any], compared: bool, repeated: bool) -> str:
             "Per metre: of simulated travel, with the accelerated coefficient; real: the same over the acceleration of "
             f"{acceleration:g}."
         )
-    said.append(
-        "Mean normal force: contact forces square to the faces, added up over the sample. Lowest and highest ratio: of "
-        "a single wear cycle, no confidence interval."
-    )
+    said.append("Mean normal force: contact forces square to the faces, added up over the sample.")
+    if settings["sliding"]["cycles"] != 1:
+        said.append("Lowest and highest ratio: of a single wear cycle, no confidence interval.")
     if repeated:
         said.append(
             "Interval: 95 % of the mean over rows that differ in their packing alone, from one scatter for all rows."

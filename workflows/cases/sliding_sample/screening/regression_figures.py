@@ -112,10 +112,12 @@ def regression_coefficients(job: Job) -> Any:
     """Draw the coefficients beside the published ones, where the study has all their factors."""
     import pandas as pd
 
+    from postproc.tables.summary import read_summary
     from workflows.cases.sliding_sample.screening.plots import regression as figures
     from workflows.cases.sliding_sample.screening.regression_tables import has_factors
 
-    (study, remarks), table, published = _screening(job), _exactly(job.files.table), pd.read_csv(job.files.published)
+    (study, remarks), table = _screening(job), read_summary(job.files.table)
+    published = pd.read_csv(job.files.published)
     beside = published if has_factors(published, study.names) else published[:0]
     return figures.coefficients(table, beside, remarks), table
 
@@ -133,9 +135,10 @@ def regression_coefficients(job: Job) -> Any:
 )
 def regression_residuals(job: Job) -> Any:
     """Draw the residuals."""
+    from postproc.tables.summary import read_summary
     from workflows.cases.sliding_sample.screening.plots import regression as figures
 
-    table = _exactly(job.files.table)
+    table = read_summary(job.files.table)
     return figures.residual_plots(table, _screening(job)[1]), table
 
 
@@ -153,9 +156,10 @@ def regression_residuals(job: Job) -> Any:
 )
 def regression_half_normal(job: Job) -> Any:
     """Draw the sizes of contrasts."""
+    from postproc.tables.summary import read_summary
     from workflows.cases.sliding_sample.screening.plots import regression as figures
 
-    table = _exactly(job.files.table)
+    table = read_summary(job.files.table)
     return figures.half_normal(table, _screening(job)[1]), table
 
 
@@ -174,9 +178,10 @@ def regression_half_normal(job: Job) -> Any:
 )
 def regression_contours(job: Job) -> Any:
     """Draw the response over pairs of factors."""
+    from postproc.tables.summary import read_summary
     from workflows.cases.sliding_sample.screening.plots import regression as figures
 
-    (study, remarks), table = _screening(job), _exactly(job.files.table)
+    (study, remarks), table = _screening(job), read_summary(job.files.table)
     doubling = [factor.name for factor in study.factors if factor.spacing == "log"]
     return figures.response_contours(table, job.told.labels, doubling, remarks), table
 
@@ -205,10 +210,3 @@ def _screening(job: Job) -> tuple[Screening, list[str]]:
 
     study = screen_summary(read_summary(job.files.summary), job.told.factors)
     return study, [*job.remarks, *warnings_for_figures(study)]
-
-
-def _exactly(path: str) -> pd.DataFrame:
-    """Return a table that is written again beside a figure, to the last digit."""
-    import pandas as pd
-
-    return pd.read_csv(path, dtype={"row": str}, float_precision="round_trip")

@@ -57,8 +57,8 @@ def strongest_factor(study: Screening) -> Factor | None:
 def best_designs(study: Screening) -> pd.DataFrame:
     """Return the best design inside all ranges, and at each level of the strongest factor, which sets the regime.
 
-    As `study_regression.best_design_table`, with the wear over the largest of the study, and `given` first: what was held.
-    Factors that are aliased with a nuisance are held at their middle in all cases: nothing is claimed about them.
+    As `study_regression.best_design_table`, with the wear over the largest of the study, and `given` first: what was
+    held. Factors that are aliased with a nuisance are held at their middle in all cases: nothing is claimed about them.
     """
     aliased = {name for factors in confounded(study).values() for name in factors}
     held = {factor.name: float(factor.real(0.0)) for factor in study.factors if factor.name in aliased}
@@ -75,7 +75,7 @@ def best_designs(study: Screening) -> pd.DataFrame:
 
 
 def contour_table(study: Screening, coefficients: pd.DataFrame, pairs: pd.DataFrame) -> pd.DataFrame:
-    """Return the response over pairs of factors, see `study_regression.response_surface`, with published_wear beside it.
+    """Return `study_regression.response_surface` over pairs of factors, with published_wear beside it.
 
     coefficients: of the published regression; pairs: x_factor and y_factor of its contours
     The study's own pairs follow the published ones, MOST_PAIRS in all. Of a study without the published factors there
