@@ -39,8 +39,8 @@ from workflows.cases.sliding_sample.flow_history import (
     settled_value,
     undisturbed_particles,
 )
+from workflows.cases.sliding_sample.parameters import flow_measures
 from workflows.engine.chain import Chain
-from workflows.engine.derived import flow_measures
 from workflows.engine.solver import SolverError, die_with
 from workflows.engine.state import StateError
 

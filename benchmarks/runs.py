@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import Any
 
 from postproc.mesh import write_surface
+from workflows.cases.sliding_sample.parameters import derived_parameters
 from workflows.config.design import Run
 from workflows.config.layers import merge
 from workflows.config.patterns import sample_surface
 from workflows.engine.chain import Chain
 from workflows.engine.cycles import fill_bed, run_chain
-from workflows.engine.derived import derived_parameters
 
 
 def changed(run: Run, change: Mapping[str, Any]) -> Run:

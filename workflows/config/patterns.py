@@ -13,6 +13,7 @@ from meshes.lattice import Pattern
 from meshes.pattern import PATTERNS
 from meshes.sample import sliding_sample
 from postproc.mesh import PLAIN, SurfaceMesh
+from postproc.reference.size_ratios import equivalent_size_ratio
 from workflows.config.units import to_si
 
 SURFACES = (*PATTERNS, PLAIN)
@@ -112,3 +113,11 @@ def _schema(declared: list[Mapping[str, Any]]) -> dict[str, Any]:
         return {"enum": list(dict.fromkeys(word for each in declared for word in each["allowed"])), **meaning}
     limits = {"minimum": min(each["least"] for each in declared), "maximum": max(each["most"] for each in declared)}
     return {"type": "number", **limits, "x-unit": declared[0]["unit"], **meaning}
+
+
+def size_ratio(parameters: dict[str, Any]) -> float | None:
+    """Return alpha_ER, the particle's size over a bump's (-); None for a surface that has none."""
+    pattern = pattern_of(parameters["pattern"])
+    if pattern is None or pattern.bump_axes is None:
+        return None
+    return equivalent_size_ratio(parameters["particle"]["median_diameter_m"], *pattern.bump_axes)

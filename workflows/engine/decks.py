@@ -7,14 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from postproc.readers.cycle_folders import PACKING
 from postproc.wear.caps import GRAVITY
-from workflows.cases.sliding_sample.window import window
-from workflows.engine.derived import WALLS, WINDOW, neighbour_skin
-from workflows.engine.schedule import Span
+from workflows.engine.derived import neighbour_skin
 from workflows.engine.sections import run_kernels
 from workflows.engine.templates import SOLVER, whole_sections
 
@@ -22,43 +18,14 @@ FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes
 FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere
 FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
 RELAXING_TIME = 0.01  # s, after levelling
-PACKING_FREE_FALLS = 7.5  # -, the same for a bed that nothing moves afterwards: after 6 the last grain had tumbled down
-LOWERING_FREE_FALLS = 2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
 FILL_GAP_DIAMETERS = 0.1  # -, between poured particles and the walls, in largest diameters
-PILE_UP = 3.0  # -, the bed's height where it piles up at a sample, over its thickness; room for it is left
-END_WALL_CLEARANCE = 1e-6  # m, between the end walls' upper edge and the domain: a mesh must lie inside it
 DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
 REPORTS_PER_RUN = 50  # lines of progress per run command
 SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
 STATE_COLUMNS = "id x y z vx vy vz omegax omegay omegaz radius"  # of a dump of particles at rest
-ID_COLUMNS = range(13, 16)  # of these, counted from 1: mesh, triangle, particle
 STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, before the solver's check stops the run
 
 # ---------------------------------------------------------------- parameters of the three decks
-
-
-def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters of the deck that fills and settles a bed; `bed` as in design.bed_parameters."""
-    particle = bed["particle"]
-    filled = bed["thickness_m"] * particle["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
-    gap = max(particle["diameters_m"]) * FILL_GAP_DIAMETERS
-    floor = bed["temporary_floor_m"]
-    step = bed["time_step_s"]
-    settling = steps(math.sqrt(2.0 * filled / GRAVITY), step)
-    return {
-        **integration(bed, step, particle, settling),
-        **material_tables(particle, bed["floor_material"], bed["floor_material"], bed),
-        **_domain(bed),
-        "temporary_floor_m": floor,
-        "fill_bottom_m": floor + gap,
-        "fill_top_m": floor + gap + filled,
-        "fill_gap_m": gap if bed["ends"] == WALLS else 0.0,
-        "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
-        **poured_particles(particle, bed["seed"]),
-        "settling_steps": settling,
-        "relaxing_steps": steps(RELAXING_TIME, step),
-        **({"packing_steps": falling_steps(bed, step, PACKING_FREE_FALLS)} if bed["ends"] == WINDOW else {}),
-    }
 
 
 def poured_particles(particle: Mapping[str, Any], seed: int) -> dict[str, Any]:
@@ -71,60 +38,6 @@ def poured_particles(particle: Mapping[str, Any], seed: int) -> dict[str, Any]:
         "size_distribution": size_distribution(particle["mass_fractions"]),
         "size_count": len(particle["mass_fractions"]),
         "seeds": primes(seed, len(particle["diameters_m"]) + 2),
-    }
-
-
-def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str) -> dict[str, Any]:
-    """Return the parameters of the deck that lowers a settled bed on to the sample and runs it in.
-
-    `run` is Run.parameters, `bed` the bed's, `bed_restart` the path of its restart file as seen from the deck.
-    """
-    derived = run["derived"]
-    step = derived["time_step_s"]
-    lowering = falling_steps(bed, step, LOWERING_FREE_FALLS)
-    packing = {"bed_packing_file": str(Path(bed_restart).parent / PACKING)} if bed["ends"] == WINDOW else {}
-    return {
-        **integration(run, step, run["particle"], max(lowering, derived["run_in_steps"])),
-        **_sliding(run, bed, cycle=0, steps_before=0),
-        "begin": bed_restart,
-        "lowering_steps": lowering,
-        "end_step": lowering + derived["run_in_steps"],
-        **window(run, bed, -lowering, lowering + derived["run_in_steps"], PACKING),
-        **packing,
-    }
-
-
-def falling_steps(bed: Mapping[str, Any], time_step: float, free_falls: float) -> int:
-    """Return the time steps (of s) in which a bed could fall so many times from its temporary floor to the true one."""
-    return steps(free_falls * math.sqrt(2.0 * bed["temporary_floor_m"] / GRAVITY), time_step)
-
-
-def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, run_restart: str) -> dict[str, Any]:
-    """Return the parameters of the deck of one wear cycle; arguments as for `lowered_bed`."""
-    derived = run["derived"]
-    look = wear_interval_steps(run, span) if run["ledger"] == "solver" else 0
-    return {
-        **integration(run, derived["time_step_s"], run["particle"], span.steps),
-        **_sliding(run, bed, span.cycle, derived["run_in_steps"] + span.first_step),
-        "begin": run_restart,
-        "end_step": span.steps,
-        "picture_steps": min(derived["picture_interval_steps"], span.steps),
-        "ledger": run["ledger"],
-        **LEDGERS[run["ledger"]](run, span),
-        **window(run, bed, derived["run_in_steps"] + span.first_step, span.steps, f"../cycle_000/{PACKING}", look),
-    }
-
-
-def bed_contacts(run: Mapping[str, Any], restart: str) -> dict[str, Any]:
-    """Return the parameters of the deck that counts contacts in a restart file; arguments as for `lowered_bed`."""
-    return {
-        **whole_sections(run),
-        "time_step_s": run["derived"]["time_step_s"],
-        "skin_m": neighbour_skin(run["particle"]),
-        **material_tables(run["particle"], run["sample_material"], run["floor_material"], run["derived"]),
-        "ends": run["bed"]["ends"],
-        "begin": restart,
-        "state_columns": f"{STATE_COLUMNS} c_contacts",
     }
 
 
@@ -141,29 +54,7 @@ def exact_ledger(run: Mapping[str, Any], history_steps: int = 0) -> dict[str, An
     }
 
 
-def wear_interval_steps(run: Mapping[str, Any], span: Span) -> int:
-    """Return the steps between two looks at the wear of a cycle: equal parts of it of about solver.wear_interval_m."""
-    parts = max(round(travelled(run, span.steps) / run["solver"]["wear_interval_m"]), 1)
-    return math.ceil(span.steps / parts)
-
-
-def _exact_ledger_of_sample(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
-    return exact_ledger(run, wear_interval_steps(run, span))
-
-
-def _sampled_contacts(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
-    """Return what a deck needs to write sampled contacts."""
-    from postproc.readers.contacts import CONTACT_COLUMNS  # slow to import, and every job reads its study first
-
-    columns = range(1, CONTACT_COLUMNS + 1)
-    return {
-        "contact_columns": " ".join(f"c_wall_contact[{column}]" for column in columns),
-        "contact_format": " ".join("%.0f" if column in ID_COLUMNS else "%g" for column in columns),
-    }
-
-
 # Producers of the load ledger -> what their part of the deck is filled with.
-LEDGERS = {"solver": _exact_ledger_of_sample, "dumps": _sampled_contacts}
 
 
 def travelled(run: Mapping[str, Any], steps: int) -> float:
@@ -207,29 +98,6 @@ def integration(
     }
 
 
-def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
-    """Return the box of a bed, long enough for its whole travel and high enough for bulk piling up at a sample."""
-    margin = DOMAIN_MARGIN_DIAMETERS * max(bed["particle"]["diameters_m"])
-    beyond = margin if bed["ends"] == WALLS else 0.0
-    filled = bed["thickness_m"] * bed["particle"]["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
-    return {
-        "ends": bed["ends"],
-        "half_width_m": bed["width_m"] / 2.0,
-        "bed_start_m": bed["start_m"],
-        "bed_end_m": bed["start_m"] + bed["length_m"],
-        "domain_start_m": bed["start_m"] - beyond,
-        "domain_end_m": bed["start_m"] + bed["length_m"] + bed["travel_m"] + beyond,
-        "domain_margin_m": margin,
-        "domain_top_m": bed["temporary_floor_m"] + max(filled, PILE_UP * bed["thickness_m"]) + 2.0 * margin,
-    }
-
-
-def end_wall_corners(bed: Mapping[str, Any]) -> tuple[float, float, float]:
-    """Return half width, bottom and top (m) of the walls at the bed's ends; they fill the domain's cross-section."""
-    domain = _domain(bed)
-    return domain["half_width_m"], -0.5 * domain["domain_margin_m"], domain["domain_top_m"] - END_WALL_CLEARANCE
-
-
 def material_tables(
     particle: Mapping[str, Any],
     sample: Mapping[str, Any],
@@ -245,40 +113,16 @@ def material_tables(
         "type_names": ["particle", "sample", "floor and end walls"],
         "youngs_modulus_pa": [moduli[key] for key in keys],
         "poissons_ratio": [section["poissons_ratio"] for section in (particle, sample, floor)],
-        "restitution": _pairs(contact["restitution"] for contact in contacts),
-        "sliding_friction": _pairs(contact["sliding_friction"] for contact in contacts),
-        "rolling_friction_coefficient": _pairs(rolling[key] for key in keys),
+        "restitution": symmetric_table(contact["restitution"] for contact in contacts),
+        "sliding_friction": symmetric_table(contact["sliding_friction"] for contact in contacts),
+        "rolling_friction_coefficient": symmetric_table(rolling[key] for key in keys),
     }
 
 
-def _pairs(with_particle: Iterable[float]) -> list[list[float]]:
+def symmetric_table(with_particle: Iterable[float]) -> list[list[float]]:
     """Return the symmetric table of a property that is known for particle, sample and floor against a particle."""
     particle, sample, floor = with_particle
     return [[particle, sample, floor], [sample, sample, floor], [floor, floor, floor]]
-
-
-def _sliding(run: Mapping[str, Any], bed: Mapping[str, Any], cycle: int, steps_before: int) -> dict[str, Any]:
-    """Return what both sliding decks need: materials, where the bed's ends are, the sample's fix id."""
-    coefficient = run["wear"]["accelerated_wear_coefficient_per_pa"]
-    return {
-        **material_tables(run["particle"], run["sample_material"], run["floor_material"], run["derived"]),
-        "finnie_coefficient_per_pa": _pairs([coefficient] * 3),
-        "velocity_m_per_s": run["sliding"]["velocity_m_per_s"],
-        "cycle": cycle,
-        **_ends(bed, travelled(run, steps_before)),
-    }
-
-
-def _ends(bed: Mapping[str, Any], ahead: float) -> dict[str, Any]:
-    """Return where the walls at the bed's ends are when it has travelled so far (m); a periodic bed has none."""
-    if bed["ends"] != WALLS:
-        return {"ends": bed["ends"]}
-    return {
-        "ends": bed["ends"],
-        "upstream_end_m": bed["start_m"] + ahead,
-        "downstream_end_m": bed["start_m"] + bed["length_m"] + ahead,
-        "end_wall_file": "../end_wall.stl",
-    }
 
 
 def size_distribution(fractions: Sequence[float]) -> str:

@@ -8,6 +8,7 @@ import pytest
 
 from meshes.pattern import PATTERNS
 from postproc.wear.laws import LAWS
+from workflows.cases.sliding_sample.decks import LEDGERS
 from workflows.config.design import load_study
 from workflows.config.layers import ConfigError, command_line_layer, dotted, merge, read_yaml
 from workflows.config.patterns import SURFACES
@@ -15,7 +16,6 @@ from workflows.config.readme import readme
 from workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
 from workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
 from workflows.engine.case import case_names, find_case
-from workflows.engine.decks import LEDGERS
 from workflows.engine.ledgers import PRODUCERS
 from workflows.engine.solver import CYCLE_EXECUTABLES
 from workflows.report.pages import page_of

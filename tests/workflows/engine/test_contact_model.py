@@ -7,16 +7,16 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from workflows.cases.sliding_sample.particle_size.collision_tests import simulate, spheres_of
 
 from tests.support.tiny import tiny_chain, tiny_study
+from workflows.cases.sliding_sample.decks import bed_contacts
 from workflows.cases.sliding_sample.particle_size.collision import read_collisions
-from workflows.cases.sliding_sample.particle_size.collision_tests import simulate, spheres_of
 from workflows.cases.sliding_sample.particle_size.packings import COLLISION
 from workflows.config.design import ConfigError, list_studies, load_study
 from workflows.config.schema import SCHEMA_FOLDER, load_schema
 from workflows.config.units import to_si
 from workflows.engine import cycles
-from workflows.engine import decks as deck
 from workflows.engine.bulk_tests import time_step
 from workflows.engine.chain import bed_deck_text
 from workflows.engine.solver import run_deck
@@ -195,7 +195,7 @@ def test_models_differ_and_epsd_is_epsd3_of_its_stiffness(tmp_path):
 def test_a_contact_angle_is_the_one_meant(tmp_path, angle):
     """The capillary force of two equal spheres that touch is pi R gamma cos(angle): 2 pi gamma cos R/2."""
     solver = PROPERTIES | {"cohesion": LIQUID, "contact_angle_deg": angle}
-    words = deck.bed_contacts(tiny_study(solver=solver).runs[0].parameters, "none")
+    words = bed_contacts(tiny_study(solver=solver).runs[0].parameters, "none")
     parts = [render(part, {name: words[name] for name in template_variables(part)}) for part in (MATERIALS, BLOCK)]
     lines = [
         *("units si", "atom_style granular", "atom_modify map array", "boundary f f f", "newton off"),

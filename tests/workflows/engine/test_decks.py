@@ -8,6 +8,7 @@ import pytest
 from tests import DATA
 from tests.support.law_cases import long_slip_registered, wear_settings
 from tests.support.tiny import tiny_study
+from workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
 from workflows.config.design import ConfigError, list_studies, load_study
 from workflows.engine import decks as deck
 from workflows.engine import templates
@@ -45,13 +46,11 @@ def test_every_deck_of_every_sliding_study_renders(name, rolling_friction, ledge
     """No deck has an open word, a missing or an unused parameter, or a tab."""
     changes = {"solver": {"rolling_friction": rolling_friction}, "ledger": ledger, "bed": {"ends": ends}}
     study = load_study(name, overrides=changes)
-    texts = [render("settled_bed", deck.settled_bed(bed)) for bed in study.beds.values()]
+    texts = [render("settled_bed", settled_bed(bed)) for bed in study.beds.values()]
     for run in study.runs:
         parameters, bed = run_and_bed(study, run.name)
-        texts.append(render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")))
-        texts.append(
-            render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart"))
-        )
+        texts.append(render("lowered_bed", lowered_bed(parameters, bed, "bed.restart")))
+        texts.append(render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")))
     for text in texts:
         assert f"rolling_friction {rolling_friction}" in text
         assert not re.search(r"\{\{|\}\}|\{%|%\}|\t|\bNone\b|\bnan\b", text)
@@ -62,7 +61,7 @@ def test_golden_deck():
     parameters, bed = run_and_bed(tiny_study())
     text = render(
         "sliding_sample",
-        deck.sliding_sample(parameters, bed, cycle(parameters, 2), "../cycle_001/run.restart"),
+        sliding_sample(parameters, bed, cycle(parameters, 2), "../cycle_001/run.restart"),
     )
     assert text == GOLDEN.read_text()
 
@@ -75,9 +74,9 @@ def test_ranks_share_a_bed_as_its_geometry_wants(ends, grid):
     study = tiny_study(bed={"ends": ends, "ahead_mm": 60, "exchange_mm": 60})
     parameters, bed = run_and_bed(study)
     texts = [
-        render("settled_bed", deck.settled_bed(bed)),
-        render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
-        render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
+        render("settled_bed", settled_bed(bed)),
+        render("lowered_bed", lowered_bed(parameters, bed, "bed.restart")),
+        render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
     ]
     for text in texts:
         assert re.findall(r"^processors +(\S+ \S+ \S+)", text, re.MULTILINE) == [grid]
@@ -90,7 +89,7 @@ def cycle(parameters, number):
 
 def cycle_deck(**changes):
     parameters, bed = run_and_bed(tiny_study(**changes))
-    return render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 2), "run.restart"))
+    return render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 2), "run.restart"))
 
 
 def position(text, start):
@@ -142,7 +141,7 @@ def test_a_law_with_a_kernel_asks_the_solver_for_it():
 def test_the_producer_adds_its_own_parameters_only():
     """A parameter of the other producer is one that is never used."""
     parameters, bed = run_and_bed(tiny_study())
-    given = deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")
+    given = sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")
     with pytest.raises(DeckError, match=r"parameter contact_format is never used"):
         render("sliding_sample", {**given, "contact_format": "%g"})
     with pytest.raises(DeckError, match=r"parameter ledger_kernels is not given"):
@@ -174,7 +173,7 @@ def test_a_branch_not_taken_asks_for_nothing(tmp_path, words, used):
 
 def test_missing_and_unused_parameters_are_errors():
     """The message names template and parameter."""
-    given = deck.settled_bed(run_and_bed(tiny_study())[1])
+    given = settled_bed(run_and_bed(tiny_study())[1])
     with pytest.raises(DeckError, match=r"templates/settled_bed\.in\.j2: parameter skin_m is not given"):
         render("settled_bed", {key: value for key, value in given.items() if key != "skin_m"})
     with pytest.raises(DeckError, match=r"templates/settled_bed\.in\.j2: parameter colour is never used"):
@@ -214,7 +213,7 @@ def test_bed_has_travelled_run_in_and_all_earlier_cycles():
 
 def test_every_particle_pair_keeps_its_own_property():
     """Pair tables are symmetric and have the floor's value only where the floor takes part."""
-    table = deck.settled_bed(run_and_bed(tiny_study())[1])["sliding_friction"]
+    table = settled_bed(run_and_bed(tiny_study())[1])["sliding_friction"]
     assert table[0][0] == 0.21 and table[0][2] == 0.38
     assert all(table[i][j] == table[j][i] for i in range(3) for j in range(3))
 
@@ -222,11 +221,11 @@ def test_every_particle_pair_keeps_its_own_property():
 def test_a_periodic_bed_has_no_ends():
     """No wall at an end in any deck; the domain is periodic along the travel and exactly as long as the bed."""
     parameters, bed = run_and_bed(tiny_study(bed={"ends": "periodic", "ahead_mm": 80}))
-    settled = deck.settled_bed(bed)
+    settled = settled_bed(bed)
     texts = [
         render("settled_bed", settled),
-        render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart")),
-        render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
+        render("lowered_bed", lowered_bed(parameters, bed, "bed.restart")),
+        render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
     ]
     for text in texts:
         assert "boundary        p p fm" in text
@@ -259,10 +258,10 @@ def test_a_word_of_the_users_own_reaches_its_template_as_it_is_written(edited):
     edited("sliding_sample", 'print "{{ gap_mm }} {{ kind }}"')
     study = tiny_study(deck={"gap_mm": 5, "kind": "vermilion"})
     parameters, bed = run_and_bed(study)
-    text = render("sliding_sample", deck.sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart"))
+    text = render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart"))
     assert text.splitlines()[-1] == 'print "5 vermilion"'
     assert bed == run_and_bed(tiny_study(deck={"gap_mm": 6, "kind": "vermilion"}))[1]
-    assert "vermilion" not in render("lowered_bed", deck.lowered_bed(parameters, bed, "bed.restart"))
+    assert "vermilion" not in render("lowered_bed", lowered_bed(parameters, bed, "bed.restart"))
 
 
 def test_a_word_in_the_template_of_beds_is_part_of_a_bed(edited):
@@ -320,7 +319,7 @@ def test_words_are_names_and_values(words, fault):
 
 def test_a_setting_that_is_not_given_is_named():
     """A template that asks for a setting of the solver that there is not says which."""
-    given = deck.settled_bed(run_and_bed(tiny_study())[1])
+    given = settled_bed(run_and_bed(tiny_study())[1])
     solver = {key: value for key, value in given["solver"].items() if key != "rolling_radius"}
     with pytest.raises(DeckError, match=r"settled_bed\.in\.j2: parameter solver\.rolling_radius is not given"):
         render("settled_bed", {**given, "solver": solver})

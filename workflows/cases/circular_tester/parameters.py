@@ -8,12 +8,11 @@ from typing import Any
 
 from postproc.wear.caps import GRAVITY
 from workflows.cases.circular_tester.decks import bed_length, half_width, mean_radius
-from workflows.config.patterns import highest_point, pattern_section
+from workflows.config.patterns import highest_point, pattern_section, size_ratio
 from workflows.engine.derived import (
     HEADROOM_DIAMETERS,
     derived_materials,
     physical_patch_factor,
-    size_ratio,
     smallest_rayleigh_time,
     whole_steps,
 )

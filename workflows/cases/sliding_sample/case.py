@@ -13,21 +13,21 @@ from postproc.readers.cycle_folders import FLOW_TABLE, SPIN_TABLE
 from postproc.readers.solver_log import exchanges, thermo_rows, thermo_table
 from postproc.wear.caps import GRAVITY, gap_closing_step
 from workflows.cases.sliding_sample import work as sliding_work
+from workflows.cases.sliding_sample.checks import SLIDING_CHECKS
+from workflows.cases.sliding_sample.decks import (
+    end_wall_corners,
+    lowered_bed,
+    settled_bed,
+    sliding_sample,
+    wear_interval_steps,
+)
+from workflows.cases.sliding_sample.parameters import derived_parameters, flow_measures
 from workflows.cases.sliding_sample.study import varies_scale
 from workflows.config.patterns import dimension_columns, option_keys, pattern_section, sample_surface
-from workflows.config.run_checks import SLIDING_CHECKS
 from workflows.config.units import to_si
 from workflows.engine import decks as deck
 from workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Run, register
-from workflows.engine.derived import (
-    ADAPTIVE,
-    PERIODIC,
-    WALLS,
-    WINDOW,
-    derived_parameters,
-    flow_measures,
-    window_lengths,
-)
+from workflows.engine.derived import ADAPTIVE, PERIODIC, WALLS, WINDOW, window_lengths
 from workflows.engine.pieces import piece_ends
 from workflows.engine.schedule import Span
 from workflows.engine.sections import particle_section, template_sections, wall_section, wear_section
@@ -123,13 +123,13 @@ class SlidingSample(Case):
 
     def run_in_steps(self, parameters: Parameters, bed: Parameters | None) -> int:
         """Return the time steps of lowering and run-in."""
-        return deck.lowered_bed(parameters, bed, "")["lowering_steps"] + parameters["derived"]["run_in_steps"]
+        return lowered_bed(parameters, bed, "")["lowering_steps"] + parameters["derived"]["run_in_steps"]
 
     def deck(self, parameters: Parameters, bed: Parameters | None, span: Span | None, restart: str) -> str:
         """Return the deck of a wear cycle, or of lowering and run-in."""
         if span is None:
-            return render("lowered_bed", deck.lowered_bed(parameters, bed, restart))
-        return render("sliding_sample", deck.sliding_sample(parameters, bed, span, restart))
+            return render("lowered_bed", lowered_bed(parameters, bed, restart))
+        return render("sliding_sample", sliding_sample(parameters, bed, span, restart))
 
     def further_work(self, study: Any) -> tuple[Work, ...]:
         """Return the containers in which the particles of a study of particle size are packed."""
@@ -164,18 +164,18 @@ class SlidingSample(Case):
             return piece_ends(total[0] - parameters["derived"]["run_in_steps"], total[0], interval)
         if parameters["ledger"] != "solver":
             return total
-        look = deck.wear_interval_steps(parameters, span)
+        look = wear_interval_steps(parameters, span)
         return [end + (end < total[0] and end % look == 0) for end in piece_ends(0, total[0], interval)]
 
     def bed_deck(self, bed: Parameters) -> dict[str, Any]:
         """Return the parameters of the deck that fills and settles a bed."""
-        return deck.settled_bed(bed)
+        return settled_bed(bed)
 
     def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
         """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0, if it has ends."""
         if bed["ends"] != WALLS:
             return
-        half_width, bottom, top = deck.end_wall_corners(bed)
+        half_width, bottom, top = end_wall_corners(bed)
         corners = [(-half_width, bottom), (half_width, bottom), (half_width, top), (-half_width, top)]
         points = np.array([(x, 0.0, z) for x, z in corners])
         write_stl(folder / END_WALL, points, np.array([[0, 1, 2], [0, 2, 3]]))

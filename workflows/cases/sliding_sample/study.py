@@ -6,9 +6,9 @@ import csv
 import re
 from typing import Any
 
+from workflows.cases.sliding_sample.parameters import flow_measures
 from workflows.config.design import FACTORS, REPOSITORY, Study
 from workflows.engine.case import Run
-from workflows.engine.derived import flow_measures
 from workflows.report.text import name_and_unit
 
 PUBLISHED_DESIGN = REPOSITORY / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8

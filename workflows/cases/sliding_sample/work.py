@@ -8,9 +8,11 @@ from typing import Any
 
 from meshes.estimate import sample_triangles
 from postproc.wear.caps import GRAVITY
+from workflows.cases.sliding_sample.decks import lowered_bed, settled_bed
+from workflows.cases.sliding_sample.parameters import RAMP
 from workflows.config.patterns import pattern_of
 from workflows.engine import decks as deck
-from workflows.engine.derived import ADAPTIVE, RAMP, WINDOW, neighbour_skin
+from workflows.engine.derived import ADAPTIVE, WINDOW, neighbour_skin
 from workflows.engine.work import (
     CYCLE_BYTES,
     EMPTY_DIAMETERS,
@@ -51,7 +53,7 @@ def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
 
     In a window that travels it falls to the true floor once more.
     """
-    parameters = deck.settled_bed(bed)
+    parameters = settled_bed(bed)
     poured = run["derived"]["bed_particles"] * deck.FILL_EXCESS
     levelled = parameters["relaxing_steps"] + parameters.get("packing_steps", 0)
     return (Stage(1, parameters["settling_steps"], poured), Stage(0, levelled, settled_particles(run)))
@@ -60,7 +62,7 @@ def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
 def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
     """Return the stages of a run: lowering, run-in, wear cycles."""
     derived, particles, triangles = run["derived"], settled_particles(run), surface_triangles(run)
-    lowering = deck.lowered_bed(run, bed, "")["lowering_steps"]
+    lowering = lowered_bed(run, bed, "")["lowering_steps"]
     travel, run_in = derived["travel_steps"], derived["run_in_steps"]
     often = builds_per_step(run) + exchanges_per_step(run)
     return (

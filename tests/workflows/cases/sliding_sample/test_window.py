@@ -17,10 +17,10 @@ from postproc.readers.load_ledger import read_load_ledger
 from postproc.readers.solver_log import exchanges, thermo_table
 from tests.support.tiny import tiny_chain, tiny_study
 from workflows.cases.sliding_sample.case import SlidingSample, exchanged_particles, front_lag
+from workflows.cases.sliding_sample.decks import lowered_bed, sliding_sample
 from workflows.cases.sliding_sample.window import exchange_steps
 from workflows.cases.sliding_sample.work import builds_per_step, run_stages
 from workflows.engine import cycles
-from workflows.engine import decks as deck
 from workflows.engine.chain import write_cycle
 from workflows.engine.derived import window_lengths
 from workflows.engine.inputs import inputs_digest
@@ -56,8 +56,8 @@ def window_study(**changes):
 def decks(study):
     """Parameters of the decks of a run, cycle 0 first, and its bed."""
     parameters, bed = study.run("R9_convex").parameters, study.beds[study.bed_of("R9_convex")]
-    later = [deck.sliding_sample(parameters, bed, span, "run.restart") for span in known_spans(parameters)]
-    return [deck.lowered_bed(parameters, bed, "bed.restart"), *later], bed
+    later = [sliding_sample(parameters, bed, span, "run.restart") for span in known_spans(parameters)]
+    return [lowered_bed(parameters, bed, "bed.restart"), *later], bed
 
 
 # ---------------------------------------------------------------- when bed is exchanged

@@ -17,6 +17,7 @@ from postproc.flow.packing import MEASURES, loose_and_dense, packing_profile, wi
 from postproc.readers.cycle_folders import cycle_files
 from postproc.tables.display import in_display_units
 from postproc.wear.caps import GRAVITY
+from workflows.cases.sliding_sample.decks import bed_contacts
 from workflows.cases.sliding_sample.particle_size.study import by_scale
 from workflows.engine import bulk_tests
 from workflows.engine import decks as deck
@@ -120,7 +121,7 @@ def free_fall(height: float) -> float:
 def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:
     """Return the particles of a restart file of a sliding sample with their contacts, as the solver counts them."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / DECK).write_text(render("bed_contacts", deck.bed_contacts(run, str(restart.resolve()))))
+    (folder / DECK).write_text(render("bed_contacts", bed_contacts(run, str(restart.resolve()))))
     run_deck(folder)
     return read_snapshot(folder / "bed.dump")
 

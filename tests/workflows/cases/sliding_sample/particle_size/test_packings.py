@@ -10,6 +10,7 @@ from postproc.flow.bed import read_snapshot
 from postproc.flow.bulk_test import HEAP
 from postproc.flow.packing import contacts_of, inner_means, loose_and_dense, packing_profile
 from tests.support.tiny import tiny_chain, tiny_study
+from workflows.cases.sliding_sample.decks import bed_contacts
 from workflows.cases.sliding_sample.particle_size.packings import (
     AT_REST_BEHIND,
     LEAVING_DIAMETERS,
@@ -22,7 +23,6 @@ from workflows.cases.sliding_sample.particle_size.packings import (
 from workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
 from workflows.config.design import load_study
 from workflows.config.units import to_si
-from workflows.engine import decks as deck
 from workflows.engine.bulk_simulations import FILLED, simulated
 from workflows.engine.bulk_tests import deck_text, packed_container, time_step
 from workflows.engine.solver import DECK, run_deck
@@ -119,7 +119,7 @@ def test_contacts_of_a_bed_come_from_its_restart_file(tmp_path):
     chain = tiny_chain(study, tmp_path)
     folder = tmp_path / "contacts"
     folder.mkdir()
-    text = render("bed_contacts", deck.bed_contacts(chain.parameters, str(chain.bed_restart)))
+    text = render("bed_contacts", bed_contacts(chain.parameters, str(chain.bed_restart)))
     (folder / DECK).write_text(text)
     run_deck(folder)
     bed, width = read_snapshot(folder / "bed.dump"), chain.bed["width_m"]

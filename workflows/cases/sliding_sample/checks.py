@@ -1,0 +1,203 @@
+"""Checks of one run of a sliding sample, before any solver starts."""
+
+from __future__ import annotations
+
+import math
+
+from postproc.wear.caps import GRAVITY
+from workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
+from workflows.config.patterns import highest_point
+from workflows.config.run_checks import (
+    Check,
+    CheckedRun,
+    Fault,
+    deeper_than,
+    element_resolves_pattern,
+    element_resolves_sample,
+    millimetres,
+    pattern_fits,
+    physical_modulus_known,
+)
+from workflows.engine.derived import ADAPTIVE, PERIODIC, WINDOW, window_lengths
+from workflows.engine.schedule import LEAST_CYCLE_STEPS
+
+TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
+LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm
+
+
+def sample_in_bed(run: CheckedRun) -> Fault | None:
+    """The sample and its skirt on both sides lie within the bed's width."""
+    sample, skirt = run.parameters["sample"], run.parameters["derived"]["skirt_width_m"]
+    room = run.parameters["bed"]["width_m"] - 2.0 * skirt
+    if sample["width_m"] <= room:
+        return None
+    return (
+        "sample.width_mm",
+        f"at most {millimetres(room)}, bed.width_mm less a skirt of {millimetres(skirt)} on each side",
+    )
+
+
+def skirt_in_bed(run: CheckedRun) -> Fault | None:
+    """The bed is longer than the sample's skirt, ahead of the sample and behind it."""
+    skirt = run.parameters["derived"]["skirt_width_m"]
+    for key in ("ahead", "behind"):
+        if run.parameters["bed"][f"{key}_m"] < skirt:
+            return f"bed.{key}_mm", f"at least {millimetres(skirt)}, the width of the sample's skirt"
+    return None
+
+
+def ramp_holds_bed(run: CheckedRun) -> Fault | None:
+    """A curved ramp up to the sample is curved so gently that particles follow it: its radius is at least v^2/g."""
+    radius, least = (
+        run.parameters["sample"]["skirt_radius_m"],
+        run.parameters["sliding"]["velocity_m_per_s"] ** 2 / GRAVITY,
+    )
+    if radius == 0.0 or radius >= least:
+        return None
+    return (
+        "sample.skirt_radius_mm",
+        f"at least {millimetres(least)}, velocity squared over gravity, or 0 for a straight ramp",
+    )
+
+
+def floor_drives_bed(run: CheckedRun) -> Fault | None:
+    """In a periodic bed the friction of the moving floor exceeds that of the sample and its skirt, which stand still.
+
+    Each carries the weight of the bed above it: mu_floor (L W - A) >= mu_sample A, A the area of sample and skirt.
+    """
+    bed, sample, skirt = (run.parameters[name] for name in ("bed", "sample", "derived"))
+    if bed["ends"] != PERIODIC:
+        return None
+    covered = math.prod(sample[side] + 2.0 * skirt["skirt_width_m"] for side in ("width_m", "length_m"))
+    floor, own = (run.parameters[name]["contact"]["sliding_friction"] for name in ("floor_material", "sample_material"))
+    if floor * (bed["width_m"] * skirt["bed_length_m"] - covered) >= own * covered:
+        return None
+    missing = covered * (floor + own) / max(floor, TINY_FRICTION) / bed["width_m"] - skirt["bed_length_m"]
+    return (
+        "bed.ahead_mm",
+        f"at least {millimetres(bed['ahead_m'] + missing)} with bed.ends: periodic, so that the friction of the floor"
+        " exceeds that of the sample and its skirt",
+    )
+
+
+def exchange_holds(run: CheckedRun) -> Fault | None:
+    """A window exchanges at least as much bed as the strip that holds the fresh bed is long."""
+    bed = run.parameters["bed"]
+    if bed["ends"] != WINDOW:
+        return None
+    least = window_lengths(run.parameters["particle"])[0]
+    if bed["exchange_m"] >= least:
+        return None
+    return (
+        "bed.exchange_mm",
+        f"at least {millimetres(least)} with bed.ends: window, the length of the strip that is held",
+    )
+
+
+def enough_layers(run: CheckedRun) -> Fault | None:
+    """A bed has three layers of particles, unless thin beds are allowed."""
+    if run.settings["bed"]["allow_thin_bed"] or not run.parameters["derived"]["thin_bed"]:
+        return None
+    particle = run.parameters["particle"]
+    diameter, scale = particle["median_diameter_m"], particle["scale"]
+    return "bed_thickness_mm", (
+        f"at least {millimetres(THIN_BED_LAYERS * diameter)}, three layers of particles of {millimetres(diameter)}"
+        f" (particle_scale {scale:g}), or bed.allow_thin_bed: true"
+    )
+
+
+def no_particle_between(run: CheckedRun) -> Fault | None:
+    """The sample's top is less than a particle's radius above the floor."""
+    radius = min(run.parameters["particle"]["diameters_m"]) / 2.0
+    if run.parameters["sample"]["height_above_floor_m"] < radius:
+        return None
+    return (
+        "sample.height_above_floor_mm",
+        f"below {millimetres(radius)}, the radius of the smallest particle",
+    )
+
+
+def pattern_in_bed(run: CheckedRun) -> Fault | None:
+    """The bed is thicker than a pattern is high."""
+    highest = highest_point(run.parameters["pattern"])
+    if highest < run.parameters["bed"]["thickness_m"]:
+        return None
+    return "bed_thickness_mm", f"above {millimetres(highest)}, the height of the pattern"
+
+
+def pattern_above_floor(run: CheckedRun) -> Fault | None:
+    """A pattern is less deep than the sample's top is above the floor."""
+    return deeper_than(run, "height_above_floor")
+
+
+def cycle_long_enough(run: CheckedRun) -> Fault | None:
+    """A wear cycle has at least a hundred time steps."""
+    steps = _raw_steps(run)
+    if steps >= LEAST_CYCLE_STEPS:
+        return None
+    if run.settings["sliding"]["cycles"] == ADAPTIVE and steps < _raw_steps(run, whole_travel=True):
+        return (
+            "sliding.first_cycle_mm",
+            f"at least {millimetres(_least_travel(run))}, {LEAST_CYCLE_STEPS} time steps",
+        )
+    most = int(_raw_steps(run, whole_travel=True) / LEAST_CYCLE_STEPS)
+    if most < 1:
+        return _travel_fault(run, "least", _least_travel(run), f"{LEAST_CYCLE_STEPS} time steps")
+    return "sliding.cycles", f"at most {most}, so that a cycle has {LEAST_CYCLE_STEPS} time steps"
+
+
+def travel_within_reason(run: CheckedRun) -> Fault | None:
+    """The travel that a test duration makes is at most 100 m."""
+    travel = run.parameters["sliding"]["travel_m"]
+    return _travel_fault(run, "most", LARGEST_TRAVEL, "100 m of travel") if travel > LARGEST_TRAVEL else None
+
+
+def _travel_fault(run: CheckedRun, bound: str, travel: float, reason: str) -> Fault:
+    """Return the fault of a travel (m), in terms of the key that the study gives it by."""
+    if "test_duration_h" not in run.settings["sliding"]:
+        return "sliding.travel_mm", f"at {bound} {millimetres(travel)}, {reason}"
+    hours = run.settings["sliding"]["test_duration_h"] * travel / run.parameters["sliding"]["travel_m"]
+    return "sliding.test_duration_h", f"at {bound} {hours:.6g} h at this acceleration and velocity, {reason}"
+
+
+def sampled_in_cycle(run: CheckedRun) -> Fault | None:
+    """Contacts are sampled more than once in a cycle, where they are sampled (`ledger: dumps`)."""
+    steps = _raw_steps(run)
+    if run.settings["ledger"] != "dumps" or run.settings["solver"]["sampling_interval_steps"] < steps:
+        return None
+    return "solver.sampling_interval_steps", f"below {int(steps)}, the time steps of a cycle"
+
+
+def _raw_steps(run: CheckedRun, whole_travel: bool = False) -> float:
+    """Time steps of the first wear cycle, or of the whole travel, before rounding to whole ones."""
+    derived, sliding = run.parameters["derived"], run.parameters["sliding"]
+    travel = sliding["travel_m"]
+    if not whole_travel:
+        adaptive = sliding["cycles"] == ADAPTIVE
+        travel = min(sliding["first_cycle_m"], travel) if adaptive else travel / sliding["cycles"]
+    return travel / sliding["velocity_m_per_s"] / derived["largest_time_step_s"]
+
+
+def _least_travel(run: CheckedRun) -> float:
+    step = run.parameters["derived"]["largest_time_step_s"]
+    return LEAST_CYCLE_STEPS * step * run.parameters["sliding"]["velocity_m_per_s"]
+
+
+SLIDING_CHECKS: tuple[Check, ...] = (
+    enough_layers,
+    pattern_in_bed,
+    pattern_fits,
+    pattern_above_floor,
+    no_particle_between,
+    sample_in_bed,
+    skirt_in_bed,
+    ramp_holds_bed,
+    floor_drives_bed,
+    exchange_holds,
+    element_resolves_sample,
+    element_resolves_pattern,
+    travel_within_reason,
+    cycle_long_enough,
+    sampled_in_cycle,
+    physical_modulus_known,
+)
