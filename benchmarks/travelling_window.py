@@ -222,6 +222,7 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
     bumps = ", ".join(
         f"{name.removesuffix('_m').replace('_', ' ')} {1e3 * value:g} mm" for name, value in BUMPS.items()
     )
+    digits = dict.fromkeys(table, 4)
     parts = [
         "# A travelling window against a full bed: results",
         prose(
@@ -237,13 +238,13 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
             " the scatter between packings (standard deviation of the logarithm) is taken to be that of all beds of a"
             " surface together. Ratios are of geometric means."
         ),
-        markdown(table[[*names, *wear]], digits=4),
+        markdown(table[[*names, *wear]], digits),
         prose(
             "A rate is steady where it no longer changes with the travel: the same ratio over the second half of the"
             " travel alone; the mean normal force on the sample over that in the full bed; and how many particles a"
             " metre of settled bed has."
         ),
-        markdown(table[[*names, *LATE.values(), "force_over_full", "settled_particles_per_m"]], digits=4),
+        markdown(table[[*names, *LATE.values(), "force_over_full", "settled_particles_per_m"]], digits),
         "![Sliding work along the travel in a full bed and in windows](travelling_window.png)",
         "## Cost",
         prose(
