@@ -24,6 +24,7 @@ from meshes.tester import (
     turn_angles,
 )
 from postproc.mesh import SurfaceMesh, write_stl
+from postproc.wear.caps import GRAVITY
 from workflows.engine.decks import (
     DOMAIN_MARGIN_DIAMETERS,
     FILL_EXCESS,
@@ -35,7 +36,6 @@ from workflows.engine.decks import (
     poured_particles,
     steps,
 )
-from workflows.engine.derived import GRAVITY
 from workflows.engine.schedule import Span
 
 CHANNEL, RING = "channel", "ring"  # values of tester.shape
