@@ -26,7 +26,7 @@ FRAMES = 24  # of the small film
 LARGEST_BYTES = 300_000  # of the film
 EVERY = 10_000  # frames: the table has every cycle
 KEPT = (
-    *("archard_volume_m3", "base_archard_volume_m3", "bump_archard_volume_m3", "carried_volume_m3", "step_demand"),
+    *("worn_volume_m3", "base_worn_volume_m3", "pattern_worn_volume_m3", "carried_volume_m3", "step_demand"),
     *("smallest_angle_deg", "remeshed_faces", "largest_outward_edge_fraction", "balance_error"),
     "bed_over_floor_velocity",
 )  # columns of wear.csv

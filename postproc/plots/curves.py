@@ -34,7 +34,7 @@ def wear_against_travel(history: pd.DataFrame, remarks: Sequence[str]) -> Figure
     figure = new_figure(remarks, 4.0 if len(rows) <= FEW_ROWS else LARGEST_HEIGHT)
     several = len(rows) > 1
     applied = bool((history["applied_volume_mm3"] > 0.0).any())
-    unit, ticks = scaled("mm³", float(history["archard_volume_mm3"].max()))
+    unit, ticks = scaled("mm³", float(history["worn_volume_mm3"].max()))
     for row, axes in facets(figure, rows).items():
         for run in _runs(history[history["row"] == row]):
             _wear_curves(axes, run, applied)
@@ -44,7 +44,7 @@ def wear_against_travel(history: pd.DataFrame, remarks: Sequence[str]) -> Figure
         if several:
             axes.set_title(row, loc="left", fontsize=SMALLEST_FONT, pad=2)
     label_all(figure, several, "Travel (mm)", f"Cumulative wear volume ({unit})")
-    styles = {"worn by Archard's law": "-"} | ({"applied to the surface": "--"} if applied else {})
+    styles = {"worn by the law": "-"} | ({"applied to the surface": "--"} if applied else {})
     _legend(figure, list(dict.fromkeys(history["surface"])), styles, marked=True)
     return figure
 
@@ -62,7 +62,7 @@ def _wear_curves(axes: Axes, run: pd.DataFrame, applied: bool) -> None:
         "clip_on": False,
     }
     name = run["run"].iloc[0]
-    axes.plot(run["travel_mm"], run["archard_volume_mm3"], label=f"{name} archard", **common)
+    axes.plot(run["travel_mm"], run["worn_volume_mm3"], label=f"{name} archard", **common)
     if applied:
         axes.plot(
             run["travel_mm"],

@@ -21,7 +21,7 @@ def runs_of(design: str | Path) -> pd.DataFrame:
 
 def wear_history(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
     """Return cumulative wear after each cycle of each run, from zero: run, row, surface, cycle, travel_mm,
-    archard_volume_mm3 (what the law takes), applied_volume_mm3 (what the surface has lost),
+    worn_volume_mm3 (what the law takes), applied_volume_mm3 (what the surface has lost),
     carried_volume_mm3.
 
     wear_files: wear.csv of the runs, in the order of the design.
@@ -36,7 +36,7 @@ def _run_history(run: dict[str, str], wear: pd.DataFrame) -> pd.DataFrame:
         {
             "cycle": wear["cycle"],
             "travel_m": wear["travel_m"],
-            "archard_volume_m3": wear["total_archard_volume_m3"],
+            "worn_volume_m3": wear["total_worn_volume_m3"],
             "applied_volume_m3": wear["total_applied_volume_m3"],
             "carried_volume_m3": wear["carried_volume_m3"],
         }
@@ -60,7 +60,7 @@ def _rows_of_cycles(folder: Path, name: str) -> pd.DataFrame:
 
 def wear_within_cycles(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
     """Return cumulative wear along the travel of each run, from zero: run, row, surface, cycle, travel_mm,
-    archard_volume_mm3, base_archard_volume_mm3, bump_archard_volume_mm3 (what the law takes).
+    worn_volume_mm3, base_worn_volume_mm3, pattern_worn_volume_mm3 (what the law takes).
 
     Finer than `wear_history` where cycles were looked into: about every solver.wear_interval_mm of travel.
     run_folders: folders of the runs, in the order of the design, with cycle_*/wear_history.csv.
@@ -73,7 +73,7 @@ def wear_within_cycles(design: str | Path, run_folders: Sequence[str | Path]) ->
 
 def _run_stretches(run: dict[str, str], folder: Path) -> pd.DataFrame:
     stretches = _rows_of_cycles(folder, "wear_history.csv")
-    volumes = stretches[["archard_volume_m3", "base_archard_volume_m3", "bump_archard_volume_m3"]].cumsum()
+    volumes = stretches[["worn_volume_m3", "base_worn_volume_m3", "pattern_worn_volume_m3"]].cumsum()
     table = stretches[["cycle", "travel_m"]].join(volumes)
     return _from_zero(run, table)
 

@@ -11,9 +11,9 @@ import pandas as pd
 from postproc.mesh import PLAIN
 
 SUMMED = (
-    "archard_volume_m3",
-    "base_archard_volume_m3",
-    "bump_archard_volume_m3",
+    "worn_volume_m3",
+    "base_worn_volume_m3",
+    "pattern_worn_volume_m3",
     "applied_volume_m3",
     "sliding_work_J",
     "finnie_volume_m3",
@@ -35,7 +35,7 @@ def run_summary(wear: pd.DataFrame) -> dict[str, float]:
         "cycles": len(wear),
         **last,
         **totals,
-        "archard_volume_per_metre_m3_per_m": totals["archard_volume_m3"] / last["travel_m"],
+        "worn_volume_per_metre_m3_per_m": totals["worn_volume_m3"] / last["travel_m"],
         **{name: float(np.average(wear[name], weights=duration)) for name in MEANS if name in wear},
         "largest_balance_error": float(wear["balance_error"].max()),
     }
@@ -43,8 +43,8 @@ def run_summary(wear: pd.DataFrame) -> dict[str, float]:
 
 def relative_wear(table: pd.DataFrame) -> pd.Series:
     """Return each run's Archard volume over that of the plain run of the same design row; NaN without one."""
-    plain = table[table["surface"] == "plain"].set_index("row")["archard_volume_m3"]
-    return table["archard_volume_m3"] / table["row"].map(plain)
+    plain = table[table["surface"] == "plain"].set_index("row")["worn_volume_m3"]
+    return table["worn_volume_m3"] / table["row"].map(plain)
 
 
 def totals_of_runs(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:

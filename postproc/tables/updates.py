@@ -29,7 +29,7 @@ def wear_updates(design: str | Path, wear_files: Sequence[str | Path]) -> pd.Dat
 
 
 def _run_updates(wear: pd.DataFrame) -> pd.DataFrame:
-    law = wear["archard_volume_m3"].where(wear["archard_volume_m3"] > 0.0)
+    law = wear["worn_volume_m3"].where(wear["worn_volume_m3"] > 0.0)
     return pd.DataFrame(
         {
             "cycle": wear["cycle"],

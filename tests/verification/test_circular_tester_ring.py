@@ -67,7 +67,7 @@ def test_the_bed_goes_round_nearly_as_a_rigid_body(ring):
 def test_the_sample_wears(ring):
     """Loaded from above, worn by the law, without a particle lost on the way."""
     wear = pd.read_csv(ring.folder / "wear.csv")
-    assert (wear["mean_normal_force_N"] > 0.0).all() and (wear["archard_volume_m3"] > 0.0).all()
+    assert (wear["mean_normal_force_N"] > 0.0).all() and (wear["worn_volume_m3"] > 0.0).all()
 
 
 def polar(chain):

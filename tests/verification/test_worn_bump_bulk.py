@@ -69,7 +69,7 @@ def test_the_volume_balance_is_closed(run):
     assert len(wear) == len(surfaces) - 1
     for mesh, row in zip(surfaces[1:], wear.itertuples(), strict=True):
         removed = lost_volume(surfaces[0], mesh)[0] + mesh.point_data["carried_volume_m3"].sum()
-        assert removed == pytest.approx(row.total_archard_volume_m3, rel=BALANCE)
+        assert removed == pytest.approx(row.total_worn_volume_m3, rel=BALANCE)
 
 
 def test_no_particle_is_lost(run):

@@ -95,9 +95,9 @@ def test_a_design_row_becomes_a_summary(undisturbed):
     """One row and two surfaces give two runs, each with its wear; the plain run is its own reference."""
     table = pd.read_csv(undisturbed / "results/tiny/summary.csv").set_index("run")
     assert list(table.index) == ["R9_convex", "R9_plain"]
-    assert (table["archard_volume_m3"] > 0).all()
+    assert (table["worn_volume_m3"] > 0).all()
     assert table.loc["R9_plain", "wear_over_plain"] == 1.0
-    assert table.loc["R9_plain", "bump_archard_volume_m3"] == 0.0 < table.loc["R9_convex", "bump_archard_volume_m3"]
+    assert table.loc["R9_plain", "pattern_worn_volume_m3"] == 0.0 < table.loc["R9_convex", "pattern_worn_volume_m3"]
 
 
 @pytest.mark.solver

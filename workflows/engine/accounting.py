@@ -57,7 +57,7 @@ def wear_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh, l
     """Return the wear of a cycle from look to look, without reading anything between two steps twice.
 
     A row per stretch of travel: cycle, time_s and travel_m at its end, and of the stretch sliding_work_J,
-    archard_volume_m3, base_ and bump_archard_volume_m3 and mean_normal_force_N, as in wear.csv, whose row they add up
+    worn_volume_m3, base_ and pattern_worn_volume_m3 and mean_normal_force_N, as in wear.csv, whose row they add up
     to. Raises the producer's errors.
     """
     parameters, piece = chain.parameters, chain.case.piece(chain.parameters, span, surface)

@@ -37,7 +37,7 @@ CAP_SHARES = (1.0, 0.5, 0.25, 0.1)  # of the cap on a step, one after the other 
 MEANS = ("contact_position", "contact_radius")  # columns of a ledger that are no sums: nothing where nothing touched
 LEAST_SOLVER_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 TOTALS = {  # columns of wear.csv that are sums over all cycles -> what each cycle adds
-    "total_archard_volume_m3": "worn_volume_m3",
+    "total_worn_volume_m3": "worn_volume_m3",
     "total_applied_volume_m3": "applied_volume_m3",
     "total_excess_volume_m3": "excess_volume_m3",
 }
@@ -70,7 +70,7 @@ def wear(
     row = wear_row(chain, span, surface, ledger, volume) | update_row(chain, span, update) | asked
     lost, rounding = lost_volume(pristine, worn)
     due = lost - row["total_excess_volume_m3"]
-    error = volume_balance(due, row["carried_volume_m3"], row["total_archard_volume_m3"], rounding)
+    error = volume_balance(due, row["carried_volume_m3"], row["total_worn_volume_m3"], rounding)
     return {**row, "balance_error": error}
 
 
@@ -241,7 +241,7 @@ def wear_row(
         "cycle": span.cycle,
         "time_s": time_s,
         "travel_m": time_s * chain.parameters["sliding"]["velocity_m_per_s"],
-        **{name: sums[name] for name in ("sliding_work_J", "base_archard_volume_m3", "bump_archard_volume_m3")},
+        **{name: sums[name] for name in ("sliding_work_J", "base_worn_volume_m3", "pattern_worn_volume_m3")},
         "finnie_volume_m3": float(finnie[worn].sum()),
         "mean_normal_force_N": sums["normal_impulse_N_s"] / (span.steps * time_step),
     }
@@ -257,9 +257,9 @@ def load_sums(surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray) ->
     return {
         "sliding_work_J": float(ledger["sliding_work_J"].to_numpy()[worn].sum()),
         "normal_impulse_N_s": float(ledger["normal_impulse_N_s"].to_numpy()[worn].sum()),
-        "archard_volume_m3": float(faces.sum()),
-        "base_archard_volume_m3": float(faces[part == 0].sum()),
-        "bump_archard_volume_m3": float(faces[part > 0].sum()),
+        "worn_volume_m3": float(faces.sum()),
+        "base_worn_volume_m3": float(faces[part == 0].sum()),
+        "pattern_worn_volume_m3": float(faces[part > 0].sum()),
     }
 
 
@@ -267,8 +267,7 @@ def update_row(chain: Chain, span: Span, update: Mapping[str, float]) -> dict[st
     """Return what a cycle's row of wear.csv tells of the update: volumes, of all cycles so far too, and the mesh."""
     before = state.read_state(chain.folder, span.cycle - 1)["wear"] if span.cycle > 1 else {}
     totals = {name: before.get(name, 0.0) + update[part] for name, part in TOTALS.items()}
-    renamed = {"archard_volume_m3": update["worn_volume_m3"]}
-    return {**renamed, **{name: value for name, value in update.items() if name != "worn_volume_m3"}, **totals}
+    return {**update, **totals}
 
 
 def worn_surface(chain: Chain, last: Span) -> SurfaceMesh:

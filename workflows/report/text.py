@@ -157,7 +157,7 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, furth
     if not wear["deform"]:
         rigid = ("Rigid sample", "The surface keeps its shape: depths are worn volume over area, not applied.")
         return [law, acceleration, rigid]
-    carried = 100.0 * (summary["carried_volume_m3"] / summary["archard_volume_m3"]).max()
+    carried = 100.0 * (summary["carried_volume_m3"] / summary["worn_volume_m3"]).max()
     caps = (
         "Capped steps",
         f"In one wear cycle a node moves at most {wear['largest_step_edge_fraction']:g} of its shortest edge, and at "

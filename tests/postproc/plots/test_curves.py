@@ -27,7 +27,7 @@ def history_of(*rows, applied=0.5):
         pd.DataFrame(
             {
                 "travel_mm": travel,
-                "archard_volume_mm3": travel * (k + 1),
+                "worn_volume_mm3": travel * (k + 1),
                 "applied_volume_mm3": applied * travel * (k + 1),
             }
         ).assign(**run)
@@ -58,7 +58,7 @@ def test_wear_is_drawn_as_tabled():
     figure = curves.wear_against_travel(history, REMARKS)
     drawn = {label: values for (label, _), values in lines_of(figure).items()}
     for run, rows in history.groupby("run"):
-        np.testing.assert_array_equal(drawn[f"{run} archard"], rows[["travel_mm", "archard_volume_mm3"]])
+        np.testing.assert_array_equal(drawn[f"{run} archard"], rows[["travel_mm", "worn_volume_mm3"]])
         np.testing.assert_array_equal(drawn[f"{run} applied"], rows[["travel_mm", "applied_volume_mm3"]])
     assert figure.axes[0].get_xlabel() == "Travel (mm)"
     assert "(mm³)" in figure.axes[0].get_ylabel()

@@ -12,10 +12,10 @@ RELATIVE = 1e-12  # rounding of one product
     ("column", "shown", "factor"),
     [
         ("travel_m", "travel_mm", 1e3),
-        ("archard_volume_m3", "archard_volume_mm3", 1e9),
+        ("worn_volume_m3", "worn_volume_mm3", 1e9),
         ("area_m2", "area_mm2", 1e6),
         ("largest_depth_m", "largest_depth_um", 1e6),
-        ("archard_volume_per_metre_m3_per_m", "archard_volume_per_metre_mm3_per_m", 1e9),
+        ("worn_volume_per_metre_m3_per_m", "worn_volume_per_metre_mm3_per_m", 1e9),
         ("angular_speed_rad_per_s", "angular_speed_deg_per_s", 57.29577951308232),
         ("drag_per_m", "drag_per_m", 1.0),
         ("normal_force_N", "normal_force_N", 1.0),

@@ -32,7 +32,7 @@ def test_wear_starts_from_zero_and_keeps_units(design, tmp_path):
         {
             "cycle": [1, 2],
             "travel_m": [0.01, 0.02],
-            "total_archard_volume_m3": [1e-9, 3e-9],
+            "total_worn_volume_m3": [1e-9, 3e-9],
             "total_applied_volume_m3": [1e-9, 2e-9],
             "carried_volume_m3": [0.0, 1e-9],
         }
@@ -41,8 +41,8 @@ def test_wear_starts_from_zero_and_keeps_units(design, tmp_path):
     history = wear_history(design, [tmp_path / "wear.csv"] * 2)
     run = history[history["run"] == "1_convex"]
     np.testing.assert_allclose(run["travel_mm"], [0.0, 10.0, 20.0])
-    np.testing.assert_allclose(run["archard_volume_mm3"], [0.0, 1.0, 3.0])
-    np.testing.assert_allclose(run["archard_volume_mm3"], run["applied_volume_mm3"] + run["carried_volume_mm3"])
+    np.testing.assert_allclose(run["worn_volume_mm3"], [0.0, 1.0, 3.0])
+    np.testing.assert_allclose(run["worn_volume_mm3"], run["applied_volume_mm3"] + run["carried_volume_mm3"])
     assert set(history["row"]) == {"1"}
 
 
@@ -52,14 +52,14 @@ def test_wear_within_cycles_goes_on_over_them(design, tmp_path):
         where = tmp_path / "run" / f"cycle_{cycle:03d}"
         where.mkdir(parents=True)
         travel = 0.02 * (cycle - 1) + np.array([0.01, 0.02])
-        parts = {"base_archard_volume_m3": 0.75 * np.array(volume), "bump_archard_volume_m3": 0.25 * np.array(volume)}
-        table = pd.DataFrame({"cycle": cycle, "travel_m": travel, "archard_volume_m3": volume, **parts})
+        parts = {"base_worn_volume_m3": 0.75 * np.array(volume), "pattern_worn_volume_m3": 0.25 * np.array(volume)}
+        table = pd.DataFrame({"cycle": cycle, "travel_m": travel, "worn_volume_m3": volume, **parts})
         table.to_csv(where / "wear_history.csv", index=False)
     history = wear_within_cycles(design, [tmp_path / "run"] * 2)
     run = history[history["run"] == "1_convex"]
     np.testing.assert_allclose(run["travel_mm"], [0.0, 10.0, 20.0, 30.0, 40.0])
-    np.testing.assert_allclose(run["archard_volume_mm3"], [0.0, 4.0, 6.0, 7.0, 8.0])
-    np.testing.assert_allclose(run["bump_archard_volume_mm3"], 0.25 * run["archard_volume_mm3"])
+    np.testing.assert_allclose(run["worn_volume_mm3"], [0.0, 4.0, 6.0, 7.0, 8.0])
+    np.testing.assert_allclose(run["pattern_worn_volume_mm3"], 0.25 * run["worn_volume_mm3"])
     gradient = gradient_history(history)
     np.testing.assert_allclose(gradient["gradient_mm3_per_mm"], [0.4, 0.2, 0.1, 0.1] * 2)
 

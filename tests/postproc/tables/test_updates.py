@@ -10,7 +10,7 @@ RELATIVE = 1e-12  # rounding of a few products, and of CSV text
 WEAR = {
     "cycle": [1, 2, 3],
     "travel_m": [0.01, 0.03, 0.04],
-    "archard_volume_m3": [2e-9, 4e-9, 0.0],
+    "worn_volume_m3": [2e-9, 4e-9, 0.0],
     "applied_volume_m3": [1e-9, 3e-9, 2e-9],
     "carried_volume_m3": [1e-9, 2e-9, 0.0],
     "largest_step_m": [2e-6, 1e-6, 1e-6],

@@ -129,8 +129,8 @@ def test_wear_within_a_cycle_adds_up_to_it(looked_into):
         np.testing.assert_allclose(lengths, 0.002, rtol=STRETCH_TOLERANCE)
         travelled = row["travel_m"]
         assert stretches["travel_m"].iloc[-1] == pytest.approx(travelled, rel=ROUND_OFF)
-        assert (stretches["archard_volume_m3"] > 0).all()
-        for name in ("sliding_work_J", "archard_volume_m3", "base_archard_volume_m3", "bump_archard_volume_m3"):
+        assert (stretches["worn_volume_m3"] > 0).all()
+        for name in ("sliding_work_J", "worn_volume_m3", "base_worn_volume_m3", "pattern_worn_volume_m3"):
             assert stretches[name].sum() == pytest.approx(row[name], rel=ROUND_OFF)
         duration = np.diff(stretches["time_s"], prepend=stretches["time_s"].iloc[0] - lengths[0] / VELOCITY)
         mean = np.average(stretches["mean_normal_force_N"], weights=duration)
@@ -202,7 +202,7 @@ def test_a_rigid_sample_carries_all_its_wear(finished, tmp_path):
     chain = tiny_chain(tiny_study(wear={"deform": False}, sliding={"cycles": 1}), tmp_path)
     cycles.run_chain(chain)
     table = wear_table(chain)
-    assert table["applied_volume_m3"].abs().max() <= BALANCE_TOLERANCE * table["archard_volume_m3"].sum()
+    assert table["applied_volume_m3"].abs().max() <= BALANCE_TOLERANCE * table["worn_volume_m3"].sum()
     np.testing.assert_array_equal(
         read_surface(chain.surface).points, read_surface(chain.folder / "worn_surface.vtu").points
     )
@@ -230,7 +230,7 @@ def test_other_ways_to_wear_run_too(finished, tmp_path, wear):
     ledger = pd.read_parquet(state.cycle_folder(finished.folder, 1) / "ledger.parquet")
     row = wear_step.wear(chain, first_span(chain.parameters), tmp_path, read_surface(chain.surface), ledger)
     assert row["applied_volume_m3"] > 0
-    excess = row["total_excess_volume_m3"] / row["archard_volume_m3"]
+    excess = row["total_excess_volume_m3"] / row["worn_volume_m3"]
     assert (excess > 0.1) == (wear.get("scheme") == "per_triangle")
 
 

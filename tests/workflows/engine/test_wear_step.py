@@ -99,7 +99,7 @@ def test_a_surface_beyond_repair_is_worn_by_less(chain, monkeypatch):
     assert less["step_limit_m"] == 0.25 * whole["step_limit_m"]
     assert 0.0 < less["applied_volume_m3"] < 0.5 * whole["applied_volume_m3"]
     due = [row["applied_volume_m3"] + row["carried_volume_m3"] for row in (less, whole)]
-    assert due == pytest.approx([whole["archard_volume_m3"]] * 2, rel=EXACT)
+    assert due == pytest.approx([whole["worn_volume_m3"]] * 2, rel=EXACT)
 
 
 def test_a_sliver_stops_before_the_solver_refuses_it(chain, monkeypatch):

@@ -83,7 +83,7 @@ def series_of(run: TesterRun) -> pd.DataFrame:
     duration = np.diff(history["time_s"], prepend=0.0)
     middle = history["time_s"] - 0.5 * duration  # a stretch up to the end of a revolution belongs to it
     wear = pd.DataFrame({"revolution": middle / run.revolution_s})
-    wear["wear_rate_m3_per_s"] = history["archard_volume_m3"] / duration
+    wear["wear_rate_m3_per_s"] = history["worn_volume_m3"] / duration
     wear["normal_force_N"] = history["mean_normal_force_N"]
     parts.append(_after(wear, run.before))
     layer = _rows(run.folder, LAYER_TABLE)

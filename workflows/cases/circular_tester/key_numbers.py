@@ -41,7 +41,7 @@ RESULT_HEADS = {
     "shape": ("machine", ""),
     "lost_volume_mm3": ("lost", "mm³"),
     "lost_per_revolution_mm3": ("lost per revolution", "mm³"),
-    "bump_share_percent": ("on bumps", "%"),
+    "pattern_share_percent": ("on bumps", "%"),
     "mean_normal_force_N": ("mean normal force", "N"),
     "sliding_over_travel": ("sliding over travel", "-"),
     "bed_over_floor_velocity": ("velocity of bed over trough", "-"),
@@ -133,12 +133,12 @@ def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
     sliding_over_travel (-): how far contacts slide over how far the trough goes, from sliding work and normal force
     """
     names = ["run", "series", "surface", "shape", "particle_scale", "element_size_mm", "wear_coefficient_per_pa"]
-    volume = summary["archard_volume_m3"]
+    volume = summary["worn_volume_m3"]
     linear = fits[fits["fit"] == "linear"].set_index("run")["r_squared"]
     return summary[[*names, "revolutions"]].assign(
         lost_volume_mm3=summary["applied_volume_m3"] * CUBIC_MILLIMETRES,
         lost_per_revolution_mm3=volume * CUBIC_MILLIMETRES / summary["revolutions"],
-        bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
+        pattern_share_percent=100.0 * summary["pattern_worn_volume_m3"] / volume,
         mean_normal_force_N=summary["mean_normal_force_N"],
         sliding_over_travel=summary["sliding_work_J"] / (summary["mean_normal_force_N"] * summary["travel_m"]),
         bed_over_floor_velocity=summary["bed_over_floor_velocity"],

@@ -47,8 +47,8 @@ def volumes(runs: Sequence[TesterRun]) -> pd.DataFrame:
                 "cycle": wear["cycle"],
                 "revolution": wear["revolution"],
                 "volume_m3": wear["total_applied_volume_m3"],
-                "law_volume_m3": wear["total_archard_volume_m3"],
-                "bump_volume_m3": wear["bump_archard_volume_m3"].cumsum(),
+                "law_volume_m3": wear["total_worn_volume_m3"],
+                "bump_volume_m3": wear["pattern_worn_volume_m3"].cumsum(),
                 "pattern_volume_m3": wear["pattern_volume_m3"],
             }
         )

@@ -86,14 +86,14 @@ def result_table(summary: pd.DataFrame) -> pd.DataFrame:
     names = ["run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "particle_scale", "revolutions"]
     return summary[names].assign(
         alpha_F_L_volume_mm3=due * CUBIC_MILLIMETRES,
-        law_over_alpha_F_L=summary["archard_volume_m3"] / due,
+        law_over_alpha_F_L=summary["worn_volume_m3"] / due,
         removed_over_alpha_F_L=summary["removed_volume_m3"] / due,
         centroid_path_over_alpha_F_L=summary["centroid_path_volume_m3"] / due,
         largest_depth_um=summary["largest_depth_m"] * MICROMETRES,
         mean_normal_force_N=summary["mean_normal_force_N"],
         mean_vertical_force_N=summary["mean_vertical_force_N"],
         most_contacts=summary["most_contacts_per_step"],
-        carried_share_percent=100.0 * (summary["carried_volume_m3"] / summary["archard_volume_m3"]).abs(),
+        carried_share_percent=100.0 * (summary["carried_volume_m3"] / summary["worn_volume_m3"]).abs(),
     )
 
 

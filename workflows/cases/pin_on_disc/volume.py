@@ -19,7 +19,7 @@ VOLUMES = {
     "removed": "removed_volume_m3",
     "Eq 5.9": "centroid_path_volume_m3",
     "Eq 5.9, touched": "touched_centroid_path_volume_m3",
-    "alpha W": "archard_volume_m3",
+    "alpha W": "worn_volume_m3",
 }
 SUMMED = ("centroid_path_volume_m3", "touched_centroid_path_volume_m3")  # per cycle in wear.csv
 PERCENT = 100.0
@@ -69,7 +69,7 @@ def summary_table(
 def volumes_of_run(folder: str | Path) -> pd.DataFrame:
     """Volumes and forces of a run after each whole revolution, from its wear.csv.
 
-    folder : of the run. Columns: revolution, archard_volume_m3 (alpha W), removed_volume_m3, carried_volume_m3,
+    folder : of the run. Columns: revolution, worn_volume_m3 (alpha W), removed_volume_m3, carried_volume_m3,
     centroid_path_volume_m3 (Eq 5.9 over all triangles), touched_centroid_path_volume_m3 (over those in contact during
     the update), step_demand (largest so far, of a step over its cap) and, averaged over all cycles so far, those of
     AVERAGED.
@@ -80,7 +80,7 @@ def volumes_of_run(folder: str | Path) -> pd.DataFrame:
     table = pd.DataFrame(
         {
             "revolution": wear["revolution"],
-            "archard_volume_m3": wear["total_archard_volume_m3"],
+            "worn_volume_m3": wear["total_worn_volume_m3"],
             "removed_volume_m3": wear["total_applied_volume_m3"],
             "carried_volume_m3": wear["carried_volume_m3"],
             **{name: wear[name].cumsum() for name in SUMMED},
@@ -161,11 +161,11 @@ def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFra
         coefficient, load, track = (row[name].iloc[0] for name in FIXED)
         law = law_volume(coefficient, load, track, row["revolution"])
         rise = row["mean_normal_force_N"] / load
-        taken_up = row["archard_volume_m3"] - row["carried_volume_m3"]
+        taken_up = row["worn_volume_m3"] - row["carried_volume_m3"]
         table = row[["run", "scheme", "wear_coefficient_per_pa", "revolution"]].assign(
             force_rise=rise,
-            slip=row["archard_volume_m3"] / law / rise,
-            taken_up=taken_up / row["archard_volume_m3"],
+            slip=row["worn_volume_m3"] / law / rise,
+            taken_up=taken_up / row["worn_volume_m3"],
             displacement_rule=row["removed_volume_m3"] / taken_up,
             summing_rule=row[SUMMED[row["scheme"].iloc[0] != CONSERVING]] / row["removed_volume_m3"],
             summing_over_all=row["centroid_path_volume_m3"] / row["removed_volume_m3"],
@@ -250,11 +250,11 @@ def size_cases(volumes: pd.DataFrame) -> pd.DataFrame:
 def size_invariance(sizes: pd.DataFrame) -> pd.DataFrame:
     """Simulated over theoretical volume of Archard's law against the scale of the pin, its difference in percent.
 
-    sizes : `run`, `particle_scale`, `archard_volume_m3` (alpha W), `alpha_F_L_volume_m3`, one row per run.
+    sizes : `run`, `particle_scale`, `worn_volume_m3` (alpha W), `alpha_F_L_volume_m3`, one row per run.
     """
-    ratio = sizes["archard_volume_m3"] / sizes["alpha_F_L_volume_m3"]
+    ratio = sizes["worn_volume_m3"] / sizes["alpha_F_L_volume_m3"]
     table = sizes[["run", "particle_scale"]].assign(
-        simulated_volume_mm3=CUBIC_MILLIMETRES * sizes["archard_volume_m3"],
+        simulated_volume_mm3=CUBIC_MILLIMETRES * sizes["worn_volume_m3"],
         theoretical_volume_mm3=CUBIC_MILLIMETRES * sizes["alpha_F_L_volume_m3"],
         ratio=ratio,
         difference_percent=PERCENT * (ratio - 1.0),

@@ -29,22 +29,22 @@ def plain_of_row(summary: pd.DataFrame, column: str) -> pd.Series:
 def wear_split(summary: pd.DataFrame) -> pd.DataFrame:
     """Return each run's wear on base and on bumps over the wear of the plain run of its row.
 
-    Columns run, row, surface, base_volume_mm3, bump_volume_mm3, base_over_plain, bump_over_plain.
+    Columns run, row, surface, base_volume_mm3, pattern_volume_mm3, base_over_plain, pattern_over_plain.
     """
-    plain = plain_of_row(summary, "archard_volume_m3")
+    plain = plain_of_row(summary, "worn_volume_m3")
     table = summary[["run", "row", "surface"]].assign(
-        base_volume_m3=summary["base_archard_volume_m3"],
-        bump_volume_m3=summary["bump_archard_volume_m3"],
-        base_over_plain=summary["base_archard_volume_m3"] / plain,
-        bump_over_plain=summary["bump_archard_volume_m3"] / plain,
+        base_volume_m3=summary["base_worn_volume_m3"],
+        pattern_volume_m3=summary["pattern_worn_volume_m3"],
+        base_over_plain=summary["base_worn_volume_m3"] / plain,
+        pattern_over_plain=summary["pattern_worn_volume_m3"] / plain,
     )
     return in_display_units(table)
 
 
 def law_comparison(summary: pd.DataFrame) -> pd.DataFrame:
     """Return each run's volume by Archard and by the solver's own Finnie, and their ratio."""
-    table = summary[["run", "row", "surface", "archard_volume_m3", "finnie_volume_m3"]]
-    ratio = summary["finnie_volume_m3"] / summary["archard_volume_m3"]
+    table = summary[["run", "row", "surface", "worn_volume_m3", "finnie_volume_m3"]]
+    ratio = summary["finnie_volume_m3"] / summary["worn_volume_m3"]
     return in_display_units(table.assign(finnie_over_archard=ratio))
 
 
@@ -59,8 +59,8 @@ def cycle_ratios(history: pd.DataFrame) -> pd.DataFrame:
     for (row, surface), run in history[history["surface"] != PLAIN].groupby(["row", "surface"], sort=False):
         if row not in plain:
             continue
-        twin = np.interp(run["travel_mm"], plain[row]["travel_mm"], plain[row]["archard_volume_mm3"])
-        ratio = np.diff(run["archard_volume_mm3"]) / np.diff(twin)
+        twin = np.interp(run["travel_mm"], plain[row]["travel_mm"], plain[row]["worn_volume_mm3"])
+        ratio = np.diff(run["worn_volume_mm3"]) / np.diff(twin)
         rows.append(
             {"row": row, "surface": surface, "lowest_cycle_ratio": ratio.min(), "highest_cycle_ratio": ratio.max()}
         )

@@ -38,7 +38,7 @@ def gradient_history(history: pd.DataFrame) -> pd.DataFrame:
     """
     tables = []
     for (run, row, surface), one in history.groupby(["run", "row", "surface"], sort=False):
-        travel, volume = one["travel_mm"].to_numpy(), one["archard_volume_mm3"].to_numpy()
+        travel, volume = one["travel_mm"].to_numpy(), one["worn_volume_mm3"].to_numpy()
         middle = 0.5 * (travel[1:] + travel[:-1])
         gradient = wear_gradient(travel, volume)
         names = {"run": run, "row": row, "surface": surface}

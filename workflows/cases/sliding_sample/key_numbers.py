@@ -75,12 +75,12 @@ def result_table(
     """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated
     test, over plain with its range over the cycles, share of the bumps, carried share, forces and depths.
     """
-    volume = summary["archard_volume_m3"]
-    table = summary[["run", "row", "surface", "travel_m", "archard_volume_m3"]].assign(
-        archard_volume_per_metre_m3_per_m=volume / summary["travel_m"],
+    volume = summary["worn_volume_m3"]
+    table = summary[["run", "row", "surface", "travel_m", "worn_volume_m3"]].assign(
+        worn_volume_per_metre_m3_per_m=volume / summary["travel_m"],
         real_volume_per_metre_m3_per_m=volume / summary["travel_m"] / acceleration,
         wear_over_plain=summary["wear_over_plain"],
-        bump_share_percent=100.0 * summary["bump_archard_volume_m3"] / volume,
+        pattern_share_percent=100.0 * summary["pattern_worn_volume_m3"] / volume,
         carried_share_percent=(100.0 * summary["carried_volume_m3"] / volume).round(ROUNDING_DIGITS).abs(),
         mean_normal_force_N=summary["mean_normal_force_N"],
     )
@@ -95,7 +95,7 @@ def cards(results: pd.DataFrame, acceleration: float) -> list[tuple[str, str]]:
         return []
     best = convex.sort_values("wear_over_plain", kind="stable").iloc[0]
     plain = results[(results["row"] == best["row"]) & (results["surface"] == "plain")].iloc[0]
-    rate, unit = "archard_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
+    rate, unit = "worn_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
     several = len(convex) > 1
     which = f"{best['row']}, the lowest of {len(convex)} rows" if several else best["row"]
     found = [
@@ -109,5 +109,5 @@ def cards(results: pd.DataFrame, acceleration: float) -> list[tuple[str, str]]:
         little = f", {near} of them by less than {100.0 * UNSURE:.0f} %" if near else ""
         found.append((f"{(ratio < 1.0).sum()} of {len(convex)}", f"patterns wear less than their plain twin{little}"))
     else:
-        found.append((f"{best['bump_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
+        found.append((f"{best['pattern_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
     return found

@@ -107,8 +107,8 @@ def test_wear_is_that_of_the_law_and_stays_in_the_samples_frame(finished, run):
     chain = finished.chains[run]
     wear = pd.read_csv(chain.folder / "wear.csv")
     coefficient = chain.parameters["wear"]["accelerated_wear_coefficient_per_pa"]
-    np.testing.assert_allclose(wear["archard_volume_m3"], coefficient * wear["sliding_work_J"], rtol=ROUND_OFF)
-    assert (wear["archard_volume_m3"] > 0.0).all()
+    np.testing.assert_allclose(wear["worn_volume_m3"], coefficient * wear["sliding_work_J"], rtol=ROUND_OFF)
+    assert (wear["worn_volume_m3"] > 0.0).all()
     ledger = pd.read_parquet(chain.folder / "cycle_001" / "ledger.parquet").set_index("triangle")
     surface = read_surface(chain.surface)
     worked = ledger[(ledger["sliding_work_J"] > 0.0) & (surface.cell_data["part"][ledger.index] == 0)]
@@ -128,14 +128,12 @@ def test_the_front_that_ploughs_does_not_count(finished, run):
     counts = worn_faces(surface)[ledger.index]
     coefficient = chain.parameters["wear"]["accelerated_wear_coefficient_per_pa"]
     assert ledger["sliding_work_J"][~counts].sum() > 0.0
-    assert wear["archard_volume_m3"] == pytest.approx(
-        coefficient * ledger["sliding_work_J"][counts].sum(), rel=ROUND_OFF
-    )
+    assert wear["worn_volume_m3"] == pytest.approx(coefficient * ledger["sliding_work_J"][counts].sum(), rel=ROUND_OFF)
     force = ledger["normal_impulse_N_s"][counts].sum() / wear["time_s"]
     assert wear["mean_normal_force_N"] == pytest.approx(force, rel=ROUND_OFF)
     worn = read_surface(chain.folder / "worn_surface.vtu")
     table = tester_distribution.wear_by_column({run: worn})
-    total = pd.read_csv(chain.folder / "wear.csv")["total_archard_volume_m3"].iloc[-1]
+    total = pd.read_csv(chain.folder / "wear.csv")["total_worn_volume_m3"].iloc[-1]
     assert 1e-9 * table[["base_mm3", "bumps_mm3"]].to_numpy().sum() == pytest.approx(total, rel=1e-6)
 
 

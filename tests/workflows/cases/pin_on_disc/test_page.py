@@ -21,7 +21,7 @@ def write_summary(study, folder):
     due = design["wear_coefficient_per_pa"] * design["load_n"] * design["sliding_distance_m"]
     design.to_csv(folder / "design.csv", index=False)
     design.assign(
-        **dict.fromkeys(("archard_volume_m3", "removed_volume_m3", "alpha_F_L_volume_m3"), due),
+        **dict.fromkeys(("worn_volume_m3", "removed_volume_m3", "alpha_F_L_volume_m3"), due),
         **dict.fromkeys(("mean_normal_force_N", "mean_vertical_force_N"), 5.0),
         **dict.fromkeys(("carried_volume_m3", "balance_error", "largest_balance_error"), 0.0),
         centroid_path_volume_m3=2.0 * due,

@@ -81,7 +81,7 @@ def run_folder(folder):
             "cycle": cycle,
             "time_s": 1.0 * cycle,
             "revolution": 0.5 * cycle,
-            "total_archard_volume_m3": 0.5e-12 * cycle,
+            "total_worn_volume_m3": 0.5e-12 * cycle,
             "total_applied_volume_m3": 0.9e-12 * cycle,
             "carried_volume_m3": 0.0,
             "step_demand": 0.1,
@@ -132,7 +132,7 @@ def test_carried_wear_is_a_factor_of_its_own(tmp_path):
     """A fifth of the law's wear carried: the share 0.8 is taken up, which the rule turns into 1.8 / 0.8 of it; the
     product stays."""
     volumes = two_revolutions(tmp_path)
-    carried = volumes.assign(carried_volume_m3=0.2 * volumes["archard_volume_m3"])
+    carried = volumes.assign(carried_volume_m3=0.2 * volumes["worn_volume_m3"])
     factors, without = (excess_factors(each, FITS) for each in (carried, volumes))
     np.testing.assert_allclose(factors["taken_up"], 0.8)
     np.testing.assert_allclose(without["taken_up"], 1.0)
@@ -186,7 +186,7 @@ def test_size_invariance_by_hand():
         {
             "run": ["big", "small"],
             "particle_scale": [8.0, 1.0],
-            "archard_volume_m3": [1.01e-9, 0.998e-9],
+            "worn_volume_m3": [1.01e-9, 0.998e-9],
             "alpha_F_L_volume_m3": 1e-9,
         }
     )

@@ -35,9 +35,9 @@ def summary():
             "run": ["B_convex", "B_plain", "A_convex", "A_plain"],
             "row": ["B", "B", "A", "A"],
             "surface": ["convex", "plain"] * 2,
-            "archard_volume_m3": volume[[2, 3, 0, 1]],
-            "base_archard_volume_m3": (volume - bumps)[[2, 3, 0, 1]],
-            "bump_archard_volume_m3": bumps[[2, 3, 0, 1]],
+            "worn_volume_m3": volume[[2, 3, 0, 1]],
+            "base_worn_volume_m3": (volume - bumps)[[2, 3, 0, 1]],
+            "pattern_worn_volume_m3": bumps[[2, 3, 0, 1]],
             "finnie_volume_m3": 0.01 * volume[[2, 3, 0, 1]],
             "wear_over_plain": [1.5, 1.0, 0.5, 1.0],
         }
@@ -55,7 +55,7 @@ def history_of(*volumes):
                 "surface": surface,
                 "cycle": range(4),
                 "travel_mm": np.arange(4) * 10.0,
-                "archard_volume_mm3": np.cumsum([0, *steps]),
+                "worn_volume_mm3": np.cumsum([0, *steps]),
             }
         )
         for run, surface, steps in runs
@@ -66,7 +66,7 @@ def history_of(*volumes):
 def test_split_adds_up_to_the_relative_wear(summary):
     """Base and bumps over plain add up to wear over plain; a plain sample is 1."""
     split = wear_split(summary)
-    total = split["base_over_plain"] + split["bump_over_plain"]
+    total = split["base_over_plain"] + split["pattern_over_plain"]
     np.testing.assert_allclose(total, summary["wear_over_plain"], rtol=RELATIVE)
 
 
@@ -74,7 +74,7 @@ def test_laws_stand_side_by_side(summary):
     """The ratio of the laws is that of their volumes."""
     table = law_comparison(summary)
     np.testing.assert_allclose(table["finnie_over_archard"], 0.01, rtol=RELATIVE)
-    np.testing.assert_allclose(table["archard_volume_mm3"], summary["archard_volume_m3"] * 1e9, rtol=RELATIVE)
+    np.testing.assert_allclose(table["worn_volume_mm3"], summary["worn_volume_m3"] * 1e9, rtol=RELATIVE)
 
 
 def test_range_over_cycles():
@@ -87,7 +87,7 @@ def test_cycles_of_other_lengths_are_compared_over_the_same_travel():
     """A plain twin worn in other cycles is interpolated: the same wear per travel is a ratio of one throughout."""
     history = history_of([1.0, 2.0, 3.0], [1.0, 1.0, 4.0])
     convex = history["surface"] == "convex"
-    history.loc[convex, ["travel_mm", "archard_volume_mm3"]] = [[0, 0], [5, 0.5], [20, 2.0], [30, 6.0]]
+    history.loc[convex, ["travel_mm", "worn_volume_mm3"]] = [[0, 0], [5, 0.5], [20, 2.0], [30, 6.0]]
     found = cycle_ratios(history)
     np.testing.assert_allclose(found.loc[0, ["lowest_cycle_ratio", "highest_cycle_ratio"]].astype(float), 1.0)
 

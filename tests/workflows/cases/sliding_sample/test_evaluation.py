@@ -28,7 +28,7 @@ def history_of(**volumes):
     travel = np.arange(0.0, 1001.0, 100.0)
     tables = [
         pd.DataFrame(
-            {"run": run, "row": run[:2], "surface": "convex", "travel_mm": travel, "archard_volume_mm3": volume(travel)}
+            {"run": run, "row": run[:2], "surface": "convex", "travel_mm": travel, "worn_volume_mm3": volume(travel)}
         )
         for run, volume in volumes.items()
     ]

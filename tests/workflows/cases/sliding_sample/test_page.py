@@ -34,8 +34,8 @@ def test_key_numbers(page, study):
     results = embedded(page, f"{study.name}_key_numbers.csv").set_index("run")
     convex = results.loc["R9_convex"]
     assert convex["wear_over_plain"] == pytest.approx(0.8, rel=RELATIVE)
-    assert convex["archard_volume_per_metre_mm3_per_m"] == pytest.approx(CYCLES * 0.8 / (CYCLES * 0.04), rel=RELATIVE)
-    assert convex["bump_share_percent"] == pytest.approx(25.0, rel=RELATIVE)
+    assert convex["worn_volume_per_metre_mm3_per_m"] == pytest.approx(CYCLES * 0.8 / (CYCLES * 0.04), rel=RELATIVE)
+    assert convex["pattern_share_percent"] == pytest.approx(25.0, rel=RELATIVE)
     assert convex["carried_share_percent"] == pytest.approx(50.0, rel=RELATIVE)
     assert convex["lowest_cycle_ratio"] == pytest.approx(0.8, rel=RELATIVE)
     assert results.loc["R9_plain", "wear_over_plain"] == 1.0
@@ -45,7 +45,7 @@ def test_real_volume_is_without_acceleration(config, tmp_path):
     """A study accelerated 1e4 times prints volumes per metre as simulated and divided by 1e4."""
     page = finished_page(tmp_path / "small", load_study("small", config.root, {"wear": {"acceleration": 1e4}}))
     results = embedded(page, "small_key_numbers.csv")
-    ratio = results["archard_volume_per_metre_mm3_per_m"] / results["real_volume_per_metre_mm3_per_m"]
+    ratio = results["worn_volume_per_metre_mm3_per_m"] / results["real_volume_per_metre_mm3_per_m"]
     np.testing.assert_allclose(ratio, 1e4, rtol=RELATIVE)
     assert "accelerated 10000 times" in page
 

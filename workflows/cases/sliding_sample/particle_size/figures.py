@@ -49,7 +49,7 @@ def below(folder: str) -> OfStudy:
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
     tables={"lines": "particle_size/lines.csv", "critical": "particle_size/critical_scale.csv"},
     caption="""
-    Archard volume of the plain sample, of the convex sample, its base and its bumps, over that of the plain sample
+    Worn volume of the plain sample, of the convex sample, its base and its bumps, over that of the plain sample
     with the smallest particles simulated. Full lines: least squares, with one standard error. Dotted: the source's
     lines (Yan 2022, Eq 4.14 to 4.16, bumps as their difference), which are relative to scale 1. Dashed with grey: the
     scale at which both samples wear alike, and its 95 % interval by Fieller's rule, from the difference of convex and

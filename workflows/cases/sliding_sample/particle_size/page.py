@@ -21,8 +21,8 @@ from workflows.report.sections import Block, Pictures, Section, Table, Text
 if TYPE_CHECKING:
     from workflows.config.design import Study
 
-WEAR, FORCE, RATE = "archard_volume_mm3", "mean_normal_force_N", "archard_volume_per_metre_mm3_per_m"
-BUMPS = "bump_archard_volume_mm3"
+WEAR, FORCE, RATE = "worn_volume_mm3", "mean_normal_force_N", "worn_volume_per_metre_mm3_per_m"
+BUMPS = "pattern_worn_volume_mm3"
 HEADS = {  # of columns whose unit their name has in brackets
     "wear, convex (mm3/m)": ("wear, convex", "mm³/m"),
     "wear, plain (mm3/m)": ("wear, plain", "mm³/m"),

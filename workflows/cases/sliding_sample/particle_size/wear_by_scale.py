@@ -16,10 +16,10 @@ from postproc.tables.summary import PLAIN
 CONVEX = "convex"
 # Curve -> surface and column of summary.csv (Yan 2022, Eq 4.14 to 4.17).
 CURVES = {
-    "plain": (PLAIN, "archard_volume_m3"),
-    "convex": (CONVEX, "archard_volume_m3"),
-    "base": (CONVEX, "base_archard_volume_m3"),
-    "bumps": (CONVEX, "bump_archard_volume_m3"),
+    "plain": (PLAIN, "worn_volume_m3"),
+    "convex": (CONVEX, "worn_volume_m3"),
+    "base": (CONVEX, "base_worn_volume_m3"),
+    "bumps": (CONVEX, "pattern_worn_volume_m3"),
 }
 RATIOS = ("equivalent_radius", "projected_area", "surface_area", "volume")
 LINE_COLUMNS = ("intercept", "intercept_error", "slope", "slope_error", "r_squared")
@@ -34,7 +34,7 @@ def wear_by_scale(summary: pd.DataFrame) -> pd.DataFrame:
     """
     plain = summary[summary["surface"] == PLAIN]
     smallest = plain["particle_scale"].min()
-    reference = plain.loc[plain["particle_scale"] == smallest, "archard_volume_m3"].mean()
+    reference = plain.loc[plain["particle_scale"] == smallest, "worn_volume_m3"].mean()
     tables = []
     for curve, (surface, column) in CURVES.items():
         one = summary.loc[summary["surface"] == surface, ["row", "particle_scale", column]]

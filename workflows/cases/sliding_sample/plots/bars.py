@@ -27,7 +27,7 @@ SMALLEST_RANGE = 1e-6  # -, of the value: a single cycle has none
 PUBLISHED_MARKS_UPRIGHT = {"about": "D", "below": "v", "above": "^"}
 MEANING = {"about": "", "below": " (at most)", "above": " (at least)"}
 HEADROOM = 1.18  # -, of the highest bar, for the numbers above it
-ARCHARD_COLOUR, FINNIE_COLOUR = "#0072B2", "#CC79A7"
+LAW_COLOUR, FINNIE_COLOUR = "#0072B2", "#CC79A7"
 
 
 def _run_axis(axes: Axes, runs: Sequence[str]) -> np.ndarray:
@@ -53,7 +53,7 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     axes.bar(places, split["base_over_plain"], width, color=BASE_COLOUR, label="base")
     axes.bar(
         places,
-        split["bump_over_plain"],
+        split["pattern_over_plain"],
         width,
         bottom=split["base_over_plain"],
         color=BUMP_COLOUR,
@@ -61,7 +61,7 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         hatch="//",
         edgecolor="white",
     )
-    total = (split["base_over_plain"] + split["bump_over_plain"]).to_numpy()
+    total = (split["base_over_plain"] + split["pattern_over_plain"]).to_numpy()
     for place, height in zip(places, total, strict=True):
         if np.isfinite(height):
             upright = 90 if len(split) > MANY_RUNS else 0
@@ -137,7 +137,7 @@ def _published_marks(axes: Axes, places: Mapping[str, float], published: pd.Data
 
 
 def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw the volume (mm3) of each run by Archard's law and by the solver's own Finnie model on a log axis.
+    """Draw the volume (mm3) of each run by the study's law and by the solver's own Finnie model on a log axis.
 
     table: as from `comparison.law_comparison`. Volumes of zero are not drawn.
     """
@@ -145,7 +145,7 @@ def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     axes = figure.subplots()
     places = _run_axis(axes, table["run"])
     laws = (
-        ("archard_volume_mm3", "Archard, from the load ledger", "o", ARCHARD_COLOUR),
+        ("worn_volume_mm3", "the study's law, from the load ledger", "o", LAW_COLOUR),
         ("finnie_volume_mm3", "Finnie, the solver's own", "D", FINNIE_COLOUR),
     )
     for name, label, marker, drawn in laws:
@@ -153,7 +153,7 @@ def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     axes.vlines(
         places,
         table["finnie_volume_mm3"],
-        table["archard_volume_mm3"],
+        table["worn_volume_mm3"],
         color=OTHER_COLOUR,
         linewidth=0.6,
         zorder=0,

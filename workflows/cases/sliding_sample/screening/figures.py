@@ -43,7 +43,7 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
     told={"size_ratios": equivalent_size_ratios, "settings": replicate_settings, "published_rows": published_rows},
     when=compares_rows,
     caption="""
-    Archard volume of the convex sample over that of the plain sample under the same conditions, lowest first. Below 1
+    Worn volume of the convex sample over that of the plain sample under the same conditions, lowest first. Below 1
     (dashed line) the pattern wears less in total. Black bars: where rows are repeated with other packings, the 95 %
     interval of the (geometric) mean over them, from one scatter for all rows; else the range over the single wear
     cycles, which shows the scatter along the travel and is no confidence interval. Hollow marks: what the source's

@@ -117,7 +117,7 @@ def rows_of_study(
     """
     table = summary.merge(regimes[["run", "relative_velocity", "regime", "steady"]], on="run", how="left")
     convex, plain = (table[(table["surface"] == PLAIN) == which].set_index("row") for which in (False, True))
-    wear = convex["archard_volume_m3"]
+    wear = convex["worn_volume_m3"]
     layer = profiles[(profiles["zone"] == CENTRAL) & (profiles["layer"] == 1)].set_index(["surface", "row"])
     bottom = {kind: layer.loc[kind] if kind in layer.index else layer.iloc[:0] for kind in ("convex", PLAIN)}
     spin = {kind: one["angular_speed_deg_per_s"].reindex(wear.index) for kind, one in bottom.items()}
@@ -127,8 +127,8 @@ def rows_of_study(
             "wear_over_plain": convex["wear_over_plain"],
             "wear_m3_per_m": wear / convex["travel_m"],
             "force_over_plain": convex["mean_normal_force_N"] / plain["mean_normal_force_N"].reindex(wear.index),
-            "base_share": convex["base_archard_volume_m3"] / wear,
-            "bump_share": convex["bump_archard_volume_m3"] / wear,
+            "base_share": convex["base_worn_volume_m3"] / wear,
+            "bump_share": convex["pattern_worn_volume_m3"] / wear,
             "relative_velocity": convex["relative_velocity"],
             "spin_over_plain": spin["convex"] / spin[PLAIN],
             "velocity_share": speed["convex"] / convex["velocity_m_per_s"],

@@ -60,7 +60,7 @@ def wear_by_row(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
     convex = summary[summary["surface"] != PLAIN].set_index("row")
     plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(convex.index)
     flow = regimes.reindex(convex["run"]).set_index(convex.index)
-    rate = "archard_volume_per_metre_mm3_per_m"
+    rate = "worn_volume_per_metre_mm3_per_m"
     table = pd.DataFrame(
         {
             "particle_scale": [study["parameters"][run]["particle"]["scale"] for run in convex["run"]],
@@ -70,7 +70,7 @@ def wear_by_row(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
             "wear_over_plain": convex["wear_over_plain"],
             "convex_wear_mm3_per_m": convex[rate],
             "plain_wear_mm3_per_m": plain[rate],
-            "bump_share_percent": 100.0 * convex["bump_archard_volume_mm3"] / convex["archard_volume_mm3"],
+            "pattern_share_percent": 100.0 * convex["pattern_worn_volume_mm3"] / convex["worn_volume_mm3"],
             "normal_force_over_plain": convex["mean_normal_force_N"] / plain["mean_normal_force_N"],
         },
         index=convex.index,

@@ -57,10 +57,10 @@ def wear_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
     bump_relative_wear, of every run (-): wear per metre over the largest of its group.
     """
     table = by_group(summary, regimes)
-    per_metre = table["archard_volume_m3"] / table["travel_m"]
+    per_metre = table["worn_volume_m3"] / table["travel_m"]
     relative = relative_to_largest(per_metre, table["regime"])
     parts = {
-        f"{part}_relative_wear": relative * table[f"{part}_archard_volume_m3"] / table["archard_volume_m3"]
+        f"{part}_relative_wear": relative * table[f"{part}_worn_volume_m3"] / table["worn_volume_m3"]
         for part in ("base", "bump")
     }
     return table[["run", "row", "surface", "regime"]].assign(relative_wear=relative, **parts).reset_index(drop=True)
@@ -72,7 +72,7 @@ def with_wear_rates(
     """Return a table of runs with wear_rate_mm3_s_per_kg, wear of the whole travel over the flow of mass (Yan 2022,
     Eq 3.11); beds: arguments of `evaluation.wear_rate` besides the volume, by run.
     """
-    volume = CUBIC_MILLIMETRES * table["run"].map(summary.set_index("run")["archard_volume_m3"])
+    volume = CUBIC_MILLIMETRES * table["run"].map(summary.set_index("run")["worn_volume_m3"])
     passing = pd.DataFrame([beds[run] for run in table["run"]], index=table.index)
     return table.assign(wear_rate_mm3_s_per_kg=wear_rate(volume, **passing))
 

@@ -25,7 +25,7 @@ from workflows.cases.sliding_sample.screening.study_regression import (
     screen,
 )
 
-WEAR = "archard_volume_per_metre_m3_per_m"  # runs of different travel compare by it
+WEAR = "worn_volume_per_metre_m3_per_m"  # runs of different travel compare by it
 MOST_PAIRS = 6  # of factors in the figure of contours
 NUISANCES = {"particle_scale": "particle scale"}  # columns that should be the same in all runs
 

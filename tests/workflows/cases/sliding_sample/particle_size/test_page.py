@@ -35,10 +35,10 @@ def summary(study):
                 "row": run.row,
                 "surface": run.surface,
                 "particle_scale": scale,
-                "archard_volume_m3": volume,
-                "base_archard_volume_m3": volume - bumps,
-                "bump_archard_volume_m3": bumps,
-                "archard_volume_per_metre_m3_per_m": volume / 0.8,
+                "worn_volume_m3": volume,
+                "base_worn_volume_m3": volume - bumps,
+                "pattern_worn_volume_m3": bumps,
+                "worn_volume_per_metre_m3_per_m": volume / 0.8,
                 "mean_normal_force_N": 20.0 * (FORCE[scale] if convex else 1.0),
             }
         )

@@ -39,9 +39,9 @@ def summary(scales=SCALES, noise=0.0, volume=4e-9):
                     "row": f"S{scale:g}",
                     "surface": surface,
                     "particle_scale": scale,
-                    "archard_volume_m3": whole,
-                    "base_archard_volume_m3": parts["base"],
-                    "bump_archard_volume_m3": parts["bumps"],
+                    "worn_volume_m3": whole,
+                    "base_worn_volume_m3": parts["base"],
+                    "pattern_worn_volume_m3": parts["bumps"],
                 }
             )
     return pd.DataFrame(rows)
@@ -92,7 +92,7 @@ def test_parallel_wear_has_no_critical_scale():
     """Where convex wear does not depend on scale, the phrase says that nothing is told."""
     table = summary(noise=0.1)
     convex = table["surface"] == "convex"
-    table.loc[convex, "archard_volume_m3"] = 3e-9 + 1e-9 * np.random.default_rng(1).normal(size=convex.sum())
+    table.loc[convex, "worn_volume_m3"] = 3e-9 + 1e-9 * np.random.default_rng(1).normal(size=convex.sum())
     found = critical_scale(wear_by_scale(table))
     assert not found.bounded and "do not tell" in critical_scale_text(found)
 

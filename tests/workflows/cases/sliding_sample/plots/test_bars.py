@@ -19,7 +19,7 @@ def split():
             "run": ["R9_convex", "R9_plain"],
             "surface": ["convex", "plain"],
             "base_over_plain": [0.5, 1.0],
-            "bump_over_plain": [0.25, 0.0],
+            "pattern_over_plain": [0.25, 0.0],
         }
     )
 
@@ -34,7 +34,7 @@ def test_split_is_stacked_as_tabled(split):
     figure = bars.wear_split(split, REMARKS)
     base, bumps = figure.axes[0].containers
     assert heights(base) == split["base_over_plain"].tolist()
-    assert heights(bumps) == split["bump_over_plain"].tolist()
+    assert heights(bumps) == split["pattern_over_plain"].tolist()
     assert [bar.get_y() for bar in bumps] == split["base_over_plain"].tolist()
     assert [text.get_text().strip() for text in figure.axes[0].texts] == ["0.75", "1.00"]
     assert "(-)" in figure.axes[0].get_ylabel()
@@ -78,10 +78,10 @@ def test_relative_wear_is_sorted_and_marked():
 
 def test_laws_on_a_log_axis():
     """Both volumes are drawn as tabled in mm³ on a log axis; a volume of zero is left out, not drawn at a limit."""
-    table = pd.DataFrame({"run": ["a", "b"], "archard_volume_mm3": [1.0, 2.0], "finnie_volume_mm3": [0.01, 0.0]})
+    table = pd.DataFrame({"run": ["a", "b"], "worn_volume_mm3": [1.0, 2.0], "finnie_volume_mm3": [0.01, 0.0]})
     axes = bars.wear_law_comparison(table, REMARKS).axes[0]
     archard, finnie = (line.get_ydata() for line in axes.get_lines())
-    np.testing.assert_array_equal(archard, table["archard_volume_mm3"])
+    np.testing.assert_array_equal(archard, table["worn_volume_mm3"])
     assert finnie[0] == 0.01
     assert np.isnan(finnie[1])
     assert axes.get_yscale() == "log"

@@ -33,8 +33,8 @@ def summary(design):
     d = (design["column_spacing_mm"] - 40.0) / 20.0
     noise = np.random.default_rng(7).normal(0.0, NOISE, len(design))
     wear = 1e-9 * np.exp(0.449 * a + 0.650 * v + 1.425 * t - 0.629 * b * d + noise)
-    convex = design.assign(surface="convex", particle_scale=1.0, archard_volume_per_metre_m3_per_m=wear)
-    plain = convex.assign(surface="plain", archard_volume_per_metre_m3_per_m=2.0 * wear)
+    convex = design.assign(surface="convex", particle_scale=1.0, worn_volume_per_metre_m3_per_m=wear)
+    plain = convex.assign(surface="plain", worn_volume_per_metre_m3_per_m=2.0 * wear)
     return pd.concat([convex, plain], ignore_index=True)
 
 
@@ -87,8 +87,8 @@ def test_only_regimes_that_were_seen_have_a_design(summary, regimes):
 def test_simulated_runs_against_their_intervals(predictions):
     """A run of the predicted wear is inside, one of ten times as much outside; another regime is said."""
     wear = predictions["predicted_m3_per_m"].to_numpy() * [1.0, 10.0]
-    runs = pd.DataFrame({"row": predictions["row"], "surface": "convex", "archard_volume_per_metre_m3_per_m": wear})
-    plain = runs.assign(surface="plain", archard_volume_per_metre_m3_per_m=5e-9)
+    runs = pd.DataFrame({"row": predictions["row"], "surface": "convex", "worn_volume_per_metre_m3_per_m": wear})
+    plain = runs.assign(surface="plain", worn_volume_per_metre_m3_per_m=5e-9)
     regimes = runs[["row", "surface"]].assign(regime=CONTINUOUS)
     table = confirmation_table(predictions, pd.concat([runs, plain], ignore_index=True), regimes)
     assert table["inside"].tolist() == [True, False]

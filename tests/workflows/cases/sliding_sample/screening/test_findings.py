@@ -39,16 +39,14 @@ def tables():
     ratio = design["row"].map(RATIOS).fillna(0.8).to_numpy()
     base = np.where(design["row"] == "R12", 0.2, 0.7)
     shared = {"travel_m": 0.7, "particle_scale": 1.0}
-    convex = design.assign(surface="convex", archard_volume_m3=0.7 * wear, base_archard_volume_m3=0.7 * wear * base)
+    convex = design.assign(surface="convex", worn_volume_m3=0.7 * wear, base_worn_volume_m3=0.7 * wear * base)
     convex = convex.assign(wear_over_plain=ratio, mean_normal_force_N=6.0, **shared)
-    plain = design.assign(
-        surface="plain", archard_volume_m3=0.7 * wear / ratio, base_archard_volume_m3=0.7 * wear / ratio
-    )
+    plain = design.assign(surface="plain", worn_volume_m3=0.7 * wear / ratio, base_worn_volume_m3=0.7 * wear / ratio)
     plain = plain.assign(wear_over_plain=1.0, mean_normal_force_N=4.0, **shared)
     summary = pd.concat([convex, plain], ignore_index=True)
     summary["run"] = summary["row"] + "_" + summary["surface"]
-    summary["bump_archard_volume_m3"] = summary["archard_volume_m3"] - summary["base_archard_volume_m3"]
-    summary["archard_volume_per_metre_m3_per_m"] = summary["archard_volume_m3"] / summary["travel_m"]
+    summary["pattern_worn_volume_m3"] = summary["worn_volume_m3"] - summary["base_worn_volume_m3"]
+    summary["worn_volume_per_metre_m3_per_m"] = summary["worn_volume_m3"] / summary["travel_m"]
     flows = summary["row"].isin(CONTINUOUS_ROWS)
     regimes = summary[["run", "row", "surface"]].assign(
         relative_velocity=np.where(flows, 0.4, 0.97), regime=np.where(flows, CONTINUOUS, DISCONTINUOUS), steady=True
@@ -116,7 +114,7 @@ def test_what_disagrees_is_not_confirmed(tables):
     summary = tables["summary"].assign(mean_normal_force_N=4.0)
     summary["wear_over_plain"] = summary["wear_over_plain"].mask(summary["run"] == "R12_convex", 0.7)
     summary["wear_over_plain"] = summary["wear_over_plain"].mask(summary["run"] == "R3_convex", 1.3)
-    summary[["base_archard_volume_m3", "bump_archard_volume_m3"]] = summary[["bump_archard_volume_m3"] * 2].to_numpy()
+    summary[["base_worn_volume_m3", "pattern_worn_volume_m3"]] = summary[["pattern_worn_volume_m3"] * 2].to_numpy()
     profiles = tables["profiles"].assign(angular_speed_deg_per_s=lambda each: 10.0 * each["layer"])
     table = verdicts({**tables, "summary": summary, "profiles": profiles})
     keys = ["convex_wears_less", "r12_wears_more", "base_wears_most", "normal_force_up", "force_up_wear_down"]

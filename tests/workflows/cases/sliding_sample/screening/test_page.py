@@ -43,10 +43,10 @@ def folder(few, tmp_path):
             "row": run.row,
             "surface": run.surface,
             "travel_m": 0.06,
-            "archard_volume_m3": CONVEX if run.surface == "convex" else PLAIN,
-            "bump_archard_volume_m3": 0.5e-9 if run.surface == "convex" else 0.0,
+            "worn_volume_m3": CONVEX if run.surface == "convex" else PLAIN,
+            "pattern_worn_volume_m3": 0.5e-9 if run.surface == "convex" else 0.0,
             "mean_normal_force_N": 30.0 if run.surface == "convex" else 20.0,
-            "archard_volume_per_metre_m3_per_m": (CONVEX if run.surface == "convex" else PLAIN) / 0.06,
+            "worn_volume_per_metre_m3_per_m": (CONVEX if run.surface == "convex" else PLAIN) / 0.06,
             "wear_over_plain": CONVEX / PLAIN if run.surface == "convex" else 1.0,
         }
         for run in few.runs

@@ -42,9 +42,9 @@ def summary(regimes):
     bumps = np.where(regimes["surface"] == "convex", 0.25, 0.0) * volume
     return regimes[["run", "row", "surface"]].assign(
         travel_m=travel,
-        archard_volume_m3=volume,
-        base_archard_volume_m3=volume - bumps,
-        bump_archard_volume_m3=bumps,
+        worn_volume_m3=volume,
+        base_worn_volume_m3=volume - bumps,
+        pattern_worn_volume_m3=bumps,
         mean_normal_force_N=5.0,
         wear_over_plain=[0.5, 1.0, 0.5, 1.0, 0.5, 1.0],
     )
@@ -89,7 +89,7 @@ def test_wear_rates_are_per_mass_flow(regimes, summary):
 def test_gradients_have_the_group_of_their_row(regimes):
     """Runs that wear evenly have one gradient all along, and the regime of their row's convex run."""
     tables = [
-        pd.DataFrame({**run, "travel_mm": [0.0, 10.0, 20.0], "archard_volume_mm3": np.array([0.0, 1.0, 2.0]) * (k + 1)})
+        pd.DataFrame({**run, "travel_mm": [0.0, 10.0, 20.0], "worn_volume_mm3": np.array([0.0, 1.0, 2.0]) * (k + 1)})
         for k, run in enumerate(regimes[["run", "row", "surface"]].to_dict("records"))
     ]
     table = gradients_by_group(pd.concat(tables, ignore_index=True), regimes)

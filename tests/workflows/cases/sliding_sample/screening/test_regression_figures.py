@@ -26,7 +26,7 @@ def made(tmp_path_factory):
     noise = np.random.default_rng(2).normal(0.0, 0.05, 13)
     wear = 1e-9 * (design["bed_thickness_mm"] / 20.0) ** 2 * design["velocity_m_per_s"] * np.exp(noise)
     scale = np.where(design["row"] == "R1", 1.9, 2.0)
-    summary = design.assign(surface="convex", particle_scale=scale, archard_volume_per_metre_m3_per_m=wear)
+    summary = design.assign(surface="convex", particle_scale=scale, worn_volume_per_metre_m3_per_m=wear)
 
     def make(factors):
         folder = tmp_path_factory.mktemp("regression")

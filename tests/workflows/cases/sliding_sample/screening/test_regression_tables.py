@@ -27,8 +27,8 @@ def summary():
     design = pd.read_csv(ROOT / "config/designs/screening.csv")
     noise = np.random.default_rng(2).normal(0.0, 0.05, 13)
     wear = WEAR * (design["bed_thickness_mm"] / 20.0) ** 2 * design["velocity_m_per_s"] * np.exp(noise)
-    convex = design.assign(surface="convex", particle_scale=2.0, archard_volume_per_metre_m3_per_m=wear)
-    plain = convex.assign(surface="plain", archard_volume_per_metre_m3_per_m=5.0 * WEAR)
+    convex = design.assign(surface="convex", particle_scale=2.0, worn_volume_per_metre_m3_per_m=wear)
+    plain = convex.assign(surface="plain", worn_volume_per_metre_m3_per_m=5.0 * WEAR)
     return pd.concat([plain, convex], ignore_index=True)
 
 
