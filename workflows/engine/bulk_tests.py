@@ -1,11 +1,9 @@
-"""Bulk tests, boxes that are filled and come to rest: what the decks of all kinds share, and a container that is
-shaken, in which packings are compared.
+"""Bulk tests, boxes that are filled and come to rest: what the decks of all kinds share. Cases have kinds of their own.
 
 The parameters of a test, all SI:
 
-    kind       of those registered; packed_container is one
+    kind       of those registered
     box        length_m, width_m, fill_height_m, and what its kind adds
-    shaking    of the container: amplitude_m, frequency_rad_per_s, duration_s, axis (x, y or z)
     rest       energy_fraction, check_interval_s, calm_checks, longest_s: when all counts as being at rest
     particle, wall_material, floor_material    as in Run.parameters
     solver, deck    those of the run, or what the test's template uses of them
@@ -25,12 +23,11 @@ import numpy as np
 from postproc.mesh import write_stl
 from postproc.wear.caps import GRAVITY
 from workflows.engine import decks as deck
-from workflows.engine.derived import PERIODIC, WALLS, derived_materials, rayleigh_time
+from workflows.engine.derived import WALLS, derived_materials, rayleigh_time
 from workflows.engine.solver import DECK
 from workflows.engine.templates import render
 
 MARGIN_DIAMETERS = 2.0  # -, room between the boxes and the domain, in largest diameters
-AXES = {"x": "1. 0. 0.", "y": "0. 1. 0.", "z": "0. 0. 1."}
 FILL_EXCESS = 1.1  # -, poured over levelled volume: loose packings of rough particles still fill the box
 Meshes = Mapping[str, tuple[np.ndarray, np.ndarray]]  # {name: (points (n, 3) in m, triangles (m, 3))}
 
@@ -71,27 +68,6 @@ def write_test(test: Mapping[str, Any], folder: Path) -> None:
     (folder / DECK).write_text(deck_text(test))
     for name, (points, triangles) in kind_of(test).surfaces(test).items():
         write_stl(folder / f"{name}.stl", points, triangles)
-
-
-def packed_container(test: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters of the deck of a container that is filled and shaken."""
-    shaking, margin = test["shaking"], margin_of(test)
-    return {
-        **filled_box(test, ("particle", "floor", "floor")),
-        "ends": PERIODIC,
-        "outflow": "none",
-        "state_columns": f"{deck.STATE_COLUMNS} c_contacts",
-        "fill_gap_m": 0.0,
-        "domain_bottom_m": -margin,
-        "domain_top_m": fill_top(test) + margin,
-        "shaking_amplitude_m": shaking["amplitude_m"],
-        "shaking_frequency_rad_per_s": shaking["frequency_rad_per_s"],
-        "shaking_steps": deck.steps(shaking["duration_s"], time_step(test)),
-        "shaking_direction": AXES[shaking["axis"]],
-    }
-
-
-register("packed_container", Kind(packed_container))
 
 
 # ---------------------------------------------------------------- what the decks of all kinds share

@@ -19,7 +19,6 @@ from postproc.tables.display import in_display_units
 from postproc.wear.caps import GRAVITY
 from workflows.cases.sliding_sample.decks import bed_contacts
 from workflows.cases.sliding_sample.particle_size.study import by_scale
-from workflows.engine import bulk_tests
 from workflows.engine import decks as deck
 from workflows.engine.bulk_simulations import (
     FILLED,
@@ -29,9 +28,10 @@ from workflows.engine.bulk_simulations import (
     simulation_bytes,
     simulation_folder,
 )
+from workflows.engine.bulk_tests import Kind, fill_top, filled_box, margin_of, register, time_step
 from workflows.engine.case import Parameters
 from workflows.engine.chain import RESTART
-from workflows.engine.derived import WINDOW
+from workflows.engine.derived import PERIODIC, WINDOW
 from workflows.engine.solver import DECK, run_deck
 from workflows.engine.state import read_state
 from workflows.engine.templates import render, used_sections
@@ -42,6 +42,8 @@ END_DIAMETERS = 5.0  # -, of a bed next to its end walls, left out
 LEAVING_DIAMETERS = 2.0  # -, of the wake next to where it leaves a window, left out: it may slide into the room there
 AT_REST_BEHIND = 0.2  # m behind the sample's back edge the bed is at rest again; measured: 0.2 to 0.4
 LOOKED_AT = 0.75  # -, of the bed's thickness, from the floor: what lies above is disturbed by the surface
+AXES = {"x": "1. 0. 0.", "y": "0. 1. 0.", "z": "0. 0. 1."}
+CONTAINER = "packed_container"  # kind of bulk test, and its template
 JOB = "packing_profiles"  # rule that simulates all containers of a study, one after the other
 # How long a container takes until rest is not known before it is simulated: scaled from three that were, at particle
 # scales 8, 6 and 2.
@@ -55,7 +57,7 @@ def container(run: Parameters, packing: Mapping[str, Any]) -> dict[str, Any]:
     width = packing["width_diameters"] * diameter
     height = min(packing["fill_height_m"], packing["most_fill_diameters"] * diameter)
     return {
-        "kind": "packed_container",
+        "kind": CONTAINER,
         "box": {"length_m": width, "width_m": width, "fill_height_m": height},
         "shaking": {
             "amplitude_m": packing["amplitude_diameters"] * diameter,
@@ -67,9 +69,33 @@ def container(run: Parameters, packing: Mapping[str, Any]) -> dict[str, Any]:
         "particle": run["particle"],
         "wall_material": run["floor_material"],
         "floor_material": run["floor_material"],
-        **used_sections("packed_container", run),
+        **used_sections(CONTAINER, run),
         "seed": run["bed"]["seed"],
     }
+
+
+def packed_container(test: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of the deck of a container that is filled and shaken.
+
+    test: see `workflows.engine.bulk_tests`, with shaking: amplitude_m, frequency_rad_per_s, duration_s, axis (x, y, z)
+    """
+    shaking, margin = test["shaking"], margin_of(test)
+    return {
+        **filled_box(test, ("particle", "floor", "floor")),
+        "ends": PERIODIC,
+        "outflow": "none",
+        "state_columns": f"{deck.STATE_COLUMNS} c_contacts",
+        "fill_gap_m": 0.0,
+        "domain_bottom_m": -margin,
+        "domain_top_m": fill_top(test) + margin,
+        "shaking_amplitude_m": shaking["amplitude_m"],
+        "shaking_frequency_rad_per_s": shaking["frequency_rad_per_s"],
+        "shaking_steps": deck.steps(shaking["duration_s"], time_step(test)),
+        "shaking_direction": AXES[shaking["axis"]],
+    }
+
+
+register(CONTAINER, Kind(packed_container))
 
 
 def packing_table(runs: Mapping[str, Parameters], packing: Mapping[str, Any], folder: Path) -> pd.DataFrame:
@@ -102,10 +128,10 @@ def packing_work(runs: Mapping[str, Parameters], packing: Mapping[str, Any]) -> 
 
 def container_stages(test: Mapping[str, Any]) -> tuple[Stage, ...]:
     """Return the stages of a container: filling until rest, then shaking and what follows until rest."""
-    step, filled = bulk_tests.time_step(test), filled_particles(test)
+    step, filled = time_step(test), filled_particles(test)
     height = test["box"]["fill_height_m"]
     levelled = filled * (1.0 - EMPTY_DIAMETERS * test["particle"]["median_diameter_m"] / height)
-    filling = FILLING_FREE_FALLS * free_fall(bulk_tests.packed_container(test)["fill_top_m"])
+    filling = FILLING_FREE_FALLS * free_fall(fill_top(test))
     shaking = test["shaking"]["duration_s"] + RESTING_FREE_FALLS * free_fall(height)
     return (
         Stage(1, deck.steps(filling, step), POURED * filled),

@@ -15,6 +15,7 @@ from workflows.cases.sliding_sample.particle_size.packings import (
     AT_REST_BEHIND,
     LEAVING_DIAMETERS,
     container,
+    packed_container,
     packing_costs,
     packing_table,
     packing_work,
@@ -24,7 +25,7 @@ from workflows.cases.sliding_sample.particle_size.study import by_scale, packed_
 from workflows.config.design import load_study
 from workflows.config.units import to_si
 from workflows.engine.bulk_simulations import FILLED, simulated
-from workflows.engine.bulk_tests import deck_text, packed_container, time_step
+from workflows.engine.bulk_tests import deck_text, time_step
 from workflows.engine.solver import DECK, run_deck
 from workflows.engine.templates import render, used_sections
 
