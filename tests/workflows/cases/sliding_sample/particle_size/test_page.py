@@ -128,7 +128,7 @@ def test_every_figure_of_particle_size_has_its_section(folder, page):
     """What stands there besides is of the flow over any sample."""
     blocks = [block for section in sections(page, folder) for block in section.blocks]
     shown = [name for block in blocks if isinstance(block, Pictures) for name in block.names]
-    assert len(shown) == len(set(shown))
+    assert len(shown) == len(set(shown)) and set(shown) <= set(page["figures"])
     assert set(shown) == (OWN - {"size_findings"}) | {"relative_velocity", "wear_gradient", "flow_views"}
 
 
