@@ -13,7 +13,7 @@ include: "workflows/engine/rules.smk"
 include: "workflows/report/rules.smk"
 
 
-for RULES_OF_CASE in sorted((ROOT / "workflows" / "cases").rglob("rules.smk")):
+for RULES_OF_CASE in rules_of_cases():
 
     include: str(RULES_OF_CASE)
 

@@ -4,10 +4,12 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from snakemake.cli import get_argument_parser
 from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
-from workflows.config.design import CONFIRMATION, TARGETS, ConfigError, confirmation_design, list_studies, load_study
+from workflows.config.design import ConfigError, list_studies, load_study
+from workflows.config.targets import requested_studies
 from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
 from workflows.engine.job import let_jobs_import
 from workflows.forecast.rates import rates_file
@@ -17,11 +19,7 @@ from workflows.engine.templates import template_sources
 min_version("9.0")
 
 ROOT = Path(workflow.basedir)
-PUBLISHED_TABLES = ROOT / "config" / "published"
-SOLVER_RULES = ("packing_profiles", "settled_bed", "worn_run", "calibrated_parameters", "box_sizes")
 CORES = workflow.cores or 1  # on a cluster those of a submission of small jobs
-# What comes before the tables of a study: on a cluster all that is not named here is one submission.
-BEFORE_TABLES = ("surface_mesh", "cost_rates", *SOLVER_RULES)
 let_jobs_import(ROOT)
 
 
@@ -31,31 +29,35 @@ wildcard_constraints:
     bed=r"bed_\d+",
 
 
-def is_requested(study):
-    targets = (study, *(study + ending for ending in TARGETS))
-    return any(word in targets or word.startswith(f"results/{study}/") for word in sys.argv[1:])
-
-
-def confirming_studies():
-    """Names of the studies of best designs that have been found, or are asked for."""
-    names = [(name, f"{name}{CONFIRMATION}") for name in list_studies(ROOT)]
-    return [other for name, other in names if (ROOT / confirmation_design(name)).is_file() or is_requested(other)]
-
-
 def checked_studies():
-    """All studies by name. A fault in one that is asked for ends here, in one sentence, before a job starts."""
-    studies = {}
-    for name in [*list_studies(ROOT), *confirming_studies()]:
-        try:
-            studies[name] = load_study(name, ROOT, dict(config))
-        except ConfigError as fault:
-            if is_requested(name):
-                raise WorkflowError(str(fault)) from None
-            logger.warning(f"Study {name} is left out: {fault}")
-    return studies
+    """The studies that are asked for by name. A fault ends here, in one sentence, before a job starts.
+
+    Where nothing is made, as with --list and --lint, all that have no fault. The command line is read as Snakemake does
+    it: the workflow has its targets only when this file has been read.
+    """
+    given, _ = get_argument_parser().parse_known_args(sys.argv[1:])
+    if given.lint or given.list_rules or given.list_target_rules:
+        return dict(filter(None, map(sound_study, list_studies(ROOT))))
+    try:
+        names = requested_studies(given.targets, given.target_jobs, ROOT)
+        return {name: load_study(name, ROOT, dict(config)) for name in names}
+    except ConfigError as fault:
+        raise WorkflowError(str(fault)) from None
+
+
+def sound_study(name):
+    """A study's name and the study; None where it has a fault."""
+    try:
+        return name, load_study(name, ROOT, dict(config))
+    except ConfigError as fault:
+        logger.warning(f"Study {name} is left out: {fault}")
 
 
 STUDIES = checked_studies()
+CASES = {study.case.name: study.case for study in STUDIES.values()}
+SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
+# What comes before the tables of a study: on a cluster all that is not named here is one submission.
+BEFORE_TABLES = {"surface_mesh", "cost_rates", *SOLVER_RULES}
 
 
 onstart:
@@ -84,6 +86,11 @@ def announce_cost(study, jobs):
     from workflows.forecast.forecast import announcement  # slow to import, and jobs need none
 
     logger.info(announcement(STUDIES[study], jobs, ROOT, CORES))
+
+
+def rules_of_cases():
+    """The files of rules that the cases of these studies have of their own."""
+    return [path for case in CASES for path in sorted((ROOT / "workflows" / "cases" / case).rglob("rules.smk"))]
 
 
 def study_of(wildcards):

@@ -13,7 +13,8 @@ import pandas as pd
 import pytest
 
 from tests import REPOSITORY
-from workflows.config.design import load_study
+from workflows.config.design import ConfigError, load_study
+from workflows.config.targets import requested_studies
 
 PARTS = ("workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
 TIMEOUT = 300.0  # s, for a study that takes about 20 s on an idle machine
@@ -139,11 +140,67 @@ def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
 
 
 def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
-    """A study that is not asked for is left out with its sentence; the one asked for is planned."""
+    """A study that is not asked for is not read; where all are listed, one with a fault is left out with its sentence."""
     folder = workspace(tmp_path)
     (folder / "config/studies/broken.yaml").write_text(TINY.replace("width_mm: 40", "width_cm: 4"))
-    output = finish(snakemake(folder, "tiny", "--dry-run"))
+    assert "broken" not in finish(snakemake(folder, "tiny", "--dry-run"))
+    output = finish(snakemake(folder, "--list-target-rules"))
     assert "Study broken is left out: config/studies/broken.yaml, line 8" in output
+    assert {"tiny", "tiny_decks", "tiny_forecast"} <= set(output.split()) and "broken_decks" not in output
+
+
+def test_only_cases_of_the_studies_asked_for_are_imported(tmp_path):
+    """A case that cannot be imported keeps no study of another case from being planned, nor a job from being started."""
+    folder = workspace(tmp_path)
+    shutil.copy(REPOSITORY / "config/studies/calibration.yaml", folder / "config/studies")
+    for case in ("pin_on_disc", "circular_tester", "sliding_sample"):
+        (folder / "workflows/cases" / case / "case.py").write_text("raise RuntimeError('not to be imported')\n")
+    assert "Calibration of calibration" in finish(snakemake(folder, "calibration", "--dry-run"))
+    job = ("--target-jobs", "box_sizes:study=calibration")
+    assert planned_jobs(finish(snakemake(folder, *job, "--dry-run"))) == {"box_sizes": 1}
+    output, _ = (process := snakemake(folder, "tiny", "--dry-run")).communicate(timeout=TIMEOUT)
+    assert process.returncode != 0 and "not to be imported" in output
+
+
+def test_an_unknown_target_is_one_sentence(tmp_path):
+    """The message lists the studies and the endings of their targets."""
+    folder = workspace(tmp_path)
+    output, _ = (process := snakemake(folder, "tyni_decks", "--dry-run")).communicate(timeout=TIMEOUT)
+    assert process.returncode != 0 and "Traceback" not in output
+    sentence = (
+        "target is 'tyni_decks', allowed is one of tiny, alone or with the ending _decks, _forecast or _confirmation."
+    )
+    assert sentence in output
+
+
+@pytest.mark.parametrize(
+    ("targets", "studies"),
+    [
+        ([], ["demo"]),
+        (["screening", "calibration_decks"], ["screening", "calibration"]),
+        (["results/pin_on_disc/report.html", "./results/demo/R9_plain/wear.csv"], ["pin_on_disc", "demo"]),
+        (["screening_confirmation_forecast", "screening"], ["screening", "screening_confirmation"]),
+        (["cost_rates"], []),
+        (["results/cost_rates.json", "report.html"], []),
+    ],
+)
+def test_targets_name_their_studies(targets, studies):
+    """By name, with an ending, or by a file of its results; the best designs come with the study that found them."""
+    assert requested_studies(targets) == studies
+
+
+def test_jobs_of_a_cluster_name_their_studies():
+    """A job by itself needs the study of its wildcards, or that of its target; one without any needs none."""
+    jobs = [("worn_run", {"study": "demo", "run": "R9_plain"}), ("screening_forecast", {}), ("cost_rates", {})]
+    assert requested_studies([], jobs) == ["demo", "screening"]
+    assert requested_studies([], jobs[2:]) == []
+
+
+@pytest.mark.parametrize("target", ["screning", "results/screning/report.html", "demo_confirmed", "confirmation"])
+def test_targets_of_no_study_are_refused(target):
+    """Neither a study nor a rule nor a file: the sentence names the target and the studies."""
+    with pytest.raises(ConfigError, match=f"target is '{target}', allowed is one of calibration, .*, worn_bump"):
+        requested_studies([target])
 
 
 @pytest.mark.solver
@@ -181,7 +238,7 @@ def test_the_run_with_the_largest_bed_starts_first(tmp_path):
     finish(snakemake(tmp_path, "--workflow-profile", profile, "--cores", "1"))
     started = (tmp_path / "started").read_text().split()
     assert started[:3] == ["bed"] * 3 and started[3:] == ["9000", "5000", "1000"]
-    rules = "".join((REPOSITORY / "workflows" / f"{name}.smk").read_text() for name in ("mesh", "solve"))
+    rules = (REPOSITORY / "workflows" / "engine" / "rules.smk").read_text()
     with_priority = re.findall(r"^rule (\w+):(?:\n(?!rule ).*)*?\n    priority: 1\b", rules, flags=re.MULTILINE)
     assert with_priority == ["surface_mesh", "settled_bed"]
 
@@ -203,10 +260,9 @@ def test_paper_fidelity_of_every_study_is_planned_alike_under_both_profiles(tmp_
         arguments = ("--dry-run", "--workflow-profile", f"profiles/{profile}", "--config", "fidelity=paper")
         planned[profile] = planned_jobs(finish(snakemake(folder, *studies, *arguments)))
     assert planned["default"] == planned["slurm"]
-    runs = sum(len(load_study(name, overrides={"fidelity": "paper"}).runs) for name in studies)
-    calibrations = len(load_study("calibration", overrides={"fidelity": "paper"}).runs)
-    assert planned["slurm"]["worn_run"] == runs - calibrations
-    assert planned["slurm"]["report"] + planned["slurm"]["calibration_page"] == len(studies)
+    loaded = [load_study(name, overrides={"fidelity": "paper"}) for name in studies]
+    assert planned["slurm"]["worn_run"] == sum(len(study.runs) for study in loaded if study.case.wears)
+    assert planned["slurm"]["report"] == len(studies)
 
 
 def test_best_designs_are_planned_once_they_are_found(tmp_path):

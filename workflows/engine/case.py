@@ -78,6 +78,7 @@ class Case:
     figure_modules: of its folder, that declare figures and tables (`workflows.report.products`), in a page's order
     shared_figures: names of those of `workflows.report.surfaces` that it shows, after its own
     run_rules: rules that make a job of every run
+    solver_rules: those whose jobs call the solver
     wears: whether its runs are wear cycles; else a study has no table of them, and what it says of its results and
         cost is its case's alone
     """
@@ -98,6 +99,7 @@ class Case:
     figure_modules: tuple[str, ...] = ("figures",)
     shared_figures: tuple[str, ...] = ()
     run_rules: tuple[str, ...] = ("surface_mesh", "worn_run")
+    solver_rules: tuple[str, ...] = ("settled_bed", "worn_run")
     wears: bool = True
 
     # ---------------------------------------------------------------- from settings to runs

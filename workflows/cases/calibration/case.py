@@ -109,6 +109,7 @@ class Calibration(Case):
     )
     run_templates = tuple(boxes.KINDS)
     run_rules = ()
+    solver_rules = ("calibrated_parameters", "box_sizes")
     wears = False
 
     def run_parameters(

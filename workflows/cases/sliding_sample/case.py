@@ -57,6 +57,7 @@ class SlidingSample(Case):
     more_templates = ("packed_container", "bed_contacts", "collision")
     figure_modules = ("particle_size.figures", "screening.figures", "screening.regression_figures", "figures")
     shared_figures = ("worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
+    solver_rules = (*Case.solver_rules, "packing_profiles")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")
     first_title = "lowering and run-in"
