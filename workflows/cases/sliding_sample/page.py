@@ -68,15 +68,15 @@ def told(study: Study) -> dict[str, Any]:
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
-    """Return the sections of a study's page: key numbers, what its kind of study asks, then wear and bed of any."""
+    """Return the sections of a study's page: what particle size asks, key numbers, screening, then wear and bed of any."""
     from workflows.cases.sliding_sample.particle_size import page as particle_size
     from workflows.cases.sliding_sample.screening import page as screening
 
     of_study = study["told"]
     return _each_figure_once(
         [
-            Section("Key numbers", [*key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]),
             *(particle_size.sections(study, folder) if of_study["varies_scale"] else []),
+            Section("Key numbers", [*key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]),
             *(screening.sections(study, folder) if of_study["finds_regimes"] else []),
             *(Section(title, [Pictures(names)]) for title, names in FIGURES_OF_ALL.items()),
         ]
