@@ -140,7 +140,7 @@ def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
 
 
 def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
-    """A study that is not asked for is not read; where all are listed, one with a fault is left out with its sentence."""
+    """A study not asked for is not read; where all are listed, one with a fault is left out with its sentence."""
     folder = workspace(tmp_path)
     (folder / "config/studies/broken.yaml").write_text(TINY.replace("width_mm: 40", "width_cm: 4"))
     assert "broken" not in finish(snakemake(folder, "tiny", "--dry-run"))
@@ -150,7 +150,7 @@ def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
 
 
 def test_only_cases_of_the_studies_asked_for_are_imported(tmp_path):
-    """A case that cannot be imported keeps no study of another case from being planned, nor a job from being started."""
+    """A case that cannot be imported keeps no study of another case from being planned, nor a job from starting."""
     folder = workspace(tmp_path)
     shutil.copy(REPOSITORY / "config/studies/calibration.yaml", folder / "config/studies")
     for case in ("pin_on_disc", "circular_tester", "sliding_sample"):

@@ -376,7 +376,7 @@ def _checked_run(
     case = sources.case
     columns = row_overrides(row, load_schema(f"cases/{sources.case.name}/design"))
     of_row = with_row(settings, row, columns)
-    schema = case_schema(sources.case, "settings")
+    schema = case_schema(sources.case.name, "settings")
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
     check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks))

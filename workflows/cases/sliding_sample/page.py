@@ -68,7 +68,7 @@ def told(study: Study) -> dict[str, Any]:
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
-    """Return the sections of a study's page: what particle size asks, key numbers, screening, then wear and bed of any."""
+    """Return the sections of a page: what particle size asks, key numbers, screening, then wear and bed of any."""
     from workflows.cases.sliding_sample.particle_size import page as particle_size
     from workflows.cases.sliding_sample.screening import page as screening
 
