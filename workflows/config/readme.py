@@ -21,8 +21,8 @@ from workflows.engine.case import case_names, find_case
 INTRODUCTION = """\
 # Configuration
 
-Generated from `workflows/schemas` and the wear laws (`postproc/wear/laws.py`) by `python -m workflows.config.readme`;
-edit these, not this page.
+Generated from the schemas (`workflows/config/schemas`, `workflows/cases/*/*.schema.yaml`) and the wear laws
+(`postproc/wear/laws.py`) by `python -m workflows.config.readme`; edit these, not this page.
 
 * `default.yaml`: settings that all cases share.
 * `cases/<case>.yaml`: settings of one case, which stand above those.

@@ -1,4 +1,4 @@
-"""Check configuration against the schemas of workflows/schemas and say in one sentence what is wrong.
+"""Check configuration against the schemas and say in one sentence what is wrong.
 
 Checks of one value (type, range, unit) come from the schemas; checks that compare values of a run are in
 run_checks.py. Nothing here needs the solver.

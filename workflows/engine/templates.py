@@ -26,10 +26,15 @@ class DeckError(ValueError):
     """A template and its parameters do not fit; the message names the template and the parameter."""
 
 
+def of_cases(folder: Path) -> list[Path]:
+    """Return the folders of cases below the one of all templates; a template is found by its name in any of them."""
+    return sorted(path for path in folder.iterdir() if path.is_dir() and not path.name.startswith("_"))
+
+
 @cache
 def _environment(folder: Path) -> jinja2.Environment:
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folder),
+        loader=jinja2.FileSystemLoader([folder, *of_cases(folder)]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -111,7 +116,8 @@ def template_parts(template: str, folder: Path = TEMPLATES) -> tuple[str, ...]:
 
 def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
     """Return {file name: text} of a template and its partials: what a deck depends on besides its parameters."""
-    return {name: (folder / name).read_text() for name in template_parts(template, folder)}
+    loader = _environment(folder).loader
+    return {name: loader.get_source(_environment(folder), name)[0] for name in template_parts(template, folder)}
 
 
 def template_variables(

@@ -16,7 +16,7 @@ from workflows.engine.chain import bed_deck_text
 from workflows.engine.schedule import known_spans
 from workflows.engine.templates import TEMPLATES, DeckError, render, template_sources, template_variables
 
-NAMES = sorted(path.name.removesuffix(".in.j2") for path in TEMPLATES.glob("*.in.j2"))
+NAMES = sorted(path.name.removesuffix(".in.j2") for path in TEMPLATES.glob("[!_]*/*.in.j2"))
 README = (TEMPLATES / "README.md").read_text()
 RESET = 'if "${begin_step} == 0" then "reset_timestep 0"'  # a later piece goes on counting
 GOLDEN = DATA / "golden_sliding_sample.in"
@@ -247,7 +247,8 @@ def edited(tmp_path, monkeypatch):
     monkeypatch.setattr(templates, "_environment", lambda folder: original(tmp_path / "templates"))
 
     def add(name, line):
-        with open(tmp_path / "templates" / f"{name}.in.j2", "a") as stream:
+        (path,) = (tmp_path / "templates").glob(f"*/{name}.in.j2")
+        with open(path, "a") as stream:
             stream.write(line + "\n")
 
     return add

@@ -34,7 +34,7 @@ COLUMNS = (
     *("id", "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz"),
     *("fx", "fy", "fz", "tqx", "tqy", "tqz", "radius"),
 )
-# Collision -> its first sphere and the other one, None for the wall, as numbered in templates/collision.in.j2.
+# Collision -> its first sphere and the other one, None for the wall, as numbered in its template.
 COLLISIONS = {"pair": (1, 2), "oblique pair": (3, 4), "wall": (5, None), "oblique wall": (6, None)}
 DOWN = np.array([0.0, 0.0, -1.0])  # where the wall is
 MODELS = ("cdt", "epsd2")  # rolling types A and C
