@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.runs import changed
+from postproc.mesh import PLAIN
 from postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.work import settled_particles
 from workflows.config.design import Run, load_study
 from workflows.engine import state

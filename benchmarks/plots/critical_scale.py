@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from postproc.plots.style import COLOURS, OTHER_COLOUR, new_figure
+from postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, new_figure
 
 KINDS = {  # what the source says of a thing -> words, colour, marker
     "": ("the study", "black", "D"),
-    "open": ("left open by the source", COLOURS["convex"], "o"),
+    "open": ("left open by the source", BLUE, "o"),
     "ours": ("a choice of the simulation", OTHER_COLOUR, "^"),
-    "published": ("published, changed to see what it does", COLOURS["plain"], "s"),
+    "published": ("published, changed to see what it does", ORANGE, "s"),
 }
 SOURCE_COLOUR = "#009E73"
 LINE_HEIGHT = 0.19  # inches

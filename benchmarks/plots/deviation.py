@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from postproc.plots.style import COLOURS, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 PERCENT = 100.0
 
@@ -32,9 +32,9 @@ def deviation_figure(panels: Sequence[Panel], quantity: str, limit: float, remar
         change, low, high = (PERCENT * rows[name].to_numpy() for name in ("change", "change_low", "change_high"))
         reach = np.nan_to_num([change - low, high - change])
         axes.axhspan(-PERCENT * limit, PERCENT * limit, color=OTHER_COLOUR, alpha=0.15, linewidth=0.0)
-        axes.errorbar(rows["value"], change, reach, marker="o", markersize=4.0, capsize=2.0, color=COLOURS["convex"])
+        axes.errorbar(rows["value"], change, reach, marker="o", markersize=4.0, capsize=2.0, color=BLUE)
         for (name, value), style in zip(panel.marked.items(), ("--", ":", "-."), strict=False):
-            axes.axvline(value, color=COLOURS["plain"], linestyle=style, linewidth=1.0, label=name)
+            axes.axvline(value, color=ORANGE, linestyle=style, linewidth=1.0, label=name)
         for value in panel.changes.loc[panel.changes["failed"] > 0, "value"]:
             axes.axvline(value, color="black", linewidth=0.6, label="a run failed")
         axes.set(xscale="log", xlabel=panel.label)

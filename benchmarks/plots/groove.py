@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.plots.style import COLOURS, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import BLUE, LARGEST_HEIGHT, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 TITLES = {
     "conserving": "conserving, patch spread twice",
@@ -16,7 +16,7 @@ TITLES = {
     "per_triangle": "per triangle (Yan 2022, Eq 5.7)",
 }
 PANELS = {"spread_once": "conserving"}  # schemes that are drawn in the panel of another
-LINES = ((OTHER_COLOUR, ":"), (COLOURS["plain"], "--"), (COLOURS["convex"], "-"))  # coarsest mesh first
+LINES = ((OTHER_COLOUR, ":"), (ORANGE, "--"), (BLUE, "-"))  # coarsest mesh first
 TABLE_LINE = 0.5  # pt
 HEAD_LINES = 2.1  # lines of type in the head of the table
 OVERLAY = {"color": "black", "linewidth": 0.6}

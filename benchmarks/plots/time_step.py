@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from postproc.plots.style import COLOURS, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 PANELS = {  # what is drawn and on which scale
     "force_deviation_over_load": ("Standard deviation of the vertical force, over the load (-)", "log"),
     "work_over_FL": ("Sliding work over F L (-)", "linear"),
 }
-SHADES = (OTHER_COLOUR, COLOURS["plain"], COLOURS["convex"])  # of the grooves, shallowest first
+SHADES = (OTHER_COLOUR, ORANGE, BLUE)  # of the grooves, shallowest first
 LINES = ("-", "--")  # of the restitutions
 MARKERS = ("o", "s")
 ABOVE, APART = 1.3, 1.12  # -, of the largest value drawn: where pins that were thrown out are marked, and series apart

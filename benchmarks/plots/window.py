@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import pandas as pd
 from matplotlib.figure import Figure
 
-from postproc.plots.style import COLOURS, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
-SHADES = ("black", COLOURS["plain"], COLOURS["convex"], "#009E73", OTHER_COLOUR)  # of the beds, the full one first
+SHADES = ("black", ORANGE, BLUE, "#009E73", OTHER_COLOUR)  # of the beds, the full one first
 MILLIMETRES = 1000.0
 ROOM = 1.2  # -, of the panels over the largest mean
 NARROW = 0.15  # -, of the panel of ratios below and above 1, at least

@@ -10,14 +10,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from postproc.plots.style import (
-    COLOURS,
+    BLUE,
     LARGEST_HEIGHT,
-    MARKERS,
+    ORANGE,
     OTHER_COLOUR,
     SMALLEST_FONT,
     colour,
     facets,
     label_all,
+    marker,
     new_figure,
     scaled,
 )
@@ -57,7 +58,7 @@ def _wear_curves(axes: Axes, run: pd.DataFrame, applied: bool) -> None:
     surface = run["surface"].iloc[0]
     common = {
         "color": colour(surface),
-        "marker": MARKERS.get(surface, "^"),
+        "marker": marker(surface),
         "markersize": 4,
         "clip_on": False,
     }
@@ -81,7 +82,7 @@ def _legend(figure: Figure, surfaces: Sequence[str], styles: dict[str, str], mar
             [],
             [],
             color=colour(name),
-            marker=MARKERS.get(name, "^") if marked else "",
+            marker=marker(name) if marked else "",
             markersize=4,
             label=name,
         )
@@ -142,8 +143,8 @@ def sampling_error(errors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     figure = new_figure(remarks)
     axes, numbers = figure.subplots(1, 2, width_ratios=(3, 2))
     lines = {
-        "map_error": ("map over the triangles, whole travel", "o-", COLOURS["convex"]),
-        "short_window_error": ("total of a tenth of the travel", "s-", COLOURS["plain"]),
+        "map_error": ("map over the triangles, whole travel", "o-", BLUE),
+        "short_window_error": ("total of a tenth of the travel", "s-", ORANGE),
         "total_error": ("total of the whole travel", "^-", OTHER_COLOUR),
     }
     for column, (label, style, shade) in lines.items():

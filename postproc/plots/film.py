@@ -20,7 +20,7 @@ from PIL import Image
 from postproc.mesh import SurfaceMesh, areas
 from postproc.plots.pictures import TOP_SHARE
 from postproc.plots.scene import WHITE, common_bounds, surface_oblique, trimmed
-from postproc.plots.style import BUMP_COLOUR, LARGEST_HEIGHT, MAP, OTHER_COLOUR, WIDTH, new_figure, picture, scaled
+from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, PATTERN_COLOUR, WIDTH, new_figure, picture, scaled
 from postproc.tables.depths import area_quantile, face_depth
 from postproc.tables.display import MICROMETRES, MILLIMETRES
 from postproc.tables.film import section, section_place
@@ -90,19 +90,19 @@ def section_height(sections: Sequence[np.ndarray]) -> float:
 def frame_title(run: str, frame: Any) -> str:
     """Return what stands above a frame, a row of `analysis.film.frame_table`."""
     left = frame.bumps_left_percent
-    bumps = "" if np.isnan(left) else f", {left:.{0 if left > SMALL_PERCENT else 1}f} % of the bumps left"
+    pattern = "" if np.isnan(left) else f", {left:.{0 if left > SMALL_PERCENT else 1}f} % of the pattern left"
     name, travel = (
         run.replace("_", " "),
         f"{frame.travel_mm:.0f}" if frame.travel_mm >= 10.0 else f"{frame.travel_mm:.3g}",
     )
-    return f"{name}: cycle {frame.cycle}, {travel} mm of travel, {frame.applied_volume_mm3:.3g} mm³ worn off{bumps}"
+    return f"{name}: cycle {frame.cycle}, {travel} mm of travel, {frame.applied_volume_mm3:.3g} mm³ worn off{pattern}"
 
 
 def _section_axes(axes: Axes, sections: Sequence[np.ndarray], x: float) -> LineCollection:
     """Draw the first, unworn one of sections (k, 2, 2; mm), true to scale; return the lines that show the worn one."""
     unworn, ends = sections[0], np.concatenate(sections)
     axes.add_collection(LineCollection(unworn, colors=OTHER_COLOUR, linewidths=0.8, linestyles=":"))
-    line = axes.add_collection(LineCollection(unworn, colors=BUMP_COLOUR, linewidths=1.4))
+    line = axes.add_collection(LineCollection(unworn, colors=PATTERN_COLOUR, linewidths=1.4))
     (left, low), (right, high) = ends.min(axis=(0, 1)), ends.max(axis=(0, 1))
     room = SECTION_ROOM * max(high - low, (right - left) / 20.0)
     axes.set(xlim=(left, right), ylim=(low - room, high + room), aspect="equal")

@@ -11,22 +11,13 @@ from matplotlib.figure import Figure
 
 from postproc.mesh import SurfaceMesh
 from postproc.plots.scene import common_bounds, depth_oblique
-from postproc.plots.style import (
-    COLOURS,
-    LARGEST_HEIGHT,
-    MAP,
-    OTHER_COLOUR,
-    SMALLEST_FONT,
-    new_figure,
-    picture,
-)
+from postproc.plots.style import BLUE, LARGEST_HEIGHT, MAP, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure, picture
 from postproc.scans.comparison import STEEPEST, depth_of_faces
-from postproc.tables.summary import PLAIN
 
 DEVIATION_MAP = "RdBu_r"
 TOP_SHARE = 0.99  # of the cells: deeper ones share the top colour
 MEASURED_COLOUR = "black"
-SURFACE_COLOURS = (COLOURS["convex"], COLOURS[PLAIN], "#009E73", "#CC79A7")
+SURFACE_COLOURS = (BLUE, ORANGE, "#009E73", "#CC79A7")
 
 
 def depth_maps(cells: pd.DataFrame, pristine: SurfaceMesh, names: Sequence[str], remarks: Sequence[str]) -> Figure:

@@ -15,6 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from PIL import Image
 
+from postproc.mesh import PLAIN
+
 PUBLISHED = {"color": "black", "linestyle": "--", "linewidth": 1.2}
 TABLE_LINE = 0.5  # pt
 
@@ -29,10 +31,10 @@ SMALLEST_PLAIN, LARGEST_PLAIN = 0.01, 1e4  # numbers on an axis without a power 
 TOP_ROOM = 0.04  # inches above the topmost text
 MOST_FACET_COLUMNS = 5
 # distinguishable with colour-blindness and in grey (M. Okabe and K. Ito, 2008)
-COLOURS = {"convex": "#0072B2", "plain": "#D55E00"}
+BLUE, ORANGE = "#0072B2", "#D55E00"
 OTHER_COLOUR = "#595959"
-BASE_COLOUR, BUMP_COLOUR = "#56B4E9", "#0072B2"
-MARKERS = {"convex": "o", "plain": "s"}
+BASE_COLOUR, PATTERN_COLOUR = "#56B4E9", BLUE
+PATTERNED_LOOK, PLAIN_LOOK, OTHER_LOOK = (BLUE, "o"), (ORANGE, "s"), (OTHER_COLOUR, "^")  # colour and marker
 MAP = "viridis"
 SKIRT_COLOUR = "#c9c9c9"
 LOOK = {
@@ -87,9 +89,19 @@ def facet_columns(count: int) -> int:
     return count if count <= 3 else min(MOST_FACET_COLUMNS, math.ceil(math.sqrt(count * 1.6)))
 
 
+def _look(surface: str) -> tuple[str, str]:
+    """Return colour and marker of a surface; "" where the case knows no surfaces."""
+    return {PLAIN: PLAIN_LOOK, "": OTHER_LOOK}.get(surface, PATTERNED_LOOK)
+
+
 def colour(surface: str) -> str:
     """Return the colour of a kind of surface."""
-    return COLOURS.get(surface, OTHER_COLOUR)
+    return _look(surface)[0]
+
+
+def marker(surface: str) -> str:
+    """Return the marker of a kind of surface."""
+    return _look(surface)[1]
 
 
 def remarks_of(figure: Figure) -> str:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import LARGEST_HEIGHT, MARKERS, SMALLEST_FONT, colour, new_figure
+from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, colour, marker, new_figure
 from postproc.tables.updates import drawn_in_log
 
 VOLUMES, STEP = "Share of the cycle's\nwear (%)", "Largest step over\nits cap (-)"
@@ -100,7 +100,7 @@ def _panels(remarks: Sequence[str], angle_bound: float) -> tuple[Figure, dict[st
 
 
 def _look(surface: str) -> tuple[str, str]:
-    return colour(surface), MARKERS.get(surface, "^")
+    return colour(surface), marker(surface)
 
 
 def _values(table: pd.DataFrame, column: str) -> np.ndarray:

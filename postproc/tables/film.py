@@ -1,4 +1,4 @@
-"""The worn surface of one run cycle by cycle, for a film: which run, which cycles, a section through a bump."""
+"""The worn surface of one run cycle by cycle, for a film: which run, which cycles, a section through the pattern."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, read_surface
+from postproc.mesh import PLAIN, SurfaceMesh, read_surface
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import PLAIN, rows_to_show, runs_of_rows
-from postproc.wear.pattern_left import bump_volume
+from postproc.tables.summary import rows_to_show, runs_of_rows
+from postproc.wear.pattern_left import pattern_volume
 from postproc.wear.update import REMOVED_THICKNESS, worn_faces
 
 MOST_FRAMES = 60  # of a film: more would make its file large, and not easier to see
@@ -61,26 +61,26 @@ def without_skirt(mesh: SurfaceMesh) -> SurfaceMesh:
 
 def frame_table(frames: pd.DataFrame, surfaces: list[SurfaceMesh]) -> pd.DataFrame:
     """Return the frames in display units with what is seen on them: largest removed thickness, highest point, and how
-    much of the bumps is left (percent of their volume; NaN without bumps).
+    much of the pattern is left (percent of its volume; NaN without one).
     """
     deepest = [mesh.point_data[REMOVED_THICKNESS].max() for mesh in surfaces]
     highest = [mesh.points[:, 2].max() for mesh in surfaces]
-    bumps = np.array([bump_volume(mesh) for mesh in surfaces])
-    left = np.divide(100.0 * bumps, bumps[0], out=np.full(len(bumps), np.nan), where=bumps[0] > 0.0)
+    volume = np.array([pattern_volume(mesh) for mesh in surfaces])
+    left = np.divide(100.0 * volume, volume[0], out=np.full(len(volume), np.nan), where=volume[0] != 0.0)
     shown = frames.assign(largest_depth_m=deepest, highest_point_m=highest, bumps_left_percent=left)
     return in_display_units(shown)
 
 
 def section_place(pristine: SurfaceMesh, last: SurfaceMesh) -> float:
-    """Return x (m) of the section that a film shows: through the bump that has lost most, else through the middle."""
+    """Return x (m) of the section that a film shows: through what of a pattern has lost most, else the middle."""
     points, part = last.points[last.triangles], last.cell_data["part"]
     thickness = last.point_data[REMOVED_THICKNESS][last.triangles].mean(axis=1)
     area = np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1)
     lost = np.bincount(np.maximum(part, 0), thickness * area * (part > 0))
-    bump = pristine.cell_data["part"] == lost.argmax()
-    if not lost.any() or not bump.any():
+    most = pristine.cell_data["part"] == lost.argmax()
+    if not lost.any() or not most.any():
         return float(pristine.points[:, 0].mean())
-    x = pristine.points[np.unique(pristine.triangles[bump]), 0]
+    x = pristine.points[np.unique(pristine.triangles[most]), 0]
     return float((x.min() + x.max()) / 2.0)
 
 

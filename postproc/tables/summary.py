@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +43,7 @@ def run_summary(wear: pd.DataFrame) -> dict[str, float]:
 
 def relative_wear(table: pd.DataFrame) -> pd.Series:
     """Return each run's Archard volume over that of the plain run of the same design row; NaN without one."""
-    plain = table[table["surface"] == "plain"].set_index("row")["worn_volume_m3"]
+    plain = table[table["surface"] == PLAIN].set_index("row")["worn_volume_m3"]
     return table["worn_volume_m3"] / table["row"].map(plain)
 
 
@@ -68,6 +68,12 @@ def read_summary(path: str | Path) -> pd.DataFrame:
 def read_history(path: str | Path) -> pd.DataFrame:
     """Return the table of wear against travel with names as text."""
     return pd.read_csv(path, dtype={"run": str, "row": str, "surface": str})
+
+
+def patterned_name(surfaces: Iterable[str]) -> str:
+    """Return the only one of some surfaces that is not plain, or what several are."""
+    names = set(surfaces) - {PLAIN}
+    return names.pop() if len(names) == 1 else "patterned"
 
 
 def rows_to_show(summary: pd.DataFrame, most: int = 1) -> list[str]:

@@ -8,7 +8,7 @@ from meshes.sample import sample_top
 from postproc.mesh import areas, centroids, unit_normals, volume_above_plane
 from postproc.wear.caps import step_limit
 from postproc.wear.mesh_faults import intersecting_faces, mesh_faults, with_target_edges
-from postproc.wear.pattern_left import bump_volume
+from postproc.wear.pattern_left import pattern_volume
 from postproc.wear.remesh import remesh
 from postproc.wear.remesh_patch import neighbours
 from postproc.wear.update import wear_update
@@ -73,7 +73,7 @@ def wear(pristine, speed, updates, stop, rate=over_all):
         outcome = remesh(mesh)
         mesh, total = outcome.mesh, total + volume.sum()
         yield mesh, outcome, total
-        if bump_volume(mesh) < stop * bump_volume(pristine):
+        if pattern_volume(mesh) < stop * pattern_volume(pristine):
             return
 
 
@@ -105,7 +105,7 @@ def test_bump_is_worn_through(rate):
         assert outcome.largest_outward <= OUTWARD
         assert set(np.unique(mesh.cell_data["part"])) == {0, 1}
         assert hollow_angle(mesh) < HOLLOW_DEG
-    assert bump_volume(mesh) < LEFT * bump_volume(pristine)
+    assert pattern_volume(mesh) < LEFT * pattern_volume(pristine)
     assert len(intersecting_faces(mesh.points, mesh.triangles)) == 0
     assert not mesh_faults(mesh).folded.any()
     rim = [np.sort(m.points[np.abs(m.points[:, 1]) > 15e-3 - 1e-9, 0]) for m in (pristine, mesh)]

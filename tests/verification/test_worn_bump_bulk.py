@@ -12,7 +12,7 @@ import pytest
 from postproc.mesh import read_surface
 from postproc.readers.solver_log import thermo_table
 from postproc.wear.mesh_faults import TARGET_EDGE, folded_faces, intersecting_faces, with_target_edges
-from postproc.wear.pattern_left import bump_volume
+from postproc.wear.pattern_left import pattern_volume
 from postproc.wear.remesh_patch import OldSurface
 from postproc.wear.update import lost_volume
 from tests.support.tiny import tiny_chain
@@ -41,7 +41,7 @@ def run(tmp_path_factory):
 def test_the_bump_is_gone(run):
     """Less than 5 % of its volume is left; base and bump keep their labels."""
     _, surfaces = run
-    assert bump_volume(surfaces[-1]) < LEFT * bump_volume(surfaces[0])
+    assert pattern_volume(surfaces[-1]) < LEFT * pattern_volume(surfaces[0])
     assert all(set(np.unique(mesh.cell_data["part"])) == {-1, 0, 1} for mesh in surfaces)
 
 

@@ -66,12 +66,12 @@ def test_the_scale_is_that_of_the_last_frame(surfaces):
     ("travel", "left", "words"),
     [
         (120.0, np.nan, "120 mm of travel, 0.542 mm³ worn off"),
-        (12345.6, 43.2, "12346 mm of travel, 0.542 mm³ worn off, 43 % of the bumps left"),
-        (1.234, 4.36, "1.23 mm of travel, 0.542 mm³ worn off, 4.4 % of the bumps left"),
+        (12345.6, 43.2, "12346 mm of travel, 0.542 mm³ worn off, 43 % of the pattern left"),
+        (1.234, 4.36, "1.23 mm of travel, 0.542 mm³ worn off, 4.4 % of the pattern left"),
     ],
 )
 def test_a_frame_says_where_it_stands(travel, left, words):
-    """Run, cycle, travel and volume with units, and what is left of the bumps where there are any."""
+    """Run, cycle, travel and volume with units, and what is left of the pattern where there is one."""
     names = ["cycle", "travel_mm", "applied_volume_mm3", "bumps_left_percent"]
     frame = next(pd.DataFrame([[3, travel, 0.5416, left]], columns=names).itertuples())
     assert film.frame_title("R9_convex", frame) == f"R9 convex: cycle 3, {words}"

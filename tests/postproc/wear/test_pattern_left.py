@@ -6,7 +6,7 @@ import pytest
 from meshes.pattern import ConvexPattern
 from meshes.sample import sample_top
 from postproc.mesh import SurfaceMesh
-from postproc.wear.pattern_left import bump_volume
+from postproc.wear.pattern_left import pattern_volume
 
 MESH = 0.03  # relative; facets of 1 mm lie inside the ellipsoid
 ROUNDING = 1e-9  # relative
@@ -22,7 +22,7 @@ def test_a_pristine_bump_is_half_an_ellipsoid(spacing, count):
     """Each bump has 2/3 pi a b h."""
     mesh = sample(spacing)
     assert mesh.cell_data["part"].max() == count
-    assert bump_volume(mesh) == pytest.approx(count * 2.0 / 3.0 * np.pi * 8e-3 * 2e-3 * 6e-3, rel=MESH)
+    assert pattern_volume(mesh) == pytest.approx(count * 2.0 / 3.0 * np.pi * 8e-3 * 2e-3 * 6e-3, rel=MESH)
 
 
 def test_a_lower_base_and_a_flatter_bump():
@@ -31,6 +31,6 @@ def test_a_lower_base_and_a_flatter_bump():
     lowered = SurfaceMesh(mesh.points - [0.0, 0.0, 1e-3], mesh.triangles, mesh.cell_data, {})
     flatter = SurfaceMesh(mesh.points * [1.0, 1.0, 0.5], mesh.triangles, mesh.cell_data, {})
     plain = SurfaceMesh(mesh.points, mesh.triangles, {"part": np.zeros(len(mesh.triangles), dtype=np.int64)}, {})
-    assert bump_volume(lowered) == pytest.approx(bump_volume(mesh), rel=ROUNDING)
-    assert bump_volume(flatter) == pytest.approx(0.5 * bump_volume(mesh), rel=ROUNDING)
-    assert bump_volume(plain) == 0.0
+    assert pattern_volume(lowered) == pytest.approx(pattern_volume(mesh), rel=ROUNDING)
+    assert pattern_volume(flatter) == pytest.approx(0.5 * pattern_volume(mesh), rel=ROUNDING)
+    assert pattern_volume(plain) == 0.0

@@ -205,9 +205,9 @@ class CircularTester(Case):
 
     def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
         """Return what is left of the pattern: its volume over its feet, negative where it lies below them."""
-        from postproc.wear.pattern_left import bump_volume
+        from postproc.wear.pattern_left import pattern_volume
 
-        return {"pattern_volume_m3": bump_volume(worn)}
+        return {"pattern_volume_m3": pattern_volume(worn)}
 
     def closing_gap(self, parameters: Parameters, duration: float) -> float:
         """Return the gap (m) that particles fall through in the stated part of a cycle."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.runs import SIZE, VOLUME, WORN_OUT
 from workflows.cases.circular_tester.volume import CONVEX, chosen, chosen_fit, element_increments, of_surface
 

@@ -11,12 +11,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, centroids, read_surface
+from postproc.mesh import PLAIN, SurfaceMesh, centroids, read_surface
 from postproc.readers.cycle_folders import cycle_folders
 from postproc.scans.comparison import bump_names, bump_sections, largest_losses
 from postproc.tables.depths import WORN_VOLUME
 from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
-from postproc.tables.summary import PLAIN
 from postproc.wear.update import worn_faces
 from workflows.cases.circular_tester.runs import MESH, SIZE, SURFACE, VOLUME, TesterRun
 from workflows.cases.circular_tester.volume import chosen

@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 from scipy.stats import linregress
 
+from postproc.mesh import PLAIN
 from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
-from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.comparison import mean_ratios
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.flow import FORCE, SPIN, VELOCITY

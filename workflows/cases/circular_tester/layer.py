@@ -10,9 +10,8 @@ import numpy as np
 import pandas as pd
 
 from postproc.flow.bed import read_snapshot, snapshots
-from postproc.mesh import SurfaceMesh
+from postproc.mesh import PLAIN, SurfaceMesh
 from postproc.readers.cycle_folders import LAYER_TABLE
-from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.runs import TesterRun
 
 FIRST_SNAPSHOT = "bed_0.dump"  # of a cycle, the last one of the cycle before

@@ -134,7 +134,7 @@ def pair_of(runs: Sequence[TesterRun]) -> tuple[TesterRun, TesterRun]:
     """Return the run with a pattern and the plain one of which most figures are made; the plain one sets the scale of
     time.
     """
-    from postproc.tables.summary import PLAIN  # slow to import, and Snakemake reads this module first
+    from postproc.mesh import PLAIN  # slow to import, and Snakemake reads this module first
 
     patterned, plain = sorted((run for run in runs if run.series == VOLUME), key=lambda run: run.surface == PLAIN)
     return patterned, plain

@@ -13,12 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import read_surface
+from postproc.mesh import PLAIN, read_surface
 from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.tables.published import published_value
-from postproc.tables.summary import PLAIN
 from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient
-from postproc.wear.pattern_left import bump_volume
+from postproc.wear.pattern_left import pattern_volume
 from postproc.wear.update import worn_faces
 from workflows.cases.circular_tester.runs import SURFACE, TesterRun
 
@@ -52,7 +51,7 @@ def volumes(runs: Sequence[TesterRun]) -> pd.DataFrame:
                 "pattern_volume_m3": wear["pattern_volume_m3"],
             }
         )
-        start = {name: [0.0] for name in table} | {"cycle": [0], "pattern_volume_m3": [bump_volume(pristine)]}
+        start = {name: [0.0] for name in table} | {"cycle": [0], "pattern_volume_m3": [pattern_volume(pristine)]}
         table = pd.concat([pd.DataFrame(start), table], ignore_index=True)
         parts.append(
             table.assign(**run.case, elements=int(worn_faces(pristine).sum()))[[*run.case, *table, "elements"]]

@@ -13,8 +13,8 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from postproc.mesh import PLAIN
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.evaluation import UNDECIDED
 
 NO_REPLICATES = "each row is one packing: the scatter between packings is not known"

@@ -12,9 +12,9 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import COLOURS, LARGEST_HEIGHT, SMALLEST_FONT, new_figure
+from postproc.plots.style import LARGEST_HEIGHT, ORANGE, SMALLEST_FONT, new_figure
 
-SLOPE_COLOUR = COLOURS["plain"]
+SLOPE_COLOUR = ORANGE
 PARTICLE_COLOUR, PARTICLE_EDGE = "#d8dee4", "#8a949e"
 HALF_LABEL_POINTS = 44.0  # half the width of an angle's words
 

@@ -16,18 +16,10 @@ from matplotlib.patches import Patch
 
 from postproc.inference.posterior import CORE_SHARE, FAMILY_SHARE
 from postproc.inference.problem import Measured
-from postproc.plots.style import (
-    COLOURS,
-    LARGEST_HEIGHT,
-    MAP,
-    OTHER_COLOUR,
-    SMALLEST_FONT,
-    facets,
-    new_figure,
-)
+from postproc.plots.style import BLUE, LARGEST_HEIGHT, MAP, ORANGE, OTHER_COLOUR, SMALLEST_FONT, facets, new_figure
 from workflows.cases.calibration.responses import BAND, RECOMMENDED, parameter_name, response_name
 
-OURS, OTHERS = COLOURS["convex"], COLOURS["plain"]
+OURS, OTHERS = BLUE, ORANGE
 BAND_COLOUR = "#000000"
 FAMILY_COLOURS = ListedColormap(["#0072B2", "#9ecbe6"])
 

@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 
 from postproc.plots.style import (
     BASE_COLOUR,
-    BUMP_COLOUR,
     LARGEST_HEIGHT,
     MAP,
-    MARKERS,
+    PATTERN_COLOUR,
     SMALLEST_FONT,
     colour,
+    marker,
     named_once,
     new_figure,
 )
@@ -42,7 +42,7 @@ def by_column(table: pd.DataFrame, unit: str, quantity: str, published: pd.DataF
             of_run["column"],
             of_run[bumps],
             bottom=of_run[base],
-            color=BUMP_COLOUR,
+            color=PATTERN_COLOUR,
             hatch="//",
             edgecolor="white",
             label="bumps",
@@ -96,7 +96,7 @@ def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, rem
             zorder=0,
             label="range of the column's bumps, Yan 2022",
         )
-        axes.bar(there, of_row["volume_mm3"], color=BUMP_COLOUR)
+        axes.bar(there, of_row["volume_mm3"], color=PATTERN_COLOUR)
     axes.set_xticks(places, table["bump"], rotation=90)
     axes.set_title(scale_remark, loc="left", fontsize=SMALLEST_FONT)
     axes.set_ylabel("Worn volume of a bump (mm³)")
@@ -114,7 +114,7 @@ def mesh_size(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[st
     for surface, rows in table.groupby("surface", sort=False):
         mean, deviation = rows["mean_percent"].iloc[0], rows["deviation_percent"].iloc[0]
         name = f"{surface}, {mean:.3g} ± {deviation:.2g} %"
-        look = {"color": colour(surface), "marker": MARKERS.get(surface, "^"), "markersize": 5, "linewidth": 1.0}
+        look = {"color": colour(surface), "marker": marker(surface), "markersize": 5, "linewidth": 1.0}
         axes.plot(rows["element_size_mm"], rows["relative_percent"], label=name, **look)
         theirs = published[published["quantity"] == f"{surface}_relative_volume"]
         for each in theirs.itertuples():

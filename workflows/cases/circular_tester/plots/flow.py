@@ -11,18 +11,11 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from postproc.mesh import PLAIN
 from postproc.plots.spheres import draw_circles
-from postproc.plots.style import (
-    MAP,
-    MARKERS,
-    SMALLEST_FONT,
-    colour,
-    named_once,
-    new_figure,
-)
+from postproc.plots.style import MAP, SMALLEST_FONT, colour, marker, named_once, new_figure
 from postproc.tables.display import DEGREES, MILLIMETRES
 from postproc.tables.published import published_value
-from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.flow import STEADINESS
 
 BAND_COLOUR = "#dddddd"  # of published ranges, behind what is simulated
@@ -76,7 +69,7 @@ def steadiness(means: pd.DataFrame, steady: pd.DataFrame, published: pd.DataFram
     for axes, measure in zip(grid, STEADINESS, strict=True):
         of_measure = means[means["measure"] == measure]
         for (_, surface), of_run in of_measure.groupby(["run", "surface"], sort=False):
-            look = {"color": colour(surface), "marker": MARKERS.get(surface, "^"), "markersize": 3.5, "linewidth": 1.0}
+            look = {"color": colour(surface), "marker": marker(surface), "markersize": 3.5, "linewidth": 1.0}
             axes.plot(of_run["revolution"], 100.0 * of_run["variation"], label=surface, **look)
         axes.axvline(start, label="steady from here on, Yan 2022", color="black", linestyle="--", linewidth=1.0)
         if measure == "wear_rate_m3_per_s":
@@ -110,7 +103,7 @@ def by_revolution(means: pd.DataFrame, measure: str, published: pd.DataFrame, re
         (-SHIFT, SHIFT, 0.0), of_measure.groupby(["run", "surface"], sort=False), strict=False
     ):
         mean, deviation = factor * of_run["mean"], factor * of_run["deviation"]
-        look = {"color": colour(surface), "fmt": f"{MARKERS.get(surface, '^')}-", "markersize": 4, "capsize": 2.5}
+        look = {"color": colour(surface), "fmt": f"{marker(surface)}-", "markersize": 4, "capsize": 2.5}
         axes.errorbar(of_run["revolution"] + shift, mean, deviation, linewidth=1.0, label=surface, **look)
     ends = of_measure["revolution"].min(), of_measure["revolution"].max()
     for quantity in quantities:

@@ -10,21 +10,21 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from postproc.mesh import PLAIN
 from postproc.plots.style import (
-    COLOURS,
+    BLUE,
     LARGEST_HEIGHT,
-    MARKERS,
     OTHER_COLOUR,
     PUBLISHED,
     SMALLEST_FONT,
     colour,
+    marker,
     named_once,
     new_figure,
     printed_table,
 )
 from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.tables.published import published_value
-from postproc.tables.summary import PLAIN
 from workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
 from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from workflows.cases.circular_tester.volume import (
@@ -65,7 +65,7 @@ def volume_by_revolution(
     for (run, surface, scale), of_run in volumes.groupby(["run", "surface", "particle_scale"], sort=False):
         ours.add((surface, scale))
         look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
-        mark, look["linewidth"] = {"marker": MARKERS.get(surface, "^"), "markersize": 4}, 1.0
+        mark, look["linewidth"] = {"marker": marker(surface), "markersize": 4}, 1.0
         axes.plot(of_run["revolution"], CUBIC_MILLIMETRES * of_run["volume_m3"], **mark, **look | {"linestyle": "none"})
         axes.plot(x, volume_at(chosen_fit(fits, run), x), **look)
         axes.plot([], [], label=_case_name(surface, scale), **mark, **look)  # points and fit together in the legend
@@ -111,7 +111,7 @@ def element_increments(
     left, right = figure.subplots(1, 2)
     for (_, surface, scale), of_run in increments.groupby(["run", "surface", "particle_scale"], sort=False):
         look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
-        look |= {"marker": MARKERS.get(surface, "^"), "markersize": 3.5, "linewidth": 1.0}
+        look |= {"marker": marker(surface), "markersize": 3.5, "linewidth": 1.0}
         name = _case_name(surface, scale)
         left.plot(of_run["revolution"], of_run["element_increment_mm3"], label=name, **look)
         right.plot(of_run["revolution"], of_run["increment_mm3"], label=name, **look)
@@ -167,12 +167,12 @@ def benchmark(
             theirs = volume_at(published_terms(published_fits, surface, scale), theirs_at)
             values.append(theirs if source == THESIS else (ours.mean() if len(ours) else np.nan))
         places = np.arange(1, len(scales) + 1) + BARS * ((index + 0.5) / len(kinds) - 0.5)
-        look = {"color": COLOURS[surface], "hatch": "///" if source == THESIS else None, "edgecolor": "white"}
+        look = {"color": colour(surface), "hatch": "///" if source == THESIS else None, "edgecolor": "white"}
         axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look)
     for place, surface in zip((-0.2, 0.2), (PLAIN, CONVEX), strict=True):
         value = published_value(published, f"{surface}_volume_56_h", "laboratory")
-        axes.bar(place, value, 0.35, color=COLOURS[surface], alpha=0.5)
-        axes.axhline(value, color=COLOURS[surface], linewidth=0.8, linestyle=":")
+        axes.bar(place, value, 0.35, color=colour(surface), alpha=0.5)
+        axes.axhline(value, color=colour(surface), linewidth=0.8, linestyle=":")
     axes.set_xticks(range(len(scales) + 1), [LABORATORY, *(f"particle scale {scale:g}" for scale in scales)])
     axes.set_ylabel(f"Volume after {hours:g} h (mm³)")
     figure.legend(loc="outside upper center", ncols=4)
@@ -199,17 +199,17 @@ def volume_by_hours(
         rate = published[published["quantity"] == f"{surface}_volume_per_interval"].iloc[0]
         low, high = ((rate["value"] + sign * rate["uncertainty"]) / interval * hours for sign in (-1.0, 1.0))
         words = f"{surface}, measured per {interval:g} h"
-        axes.fill_between(hours, low, high, color=COLOURS[surface], alpha=0.15, linewidth=0.0, label=words)
+        axes.fill_between(hours, low, high, color=colour(surface), alpha=0.15, linewidth=0.0, label=words)
         for length in ("short", "long"):
             end = published_value(published, f"{length}_test", "laboratory")
             value = published_value(published, f"{surface}_volume_{end:g}_h", "laboratory")
             extrapolated = surface == PLAIN and length == "long"
-            fill = "none" if extrapolated else COLOURS[surface]
+            fill = "none" if extrapolated else colour(surface)
             axes.plot(
                 end,
                 value,
-                MARKERS[surface],
-                color=COLOURS[surface],
+                marker(surface),
+                color=colour(surface),
                 markerfacecolor=fill,
                 markersize=7,
                 label=f"{surface}, measured" if length == "short" else None,
@@ -257,7 +257,7 @@ def channel_and_ring(
     figure = new_figure(remarks, 4.4)
     left, right = figure.subplots(1, 2)
     for (_, surface, shape, scale), rows in volumes.groupby(["run", "surface", "shape", "particle_scale"], sort=False):
-        look = {"color": colour(surface), "linestyle": MACHINE_STYLES[shape], "marker": MARKERS.get(surface, "^")}
+        look = {"color": colour(surface), "linestyle": MACHINE_STYLES[shape], "marker": marker(surface)}
         name, volume = f"{surface}, {shape}, scale {scale:g}", CUBIC_MILLIMETRES * rows["volume_m3"]
         left.plot(rows["revolution"], volume, markersize=3, linewidth=1.0, label=name, **look)
     said = []
@@ -288,13 +288,13 @@ def worn_out(left_of: pd.DataFrame, ends: pd.DataFrame, remarks: Sequence[str]) 
         end = ends[ends["run"] == run].iloc[0]
         times = rows["coefficient"].iloc[0] / left_of["coefficient"].min()
         name = f"{run.replace('_', ' ')}{f', coefficient x {times:g}' if times > 1.0 else ''}"
-        look = {"color": COLOURS["convex"], "linestyle": styles[run], "linewidth": 1.2}
+        look = {"color": BLUE, "linestyle": styles[run], "linewidth": 1.2}
         share.plot(rows["revolution"], 100.0 * rows["pattern_share"], label=name, **look)
         rate.plot(rows["revolution"], rows["mean_per_revolution_mm3"], label=name, **look)
         if np.isfinite(end["worn_out_revolution"]):
             share.axvline(end["worn_out_revolution"], color=OTHER_COLOUR, linewidth=0.8, linestyle=styles[run])
     share.axhline(100.0 * WORN_OUT_SHARE, color="black", linewidth=0.8, label=f"{100.0 * WORN_OUT_SHARE:g} %")
-    rate.axhline(left_of["plain_per_revolution_mm3"].iloc[0], color=COLOURS[PLAIN], linewidth=1.2, label="plain sample")
+    rate.axhline(left_of["plain_per_revolution_mm3"].iloc[0], color=colour(PLAIN), linewidth=1.2, label="plain sample")
     share.set_title("\n".join(map(_end_words, ends.itertuples())), loc="left", fontsize=SMALLEST_FONT)
     rate.set_title("\n".join(_faster_words(row) for row in ends.itertuples()), loc="left", fontsize=SMALLEST_FONT)
     words = "Revolutions at the study's coefficient"

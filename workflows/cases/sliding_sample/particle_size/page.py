@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from postproc.flow.packing import inner_means
+from postproc.mesh import PLAIN
 from postproc.reference.size_ratios import size_ratios
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import PLAIN, read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
 from workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT, AGREES, DIFFERS, UNSAID
 from workflows.cases.sliding_sample.particle_size.study import bumps_and_particles

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from postproc.flow.packing import MEASURES, inner_means
+from postproc.mesh import PLAIN
 from postproc.statistics.lines import Crossing
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX
 
 AGREES, DIFFERS, UNSAID = "agrees", "differs", "cannot be said"

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, SizeRatios, size_ratios
 from postproc.statistics.lines import FEWEST_POINTS, Crossing, crossing, fitted_line
-from postproc.tables.summary import PLAIN
 
 CONVEX = "convex"
 # Curve -> surface and column of summary.csv (Yan 2022, Eq 4.14 to 4.17).

@@ -1,4 +1,4 @@
-"""Bars and points per run: split of the wear, convex over plain, laws and forces."""
+"""Bars and points per run: split of the wear, patterned over plain, laws and forces."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from postproc.mesh import PLAIN
 from postproc.plots.style import (
     BASE_COLOUR,
-    BUMP_COLOUR,
     LARGEST_HEIGHT,
-    MARKERS,
     OTHER_COLOUR,
+    PATTERN_COLOUR,
     SMALLEST_FONT,
     colour,
+    marker,
     new_figure,
 )
-from postproc.tables.summary import PLAIN
+from postproc.tables.summary import patterned_name
 
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY_RUNS = 6  # from here on run names stand upright
@@ -40,7 +41,7 @@ def _run_axis(axes: Axes, runs: Sequence[str]) -> np.ndarray:
 
 
 def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw each run's wear on base and bumps, stacked, over the wear of its plain run (dashed line at 1).
+    """Draw each run's wear on base and pattern, stacked, over the wear of its plain run (dashed line at 1).
 
     split: as from `comparison.wear_split`. Of many runs, plain ones (1 by definition) are left out.
     """
@@ -56,8 +57,8 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         split["pattern_over_plain"],
         width,
         bottom=split["base_over_plain"],
-        color=BUMP_COLOUR,
-        label="bumps",
+        color=PATTERN_COLOUR,
+        label="pattern",
         hatch="//",
         edgecolor="white",
     )
@@ -83,7 +84,7 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
 
 def relative_wear(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw convex over plain wear per setting, lowest first, with its interval or else its range over the cycles, and
+    """Draw wear over plain per setting, lowest first, with its interval or else its range over the cycles, and
     alpha_ER written in.
 
     table: as from `comparison.by_setting`; published: row, relation, value (-) and source; may be empty
@@ -123,7 +124,8 @@ def relative_wear(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
         r"equivalent size ratio $\alpha_{ER}$ of each row in the line below", loc="left", fontsize=SMALLEST_FONT
     )
     axes.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
-    axes.set(xlabel="Design row", ylabel="Wear volume, convex over plain (-)", ylim=(0.0, top))
+    label = f"Wear volume, {patterned_name(table['surface'])} over plain (-)"
+    axes.set(xlabel="Design row", ylabel=label, ylim=(0.0, top))
     return figure
 
 
@@ -148,8 +150,8 @@ def wear_law_comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         ("worn_volume_mm3", "the study's law, from the load ledger", "o", LAW_COLOUR),
         ("finnie_volume_mm3", "Finnie, the solver's own", "D", FINNIE_COLOUR),
     )
-    for name, label, marker, drawn in laws:
-        axes.plot(places, table[name].where(table[name] > 0.0), marker, color=drawn, markersize=7, label=label)
+    for name, label, mark, drawn in laws:
+        axes.plot(places, table[name].where(table[name] > 0.0), mark, color=drawn, markersize=7, label=label)
     axes.vlines(
         places,
         table["finnie_volume_mm3"],
@@ -181,7 +183,7 @@ def mean_forces(summary: pd.DataFrame, remarks: Sequence[str]) -> Figure:
             mean = runs[f"mean_{name}"].to_numpy()
             spread = np.clip([mean - runs[f"low_{name}"], runs[f"high_{name}"] - mean], 0.0, None)
             drawn = {"color": colour(surface), "label": surface if axes is panels[0] else None}
-            axes.errorbar(places, mean, spread, fmt=MARKERS.get(surface, "^"), markersize=5, capsize=2, **drawn)
+            axes.errorbar(places, mean, spread, fmt=marker(surface), markersize=5, capsize=2, **drawn)
         axes.set_ylabel(f"{label} force (N)")
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     panels[1].set_xticks(range(len(rows)), rows)

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import LARGEST_HEIGHT, MARKERS, SMALLEST_FONT, colour, new_figure
-from postproc.tables.summary import PLAIN
+from postproc.mesh import PLAIN
+from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, colour, marker, new_figure
 
 LAYER = 5.0  # mm, of the published profiles, whose particles have their real size
 PANELS = {  # column of a profile -> its quantity in the published table and the label of the axis
@@ -56,7 +56,7 @@ def along_travel(
         for run, curve in shown.groupby("run", sort=False):
             surface = curve["surface"].iloc[0]
             drawn = {"color": colour(surface), "linewidth": FAINT if surface == PLAIN else STRONG, "label": run}
-            drawn |= {"marker": MARKERS.get(surface, "^"), "markersize": 3.0} if len(curve) <= FEW_VALUES else {}
+            drawn |= {"marker": marker(surface), "markersize": 3.0} if len(curve) <= FEW_VALUES else {}
             axes.plot(curve["travel_mm"], curve[column], "--" if surface == PLAIN else "-", **drawn)
         for value in [] if published is None else published.loc[published["of"] == regime, "value"]:
             axes.axhline(value, color="black", linestyle=":", linewidth=STRONG)

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.screening.regime_groups import ORDER, groups_of_rows
 from workflows.cases.sliding_sample.screening.regression_tables import WEAR
 from workflows.cases.sliding_sample.screening.study_regression import Screening, best_design_table

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES, RIDES_ALONG
 from workflows.cases.sliding_sample.screening.findings import (
     CENTRAL,

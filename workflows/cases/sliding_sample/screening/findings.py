@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.statistics.regression import CONSTANT
 from postproc.tables.display import MILLIMETRES
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.comparison import relative_wear_intervals
 from workflows.cases.sliding_sample.evaluation import CONTINUOUS
 from workflows.cases.sliding_sample.screening.regression_tables import has_factors

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import PLAIN, read_summary
+from postproc.tables.summary import read_summary
 from workflows.cases.sliding_sample.study import has_findings
 from workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.readers.cycle_folders import cycle_files
 from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.summary import PLAIN, rows_to_show
+from postproc.tables.summary import rows_to_show
 from workflows.cases.sliding_sample.evaluation import (
     CONTINUOUS,
     DISCONTINUOUS,

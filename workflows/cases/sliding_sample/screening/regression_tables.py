@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.statistics.factors import Factor, factor_of
 from postproc.statistics.model_terms import aliasing, candidate_terms, parse_term, term_columns
 from postproc.statistics.regression import CONSTANT
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.screening.regression_warnings import confounded, screening_warnings
 from workflows.cases.sliding_sample.screening.study_regression import (
     Screening,

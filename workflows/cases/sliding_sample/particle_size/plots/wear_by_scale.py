@@ -10,14 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import COLOURS, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from postproc.plots.style import BLUE, LARGEST_HEIGHT, ORANGE, OTHER_COLOUR, SMALLEST_FONT, colour, new_figure
 from postproc.statistics.lines import FEWEST_POINTS, Crossing, fitted_line
 from workflows.cases.sliding_sample.particle_size.plots.contacts import MARKERS, PUBLISHED_MARKS, scale_colours
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS
 
 CURVES = {  # colour, marker and name
-    "plain": (COLOURS["plain"], "s", "plain sample"),
-    "convex": (COLOURS["convex"], "o", "convex sample"),
+    "plain": (ORANGE, "s", "plain sample"),
+    "convex": (BLUE, "o", "convex sample"),
     "base": ("#009E73", "^", "its base"),
     "bumps": ("#CC79A7", "v", "its bumps"),
 }
@@ -95,7 +95,7 @@ def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remar
     panels = figure.subplots(1, len(RATIOS), sharey=True)
     for axes, ratio in zip(panels, RATIOS, strict=True):
         axes.plot(published[ratio], published["wear_over_plain"], ":", color="black", label="published")
-        axes.plot(table[ratio], table["wear_over_plain"], "o", color=COLOURS["convex"], label="ours")
+        axes.plot(table[ratio], table["wear_over_plain"], "o", color=BLUE, label="ours")
         axes.axhline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
         axes.axvline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
         axes.set_xscale("log")
@@ -104,7 +104,7 @@ def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remar
         axes.set_xlabel(f"Ratio of\n{RATIO_NAMES[ratio]} (-)")
     panels[0].set_ylabel("Wear of the convex sample\nover the plain one's (-)")
     handles = [
-        Line2D([], [], color=COLOURS["convex"], marker="o", linestyle="", label="simulated"),
+        Line2D([], [], color=BLUE, marker="o", linestyle="", label="simulated"),
         Line2D([], [], color="black", linestyle=":", label="Yan 2022, Eq 4.14 and 4.15, pattern of run R5"),
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=2)
@@ -123,7 +123,7 @@ def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Seque
         for surface, one in table[table["measure"] == measure].groupby("surface", sort=False):
             _with_deviation(axes, one.sort_values("particle_scale"), str(surface))
         for each in published[published["quantity"] == measure].itertuples():
-            look = {"color": COLOURS[each.surface], "markerfacecolor": "white", "linestyle": ":", "label": "published"}
+            look = {"color": colour(each.surface), "markerfacecolor": "white", "linestyle": ":", "label": "published"}
             look["marker"] = PUBLISHED_MARKS[each.relation]
             axes.plot([each.scale_from, each.scale_to], [each.value] * 2, linewidth=0.8, markersize=6, **look)
         axes.set(xlabel="Particle scale (-)", ylabel=label)

@@ -10,18 +10,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from postproc.mesh import PLAIN
 from postproc.plots.style import (
     BASE_COLOUR,
-    BUMP_COLOUR,
     LARGEST_HEIGHT,
-    MARKERS,
     OTHER_COLOUR,
+    PATTERN_COLOUR,
     SMALLEST_FONT,
     colour,
+    marker,
     new_figure,
     scaled,
 )
-from postproc.tables.summary import PLAIN
 from workflows.cases.sliding_sample.screening.confirmation import interval_reach
 
 BAR = 0.4  # -, width of a bar over the distance of rows
@@ -42,7 +42,7 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         convex, plain = shown[shown["surface"] != PLAIN], shown[shown["surface"] == PLAIN]
         left = _places(convex) - 0.5 * BAR
         axes.bar(left, convex["base_relative_wear"], BAR, color=BASE_COLOUR)
-        bumps = {"color": BUMP_COLOUR, "hatch": "//", "edgecolor": "white"}
+        bumps = {"color": PATTERN_COLOUR, "hatch": "//", "edgecolor": "white"}
         axes.bar(left, convex["bump_relative_wear"], BAR, bottom=convex["base_relative_wear"], **bumps)
         axes.bar(_places(plain) + 0.5 * BAR, plain["relative_wear"], BAR, color=PLAIN_FILL, edgecolor=colour(PLAIN))
         for places, runs in ((left, convex), (_places(plain) + 0.5 * BAR, plain)):
@@ -53,7 +53,7 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     figure.axes[0].set_ylabel("Wear over the largest of the regime (-)")
     handles = [
         Patch(color=BASE_COLOUR, label="convex, base"),
-        Patch(facecolor=BUMP_COLOUR, hatch="//", edgecolor="white", label="convex, bumps"),
+        Patch(facecolor=PATTERN_COLOUR, hatch="//", edgecolor="white", label="convex, bumps"),
         Patch(facecolor=PLAIN_FILL, edgecolor=colour(PLAIN), label="plain"),
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=3)
@@ -125,7 +125,7 @@ def confirmation(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     axes.errorbar(table["predicted_mm3_per_m"], lines, xerr=interval_reach(table), label=label, **drawn)
     for surface, column in (("convex", "simulated_mm3_per_m"), (PLAIN, "plain_mm3_per_m")):
         marks = {"color": colour(surface), "markersize": 8, "linestyle": "", "label": f"simulated, {surface}"}
-        axes.plot(table[column], lines, MARKERS[surface], zorder=3, **marks)
+        axes.plot(table[column], lines, marker(surface), zorder=3, **marks)
     for place, inside, ratio in zip(lines, table["inside"], table["over_predicted"], strict=True):
         words = f"{'inside' if inside else 'outside'}, {ratio:.2f} of the prediction"
         axes.text(1.0, place + 0.18, words, transform=axes.get_yaxis_transform(), ha="right", fontsize=SMALLEST_FONT)
