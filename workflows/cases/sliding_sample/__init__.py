@@ -1,1 +1,1 @@
-"""A sample, convex or plain, that slides through a bed of particles: everything of this case."""
+"""A sample, patterned or plain, that slides through a bed of particles: everything of this case."""

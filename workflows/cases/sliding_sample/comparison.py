@@ -1,4 +1,4 @@
-"""Runs of a study against each other: convex over plain, base against bumps, and what repeated runs tell of scatter.
+"""Runs of a study against each other: patterned over plain, base against pattern; what replicates tell of scatter.
 
 Rows of a design that differ in nothing but their seed are replicates. The response of a screening is the logarithm of
 wear, so scatter is told as a factor: means are geometric, intervals are those of the logarithm. One scatter is taken
@@ -27,7 +27,7 @@ def plain_of_row(summary: pd.DataFrame, column: str) -> pd.Series:
 
 
 def wear_split(summary: pd.DataFrame) -> pd.DataFrame:
-    """Return each run's wear on base and on bumps over the wear of the plain run of its row.
+    """Return each run's wear on base and on pattern over the wear of the plain run of its row.
 
     Columns run, row, surface, base_volume_mm3, pattern_volume_mm3, base_over_plain, pattern_over_plain.
     """

@@ -51,8 +51,8 @@ def gradient_history(history: pd.DataFrame) -> pd.DataFrame:
 def relative_to_largest(volume: pd.Series, group: pd.Series) -> pd.Series:
     """Return the relative wear (-) of each run: its volume over the largest of its group (Yan 2022, Eq 3.10).
 
-    group: what each run is compared with, such as its flow regime; convex and plain runs together. Unlike wear over the
-    plain twin's (`summary.relative_wear`), it compares runs of different conditions.
+    group: what each run is compared with, such as its flow regime; patterned and plain runs together. Unlike wear over
+    the plain twin's (`summary.relative_wear`), it compares runs of different conditions.
     """
     return volume / volume.groupby(group).transform("max")
 

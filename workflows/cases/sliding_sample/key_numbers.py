@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from postproc.mesh import PLAIN
 from postproc.tables.depths import depth_summary
 from postproc.tables.display import in_display_units
 from postproc.tables.summary import read_history, read_summary
@@ -73,7 +74,7 @@ def result_table(
     summary: pd.DataFrame, depths: pd.DataFrame, history: pd.DataFrame, acceleration: float
 ) -> pd.DataFrame:
     """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated
-    test, over plain with its range over the cycles, share of the bumps, carried share, forces and depths.
+    test, over plain with its range over the cycles, share of the pattern, carried share, forces and depths.
     """
     volume = summary["worn_volume_m3"]
     table = summary[["run", "row", "surface", "travel_m", "worn_volume_m3"]].assign(
@@ -90,24 +91,26 @@ def result_table(
 
 def cards(results: pd.DataFrame, acceleration: float) -> list[tuple[str, str]]:
     """Return (number, what it is) of the few that answer the question, lowest wear first; none without a plain twin."""
-    convex = results[(results["surface"] != "plain") & results["wear_over_plain"].notna()]
-    if convex.empty:
+    patterned = results[(results["surface"] != PLAIN) & results["wear_over_plain"].notna()]
+    if patterned.empty:
         return []
-    best = convex.sort_values("wear_over_plain", kind="stable").iloc[0]
-    plain = results[(results["row"] == best["row"]) & (results["surface"] == "plain")].iloc[0]
+    best = patterned.sort_values("wear_over_plain", kind="stable").iloc[0]
+    plain = results[(results["row"] == best["row"]) & (results["surface"] == PLAIN)].iloc[0]
     rate, unit = "worn_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
-    several = len(convex) > 1
-    which = f"{best['row']}, the lowest of {len(convex)} rows" if several else best["row"]
+    several = len(patterned) > 1
+    which = f"{best['row']}, the lowest of {len(patterned)} rows" if several else best["row"]
     found = [
         (f"{best['wear_over_plain']:.3f}", f"{best['surface']} over plain wear, {which}"),
         (number(best[rate], 3), f"{unit}, {best['run'].replace('_', ' ')}"),
         (number(plain[rate], 3), f"{unit}, {plain['run'].replace('_', ' ')}"),
     ]
     if several:
-        ratio = convex["wear_over_plain"]
+        ratio = patterned["wear_over_plain"]
         near = int(((ratio < 1.0) & (ratio > 1.0 / (1.0 + UNSURE))).sum())
         little = f", {near} of them by less than {100.0 * UNSURE:.0f} %" if near else ""
-        found.append((f"{(ratio < 1.0).sum()} of {len(convex)}", f"patterns wear less than their plain twin{little}"))
+        less = f"{(ratio < 1.0).sum()} of {len(patterned)}"
+        found.append((less, f"patterns wear less than their plain twin{little}"))
     else:
-        found.append((f"{best['pattern_share_percent']:.0f} %", "of the convex sample's wear is on the bumps"))
+        share = f"{best['pattern_share_percent']:.0f} %"
+        found.append((share, f"of the {best['surface']} sample's wear is on its pattern"))
     return found

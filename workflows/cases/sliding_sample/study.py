@@ -6,6 +6,7 @@ import csv
 import re
 from typing import Any
 
+from postproc.mesh import PLAIN
 from workflows.cases.sliding_sample.parameters import flow_measures
 from workflows.config.design import FACTORS, REPOSITORY, Study
 from workflows.engine.case import Run
@@ -25,7 +26,7 @@ PATTERN = (  # columns that make two rows the same
 
 
 def compares_rows(study: Study) -> bool:
-    """Return whether a study sets convex over plain wear of several design rows side by side."""
+    """Return whether a study sets patterned over plain wear of several design rows side by side."""
     return len(study.design_rows) > 1 and bool(plain_runs(study))
 
 
@@ -63,7 +64,7 @@ def run_in(study: Study) -> float:
 
 def plain_runs(study: Study) -> dict[str, Run]:
     """Return the plain runs of a study, by name."""
-    return {run.name: run for run in study.runs if run.surface == "plain"}
+    return {run.name: run for run in study.runs if run.surface == PLAIN}
 
 
 def factor_labels(study: Study) -> dict[str, str]:
@@ -98,7 +99,9 @@ def _passing_bed(parameters: dict[str, Any]) -> dict[str, float]:
 
 
 def published_rows(study: Study) -> dict[str, str]:
-    """Return {row: row of Yan 2022, Table 3.8} of the rows, and settings of replicates, that have its factors."""
+    """Return {row: row of Yan 2022, Table 3.8} of the rows, and settings of replicates, that have its bumps."""
+    if all(ratio is None for ratio in equivalent_size_ratios(study).values()):
+        return {}
     with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:
         published = {tuple(float(row[name]) for name in PATTERN): row["row"] for row in csv.DictReader(stream)}
     levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in study.design_rows}
@@ -125,5 +128,5 @@ def replicate_settings(study: Study) -> dict[str, str]:
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:
-    """Return alpha_ER by run; None for a plain one."""
+    """Return alpha_ER by run; None for one without bumps."""
     return {run.name: run.parameters["derived"]["equivalent_size_ratio"] for run in study.runs}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -49,11 +50,11 @@ def below(folder: str) -> OfStudy:
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
     tables={"lines": "particle_size/lines.csv", "critical": "particle_size/critical_scale.csv"},
     caption="""
-    Worn volume of the plain sample, of the convex sample, its base and its bumps, over that of the plain sample
+    Worn volume of the plain sample, of the patterned sample, its base and its pattern, over that of the plain sample
     with the smallest particles simulated. Full lines: least squares, with one standard error. Dotted: the source's
     lines (Yan 2022, Eq 4.14 to 4.16, bumps as their difference), which are relative to scale 1. Dashed with grey: the
-    scale at which both samples wear alike, and its 95 % interval by Fieller's rule, from the difference of convex and
-    plain sample row by row. The counterpart of Yan 2022, Fig 4.14.
+    scale at which both samples wear alike, and its 95 % interval by Fieller's rule, from the difference of patterned
+    and plain sample row by row. The counterpart of Yan 2022, Fig 4.14.
     """,
 )
 def wear_against_scale(job: Job) -> Any:
@@ -64,7 +65,8 @@ def wear_against_scale(job: Job) -> Any:
     from workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
     from workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
 
-    wear, published = by_scale.wear_by_scale(read_summary(job.files.summary)), pd.read_csv(job.files.published)
+    wear = by_scale.wear_by_scale(read_summary(job.files.summary))
+    published = by_scale.lines_beside(pd.read_csv(job.files.published), wear)
     critical = by_scale.critical_scale(wear)
     reference = f"relative to the plain sample at particle scale {wear['reference_scale'].iloc[0]:g}"
     remarks = [*job.remarks, reference, by_scale.critical_scale_text(critical)]
@@ -77,9 +79,10 @@ def wear_against_scale(job: Job) -> Any:
     "Wear against ratios of size",
     inputs={"wear": "results/{study}/figures/wear_against_scale.csv", "published": PUBLISHED_LINES},
     told={"rows": bumps_and_particles},
+    when=lambda study: varies_scale(study) and bool(bumps_and_particles(study)),
     tables={"guidance": "particle_size/guidance.csv"},
     caption="""
-    Wear of the convex over that of the plain sample against four ratios of the median particle to a bump (Yan 2022,
+    Wear of the patterned over that of the plain sample against four ratios of the median particle to a bump (Yan 2022,
     Eq 4.18 to 4.21). Dotted: the source's lines. With one pattern all four ratios grow together, so the figure cannot
     tell which of them decides; the source holds that it is the equivalent radius, with wear reduced below 1. The
     table in `particle_size/guidance.csv` has the ratios of real particles, the largest scale that they allow, and how
@@ -88,7 +91,7 @@ def wear_against_scale(job: Job) -> Any:
     """,
 )
 def wear_against_size_ratios(job: Job) -> Any:
-    """Draw convex over plain wear against ratios of particle to bump; tell what these let expect."""
+    """Draw patterned over plain wear against ratios of particle to bump; tell what these let expect."""
     import numpy as np
     import pandas as pd
 
@@ -100,7 +103,7 @@ def wear_against_size_ratios(job: Job) -> Any:
     wear, lines = pd.read_csv(job.files.wear, dtype={"row": str}), pd.read_csv(job.files.published)
     rows = job.told.rows
     patterns = {row: Pattern(**given["pattern"]) for row, given in rows.items()}
-    real = Particles(**next(iter(rows.values()))["particles"])
+    real = next((Particles(**given["particles"]) for given in rows.values()), None)
     scales = {row: given["scale"] for row, given in rows.items()}
     ratios = {row: size_ratios(scales[row] * real.median_diameter, *patterns[row].bump) for row in rows}
     table = by_scale.wear_by_size_ratio(wear, ratios)
@@ -381,7 +384,7 @@ def size_findings(job: Job) -> Any:
     files = job.files
     steady, profiles, wear = (read_summary(path) for path in (files.steady, files.profiles, files.wear))
     critical, guidance = read_critical_scale(files.critical), pd.read_csv(files.guidance)
-    ratio = guidance["equivalent_radius"].iloc[0]  # of real particles: the pattern of all rows is one
+    ratio = next(iter(guidance["equivalent_radius"]), math.nan)  # of real particles: the pattern of all rows is one
     table = published_sizes.beside_the_source(pd.read_csv(files.published), steady, profiles, critical, ratio)
     packings = [pd.read_csv(path) for path in (files.published_packing, files.container, files.bed)]
     unsteady = int((~steady["steady"]).sum())

@@ -21,27 +21,17 @@ from postproc.reference.size_ratios import (
 
 @dataclass(frozen=True)
 class Pattern:
-    """A pattern of semi-ellipsoids, m: radii, height, distance of bumps in a row, and of rows, centre to centre.
-
-    across: whether the major radius points along the rows, across the travel
-    """
+    """A pattern of semi-ellipsoids, m: radii, height, free width between neighbours of a row (negative: overlap)."""
 
     major_radius: float
     minor_radius: float
     height: float
-    column_spacing: float
-    row_spacing: float
-    across: bool = False
+    gap: float
 
     @property
     def bump(self) -> tuple[float, float, float]:
         """Return a, b, h (m)."""
         return self.major_radius, self.minor_radius, self.height
-
-    @property
-    def gap(self) -> float:
-        """Return the free width (m) between neighbouring bumps of a row; negative where they overlap."""
-        return self.column_spacing - 2.0 * (self.major_radius if self.across else self.minor_radius)
 
 
 @dataclass(frozen=True)
@@ -90,13 +80,13 @@ def published_bias(pattern: Pattern, particles: Particles, scale: float, lines: 
 
 
 def guidance_table(
-    patterns: Mapping[str, Pattern], particles: Particles, scales: Mapping[str, float], lines: pd.DataFrame
+    patterns: Mapping[str, Pattern], particles: Particles | None, scales: Mapping[str, float], lines: pd.DataFrame
 ) -> pd.DataFrame:
     """Return a row of guidance per pattern, with the particle scale that a study simulates it at.
 
-    patterns, scales: by design row. Columns row, major_radius_m, minor_radius_m and height_m of the bump,
-    median_diameter_m of real particles, those of `guidance`, particle_scale, within_largest_scale, and published_bias
-    of that scale.
+    patterns, scales: by design row of a sample with bumps. Columns row, major_radius_m, minor_radius_m and height_m of
+    the bump, median_diameter_m of real particles, those of `guidance`, particle_scale, within_largest_scale, and
+    published_bias of that scale.
     """
     rows = [
         {
@@ -110,4 +100,4 @@ def guidance_table(
         }
         for row, pattern in patterns.items()
     ]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows) if rows else pd.DataFrame(columns=["row", "equivalent_radius"])

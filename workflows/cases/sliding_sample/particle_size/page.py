@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,23 +13,19 @@ from postproc.flow.packing import inner_means
 from postproc.mesh import PLAIN
 from postproc.reference.size_ratios import size_ratios
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import read_summary
+from postproc.tables.summary import patterned_name, read_summary
 from workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
+from workflows.cases.sliding_sample.particle_size.guidance import Pattern
 from workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT, AGREES, DIFFERS, UNSAID
 from workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX
 from workflows.report.sections import Block, Pictures, Section, Table, Text
 
 if TYPE_CHECKING:
     from workflows.config.design import Study
 
 WEAR, FORCE, RATE = "worn_volume_mm3", "mean_normal_force_N", "worn_volume_per_metre_mm3_per_m"
-BUMPS = "pattern_worn_volume_mm3"
-HEADS = {  # of columns whose unit their name has in brackets
-    "wear, convex (mm3/m)": ("wear, convex", "mm³/m"),
-    "wear, plain (mm3/m)": ("wear, plain", "mm³/m"),
-    "share of the bumps (%)": ("share of the bumps", "%"),
-}
+PATTERN = "pattern_worn_volume_mm3"
+BRACKETS, UNITS = re.compile(r"(.*) \((.*)\)"), {"mm3/m": "mm³/m", "%": "%"}  # of columns whose unit is in brackets
 
 
 def told(study: Study) -> dict[str, Any]:
@@ -58,14 +55,15 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
 def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return what is told of the critical scale, wear and sizes of every row, and the lines beside the source's."""
     said = pd.read_csv(folder / "particle_size" / "sentences.csv")["sentence"]
+    rows = wear_by_row(study, in_display_units(read_summary(folder / "summary.csv")))
     return [
         Text(" ".join(said)),
         Table(
-            wear_by_row(study, in_display_units(read_summary(folder / "summary.csv"))),
+            rows,
             "wear_by_row",
             "Wear over plain is the product of two factors: of the sums of normal forces, and of how far contacts slide"
             " under them while the sample travels as far.",
-            heads=HEADS,
+            heads={name: (found[1], UNITS[found[2]]) for name in rows if (found := BRACKETS.fullmatch(name))},
         ),
         Table(
             pd.read_csv(folder / "particle_size" / "lines.csv"),
@@ -77,26 +75,26 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
 
 
 def wear_by_row(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame:
-    """Return a line per row with its scale, layers and sizes, and the convex sample's wear over its plain twin's.
+    """Return a line per row with its scale, layers and sizes, and the patterned sample's wear over its plain twin's.
 
     summary: in display units
     """
-    convex = summary[summary["surface"] == CONVEX].set_index("row")
-    plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(convex.index)
-    over = convex[[WEAR, FORCE]] / plain[[WEAR, FORCE]]
-    derived = [study["parameters"][run]["derived"] for run in convex["run"]]
+    patterned = summary[summary["surface"] != PLAIN].set_index("row")
+    plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(patterned.index)
+    over = patterned[[WEAR, FORCE]] / plain[[WEAR, FORCE]]
+    derived = [study["parameters"][run]["derived"] for run in patterned["run"]]
     columns = {
-        "particle_scale": convex["particle_scale"],
+        "particle_scale": patterned["particle_scale"],
         "layers_of_particles": [each["layers"] for each in derived],
         "equivalent_size_ratio": [each["equivalent_size_ratio"] for each in derived],
         "wear_over_plain": over[WEAR],
         "normal_force_over_plain": over[FORCE],
         "sliding_over_plain": over[WEAR] / over[FORCE],
-        "wear, convex (mm3/m)": convex[RATE],
+        f"wear, {patterned_name(summary['surface'])} (mm3/m)": patterned[RATE],
         "wear, plain (mm3/m)": plain[RATE],
-        "share of the bumps (%)": 100.0 * convex[BUMPS] / convex[WEAR],
+        "share of the pattern (%)": 100.0 * patterned[PATTERN] / patterned[WEAR],
     }
-    return pd.DataFrame(columns, index=convex.index).reset_index()
+    return pd.DataFrame(columns, index=patterned.index).reset_index()
 
 
 def beside_the_source(folder: Path) -> list[Block]:
@@ -129,11 +127,12 @@ def steady_windows(folder: Path) -> list[Block]:
 def guidance(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return what the sizes of real particles and bumps let expect, and the ratios at every scale."""
     table = in_display_units(pd.read_csv(folder / "particle_size" / "guidance.csv", dtype={"row": str}))
+    if not study["told"]["bumps"]:
+        return [Text("The samples have no bumps that particles could be compared with.")]
     ratios = []
     for row, given in study["told"]["bumps"].items():
-        pattern, scale = given["pattern"], given["scale"]
-        bump = (pattern["major_radius"], pattern["minor_radius"], pattern["height"])
-        found = size_ratios(scale * given["particles"]["median_diameter"], *bump)
+        pattern, scale = Pattern(**given["pattern"]), given["scale"]
+        found = size_ratios(scale * given["particles"]["median_diameter"], *pattern.bump)
         ratios.append({"row": row, "particle_scale": scale, **vars(found)})
     return [
         Text(

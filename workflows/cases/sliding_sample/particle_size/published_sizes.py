@@ -11,7 +11,7 @@ import pandas as pd
 from postproc.flow.packing import MEASURES, inner_means
 from postproc.mesh import PLAIN
 from postproc.statistics.lines import Crossing
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX, patterned_curve
 
 AGREES, DIFFERS, UNSAID = "agrees", "differs", "cannot be said"
 # -, of a value told as "about": what is read off a figure's axis and told in whole tens of per cent
@@ -54,7 +54,8 @@ def beside_the_source(
 
     published: as in config/published/particle_size_results.csv; steady: as from `steady_by_scale`
     profiles: of layers over the samples: surface, particle_scale, height_mm and velocity_m_per_s
-    critical: our critical scale, with its interval as low and high, or None; ratio: -, alpha_ER of real particles
+    critical: our critical scale, with its interval as low and high, or None
+    ratio: -, alpha_ER of real particles; NaN of samples without bumps, whose critical scale is not that of the source
 
     A number "about" agrees if our range reaches to within ABOUT of it; a bound if our whole range keeps it. Where no
     scale in question was simulated, nothing can be said. Windows of travel are no measurement of ours and left out.
@@ -64,7 +65,7 @@ def beside_the_source(
     for each in published[published["quantity"] != "steady"].itertuples():
         if each.quantity in ("critical_scale", "critical_size_ratio"):
             factor = 1.0 if each.quantity == "critical_scale" else ratio
-            bounded = critical is not None and critical.bounded
+            bounded = critical is not None and critical.bounded and np.isfinite(ratio)
             low, high = (factor * critical.low, factor * critical.high) if bounded else (np.nan, np.nan)
             of = ""
         else:
@@ -142,22 +143,24 @@ def critical_sentences(critical: Crossing | None, published: float, wear: pd.Dat
     """
     scales = sorted(set(wear["particle_scale"]))
     table = wear.pivot(index="row", columns="curve", values="relative_wear")
-    over = table[CONVEX] / table[PLAIN]
+    name = patterned_curve(wear)
+    theirs = "" if name == CONVEX else f", for a {CONVEX} sample,"
+    over = table[name] / table[PLAIN]
     less, more = (list(over.index[chosen]) for chosen in (over < 1.0, over >= 1.0))
-    said = [f"The convex sample wears less than the plain one in {_listed(less)}, and not less in {_listed(more)}."]
+    said = [f"The {name} sample wears less than the plain one in {_listed(less)}, and not less in {_listed(more)}."]
     if critical is None or not critical.bounded:
         crossing = "" if critical is None else f", whose straight lines cross at {critical.value:.2g},"
-        few = f"{len(table)} rows{crossing} do not bound a critical scale; the source's is about {published:g}."
+        few = f"{len(table)} rows{crossing} do not bound a critical scale; the source's{theirs} is about {published:g}."
         return [*said, few]
     interval = f"{critical.value:.2g} (95 % interval {critical.low:.2g} to {critical.high:.2g})"
     inside = critical.low <= published <= critical.high
     word = "holds" if inside else "does not hold"
-    said.append(f"Critical scale: {interval}, which {word} the source's of about {published:g}.")
+    said.append(f"Critical scale: {interval}, which {word} the source's{theirs} of about {published:g}.")
     if scales[0] > critical.value or scales[-1] < critical.value:
         said.append(
             f"It lies outside the scales simulated ({scales[0]:g} to {scales[-1]:g}): the line is extended to it."
         )
-    if not inside:
+    if not inside and name == CONVEX:
         said.append(
             "What differs from the source, and a difference may come from: the size distribution, of which the source"
             " gives the median only; how bumps are turned and rows staggered, which its text leaves open; the ramp"

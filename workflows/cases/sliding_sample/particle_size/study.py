@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from workflows.cases.sliding_sample.study import plain_runs
+from workflows.config.patterns import pattern_of
 from workflows.engine.case import Parameters
 
 if TYPE_CHECKING:
     from workflows.config.design import Study
-
-LENGTHS = ("major_radius", "minor_radius", "height", "column_spacing", "row_spacing")  # of a pattern
 
 
 def by_scale(runs: Mapping[str, Parameters]) -> dict[float, Parameters]:
@@ -44,15 +43,21 @@ def bed_floors(study: Study) -> list[float]:
 
 
 def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
-    """Return by row pattern, real particles and scale of its convex run, see `guidance`."""
-    return {run.row: _bumps_and_particles(run.parameters) for run in study.runs if run.parameters["pattern"]}
+    """Return by row pattern, real particles and scale of its run with bumps, see `guidance`."""
+    return {
+        run.row: _bumps_and_particles(run.parameters)
+        for run in study.runs
+        if run.parameters["derived"]["equivalent_size_ratio"] is not None
+    }
 
 
 def _bumps_and_particles(parameters: Parameters) -> dict[str, Any]:
-    pattern, particle = parameters["pattern"], parameters["particle"]
+    pattern, particle = pattern_of(parameters["pattern"]), parameters["particle"]
     return {
-        "pattern": {name: pattern[f"{name}_m"] for name in LENGTHS}
-        | {"across": pattern["major_axis"] == "across_travel"},
+        "pattern": {
+            **dict(zip(("major_radius", "minor_radius", "height"), pattern.bump_axes, strict=True)),
+            "gap": pattern.column_spacing - 2.0 * pattern.half_width,
+        },
         "particles": {
             "median_diameter": particle["median_diameter_m"] / particle["scale"],
             "diameters": [diameter / particle["scale"] for diameter in particle["diameters_m"]],

@@ -12,15 +12,10 @@ import pandas as pd
 from postproc.mesh import PLAIN
 from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, SizeRatios, size_ratios
 from postproc.statistics.lines import FEWEST_POINTS, Crossing, crossing, fitted_line
+from postproc.tables.summary import patterned_name
 
-CONVEX = "convex"
-# Curve -> surface and column of summary.csv (Yan 2022, Eq 4.14 to 4.17).
-CURVES = {
-    "plain": (PLAIN, "worn_volume_m3"),
-    "convex": (CONVEX, "worn_volume_m3"),
-    "base": (CONVEX, "base_worn_volume_m3"),
-    "bumps": (CONVEX, "pattern_worn_volume_m3"),
-}
+CONVEX = "convex"  # the source's pattern
+PARTS = {"base": "base_worn_volume_m3", "bumps": "pattern_worn_volume_m3"}  # curves of patterned samples' parts
 RATIOS = ("equivalent_radius", "projected_area", "surface_area", "volume")
 LINE_COLUMNS = ("intercept", "intercept_error", "slope", "slope_error", "r_squared")
 
@@ -29,18 +24,24 @@ def wear_by_scale(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the wear of every run, whole and by part, over that of the plain sample with the smallest particles.
 
     summary: row, surface, particle_scale and the Archard volumes of every run, all over the same travel
-    Columns row, particle_scale, curve (of CURVES), relative_wear (-, Yan 2022, Eq 4.13) and reference_scale, that of
-    the plain sample that it is relative to (the source's is 1); rows that repeat the smallest scale are averaged.
+    Columns row, particle_scale, curve (surfaces, and PARTS of patterned ones; Eq 4.14 to 4.17), relative_wear (-, Yan
+    2022, Eq 4.13) and reference_scale, that of the plain sample that it is relative to (the source's is 1); rows that
+    repeat the smallest scale are averaged.
     """
-    plain = summary[summary["surface"] == PLAIN]
+    plain, patterned = (summary[(summary["surface"] == PLAIN) == which] for which in (True, False))
     smallest = plain["particle_scale"].min()
     reference = plain.loc[plain["particle_scale"] == smallest, "worn_volume_m3"].mean()
     tables = []
-    for curve, (surface, column) in CURVES.items():
-        one = summary.loc[summary["surface"] == surface, ["row", "particle_scale", column]]
-        one = one.rename(columns={column: "relative_wear"})
+    whole = {PLAIN: (plain, "worn_volume_m3"), patterned_name(summary["surface"]): (patterned, "worn_volume_m3")}
+    for curve, (runs, column) in (whole | {part: (patterned, column) for part, column in PARTS.items()}).items():
+        one = runs[["row", "particle_scale", column]].rename(columns={column: "relative_wear"})
         tables.append(one.assign(relative_wear=one["relative_wear"] / reference, curve=curve))
     return pd.concat(tables, ignore_index=True).assign(reference_scale=smallest)
+
+
+def patterned_curve(wear: pd.DataFrame) -> str:
+    """Return the curve of the samples that are not plain, of a table as from `wear_by_scale`."""
+    return patterned_name(set(wear["curve"]) - set(PARTS))
 
 
 def wear_lines(wear: pd.DataFrame) -> pd.DataFrame:
@@ -56,16 +57,17 @@ def wear_lines(wear: pd.DataFrame) -> pd.DataFrame:
 
 
 def critical_scale(wear: pd.DataFrame) -> Crossing | None:
-    """Return the particle scale at which convex and plain samples wear alike, None from fewer than three rows.
+    """Return the particle scale at which patterned and plain samples wear alike, None from fewer than three rows.
 
     Both samples of a row have the same bed, so what is fitted is their difference, row by row.
     """
     table = wear.pivot(index="row", columns="curve", values="relative_wear")
     scale = wear.drop_duplicates("row").set_index("row")["particle_scale"].loc[table.index]
-    table, scale = table.dropna(subset=["convex", "plain"]), scale[table[["convex", "plain"]].notna().all(axis=1)]
+    both = [patterned_curve(wear), PLAIN]
+    table, scale = table.dropna(subset=both), scale[table[both].notna().all(axis=1)]
     if len(table) < FEWEST_POINTS or scale.nunique() < 2:
         return None
-    return crossing(scale.to_numpy(), table["convex"].to_numpy(), table["plain"].to_numpy())
+    return crossing(scale.to_numpy(), *(table[curve].to_numpy() for curve in both))
 
 
 def critical_scale_text(found: Crossing | None) -> str:
@@ -73,7 +75,7 @@ def critical_scale_text(found: Crossing | None) -> str:
     if found is None:
         return "too few scales for a critical one"
     if not found.bounded:
-        return "the scales simulated do not tell a critical one: convex and plain wear may be parallel"
+        return "the scales simulated do not tell a critical one: patterned and plain wear may be parallel"
     return f"critical scale {found.value:.2g}, 95 % interval {found.low:.2g} to {found.high:.2g}"
 
 
@@ -116,13 +118,15 @@ def velocity_bounds(published: pd.DataFrame, table: pd.DataFrame) -> pd.DataFram
 
 
 def wear_by_size_ratio(wear: pd.DataFrame, ratios: Mapping[str, SizeRatios]) -> pd.DataFrame:
-    """Return the convex sample's wear over its plain twin's beside the four ratios of size (Yan 2022, Fig 4.17).
+    """Return the patterned sample's wear over its plain twin's beside the four ratios of size (Yan 2022, Fig 4.17).
 
-    ratios: of the scaled particles, by row. Columns row, particle_scale, wear_over_plain and RATIOS.
+    ratios: of the scaled particles, by row; rows without are left out. Columns row, particle_scale, wear_over_plain and
+    RATIOS.
     """
     table = wear.pivot(index=["row", "particle_scale"], columns="curve", values="relative_wear").reset_index()
+    table = table[table["row"].isin(ratios)].reset_index(drop=True)
     rows = [asdict(ratios[row]) for row in table["row"]]
-    over = (table["convex"] / table["plain"]).rename("wear_over_plain")
+    over = (table[patterned_curve(wear)] / table[PLAIN]).rename("wear_over_plain")
     return pd.concat([table[["row", "particle_scale"]], over, pd.DataFrame(rows, columns=list(RATIOS))], axis=1)
 
 
@@ -132,10 +136,18 @@ def published_by_size_ratio(lines: pd.DataFrame, scales: np.ndarray) -> pd.DataF
     lines: curve, intercept and slope, as in config/published/particle_size_lines.csv
     """
     line = lines.set_index("curve")
-    value = {name: line.loc[name, "intercept"] + line.loc[name, "slope"] * scales for name in ("convex", "plain")}
+    value = {name: line.loc[name, "intercept"] + line.loc[name, "slope"] * scales for name in (CONVEX, PLAIN)}
     ratios = [asdict(size_ratios(scale * PUBLISHED_DIAMETER, *PUBLISHED_PATTERN)) for scale in scales]
-    table = pd.DataFrame({"particle_scale": scales, "wear_over_plain": value["convex"] / value["plain"]})
+    table = pd.DataFrame({"particle_scale": scales, "wear_over_plain": value[CONVEX] / value[PLAIN]})
     return pd.concat([table, pd.DataFrame(ratios)], axis=1)
+
+
+def lines_beside(published: pd.DataFrame, wear: pd.DataFrame) -> pd.DataFrame:
+    """Return the published lines that ours can be set beside: those of patterned samples for the source's pattern only.
+
+    wear: as from `wear_by_scale`
+    """
+    return published if patterned_curve(wear) == CONVEX else published[published["curve"] == PLAIN]
 
 
 def beside_published(lines: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:

@@ -25,7 +25,7 @@ VELOCITIES = tuple(name for name in PANELS if name != ANGULAR)
 STYLES = {"central": ("-", "o"), "side": ("--", "^")}
 FILLS = {"central": "white", "side": "#c9c9c9"}  # of published marks
 PUBLISHED_MARKS = {"about": "D", "below": "<", "above": ">"}
-STRONG, FAINT = 1.4, 0.8  # pt, curves of convex and of plain samples
+STRONG, FAINT = 1.4, 0.8  # pt, curves of patterned and of plain samples
 END_ROOM = 0.1  # -, of the travel, for the names at the ends of curves
 HEIGHT_ROOM = 0.1  # -, of a profile's height, above its highest mark
 FEW_VALUES = 6  # up to which a curve shows each of its values as a mark
@@ -41,7 +41,7 @@ def along_travel(
     remarks: Sequence[str],
     published: pd.DataFrame | None = None,
 ) -> Figure:
-    """Draw a measure of every run against travel (mm), a panel per regime; convex runs strong, plain ones faint.
+    """Draw a measure of every run against travel (mm), a panel per regime; patterned runs strong, plain ones faint.
 
     table: run, row, surface, regime, travel_mm and the column; label: of the measure's axis, with its unit
     window: steady window of the source (mm), shaded as far as the travel reaches; None to leave it out

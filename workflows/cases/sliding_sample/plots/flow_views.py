@@ -73,11 +73,11 @@ def worn_nodes(mesh: SurfaceMesh) -> np.ndarray:
 
 
 def sample_lines(mesh: SurfaceMesh) -> dict[str, np.ndarray]:
-    """Return the sample's lines (k, 2, 2) of ends in m in every view: its cuts, and from below its edge and bumps."""
+    """Return the sample's lines (k, 2, 2) of ends in m in every view: its cuts, and from below its edge and pattern."""
     turned = SurfaceMesh(mesh.points[:, [1, 0, 2]], mesh.triangles[:, ::-1], mesh.cell_data, mesh.point_data)
     worn = mesh.triangles[worn_faces(mesh)]
-    bumps = mesh.triangles[mesh.cell_data["part"] > 0] if "part" in mesh.cell_data else worn[:0]
-    edges = np.concatenate([boundary_edges(worn), boundary_edges(bumps)])
+    pattern = mesh.triangles[mesh.cell_data["part"] > 0] if "part" in mesh.cell_data else worn[:0]
+    edges = np.concatenate([boundary_edges(worn), boundary_edges(pattern)])
     return {SIDE: section(mesh, 0.0), BOTTOM: mesh.points[edges][:, :, [1, 0]], ACROSS: section(turned, 0.0)}
 
 

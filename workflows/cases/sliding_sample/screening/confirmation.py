@@ -69,9 +69,9 @@ def confirmation_table(predictions: pd.DataFrame, summary: pd.DataFrame, regimes
     predictions: as from `best_of_regimes`; summary, regimes: of the confirming study, whose rows have the same names
     Columns row, found_regime, predicted, run_low, run_high, simulated, plain (all mm3_per_m), inside, over_predicted.
     """
-    convex, plain = (summary[(summary["surface"] == PLAIN) == which].set_index("row") for which in (False, True))
+    patterned, plain = (summary[(summary["surface"] == PLAIN) == which].set_index("row") for which in (False, True))
     table = predictions[["row", *(f"{name}_m3_per_m" for name in PREDICTED)]]
-    simulated = table["row"].map(convex[WEAR])
+    simulated = table["row"].map(patterned[WEAR])
     table = table.assign(
         found_regime=table["row"].map(groups_of_rows(regimes)),
         simulated_m3_per_m=simulated,

@@ -34,7 +34,7 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
 
 @figure(
     "Wear",
-    "Wear of convex over plain samples",
+    "Wear of patterned over plain samples",
     inputs={
         "summary": SUMMARY,
         "history": "results/{study}/figures/wear_against_travel.csv",
@@ -43,7 +43,7 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
     told={"size_ratios": equivalent_size_ratios, "settings": replicate_settings, "published_rows": published_rows},
     when=compares_rows,
     caption="""
-    Worn volume of the convex sample over that of the plain sample under the same conditions, lowest first. Below 1
+    Worn volume of the patterned sample over that of the plain sample under the same conditions, lowest first. Below 1
     (dashed line) the pattern wears less in total. Black bars: where rows are repeated with other packings, the 95 %
     interval of the (geometric) mean over them, from one scatter for all rows; else the range over the single wear
     cycles, which shows the scatter along the travel and is no confidence interval. Hollow marks: what the source's
@@ -51,7 +51,7 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
     """,
 )
 def relative_wear(job: Job) -> Any:
-    """Draw convex over plain wear."""
+    """Draw patterned over plain wear."""
     import pandas as pd
 
     from postproc.tables.summary import read_history, read_summary
@@ -118,10 +118,10 @@ def relative_velocity(job: Job) -> Any:
     when=finds_regimes,
     caption="""
     Wear volume per length of travel over stretches of some 10 mm (of whole cycles, where contacts are sampled), over
-    the largest of all runs and stretches (Yan 2022, Eq 3.8 and 3.9). Rows stand in the panel of their convex run's
-    flow regime, plain twins with them. Grey: the source's steady window, where the travel gets there. The counterpart
-    of Yan 2022, Fig 3.12, which gives no numbers in its text: the gradient is significantly higher where the flow is
-    continuous.
+    the largest of all runs and stretches (Yan 2022, Eq 3.8 and 3.9). Rows stand in the panel of their patterned
+    run's flow regime, plain twins with them. Grey: the source's steady window, where the travel gets there. The
+    counterpart of Yan 2022, Fig 3.12, which gives no numbers in its text: the gradient is significantly higher where
+    the flow is continuous.
     """,
 )
 def wear_gradient(job: Job) -> Any:
@@ -244,12 +244,12 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
     told={"settings": replicate_settings, "beds": passing_beds},
     when=finds_regimes,
     caption="""
-    Wear per length of travel over the largest of the runs of the same flow regime, convex and plain together (Yan
-    2022, Eq 3.10), least convex wear first. Convex samples are split into base and bumps. Rows stand in the panel of
-    their convex run's regime, plain twins with them. Black bars: 95 % interval of the mean where rows are repeated
-    with other packings. Unlike wear over the plain twin's, this compares runs of different velocity, thickness and,
-    where the line below the figure says so, particle scale. The counterpart of Yan 2022, Fig 3.13. The table has the
-    wear rate too, wear of the travel over the flow of mass (Eq 3.11).
+    Wear per length of travel over the largest of the runs of the same flow regime, patterned and plain together
+    (Yan 2022, Eq 3.10), least patterned wear first. Patterned samples are split into base and pattern. Rows stand in
+    the panel of their patterned run's regime, plain twins with them. Black bars: 95 % interval of the mean where rows
+    are repeated with other packings. Unlike wear over the plain twin's, this compares runs of different
+    velocity, thickness and, where the line below the figure says so, particle scale. The counterpart of Yan 2022, Fig
+    3.13. The table has the wear rate too, wear of the travel over the flow of mass (Eq 3.11).
     """,
 )
 def wear_by_regime(job: Job) -> Any:
@@ -275,9 +275,9 @@ def wear_by_regime(job: Job) -> Any:
     caption="""
     Contact forces square to the faces, added up over the sample without its ramp, mean over the travel. Bars of error:
     standard deviation between stretches of some 10 mm of travel, where there are three or more; from moment to moment
-    the force scatters more. On bumps this sum holds forces that push one another, up and down the two sides of a bump:
-    it exceeds the weight of the bed, which the vertical force in the figure "Forces on the sample" does not. The
-    counterpart of Yan 2022, Fig 3.16.
+    the force scatters more. On a pattern this sum holds forces that push one another, up and down the two sides of
+    each of its shapes: it exceeds the weight of the bed, which the vertical force in the figure "Forces on the
+    sample" does not. The counterpart of Yan 2022, Fig 3.16.
     """,
 )
 def normal_force_by_regime(job: Job) -> Any:

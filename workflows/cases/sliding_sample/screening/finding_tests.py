@@ -117,8 +117,8 @@ def _steady(evidence: Evidence) -> Verdict:
 
 
 def _gradient(evidence: Evidence) -> Verdict:
-    convex = evidence.gradients[evidence.gradients["surface"] != PLAIN]
-    means = convex.groupby("regime")["relative_gradient"].mean()
+    patterned = evidence.gradients[evidence.gradients["surface"] != PLAIN]
+    means = patterned.groupby("regime")["relative_gradient"].mean()
     found = ", ".join(f"{regime} {value:.2f}" for regime, value in means.items())
     if not {CONTINUOUS, DISCONTINUOUS} <= set(means.index):
         return Verdict(f"mean {found}", UNSAID, "the runs are not of both regimes")
@@ -249,12 +249,12 @@ def _rolling_discontinuous(evidence: Evidence) -> Verdict:
 def _taken_along(evidence: Evidence) -> Verdict:
     if reason := _missing(evidence, BEST):
         return Verdict("", UNSAID, reason)
-    convex, plain = evidence.rows.loc[BEST, ["velocity_share", "plain_velocity_share"]].astype(float)
-    if np.isnan(convex) or np.isnan(plain):
+    patterned, plain = evidence.rows.loc[BEST, ["velocity_share", "plain_velocity_share"]].astype(float)
+    if np.isnan(patterned) or np.isnan(plain):
         return Verdict("", UNSAID, "too few particles next to R5 or its twin")
-    shares = f"{PERCENT * convex:.0f} % of the sample's velocity, over the plain twin {PERCENT * plain:.0f} %"
+    shares = f"{PERCENT * patterned:.0f} % of the sample's velocity, over the plain twin {PERCENT * plain:.0f} %"
     found = f"bottom layer at {shares}"
-    return _verdict(found, convex >= TAKEN_ALONG and plain <= LEFT_BEHIND)
+    return _verdict(found, patterned >= TAKEN_ALONG and plain <= LEFT_BEHIND)
 
 
 def _numbers(values: pd.Series) -> str:

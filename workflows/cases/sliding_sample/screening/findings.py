@@ -56,7 +56,7 @@ class Evidence:
 
     @property
     def continuous(self) -> pd.DataFrame:
-        """Return the rows whose flow over the convex sample is continuous."""
+        """Return the rows whose flow over the patterned sample is continuous."""
         return self.rows[self.rows["regime"] == CONTINUOUS]
 
 
@@ -111,35 +111,35 @@ def rows_of_study(
 ) -> pd.DataFrame:
     """Return a line per row of the source that the study has, index row (its name there); means over replicates.
 
-    Columns: wear_over_plain, interval_low, interval_high, wear_m3_per_m (convex), force_over_plain, base_share,
-    bump_share, relative_velocity, regime and steady of the convex sample, spin_over_plain (bottom layer over the
+    Columns: wear_over_plain, interval_low, interval_high, wear_m3_per_m (patterned), force_over_plain, base_share,
+    bump_share, relative_velocity, regime and steady of the patterned sample, spin_over_plain (bottom layer over the
     sample), velocity_share and plain_velocity_share (of the bottom layer, in the sample's velocity).
     """
     table = summary.merge(regimes[["run", "relative_velocity", "regime", "steady"]], on="run", how="left")
-    convex, plain = (table[(table["surface"] == PLAIN) == which].set_index("row") for which in (False, True))
-    wear = convex["worn_volume_m3"]
-    layer = profiles[(profiles["zone"] == CENTRAL) & (profiles["layer"] == 1)].set_index(["surface", "row"])
-    bottom = {kind: layer.loc[kind] if kind in layer.index else layer.iloc[:0] for kind in ("convex", PLAIN)}
-    spin = {kind: one["angular_speed_deg_per_s"].reindex(wear.index) for kind, one in bottom.items()}
-    speed = {kind: one["velocity_m_per_s"].reindex(wear.index) for kind, one in bottom.items()}
+    patterned, plain = (table[(table["surface"] == PLAIN) == which].set_index("row") for which in (False, True))
+    wear = patterned["worn_volume_m3"]
+    layer = profiles[(profiles["zone"] == CENTRAL) & (profiles["layer"] == 1)]
+    over, beside = (
+        layer[(layer["surface"] == PLAIN) == which].set_index("row").reindex(wear.index) for which in (False, True)
+    )
     rows = pd.DataFrame(
         {
-            "wear_over_plain": convex["wear_over_plain"],
-            "wear_m3_per_m": wear / convex["travel_m"],
-            "force_over_plain": convex["mean_normal_force_N"] / plain["mean_normal_force_N"].reindex(wear.index),
-            "base_share": convex["base_worn_volume_m3"] / wear,
-            "bump_share": convex["pattern_worn_volume_m3"] / wear,
-            "relative_velocity": convex["relative_velocity"],
-            "spin_over_plain": spin["convex"] / spin[PLAIN],
-            "velocity_share": speed["convex"] / convex["velocity_m_per_s"],
-            "plain_velocity_share": speed[PLAIN] / convex["velocity_m_per_s"],
-            "regime": convex["regime"],
-            "steady": convex["steady"],
+            "wear_over_plain": patterned["wear_over_plain"],
+            "wear_m3_per_m": wear / patterned["travel_m"],
+            "force_over_plain": patterned["mean_normal_force_N"] / plain["mean_normal_force_N"].reindex(wear.index),
+            "base_share": patterned["base_worn_volume_m3"] / wear,
+            "bump_share": patterned["pattern_worn_volume_m3"] / wear,
+            "relative_velocity": patterned["relative_velocity"],
+            "spin_over_plain": over["angular_speed_deg_per_s"] / beside["angular_speed_deg_per_s"],
+            "velocity_share": over["velocity_m_per_s"] / patterned["velocity_m_per_s"],
+            "plain_velocity_share": beside["velocity_m_per_s"] / patterned["velocity_m_per_s"],
+            "regime": patterned["regime"],
+            "steady": patterned["steady"],
         }
     )
     intervals = relative_wear_intervals(summary, settings).set_index("run")
     for name in ("interval_low", "interval_high"):
-        rows[name] = convex["run"].map(intervals[name])
+        rows[name] = patterned["run"].map(intervals[name])
     rows = rows[[row in published_rows for row in rows.index]]
     return _by_published_row(rows, published_rows)
 

@@ -1,5 +1,5 @@
-"""Sections of the page of a study whose flow regimes are found: convex beside plain, the source's findings, the flow,
-and, where the study has a regression, its models and best designs.
+"""Sections of the page of a study whose flow regimes are found: patterned beside plain, the source's findings, the
+flow, and, where the study has a regression, its models and best designs.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import pandas as pd
 
 from postproc.mesh import PLAIN
 from postproc.tables.display import in_display_units
-from postproc.tables.summary import read_summary
+from postproc.tables.summary import patterned_name, read_summary
 from workflows.cases.sliding_sample.study import has_findings
 from workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 
@@ -55,26 +55,26 @@ def read_with_texts(path: Path) -> pd.DataFrame:
 
 
 def wear_by_row(study: Mapping[str, Any], folder: Path) -> pd.DataFrame:
-    """Return wear, forces and regime of every row, convex beside plain."""
+    """Return wear, forces and regime of every row, patterned beside plain."""
     summary = in_display_units(read_summary(folder / "summary.csv"))
     regimes = read_summary(folder / "flow" / "regimes.csv").set_index("run")
-    convex = summary[summary["surface"] != PLAIN].set_index("row")
-    plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(convex.index)
-    flow = regimes.reindex(convex["run"]).set_index(convex.index)
+    patterned = summary[summary["surface"] != PLAIN].set_index("row")
+    plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(patterned.index)
+    flow = regimes.reindex(patterned["run"]).set_index(patterned.index)
     rate = "worn_volume_per_metre_mm3_per_m"
     table = pd.DataFrame(
         {
-            "particle_scale": [study["parameters"][run]["particle"]["scale"] for run in convex["run"]],
+            "particle_scale": [study["parameters"][run]["particle"]["scale"] for run in patterned["run"]],
             "regime": flow["regime"],
             "flow_steady": flow["steady"].map({True: "yes", False: "no"}),
             "relative_velocity_percent": 100.0 * flow["relative_velocity"],
-            "wear_over_plain": convex["wear_over_plain"],
-            "convex_wear_mm3_per_m": convex[rate],
+            "wear_over_plain": patterned["wear_over_plain"],
+            f"{patterned_name(summary['surface'])}_wear_mm3_per_m": patterned[rate],
             "plain_wear_mm3_per_m": plain[rate],
-            "pattern_share_percent": 100.0 * convex["pattern_worn_volume_mm3"] / convex["worn_volume_mm3"],
-            "normal_force_over_plain": convex["mean_normal_force_N"] / plain["mean_normal_force_N"],
+            "pattern_share_percent": 100.0 * patterned["pattern_worn_volume_mm3"] / patterned["worn_volume_mm3"],
+            "normal_force_over_plain": patterned["mean_normal_force_N"] / plain["mean_normal_force_N"],
         },
-        index=convex.index,
+        index=patterned.index,
     )
     return table.reset_index()
 

@@ -1,6 +1,6 @@
 """Runs of a screening study by flow regime: wear gradient, relative wear and normal force, as the source groups them.
 
-A design row is in the group of its convex run's regime, its plain twin with it (Yan 2022, Fig 3.12, 3.13 and 3.16).
+A design row is in the group of its patterned run's regime, its plain twin with it (Yan 2022, Fig 3.12, 3.13 and 3.16).
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ def wear_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
     per_metre = table["worn_volume_m3"] / table["travel_m"]
     relative = relative_to_largest(per_metre, table["regime"])
     parts = {
-        f"{part}_relative_wear": relative * table[f"{part}_worn_volume_m3"] / table["worn_volume_m3"]
-        for part in ("base", "bump")
+        f"{name}_relative_wear": relative * table[f"{part}_worn_volume_m3"] / table["worn_volume_m3"]
+        for name, part in (("base", "base"), ("bump", "pattern"))
     }
     return table[["run", "row", "surface", "regime"]].assign(relative_wear=relative, **parts).reset_index(drop=True)
 

@@ -44,7 +44,7 @@ def confirmation(job: Job) -> Any:
     """Draw what the runs of the best designs wear against what was predicted of them."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
+    from postproc.tables.summary import patterned_name, read_summary
     from workflows.cases.sliding_sample.screening.confirmation import (
         check_fidelity,
         confirmation_remarks,
@@ -54,8 +54,10 @@ def confirmation(job: Job) -> Any:
 
     predictions = pd.read_csv(job.files.prediction)
     check_fidelity(predictions, job.told.fidelity, job.files.prediction)
-    table = confirmation_table(predictions, read_summary(job.files.summary), read_summary(job.files.regimes))
-    return figures.confirmation(table, [*job.remarks, *confirmation_remarks(table)]), table
+    summary = read_summary(job.files.summary)
+    table = confirmation_table(predictions, summary, read_summary(job.files.regimes))
+    remarks = [*job.remarks, *confirmation_remarks(table)]
+    return figures.confirmation(table, patterned_name(summary["surface"]), remarks), table
 
 
 @tables(

@@ -7,7 +7,7 @@ import pytest
 from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
 from tests import PUBLISHED
 from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
-    CURVES,
+    PARTS,
     RATIOS,
     beside_published,
     critical_scale,
@@ -50,7 +50,7 @@ def summary(scales=SCALES, noise=0.0, volume=4e-9):
 def test_wear_is_relative_to_the_plain_sample_with_the_smallest_particles():
     """The plain sample at scale 1 is 1 itself, whatever the volumes; base and bumps of the convex one add up."""
     wear = wear_by_scale(summary())
-    assert set(wear["curve"]) == set(CURVES) and set(wear["reference_scale"]) == {1.0}
+    assert set(wear["curve"]) == {"plain", "convex", *PARTS} and set(wear["reference_scale"]) == {1.0}
     table = wear.pivot(index="particle_scale", columns="curve", values="relative_wear")
     assert table.loc[1.0, "plain"] == pytest.approx(1.0, rel=ROUNDING)
     assert np.allclose(table["base"] + table["bumps"], table["convex"], rtol=ROUNDING)

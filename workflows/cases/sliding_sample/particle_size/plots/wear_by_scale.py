@@ -10,17 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import BLUE, LARGEST_HEIGHT, ORANGE, OTHER_COLOUR, SMALLEST_FONT, colour, new_figure
+from postproc.mesh import PLAIN
+from postproc.plots.style import BLUE, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
 from postproc.statistics.lines import FEWEST_POINTS, Crossing, fitted_line
 from workflows.cases.sliding_sample.particle_size.plots.contacts import MARKERS, PUBLISHED_MARKS, scale_colours
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS
+from workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS, patterned_curve
 
-CURVES = {  # colour, marker and name
-    "plain": (ORANGE, "s", "plain sample"),
-    "convex": (BLUE, "o", "convex sample"),
-    "base": ("#009E73", "^", "its base"),
-    "bumps": ("#CC79A7", "v", "its bumps"),
-}
+PARTS = {"base": ("#009E73", "^", "its base"), "bumps": ("#CC79A7", "v", "its pattern")}  # colour, marker and name
 RATIO_NAMES = {
     "equivalent_radius": "equivalent radius",
     "projected_area": "projected area",
@@ -42,16 +38,17 @@ def wear_against_scale(
     """Draw relative wear (-) against particle scale with fitted lines, and the published lines beside them.
 
     wear: as from `wear_by_scale.wear_by_scale`; published: curve, intercept, slope, source
-    critical: where convex and plain meet, with its interval as a bar at the bottom; None where too few scales tell
+    critical: where patterned and plain meet, with its interval as a bar at the bottom; None where too few scales tell
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes = figure.subplots()
     low, high = wear["particle_scale"].min(), wear["particle_scale"].max()
     room = ROOM * max(high - low, 1.0)
     places = np.linspace(low - room, high + room, POINTS)
-    for curve, (shade, marker, _) in CURVES.items():
+    looks = {name: _of_surface(name) for name in (PLAIN, patterned_curve(wear))} | PARTS
+    for curve, (shade, mark, _) in looks.items():
         one = wear[wear["curve"] == curve]
-        axes.plot(one["particle_scale"], one["relative_wear"], marker, color=shade, markersize=6, label=curve)
+        axes.plot(one["particle_scale"], one["relative_wear"], mark, color=shade, markersize=6, label=curve)
         if len(one) >= FEWEST_POINTS and one["particle_scale"].nunique() > 1:
             line = fitted_line(one["particle_scale"], one["relative_wear"])
             axes.plot(places, line.at(places), color=shade, label=f"{curve} line")
@@ -64,8 +61,13 @@ def wear_against_scale(
     axes.axhline(0.0, color="#888888", linewidth=0.6)
     axes.set(xlabel="Particle scale (-)", ylabel="Wear over the plain sample's\nwith the smallest particles (-)")
     axes.set_xlim(places[0], places[-1])
-    _scale_legend(figure, published, critical is not None and critical.bounded)
+    _scale_legend(figure, looks, published, critical is not None and critical.bounded)
     return figure
+
+
+def _of_surface(surface: str) -> tuple[str, str, str]:
+    """Return colour, marker and name of a surface's sample."""
+    return colour(surface), marker(surface), f"{surface} sample"
 
 
 def _critical(axes: Axes, critical: Crossing | None, ends: tuple[float, float]) -> None:
@@ -76,8 +78,10 @@ def _critical(axes: Axes, critical: Crossing | None, ends: tuple[float, float]) 
     axes.axvspan(max(critical.low, ends[0]), min(critical.high, ends[1]), color="#e5e5e5", zorder=0)
 
 
-def _scale_legend(figure: Figure, published: pd.DataFrame, critical: bool) -> None:
-    handles = [Line2D([], [], color=shade, marker=marker, label=name) for shade, marker, name in CURVES.values()]
+def _scale_legend(
+    figure: Figure, looks: dict[str, tuple[str, str, str]], published: pd.DataFrame, critical: bool
+) -> None:
+    handles = [Line2D([], [], color=shade, marker=mark, label=name) for shade, mark, name in looks.values()]
     if not published.empty:
         source = published["source"].iloc[0].partition(",")[0]
         handles.append(Line2D([], [], color="black", linestyle=":", label=source))
@@ -87,7 +91,7 @@ def _scale_legend(figure: Figure, published: pd.DataFrame, critical: bool) -> No
 
 
 def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw convex over plain wear (-) against the four ratios of particle to bump, a panel each.
+    """Draw patterned over plain wear (-) against the four ratios of particle to bump, a panel each.
 
     table, published: wear_over_plain and the four ratios; published ones are drawn as a line
     """
@@ -102,7 +106,7 @@ def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remar
         axes.minorticks_off()
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set_xlabel(f"Ratio of\n{RATIO_NAMES[ratio]} (-)")
-    panels[0].set_ylabel("Wear of the convex sample\nover the plain one's (-)")
+    panels[0].set_ylabel("Wear of the patterned sample\nover the plain one's (-)")
     handles = [
         Line2D([], [], color=BLUE, marker="o", linestyle="", label="simulated"),
         Line2D([], [], color="black", linestyle=":", label="Yan 2022, Eq 4.14 and 4.15, pattern of run R5"),
@@ -128,8 +132,8 @@ def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Seque
             axes.plot([each.scale_from, each.scale_to], [each.value] * 2, linewidth=0.8, markersize=6, **look)
         axes.set(xlabel="Particle scale (-)", ylabel=label)
         axes.set_ylim(bottom=0.0)
-    shown = {name: CURVES[name][:2] for name in ("plain", "convex")}
-    handles = [Line2D([], [], color=each, marker=mark, label=f"{name} sample") for name, (each, mark) in shown.items()]
+    shown = [_of_surface(name) for name in sorted(set(table["surface"]), key=lambda name: name != PLAIN)]
+    handles = [Line2D([], [], color=each, marker=mark, label=name) for each, mark, name in shown]
     handles.append(Line2D([], [], color="black", marker="o", markerfacecolor="white", linestyle="", label="not steady"))
     for relation in dict.fromkeys(published.loc[published["quantity"].isin(MEASURE_NAMES), "relation"]):
         mark = {"marker": PUBLISHED_MARKS[relation], "markerfacecolor": "white", "linestyle": ":"}
@@ -140,11 +144,12 @@ def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Seque
 
 def _with_deviation(axes: Axes, one: pd.DataFrame, surface: str) -> None:
     """Draw means with their deviations along the travel, hollow where the window is not steady."""
-    shade, marker, _ = CURVES[surface]
+    shade = colour(surface)
     bars = {"color": shade, "capsize": 3, "linewidth": 1.0, "label": surface}
     axes.errorbar(one["particle_scale"], one["mean_percent"], one["deviation_percent"], **bars)
     fill = [shade if steady else "white" for steady in one["steady"]]
-    axes.scatter(one["particle_scale"], one["mean_percent"], 36, fill, marker=marker, edgecolors=shade, zorder=3)
+    look = {"marker": marker(surface), "edgecolors": shade, "zorder": 3}
+    axes.scatter(one["particle_scale"], one["mean_percent"], 36, fill, **look)
 
 
 def spider_charts(

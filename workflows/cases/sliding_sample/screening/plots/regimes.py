@@ -1,4 +1,4 @@
-"""Figures by flow regime: convex runs beside their plain twins, and best designs beside what was predicted of them."""
+"""Figures by flow regime: patterned runs beside their plain twins, best designs beside what was predicted of them."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from postproc.plots.style import (
     new_figure,
     scaled,
 )
+from postproc.tables.summary import patterned_name
 from workflows.cases.sliding_sample.screening.confirmation import interval_reach
 
 BAR = 0.4  # -, width of a bar over the distance of rows
@@ -32,28 +33,29 @@ ROOM = 1.05  # -, of the largest value on the axis of a confirmation
 
 
 def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw relative wear of convex (base and bumps, stacked) and plain samples, rows of least convex wear first.
+    """Draw relative wear of patterned (base and pattern, stacked) and plain samples, rows of least wear first.
 
     table: as from `regime_groups.wear_by_group`, with interval_low and interval_high, NaN where not known.
     """
     highest = np.nanmax([1.0, *table["interval_high"]])
     figure = new_figure(remarks, LARGEST_HEIGHT)
     for axes, shown in _panels(figure, table, "relative_wear"):
-        convex, plain = shown[shown["surface"] != PLAIN], shown[shown["surface"] == PLAIN]
-        left = _places(convex) - 0.5 * BAR
-        axes.bar(left, convex["base_relative_wear"], BAR, color=BASE_COLOUR)
-        bumps = {"color": PATTERN_COLOUR, "hatch": "//", "edgecolor": "white"}
-        axes.bar(left, convex["bump_relative_wear"], BAR, bottom=convex["base_relative_wear"], **bumps)
+        patterned, plain = shown[shown["surface"] != PLAIN], shown[shown["surface"] == PLAIN]
+        left = _places(patterned) - 0.5 * BAR
+        axes.bar(left, patterned["base_relative_wear"], BAR, color=BASE_COLOUR)
+        pattern = {"color": PATTERN_COLOUR, "hatch": "//", "edgecolor": "white"}
+        axes.bar(left, patterned["bump_relative_wear"], BAR, bottom=patterned["base_relative_wear"], **pattern)
         axes.bar(_places(plain) + 0.5 * BAR, plain["relative_wear"], BAR, color=PLAIN_FILL, edgecolor=colour(PLAIN))
-        for places, runs in ((left, convex), (_places(plain) + 0.5 * BAR, plain)):
+        for places, runs in ((left, patterned), (_places(plain) + 0.5 * BAR, plain)):
             reach = np.abs(runs[["interval_low", "interval_high"]].to_numpy().T - runs["relative_wear"].to_numpy())
             known = np.isfinite(reach).all(axis=0)
             axes.errorbar(places[known], runs["relative_wear"][known], reach[:, known], **ERROR_BARS)
         axes.set_ylim(0.0, HEADROOM * highest)
     figure.axes[0].set_ylabel("Wear over the largest of the regime (-)")
+    name = patterned_name(table["surface"])
     handles = [
-        Patch(color=BASE_COLOUR, label="convex, base"),
-        Patch(facecolor=PATTERN_COLOUR, hatch="//", edgecolor="white", label="convex, bumps"),
+        Patch(color=BASE_COLOUR, label=f"{name}, base"),
+        Patch(facecolor=PATTERN_COLOUR, hatch="//", edgecolor="white", label=f"{name}, pattern"),
         Patch(facecolor=PLAIN_FILL, edgecolor=colour(PLAIN), label="plain"),
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=3)
@@ -61,7 +63,7 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
 
 def normal_force_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw the mean normal force (N) on convex and plain samples with its deviation along the travel, if known.
+    """Draw the mean normal force (N) on patterned and plain samples with its deviation along the travel, if known.
 
     table: as from `regime_groups.force_by_group`.
     """
@@ -112,10 +114,10 @@ def _panels(figure: Figure, table: pd.DataFrame, column: str) -> list[tuple[Axes
     return panels
 
 
-def confirmation(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+def confirmation(table: pd.DataFrame, patterned: str, remarks: Sequence[str]) -> Figure:
     """Draw the predicted wear per metre (mm3/m) of each best design with its interval, and what the runs wear.
 
-    table: as from `confirmation.confirmation_table`.
+    table: as from `confirmation.confirmation_table`; patterned: the surface that is confirmed.
     """
     figure = new_figure(remarks, 2.6 + 0.7 * len(table))
     axes = figure.subplots()
@@ -123,7 +125,7 @@ def confirmation(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     drawn = {"fmt": "D", "color": OTHER_COLOUR, "markerfacecolor": "white", "capsize": 5}
     label = "predicted, with the interval of one run (95 %)"
     axes.errorbar(table["predicted_mm3_per_m"], lines, xerr=interval_reach(table), label=label, **drawn)
-    for surface, column in (("convex", "simulated_mm3_per_m"), (PLAIN, "plain_mm3_per_m")):
+    for surface, column in ((patterned, "simulated_mm3_per_m"), (PLAIN, "plain_mm3_per_m")):
         marks = {"color": colour(surface), "markersize": 8, "linestyle": "", "label": f"simulated, {surface}"}
         axes.plot(table[column], lines, marker(surface), zorder=3, **marks)
     for place, inside, ratio in zip(lines, table["inside"], table["over_predicted"], strict=True):

@@ -68,7 +68,7 @@ def test_predictions_and_runs_are_as_tabled():
             "over_predicted": [1.5, 9.0],
         }
     )
-    figure = confirmation(table, REMARKS)
+    figure = confirmation(table, "convex", REMARKS)
     (axes,) = figure.axes
     drawn = {line.get_label(): line.get_xdata() for line in axes.lines}
     np.testing.assert_array_equal(drawn["simulated, convex"], [3e-4, 9e-4])
