@@ -1,4 +1,4 @@
-"""Convex against plain in the circular wear tester at equal distance, in channel and ring; patterns that wear off."""
+"""Patterned or plain in the circular wear tester at equal distance, in channel and ring; patterns that wear off."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pandas as pd
 from postproc.mesh import PLAIN
 from postproc.tables.display import CUBIC_MILLIMETRES
 from workflows.cases.circular_tester.runs import SIZE, VOLUME, WORN_OUT
-from workflows.cases.circular_tester.volume import CONVEX, chosen, chosen_fit, element_increments, of_surface
+from workflows.cases.circular_tester.volume import PATTERNED, chosen, chosen_fit, element_increments, of_surface
 
 MACHINE = ["shape", "particle_scale"]
 WORN_OUT_SHARE = 0.05  # of the pattern's volume: what is left of it then counts as nothing
@@ -16,7 +16,7 @@ MEAN_SHARE = 20  # of a run's cycles: a twentieth of them is averaged where rate
 
 
 def ratios_by_revolution(volumes: pd.DataFrame) -> pd.DataFrame:
-    """What convex samples lose over what plain ones lose, in each revolution of equal machine and particles.
+    """What patterned samples lose over what plain ones lose, in each revolution of equal machine and particles.
 
     volumes: at whole revolutions, as from `volumes`. Columns: shape, particle_scale, revolution (the
     earlier of both ends), plain_mm3, convex_mm3 (lost in it), ratio (-). Nothing for machines without a pair.
@@ -24,13 +24,13 @@ def ratios_by_revolution(volumes: pd.DataFrame) -> pd.DataFrame:
     parts = []
     for machine, rows in volumes.groupby(MACHINE, sort=False):
         grown = element_increments(rows)
-        of = {surface: of_surface(grown, surface) for surface in (PLAIN, CONVEX)}
-        both = of[PLAIN].merge(of[CONVEX], on="revolution", suffixes=("_plain", "_convex"))
+        of = {surface: of_surface(grown, surface) for surface in (PLAIN, PATTERNED)}
+        both = of[PLAIN].merge(of[PATTERNED], on="revolution", suffixes=("_plain", "_patterned"))
         table = pd.DataFrame(
             {
                 "revolution": both["revolution"],
                 "plain_mm3": both["increment_mm3_plain"],
-                "convex_mm3": both["increment_mm3_convex"],
+                "convex_mm3": both["increment_mm3_patterned"],
             }
         )
         table["ratio"] = table["convex_mm3"] / table["plain_mm3"]
@@ -39,7 +39,7 @@ def ratios_by_revolution(volumes: pd.DataFrame) -> pd.DataFrame:
 
 
 def mean_ratios(ratios: pd.DataFrame, shared: bool) -> pd.DataFrame:
-    """Convex over plain of each machine over all its revolutions, or over those that all machines share.
+    """Patterned over plain of each machine over all its revolutions, or over those that all machines share.
 
     Columns: shape, particle_scale, revolutions, ratio (of the sums), deviation and standard_error (of the revolutions'
     ratios), reduction_percent.
@@ -61,7 +61,7 @@ def pattern_left(volumes: pd.DataFrame, coefficient: float, plain_per_revolution
     (as if at `coefficient`), pattern_share (-), lost_mm3, lost_per_revolution_mm3 (since the row before, per revolution
     as if at `coefficient`), mean_per_revolution_mm3 (of it, over a MEAN_SHARE of the rows), plain_per_revolution_mm3.
     """
-    patterned = of_surface(volumes, CONVEX)
+    patterned = of_surface(volumes, PATTERNED)
     parts = []
     for run, rows in patterned.groupby("run", sort=False):
         revolution = rows["revolution"] * rows["coefficient"] / coefficient

@@ -1,4 +1,4 @@
-"""Where a sample in the circular wear tester wears: by columns along the travel, by bumps, by mesh and in sections.
+"""Where a sample in the circular wear tester wears: by columns along the travel, shapes of a pattern and mesh.
 
 A column is what Yan 2022 (Fig 6.1) calls one: a strip across the travel, column 1 where the bed arrives. The bumps of a
 column are those of one `row` of labels; plain samples have the strips alone.

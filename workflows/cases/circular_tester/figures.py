@@ -127,8 +127,8 @@ def tester_volume(job: Job) -> Any:
     digits=DIGITS,
     caption="""
     Counterpart of Fig 6.12 and Eq 6.7 (Yan 2022). A mean over elements hangs on how many there are, so the sample's own
-    increment stands beside it. Above: when the convex sample wears faster than the plain one, and when it has lost
-    more, by the fits. Upright, left: where the thesis' increments cross at particle scale 4.
+    increment stands beside it. Above: when the patterned sample wears faster than the plain one, and when it has
+    lost more, by the fits. Upright, left: where the thesis' increments cross at particle scale 4.
     """,
 )
 def tester_increments(job: Job) -> Any:
@@ -168,7 +168,7 @@ def tester_benchmark(job: Job) -> Any:
     digits=DIGITS,
     caption="""
     The thesis had to stop at its revolution 17. Here a row of the design has a larger wear coefficient; its revolutions
-    are told as those of the study's coefficient, as Archard's law is linear in it. Left: volume of the bumps over their
+    are told as those of the study's coefficient, as Archard's law is linear in it. Left: volume of the pattern over its
     feet; right: what the law takes per revolution. Wear does not follow the flow as closely there, because the shape
     changes more between two passes of the bed; where both runs overlap they show how much that matters.
     """,
@@ -196,7 +196,7 @@ def tester_worn_out(job: Job) -> Any:
     told=PAIR,
     digits=DIGITS,
     caption="""
-    Counterpart of Fig 6.13 (Yan 2022): volume of base and bumps by column of the sample, after the last revolution.
+    Counterpart of Fig 6.13 (Yan 2022): volume of base and pattern by column of the sample, after the last revolution.
     Column 1 meets the bed first. In a straight channel inside and outside of a column are alike.
     """,
 )
@@ -212,17 +212,17 @@ def tester_columns(job: Job) -> Any:
 
 @figure(
     "Distribution",
-    "Wear of every bump",
+    "Wear of every shape of the pattern",
     inputs={**of_study("lost_volumes"), **WEAR, "worn": every_run(WORN_SURFACE), **PUBLISHED},
     told=PAIR,
     digits=DIGITS,
     caption="""
-    Counterpart of Fig 6.14 (Yan 2022). C15 is the fifth bump from the inner side in the first column. Grey: the range
+    Counterpart of Fig 6.14 (Yan 2022). C15 is the fifth one from the inner side in the first column. Grey: the range
     that the thesis gives for odd and even columns after its last revolution.
     """,
 )
 def tester_bumps(job: Job) -> Any:
-    """Draw wear by bump (Fig 6.14)."""
+    """Draw wear by shape of the pattern (Fig 6.14)."""
     from postproc.mesh import read_surface
     from postproc.tables.published import published_value
     from workflows.cases.circular_tester.distribution import wear_by_bump
@@ -244,12 +244,12 @@ def tester_bumps(job: Job) -> Any:
     told=PAIR,
     digits=DIGITS,
     caption="""
-    Counterpart of Fig 6.16 (Yan 2022): sections through three bumps of the first column, along the travel (side) and
+    Counterpart of Fig 6.16 (Yan 2022): sections through the pattern in the first column, along the travel (side) and
     across it (front), in the sample's own frame, which the machine inclines.
     """,
 )
 def tester_contours(job: Job) -> Any:
-    """Draw sections of bumps after several revolutions (Fig 6.16)."""
+    """Draw sections of the pattern after several revolutions (Fig 6.16)."""
     from postproc.mesh import read_surface
     from workflows.cases.circular_tester.distribution import SHOWN_BUMPS, cycle_surfaces, top_of, worn_contours
     from workflows.cases.circular_tester.plots.distribution import worn_contours as draw
@@ -267,7 +267,7 @@ def tester_contours(job: Job) -> Any:
     told=PAIR,
     digits=DIGITS,
     caption="""
-    Counterpart of Fig 6.22 (Yan 2022): mean normal force on base and bumps, from all contacts of all steps. Bars:
+    Counterpart of Fig 6.22 (Yan 2022): mean normal force on base and pattern, from all contacts of all steps. Bars:
     standard deviation over the wear cycles.
     """,
 )
@@ -314,7 +314,7 @@ def tester_mesh(job: Job) -> Any:
     told=ALL_RUNS,
     when=has_series(MESH),
     digits=DIGITS,
-    caption="Counterpart of Fig 6.9 (Yan 2022): sections of bump C15 after equal revolutions.",
+    caption="Counterpart of Fig 6.9 (Yan 2022): sections of C15 after equal revolutions.",
 )
 def tester_mesh_contours(job: Job) -> Any:
     """Draw what the size of the elements changes in sections (Fig 6.9)."""
@@ -335,8 +335,8 @@ def tester_mesh_contours(job: Job) -> Any:
     digits=DIGITS,
     caption="""
     What the straight channel does to the results: the same particles in the whole annular trough, whose bed is slower
-    inside and faster outside and goes round the curve. Left: lost volume; right: convex over plain in each revolution,
-    with its mean over the revolutions that all machines have.
+    inside and faster outside and goes round the curve. Left: lost volume; right: patterned over plain in each
+    revolution, with its mean over the revolutions that all machines have.
     """,
 )
 def tester_ring(job: Job) -> Any:

@@ -14,15 +14,17 @@ from scipy.stats import linregress
 
 from postproc.mesh import PLAIN
 from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
+from postproc.tables.summary import patterned_name
 from workflows.cases.circular_tester.comparison import mean_ratios
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.flow import FORCE, SPIN, VELOCITY
-from workflows.cases.circular_tester.volume import CONVEX, SURE, TERMS, of_surface, volume_at
+from workflows.cases.circular_tester.volume import CONVEX, PATTERNED, SURE, TERMS, of_surface, volume_at
 
 LEAST_R_SQUARED = 0.99
 SIZE_SPREAD = 0.14  # -, largest from smallest of the plain sample's volumes over particle scales, Fig 6.10
 MESH_SPREAD = 3.0  # %, deviation over meshes, Fig 6.8: 1.8 and 2.8
 STEADY_FROM = 6.0  # revolutions, Fig 6.7
+OF_ANY_PATTERN = ("plain_linear", "plain_sizes", "plain_columns", "steady", "mesh_size", "machines")  # findings
 FEW_REVOLUTIONS = 3  # with fewer a trend or R2 says nothing
 
 
@@ -54,15 +56,28 @@ class Evidence:
     short: float
     long: float
 
+    @property
+    def patterned(self) -> str:
+        """The surface that is set beside the plain one, for the source's convex one."""
+        return patterned_name(self.columns["surface"])
+
 
 def findings_table(evidence: Evidence, published: pd.DataFrame) -> pd.DataFrame:
     """Return key, finding, source, found, verdict and reason (or reserve) of every published finding."""
-    verdicts = [TESTS[key](evidence) for key in published["key"]]
+    verdicts = [_judged(key, evidence) for key in published["key"]]
     return published.assign(
         found=[each.found for each in verdicts],
         verdict=[each.verdict for each in verdicts],
         reason=[each.reason for each in verdicts],
     )
+
+
+def _judged(key: str, evidence: Evidence) -> Verdict:
+    """Return the verdict on a finding; of the source's convex sample nothing can be said by another pattern."""
+    verdict = TESTS[key](evidence)
+    if evidence.patterned == CONVEX or key in OF_ANY_PATTERN:
+        return verdict
+    return Verdict(verdict.found, UNSAID, f"found of a {evidence.patterned} sample, the source's is {CONVEX}")
 
 
 def _verdict(found: str, holds: object, reason: str = "") -> Verdict:
@@ -95,14 +110,14 @@ def _curvature(curve: pd.Series) -> str:
 
 
 def _convex_quadratic(evidence: Evidence) -> Verdict:
-    curve = _fit(evidence, CONVEX, "quadratic")
+    curve = _fit(evidence, PATTERNED, "quadratic")
     quadratic, error = curve[TERMS[1]], curve[f"{TERMS[1]}_error"]
     found = f"{quadratic:.2g} ± {error:.2g} mm³ per revolution²; {_curvature(curve)}"
     return _verdict(found, curve["curved"] and quadratic > 0.0, _too_few(curve))
 
 
 def _less(evidence: Evidence, hours: float) -> Verdict:
-    of = of_surface(evidence.predictions, CONVEX)
+    of = of_surface(evidence.predictions, PATTERNED)
     of = of[np.isclose(of["hours"], hours)]
     row = of[np.isclose(of["particle_scale"], evidence.main)].iloc[0]
     words = f"{row['reduction_percent']:.3g} % less after {row['revolution']:.3g} revolutions"
@@ -141,7 +156,7 @@ def _overtakes(evidence: Evidence) -> Verdict:
 
 
 def _bump_share(evidence: Evidence) -> Verdict:
-    share = share_of_bumps(of_surface(evidence.columns, CONVEX)).iloc[0]
+    share = share_of_bumps(of_surface(evidence.columns, PATTERNED)).iloc[0]
     return _verdict(f"{100.0 * share:.3g} %", share > 0.5)
 
 
@@ -155,7 +170,7 @@ def _listed(values: pd.Series, unit: str) -> str:
 
 
 def _first_column(evidence: Evidence) -> Verdict:
-    total = _total_by_column(evidence, CONVEX)
+    total = _total_by_column(evidence, PATTERNED)
     return _verdict(_listed(total, "mm³"), total.idxmax() == 1)
 
 
@@ -182,20 +197,21 @@ def _steady(evidence: Evidence) -> Verdict:
 
 
 def _flow(evidence: Evidence, measure: str, above: bool, falls: bool) -> Verdict:
-    """Whether convex lies above (or below) plain in the mean, and falls, surely by a straight line."""
+    """Whether patterned lies above (or below) plain in the mean, and falls, surely by a straight line."""
     table = evidence.means[evidence.means["measure"] == measure].sort_values("revolution")
-    of = {surface: of_surface(table, surface)["mean"].to_numpy() for surface in (PLAIN, CONVEX)}
-    ratio = of[CONVEX].mean() / of[PLAIN].mean()
-    found = f"convex over plain {ratio:.3g}"
+    plain, own = (of_surface(table, surface) for surface in (PLAIN, PATTERNED))
+    mean = own["mean"].to_numpy()
+    ratio = mean.mean() / plain["mean"].to_numpy().mean()
+    found = f"{evidence.patterned} over plain {ratio:.3g}"
     holds = (ratio > 1.0) == above
     if not falls:
         return _verdict(found, holds)
-    if len(of[CONVEX]) < FEW_REVOLUTIONS:
+    if len(own) < FEW_REVOLUTIONS:
         return _verdict(found, holds, f"at least {FEW_REVOLUTIONS} revolutions are needed")
-    revolution = of_surface(table, CONVEX)["revolution"].to_numpy()
-    line = linregress(revolution, of[CONVEX])
-    change, error = (100.0 * each * np.ptp(revolution) / of[CONVEX].mean() for each in (line.slope, line.stderr))
-    found += f"; convex over its revolutions {change:+.2g} ± {error:.2g} %"
+    revolution = own["revolution"].to_numpy()
+    line = linregress(revolution, mean)
+    change, error = (100.0 * each * np.ptp(revolution) / mean.mean() for each in (line.slope, line.stderr))
+    found += f"; {evidence.patterned} over its revolutions {change:+.2g} ± {error:.2g} %"
     return _verdict(found, holds and change < -SURE * error)
 
 
@@ -232,7 +248,7 @@ TESTS: Mapping[str, Callable[[Evidence], Verdict]] = {
     "plain_sizes": lambda each: _by_size(
         each, PLAIN, lambda volumes: volumes.max() - volumes.min() <= SIZE_SPREAD * volumes.max()
     ),
-    "convex_sizes": lambda each: _by_size(each, CONVEX, lambda volumes: volumes.is_monotonic_increasing),
+    "convex_sizes": lambda each: _by_size(each, PATTERNED, lambda volumes: volumes.is_monotonic_increasing),
     "overtakes": _overtakes,
     "bump_share": _bump_share,
     "first_column": _first_column,

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.summary import read_summary
+from postproc.tables.summary import patterned_name, read_summary
 from workflows.cases.circular_tester.comparison import worn_out_at
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.flow import steady_revolutions
@@ -41,7 +41,7 @@ RESULT_HEADS = {
     "shape": ("machine", ""),
     "lost_volume_mm3": ("lost", "mm³"),
     "lost_per_revolution_mm3": ("lost per revolution", "mm³"),
-    "pattern_share_percent": ("on bumps", "%"),
+    "pattern_share_percent": ("on pattern", "%"),
     "mean_normal_force_N": ("mean normal force", "N"),
     "sliding_over_travel": ("sliding over travel", "-"),
     "bed_over_floor_velocity": ("velocity of bed over trough", "-"),
@@ -61,7 +61,7 @@ def beside_the_experiment(folder: Path) -> list[Block]:
     compared["note"] = compared["note"].fillna("")
     scale = of_study(folder, "time_scale").iloc[0]
     return [
-        Cards(cards(compared, of_study(folder, "crossings"))),
+        Cards(cards(compared, of_study(folder, "crossings"), _patterned(folder))),
         Text(
             "The plain sample's volume after 56 h sets the scale, all else is predicted: a revolution stands for "
             f"{scale['hours_per_revolution']:.3g} h. The coefficient that makes the source's two revolutions stand for "
@@ -73,21 +73,35 @@ def beside_the_experiment(folder: Path) -> list[Block]:
     ]
 
 
-def cards(compared: pd.DataFrame, crossings: pd.DataFrame) -> list[tuple[str, str]]:
-    """Return the few numbers that answer the question: the reductions beside the measured ones, and their future."""
+def cards(compared: pd.DataFrame, crossings: pd.DataFrame, name: str) -> list[tuple[str, str]]:
+    """Return the few numbers that answer the question: the reductions beside the measured ones, and their future.
+
+    name: the surface of the patterned samples
+    """
     found = [
         (
             f"{row[OURS]:.3g} %",
-            f"less wear of the convex sample after {row['hours']:g} h; measured {row[LABORATORY]:.3g} %, thesis' model "
-            f"{row[THESIS]:.3g} %",
+            f"less wear of the {name} sample after {row['hours']:g} h{_beside(row)}",
         )
         for _, row in compared[compared["quantity"] == "reduction"].iterrows()
     ]
     for row in crossings.itertuples():
         never = not np.isfinite(row.crossing)
-        words = "convex never loses more" if never else "revolutions until the convex sample has lost more"
+        words = f"{name} never loses more" if never else f"revolutions until the {name} sample has lost more"
         found.append((UNDEFINED if never else f"{row.crossing:.3g}", f"{words}, scale {row.particle_scale:g}"))
     return found
+
+
+def _beside(row: pd.Series) -> str:
+    """Return what experiment and thesis have of a reduction; nothing of a surface that they did not have."""
+    if np.isnan(row[LABORATORY]):
+        return ""
+    return f"; measured {row[LABORATORY]:.3g} %, thesis' model {row[THESIS]:.3g} %"
+
+
+def _patterned(folder: Path) -> str:
+    """Return the name of the surfaces of a study that are not plain."""
+    return patterned_name(of_study(folder, "fits")["surface"])
 
 
 def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
@@ -98,24 +112,24 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
 
 
 def fits(folder: Path) -> list[Block]:
-    """Return the fits of every run beside those of the source, and when convex overtakes plain."""
+    """Return the fits of every run beside those of the source, and when patterned overtakes plain."""
     columns, errors = ["surface", "particle_scale", *TERMS, "r_squared"], [f"{term}_error" for term in TERMS]
     ours = of_study(folder, "fits")[["run", "fit", *columns, *errors, "curved"]]
     theirs = pd.read_csv(PUBLISHED_FITS)[[*columns, "source"]]
     digits = dict.fromkeys([*TERMS, *errors, "r_squared"], FIT_DIGITS)
     crossings = of_study(folder, "crossings")
-    never = np.isinf(crossings[["rate_crossing", "crossing"]]).any(axis=None)
+    name, never = _patterned(folder), np.isinf(crossings[["rate_crossing", "crossing"]]).any(axis=None)
     words = f"; no crossing ({UNDEFINED}) means never by the fits" if never else ""
     return [
         Table(ours, "fits", digits=digits, heads=FIT_HEADS),
         Table(theirs, digits=digits, heads=FIT_HEADS),
-        Text(f"Revolution from which convex wears faster, and from which it has lost more in sum{words}."),
+        Text(f"Revolution from which {name} wears faster, and from which it has lost more in sum{words}."),
         Table(crossings, heads=CROSSING_HEADS),
     ]
 
 
 def ratios(folder: Path) -> list[Block]:
-    """Return convex over plain of each machine and particle scale with its deviation."""
+    """Return patterned over plain of each machine and particle scale with its deviation."""
     note = "Over all revolutions of a machine; deviation and standard error are those of its revolutions."
     return [Table(of_study(folder, "mean_ratios"), "convex_over_plain", note, {"ratio": 4})]
 
@@ -153,9 +167,9 @@ def steadiness(folder: Path) -> list[Block]:
 
 
 def by_column(folder: Path) -> list[Block]:
-    """Return wear by column, and what the bumps bear."""
+    """Return wear by column, and what the pattern bears."""
     table = pd.read_csv(folder / "figures" / "tester_columns.csv")
-    shares = "; ".join(f"{run}: {100.0 * share:.1f} % on bumps" for run, share in share_of_bumps(table).items())
+    shares = "; ".join(f"{run}: {100.0 * share:.1f} % on the pattern" for run, share in share_of_bumps(table).items())
     return [Text(f"{shares}."), Table(table)]
 
 

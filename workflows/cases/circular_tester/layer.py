@@ -101,7 +101,7 @@ def relative_motion(particles: pd.DataFrame) -> pd.DataFrame:
 
 
 def outlines(mesh: SurfaceMesh) -> np.ndarray:
-    """Ends (k, 2, 2) m of the edges round the parts of a pristine top, seen from above: its rim and the bumps' feet."""
+    """Ends (k, 2, 2) m of the edges round the parts of a pristine top, from above: its rim and the pattern's feet."""
     part = mesh.cell_data["part"]
     edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     owner = np.repeat(part, 3)

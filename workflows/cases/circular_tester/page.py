@@ -42,7 +42,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ),
         ("Findings of the source", key_numbers.findings(study, folder), ()),
         ("Volume by revolution", key_numbers.fits(folder), ("tester_volume", "tester_increments")),
-        ("Convex over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
+        ("Patterned over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
         ("Every run", key_numbers.every_run(folder), ("worn_surface",)),
         ("Steadiness", key_numbers.steadiness(folder), ("tester_steadiness",)),
         ("Where it wears", key_numbers.by_column(folder), places),
@@ -93,13 +93,14 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     settings, runs = study["settings"], list(study["parameters"].values())
     tester, sliding = settings["tester"], settings["sliding"]
     diameters = [1e3 * diameter for run in runs for diameter in run["particle"]["diameters_m"]]
-    ratios = [run["derived"]["equivalent_size_ratio"] for run in runs if run["pattern"]]
+    ratios = [ratio for run in runs if (ratio := run["derived"]["equivalent_size_ratio"]) is not None]
+    helps = "the source finds that a pattern helps below 1"
+    over_bump = f" Particle over bump (alpha_ER, Eq 4.18): {range_text(ratios)}; {helps}." if ratios else ""
     return [
         (
             "Coarse-grained particles",
             f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm. Shape that is not round is represented by "
-            f"rolling friction ({settings['solver']['rolling_friction']}) alone. Particle over bump "
-            f"(alpha_ER, Eq 4.18): {range_text(ratios)}; the source finds that a pattern helps below 1.",
+            f"rolling friction ({settings['solver']['rolling_friction']}) alone.{over_bump}",
         ),
         (
             "Straight channel",

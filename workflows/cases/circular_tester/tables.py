@@ -9,6 +9,7 @@ import pandas as pd
 
 from postproc.mesh import PLAIN, read_surface
 from postproc.tables.published import published_value
+from postproc.tables.summary import patterned_name
 from workflows.cases.circular_tester import comparison, distribution, flow, volume
 from workflows.cases.circular_tester.findings import Evidence, findings_table
 from workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, WORN_SURFACE, TesterRun, pair_of
@@ -45,10 +46,9 @@ def tables_of_runs(
     hours = [published_value(published, name, "laboratory") for name in TOLD_HOURS]
     predicted = volume.predictions(fits, scale, hours)
     main = predicted[predicted["run"].isin([patterned.name, plain.name])]
-    compared = [
-        comparison_table(main, published, published_fits, plain.particle_scale),
-        _measured_losses(patterned, published, scale.revolutions(hours[-1])),
-    ]
+    compared = [comparison_table(main, published, published_fits, plain.particle_scale)]
+    if patterned.surface == CONVEX:
+        compared.append(_measured_losses(patterned, published, scale.revolutions(hours[-1])))
     ratios = comparison.ratios_by_revolution(whole_revolutions(chosen(lost, VOLUME, SIZE, RING)))
     tables = {
         "lost_volumes": lost,
@@ -77,10 +77,11 @@ def comparison_table(
     per_hour = published_value(published, "revolutions_of_short_test", "simulation") / published_value(
         published, SHORT, "laboratory"
     )
+    patterned = patterned_name(predicted["surface"])
     rows = []
     for hours, of_hours in predicted[predicted["particle_scale"] == particle_scale].groupby("hours"):
         volumes = {}
-        for surface in (PLAIN, CONVEX):
+        for surface in (PLAIN, patterned):
             theirs = [
                 float(volume_at(published_terms(published_fits, surface, each), per_hour * hours))
                 for each in (THESIS_SCALE, particle_scale)
@@ -94,7 +95,7 @@ def comparison_table(
                 *theirs,
                 ours.iloc[0] if len(ours) else np.nan,
             ]
-        reduction = 100.0 * (1.0 - np.array(volumes[CONVEX]) / np.array(volumes[PLAIN]))
+        reduction = 100.0 * (1.0 - np.array(volumes[patterned]) / np.array(volumes[PLAIN]))
         beyond = "ours extrapolated" if of_hours["extrapolated"].any() else ""
         rows += [[hours, f"{surface} volume", "mm3", *values, beyond] for surface, values in volumes.items()]
         rows.append([hours, "reduction", "%", *reduction, beyond])

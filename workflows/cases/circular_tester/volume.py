@@ -1,8 +1,8 @@
-"""Volume worn in the circular wear tester, revolution by revolution: fits, what it says of hours, convex against plain.
+"""Volume worn in the circular wear tester, revolution by revolution: fits, what it says of hours, patterned or plain.
 
 A table of volumes, see `volumes`, has one row per run and wear cycle. One revolution is one turn of the simulated
-sector, 150 degrees in Yan 2022 (chapter 6). Surfaces are plain, or have the pattern that stands for the source's convex
-one.
+sector, 150 degrees in Yan 2022 (chapter 6). A surface is plain or has the name of its pattern; the
+source's is convex.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from postproc.wear.pattern_left import pattern_volume
 from postproc.wear.update import worn_faces
 from workflows.cases.circular_tester.runs import SURFACE, TesterRun
 
-CONVEX = "convex"  # the source's pattern; ours beside it are those of any pattern
+CONVEX = "convex"  # the source's pattern
+PATTERNED = "patterned"  # stands for any surface that is not plain
 ORDERS = {"linear": 1, "quadratic": 2}  # of the fits
 CASE = ["run", "surface", "particle_scale"]  # columns that tell one case from another
 TERMS = ["linear_mm3_per_revolution", "quadratic_mm3_per_revolution2"]
@@ -34,7 +35,7 @@ def volumes(runs: Sequence[TesterRun]) -> pd.DataFrame:
     """What every run has lost after each wear cycle, from revolution 0 of wear on.
 
     Columns: those of `TesterRun.case`, cycle, revolution, volume_m3 (lost), law_volume_m3 (what the law takes, carried
-    included), bump_volume_m3 (of it from bumps), pattern_volume_m3 (what is left of the bumps), elements (triangles
+    included), bump_volume_m3 (of it from the pattern), pattern_volume_m3 (what is left of it), elements (triangles
     that wear).
     """
     parts = []
@@ -72,7 +73,7 @@ def chosen(table: pd.DataFrame, *names: str) -> pd.DataFrame:
 
 
 def of_surface(table: pd.DataFrame, surface: str) -> pd.DataFrame:
-    """The rows of plain samples (PLAIN), or of samples with a pattern, whichever it is (CONVEX)."""
+    """The rows of plain samples (PLAIN), or of samples with a pattern, whichever it is (PATTERNED)."""
     return table[(table["surface"] == PLAIN) == (surface == PLAIN)]
 
 
@@ -166,12 +167,12 @@ def element_increments(volumes: pd.DataFrame) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def crossing(plain: np.ndarray, convex: np.ndarray) -> float:
-    """Revolution (-) from which on convex has lost more than plain, by the terms (2,) of their fits; infinite for none.
+def crossing(plain: np.ndarray, patterned: np.ndarray) -> float:
+    """Revolution (-) from which on patterned has lost more than plain, by their fits' terms (2,); infinite for none.
 
-    0 where convex wears more from the start and never less.
+    0 where patterned wears more from the start and never less.
     """
-    linear, quadratic = np.asarray(convex, dtype=float) - np.asarray(plain, dtype=float)
+    linear, quadratic = np.asarray(patterned, dtype=float) - np.asarray(plain, dtype=float)
     if linear >= 0.0 and quadratic >= 0.0:
         return 0.0
     if quadratic <= 0.0:
@@ -179,9 +180,9 @@ def crossing(plain: np.ndarray, convex: np.ndarray) -> float:
     return float(-linear / quadratic)
 
 
-def rate_crossing(plain: np.ndarray, convex: np.ndarray) -> float:
-    """Revolution (-) from which on convex wears faster than plain: half of where its lost volume is as much."""
-    return 0.5 * crossing(plain, convex)
+def rate_crossing(plain: np.ndarray, patterned: np.ndarray) -> float:
+    """Revolution (-) from which on patterned wears faster than plain: half of where its lost volume is as much."""
+    return 0.5 * crossing(plain, patterned)
 
 
 @dataclass(frozen=True)
@@ -212,7 +213,7 @@ def time_scale(
     distance_per_revolution: float,
     sample_area: float,
 ) -> TimeScale:
-    """Coefficient and time scale from the plain sample's 56 hours: the convex sample has no part in them.
+    """Coefficient and time scale from the plain sample's 56 hours: the patterned sample has no part in them.
 
     plain: terms (2,) of the plain run's fit, mm3; simulated_coefficient: 1/Pa, of that run; published: as
     config/published/circular_tester.csv; distance_per_revolution: m, of the bed past the sample's middle; sample_area:

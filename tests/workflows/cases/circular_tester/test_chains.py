@@ -231,7 +231,7 @@ def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
         "Eq 6.6",
         "| channel | 4 | 2 |",
         "wear rate m3 per s",
-        "% on bumps",
+        "% on the pattern",
         "## Durations",
     )
     assert [word for word in words if word not in text] == []

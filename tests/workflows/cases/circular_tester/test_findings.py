@@ -11,7 +11,7 @@ from tests.support import tester_study as study
 from workflows.cases.circular_tester import volume as tester_volume
 from workflows.cases.circular_tester.comparison import ratios_by_revolution
 from workflows.cases.circular_tester.distribution import mesh_size_effect
-from workflows.cases.circular_tester.findings import TESTS, Evidence, findings_table
+from workflows.cases.circular_tester.findings import OF_ANY_PATTERN, TESTS, Evidence, findings_table
 from workflows.cases.circular_tester.flow import revolution_means, steady_revolutions
 from workflows.cases.circular_tester.tables import crossings
 
@@ -199,15 +199,20 @@ def test_a_force_that_wavers_does_not_fall(theirs):
     assert found["verdict"] == REFUTED and verdicts(theirs).loc["force", "verdict"] == CONFIRMED
 
 
-def test_a_pattern_of_another_name_is_judged_as_the_convex_one(theirs):
-    """Whatever is not plain stands for the source's convex sample."""
+def test_another_pattern_says_nothing_of_the_sources(theirs):
+    """What is found of another pattern is told, but judges only what the source says of any sample."""
 
     def renamed(value):
-        return value.replace({"surface": {"convex": "dimples"}}) if isinstance(value, pd.DataFrame) else value
+        return value.replace({"surface": {"convex": "dimpled"}}) if isinstance(value, pd.DataFrame) else value
 
     other = replace(theirs, **{field.name: renamed(getattr(theirs, field.name)) for field in fields(theirs)})
-    assert "dimples" in set(other.fits["surface"])
-    assert verdicts(other)["verdict"].tolist() == verdicts(theirs)["verdict"].tolist()
+    found, own = verdicts(other), verdicts(theirs)
+    assert found.loc[list(OF_ANY_PATTERN), "verdict"].tolist() == own.loc[list(OF_ANY_PATTERN), "verdict"].tolist()
+    of_pattern = found.drop(index=list(OF_ANY_PATTERN))
+    assert set(of_pattern["verdict"]) == {UNSAID}
+    assert set(of_pattern["reason"]) == {"found of a dimpled sample, the source's is convex"}
+    assert found.loc["bump_share", "found"] == own.loc["bump_share", "found"]
+    assert found.loc["force", "found"].startswith("dimpled over plain")
     crossing = crossings(theirs.fits[theirs.fits["particle_scale"] == 1.0])
     pd.testing.assert_frame_equal(crossings(other.fits[other.fits["particle_scale"] == 1.0]), crossing)
     assert len(crossing) == 1

@@ -1,4 +1,4 @@
-"""Figures of where a sample in the circular wear tester wears: by columns, bumps, meshes and in sections."""
+"""Figures of where a sample in the circular wear tester wears: by columns, shapes of a pattern, meshes, in sections."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from workflows.cases.circular_tester.plots.flow import BAND_COLOUR, BANDS
 
 
 def by_column(table: pd.DataFrame, unit: str, quantity: str, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw a quantity on base and bumps per column of the sample, a panel per run (Fig 6.13, 6.22).
+    """Draw a quantity on base and pattern per column of the sample, a panel per run (Fig 6.13, 6.22).
 
     table: run, column, base_<unit>, bumps_<unit>, as from `distribution`; with deviation_<unit> where
     several revolutions were averaged; quantity: what the axis says, with its unit.
@@ -45,7 +45,7 @@ def by_column(table: pd.DataFrame, unit: str, quantity: str, published: pd.DataF
             color=PATTERN_COLOUR,
             hatch="//",
             edgecolor="white",
-            label="bumps",
+            label="pattern",
         )
         if deviation in table:
             total = of_run[base] + of_run[bumps]
@@ -63,22 +63,21 @@ def by_column(table: pd.DataFrame, unit: str, quantity: str, published: pd.DataF
 
 
 def _share_words(of_run: pd.DataFrame, base: str, bumps: str, unit: str, published: pd.DataFrame) -> str:
-    """What the bumps bear, beside what the source says of that quantity; nothing for a plain sample."""
+    """What the pattern bears, beside what the source says of that quantity; nothing for a plain sample."""
     if not of_run[bumps].any():
         return ""
     if unit == "mm3":
         share = share_of_bumps(of_run).iloc[0]
         theirs = published_value(published, "share_of_bumps", "simulation")
-        return f": bumps {100.0 * share:.0f} % (Yan 2022: {theirs:g} %)"
+        return f": pattern {100.0 * share:.0f} % (Yan 2022: {theirs:g} %)"
     first = of_run.iloc[0]
     theirs = published_value(published, "first_column_force_share", "simulation")
-    return (
-        f": bumps of column 1 {100.0 * first[bumps] / (first[base] + first[bumps]):.0f} % (Yan 2022: over {theirs:g} %)"
-    )
+    ours = first[bumps] / (first[base] + first[bumps])
+    return f": pattern in column 1 {100.0 * ours:.0f} % (Yan 2022: over {theirs:g} %)"
 
 
 def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, remarks: Sequence[str]) -> Figure:
-    """Draw the worn volume (mm3) of every bump, columns of the sample apart, on the published ranges (Fig 6.14).
+    """Draw the worn volume (mm3) of every shape of a pattern, columns apart, on the published ranges (Fig 6.14).
 
     table: as from `distribution.wear_by_bump`; scale_remark: to which revolution both belong.
     """
@@ -99,7 +98,7 @@ def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, rem
         axes.bar(there, of_row["volume_mm3"], color=PATTERN_COLOUR)
     axes.set_xticks(places, table["bump"], rotation=90)
     axes.set_title(scale_remark, loc="left", fontsize=SMALLEST_FONT)
-    axes.set_ylabel("Worn volume of a bump (mm³)")
+    axes.set_ylabel("Worn volume of a shape of the pattern (mm³)")
     figure.legend(*named_once([axes]), loc="outside upper center")
     return figure
 
@@ -129,7 +128,7 @@ def mesh_size(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[st
 
 
 def worn_contours(contours: pd.DataFrame, title: str, remarks: Sequence[str]) -> Figure:
-    """Draw sections of bumps of several surfaces, side view above, front view below (Fig 6.9, 6.16).
+    """Draw sections of a pattern of several surfaces, side view above, front view below (Fig 6.9, 6.16).
 
     contours: as from `distribution.worn_contours`; title: what the legend lists, such as "revolution".
     """

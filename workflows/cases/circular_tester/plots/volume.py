@@ -25,6 +25,7 @@ from postproc.plots.style import (
 )
 from postproc.tables.display import CUBIC_MILLIMETRES
 from postproc.tables.published import published_value
+from postproc.tables.summary import patterned_name
 from workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
 from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from workflows.cases.circular_tester.volume import (
@@ -130,18 +131,20 @@ def element_increments(
                 linewidth=0.8,
                 linestyle=SCALE_STYLES.get(round(row.particle_scale), "-"),
             )
-    right.set_title("\n".join(map(crossing_words, crossings.itertuples())), loc="left", fontsize=SMALLEST_FONT)
+    name = patterned_name(increments["surface"])
+    said = "\n".join(crossing_words(row, name) for row in crossings.itertuples())
+    right.set_title(said, loc="left", fontsize=SMALLEST_FONT)
     left.set(xlabel="Revolution", ylabel="Lost per revolution by an element (mm³)", ylim=(0.0, None))
     right.set(xlabel="Revolution", ylabel="Lost per revolution by the sample (mm³)", ylim=(0.0, None))
     figure.legend(*left.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure
 
 
-def crossing_words(row: tuple) -> str:
-    """Say when convex overtakes plain, in rate and in sum."""
+def crossing_words(row: tuple, patterned: str) -> str:
+    """Say when a patterned surface overtakes plain, in rate and in sum."""
     if not np.isfinite(row.rate_crossing):
-        return f"scale {row.particle_scale:g}: convex never wears faster"
-    words = f"convex faster from {row.rate_crossing:.3g}, more in sum from {row.crossing:.3g}"
+        return f"scale {row.particle_scale:g}: {patterned} never wears faster"
+    words = f"{patterned} faster from {row.rate_crossing:.3g}, more in sum from {row.crossing:.3g}"
     return f"scale {row.particle_scale:g}: {words}"
 
 
@@ -159,7 +162,8 @@ def benchmark(
     scales = sorted({*chosen["particle_scale"], *published_fits["particle_scale"]})
     figure = new_figure(remarks, 4.4)
     axes = figure.subplots()
-    kinds = [(source, surface) for source in (THESIS, OURS) for surface in (PLAIN, CONVEX)]
+    patterned = patterned_name(chosen["surface"])
+    kinds = [(THESIS, PLAIN), (THESIS, CONVEX), (OURS, PLAIN), (OURS, patterned)]
     for index, (source, surface) in enumerate(kinds):
         values = []
         for scale in scales:
@@ -250,7 +254,7 @@ def _numbers(axes: Axes, table: pd.DataFrame) -> None:
 def channel_and_ring(
     volumes: pd.DataFrame, means: pd.DataFrame, ratios: pd.DataFrame, remarks: Sequence[str]
 ) -> Figure:
-    """Draw volumes (mm3) and the ratio of convex to plain in channel and ring by revolution.
+    """Draw volumes (mm3) and the ratio of patterned to plain in channel and ring by revolution.
 
     volumes: as from `volume.volumes`; ratios, means: as from `comparison`.
     """
@@ -267,11 +271,11 @@ def channel_and_ring(
         look = {"color": OTHER_COLOUR, "linestyle": MACHINE_STYLES[shape], "marker": "o^sD"[place % 4], "markersize": 4}
         right.plot(rows["revolution"] + 0.5 + SHIFT * place, rows["ratio"], linewidth=1.0, label=said[-1], **look)
     right.axhline(1.0, color="black", linewidth=0.8)
-    shared = int(means["revolutions"].iloc[0])
+    shared, own = int(means["revolutions"].iloc[0]), patterned_name(volumes["surface"]).capitalize()
     words = f"Mean ± standard error of the first {shared} revolution{'s' * (shared > 1)}"
     right.set_title("\n".join([words, *said]), loc="left", fontsize=SMALLEST_FONT)
     left.set(xlabel="Revolutions", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
-    right.set(xlabel="Revolution", ylabel="Convex over plain, lost in a revolution (-)", ylim=(0.0, None))
+    right.set(xlabel="Revolution", ylabel=f"{own} over plain, lost in a revolution (-)", ylim=(0.0, None))
     figure.legend(*named_once([left]), loc="outside upper center", ncols=3)
     return figure
 

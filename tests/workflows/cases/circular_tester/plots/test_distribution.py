@@ -12,7 +12,7 @@ def test_by_column(tmp_path):
     table = pd.DataFrame({"run": np.repeat(["convex", "plain"], 5), "column": [1, 2, 3, 4, 5] * 2})
     table["base_mm3"], table["bumps_mm3"] = 44.0, [56.0] * 5 + [0.0] * 5
     figure = tester.by_column(table, "mm3", "Worn volume (mm³)", study.PUBLISHED, REMARKS)
-    assert missing_words(figure, tmp_path / "a.png", ["bumps 56 % (Yan 2022: 56 %)", "base"]) == []
+    assert missing_words(figure, tmp_path / "a.png", ["pattern 56 % (Yan 2022: 56 %)", "base"]) == []
     forces = table.rename(columns={"base_mm3": "base_N", "bumps_mm3": "bumps_N"}).assign(deviation_N=5.0)
     assert (
         missing_words(

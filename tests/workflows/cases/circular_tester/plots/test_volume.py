@@ -47,7 +47,7 @@ def test_element_increments(tmp_path):
     figure = tester_volume.element_increments(element_increments(study.volumes()), crossings, study.PUBLISHED, REMARKS)
     assert missing_words(figure, tmp_path / "a.png", ["convex faster from 20, more in sum from 40", "Fig 6.12"]) == []
     never = pd.DataFrame({"particle_scale": [1.0], "rate_crossing": [np.inf], "crossing": [np.inf]})
-    assert tester_volume.crossing_words(next(never.itertuples())) == "scale 1: convex never wears faster"
+    assert tester_volume.crossing_words(next(never.itertuples()), "convex") == "scale 1: convex never wears faster"
 
 
 def test_benchmark(predicted, tmp_path):
