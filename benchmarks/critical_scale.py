@@ -24,7 +24,7 @@ from typing import Any
 
 import pandas as pd
 
-from benchmarks.plots.critical_scale import ratio_by_candidate
+from benchmarks.plots.figures import ratio_by_candidate
 from benchmarks.runs import simulated_run, with_bed
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
 from benchmarks.scale_page import results_page, source_ratio

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from benchmarks.plots.groove import groove_convergence
+from benchmarks.plots.figures import groove_convergence
 from postproc.plots.style import save
 from tests.verification.groove_cases import (
     DEPTH,

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from benchmarks.bed_case import cycle_deck, particles_of, prepared_chain
 from benchmarks.measure import Measure, in_turn, measured
+from benchmarks.runs import cycle_deck, particles_of, prepared_chain
 from workflows.engine.chain import Chain, deck_text
 from workflows.engine.schedule import first_span
 from workflows.engine.solver import CYCLE_EXECUTABLES, SCREEN, run_deck

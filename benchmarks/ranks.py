@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from benchmarks.bed_case import cycle_deck, particles_of, prepared_chain
 from benchmarks.ledger_overhead import PARTICLE_SCALE, QUICK_PARTICLE_SCALE, Variant, seconds, variants
 from benchmarks.measure import Measure, in_turn, measured
+from benchmarks.runs import cycle_deck, particles_of, prepared_chain
 from workflows.engine.chain import Chain
 
 STEPS, QUICK_STEPS = 1500, 150

@@ -8,15 +8,14 @@ from typing import Any
 
 import pandas as pd
 
-from benchmarks.bed_case import RUN, case_study
 from benchmarks.ledger_overhead import PARTICLE_SCALE
 from benchmarks.ranks import ACROSS
+from benchmarks.runs import RUN, case_study
 from benchmarks.scaling_model import Bed, best_grid, deck_grid, efficiency, ghost_cost
 from workflows.config.design import Run, Study, load_study
 from workflows.engine.derived import neighbour_skin
-from workflows.forecast.cost_model import SOLVER_TERMS, seconds
 from workflows.forecast.forecast import work_of
-from workflows.forecast.rates import rates_file, read_rates
+from workflows.forecast.rates import SOLVER_TERMS, rates_file, read_rates, seconds
 
 ROOT = Path(__file__).resolve().parents[1]
 RANKS = (2, 4, 8, 16, 32, 64)

@@ -25,7 +25,7 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.measure import Measure, measured
-from benchmarks.plots.window import wear_side_by_side
+from benchmarks.plots.figures import wear_side_by_side
 from benchmarks.window_case import (
     BEDS,
     BUMPS,

@@ -19,7 +19,7 @@ from postproc.tables.display import in_display_units
 from postproc.tables.film import film_frames, film_surfaces, frame_table
 from workflows.config.design import load_study
 from workflows.engine.state import read_state
-from workflows.report.remarks import figure_remarks
+from workflows.report.page_parameters import figure_remarks
 
 STUDY, RUN = "worn_bump", "bump_convex"
 FRAMES = 24  # of the small film

@@ -192,7 +192,7 @@ def launcher_of(wildcards):
 
 @cache
 def demands_of(study):
-    from workflows.forecast.resources import demands  # slow to import, and few jobs ask for it
+    from workflows.forecast.forecast import demands  # slow to import, and few jobs ask for it
 
     return demands(STUDIES[study], ROOT)
 

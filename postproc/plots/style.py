@@ -11,6 +11,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from PIL import Image
@@ -19,7 +21,6 @@ from postproc.mesh import PLAIN
 
 PUBLISHED = {"color": "black", "linestyle": "--", "linewidth": 1.2}
 TABLE_LINE = 0.5  # pt
-
 RESOLUTION = 200  # dots per inch
 PALETTE = 256  # colours
 WIDTH, LARGEST_HEIGHT = 8.0, 5.0  # inches: 1600 x 1000 pixels, which every report shows whole
@@ -30,13 +31,19 @@ REMARK_CHARACTERS = 108  # of a line of remarks across the figure
 SMALLEST_PLAIN, LARGEST_PLAIN = 0.01, 1e4  # numbers on an axis without a power of ten
 TOP_ROOM = 0.04  # inches above the topmost text
 MOST_FACET_COLUMNS = 5
-# distinguishable with colour-blindness and in grey (M. Okabe and K. Ito, 2008)
-BLUE, ORANGE = "#0072B2", "#D55E00"
 OTHER_COLOUR = "#595959"
 BASE_COLOUR, PATTERN_COLOUR = "#56B4E9", BLUE
-PATTERNED_LOOK, PLAIN_LOOK, OTHER_LOOK = (BLUE, "o"), (ORANGE, "s"), (OTHER_COLOUR, "^")  # colour and marker
 MAP = "viridis"
 SKIRT_COLOUR = "#c9c9c9"
+
+
+# distinguishable with colour-blindness and in grey (M. Okabe and K. Ito, 2008)
+BLUE, ORANGE = "#0072B2", "#D55E00"
+
+
+PATTERNED_LOOK, PLAIN_LOOK, OTHER_LOOK = (BLUE, "o"), (ORANGE, "s"), (OTHER_COLOUR, "^")  # colour and marker
+
+
 LOOK = {
     "font.family": "sans-serif",
     "font.size": 10.0,
@@ -169,3 +176,26 @@ def printed_table(axes: Axes, head: Sequence[str], cells: Sequence[Sequence[str]
     for (row, _), cell in drawn.get_celld().items():
         cell.set_linewidth(TABLE_LINE)
         cell.set_height(cell.get_height() * (lines if row == 0 else 1.0))
+
+
+def draw_circles(
+    axes: Axes, places: np.ndarray, radii: np.ndarray, values: np.ndarray, norm: Normalize, colours: str
+) -> None:
+    """Draw a circle round each place.
+
+    places (n, 2) and radii (n,): in the units of the axes; values (n,): coloured by `norm` in the map `colours`
+    """
+    size = 2.0 * radii
+    circles = EllipseCollection(
+        size,
+        size,
+        np.zeros(len(size)),
+        units="xy",
+        offsets=places,
+        offset_transform=axes.transData,
+        array=values,
+        cmap=colours,
+        norm=norm,
+        linewidths=0.0,
+    )
+    axes.add_collection(circles)

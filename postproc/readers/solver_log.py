@@ -9,17 +9,21 @@ that file.
 from __future__ import annotations
 
 import re
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
 
 TAIL_BYTES = 65536
-
 _ERROR = re.compile(r"^ERROR(?: on proc \d+)?: (.*)$", re.MULTILINE)
 _SOURCE = re.compile(r"\s*\(\./src/[^)]*\)")
 _LOST = re.compile(r"^(?:ERROR|WARNING): (Lost atoms: .*)$", re.MULTILINE)
 _EXCHANGE = re.compile(r"^Exchange at step (\d+): (\d+) particles left, (\d+) entered, (\d+) are here\.$")
 _TRIANGLES = "Import and parallelization of mesh {} containing (\\d+) triangle"
+_LOOP = re.compile(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
+_NEIGHBOURS = re.compile(r"^Neigh time \(%\) = (\S+)", re.MULTILINE)
+_BUILDS = re.compile(r"^Neighbor list builds = (\d+)", re.MULTILINE)
+
 
 KNOWN_CAUSES = (
     (
@@ -183,3 +187,21 @@ def reported_triangles(screen_path: Path | str, mesh_id: str) -> int:
             "(unbuffered) of a deck that defines and runs it."
         )
     return int(found[-1])
+
+
+def run_times(path: Path | str) -> dict[str, np.ndarray]:
+    """Return the `run` commands of a log that printed their times, in order, one (runs,) array per column.
+
+    loop_s, neighbour_s: wall time in the time steps and of it in neighbour lists; steps; particles: at the end; builds:
+    of the neighbour list. A run with `post no` tells no neighbour times and is left out.
+    """
+    text = Path(path).read_text("utf-8", "replace")
+    found = list(_LOOP.finditer(text))
+    ends = [after.start() for after in found[1:]]
+    rows = []
+    for loop, end in zip_longest(found, ends, fillvalue=len(text)):
+        neighbours, builds = (pattern.search(text, loop.end(), end) for pattern in (_NEIGHBOURS, _BUILDS))
+        if neighbours and builds:
+            rows.append((float(loop[1]), float(neighbours[1]), int(loop[2]), int(loop[3]), int(builds[1])))
+    columns = ("loop_s", "neighbour_s", "steps", "particles", "builds")
+    return dict(zip(columns, np.array(rows, float).reshape(-1, len(columns)).T, strict=True))

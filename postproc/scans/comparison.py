@@ -15,7 +15,7 @@ import pandas as pd
 from scipy.spatial import cKDTree
 
 from postproc.mesh import SurfaceMesh, area_vectors, centroids, unit_normals, volume_above_plane
-from postproc.scans.rigid_motion import RigidMotion
+from postproc.scans.start import RigidMotion
 from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
 from postproc.wear.depth import height_loss
 from postproc.wear.remesh_patch import ON_EDGE, OldSurface, barycentric, neighbours

@@ -14,8 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from postproc.mesh import SurfaceMesh, unit_normals
-from postproc.scans.rigid_motion import IDENTITY, RigidMotion, largest_distance, turned_about
-from postproc.scans.start import plane_equations, plane_step, rough_positions, truncated_misfit
+from postproc.scans.start import (
+    IDENTITY,
+    RigidMotion,
+    largest_distance,
+    plane_equations,
+    plane_step,
+    rough_positions,
+    truncated_misfit,
+    turned_about,
+)
 from postproc.wear.remesh_patch import OldSurface
 from postproc.wear.update import worn_faces
 

@@ -10,6 +10,10 @@ import pandas as pd
 
 from postproc.mesh import PLAIN
 
+MEANS = ("mean_normal_force_N", "bed_over_floor_velocity")  # over time; the second where friction alone moves a bed
+AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
+
+
 SUMMED = (
     "worn_volume_m3",
     "base_worn_volume_m3",
@@ -18,8 +22,6 @@ SUMMED = (
     "sliding_work_J",
     "finnie_volume_m3",
 )
-MEANS = ("mean_normal_force_N", "bed_over_floor_velocity")  # over time; the second where friction alone moves a bed
-AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
 
 
 def run_summary(wear: pd.DataFrame) -> dict[str, float]:
@@ -90,3 +92,14 @@ def rows_to_show(summary: pd.DataFrame, most: int = 1) -> list[str]:
 def runs_of_rows(summary: pd.DataFrame, rows: Sequence[str]) -> list[str]:
     """Return the runs of some design rows, in the order of the summary."""
     return summary.loc[summary["row"].isin(list(rows)), "run"].tolist()
+
+
+def published_value(published: pd.DataFrame, quantity: str, of: str) -> float:
+    """The value of a published quantity `of` laboratory or simulation, in the unit of the table.
+
+    Raises ValueError when the table has none.
+    """
+    found = published[(published["quantity"] == quantity) & (published["of"] == of)]
+    if len(found) != 1:
+        raise ValueError(f"published '{quantity}' of '{of}' is there {len(found)} times, allowed is once")
+    return float(found["value"].iloc[0])

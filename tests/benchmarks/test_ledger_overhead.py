@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.bed_case import RUN, case_study
 from benchmarks.ledger_overhead import variants
 from benchmarks.ranks import GRIDS, PROCESSORS
+from benchmarks.runs import RUN, case_study
 from tests.support.tiny import tiny_study
 from workflows.engine.chain import Chain
 

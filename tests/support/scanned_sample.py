@@ -8,8 +8,7 @@ from scipy.spatial.transform import Rotation
 from meshes.pattern import ConvexPattern
 from meshes.sample import sliding_sample
 from postproc.mesh import SurfaceMesh
-from postproc.scans.rigid_motion import RigidMotion
-from postproc.scans.start import points_on
+from postproc.scans.start import RigidMotion, points_on
 
 SIDE, ELEMENT, HEIGHT = 0.06, 1.5e-3, 3e-3  # m
 PATTERN = ConvexPattern(8e-3, 2e-3, 6e-3, 20e-3, 20e-3)

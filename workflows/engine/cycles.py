@@ -33,9 +33,9 @@ from workflows.engine.chain import (
     write_shared_files,
 )
 from workflows.engine.inputs import inputs_digest
+from workflows.engine.job import Progress, write_table
 from workflows.engine.ledgers import producer
 from workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
-from workflows.engine.progress import Progress
 from workflows.engine.schedule import Span, first_span, known_spans
 from workflows.engine.solver import (
     CYCLE_EXECUTABLES,
@@ -48,7 +48,6 @@ from workflows.engine.solver import (
     processor_seconds,
     run_deck,
 )
-from workflows.engine.tables import write_table
 from workflows.engine.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"

@@ -10,8 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from postproc.wear.caps import GRAVITY
-from workflows.engine.derived import neighbour_skin
-from workflows.engine.sections import run_kernels
+from workflows.engine.derived import neighbour_skin, run_kernels
 from workflows.engine.templates import SOLVER, whole_sections
 
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38

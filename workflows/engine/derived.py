@@ -6,14 +6,17 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
+from postproc.wear.laws import law_kernels
 
-# Values of bed.ends: two walls that push the bed along, none, or a window that travels with the sample.
-WALLS, PERIODIC, WINDOW = "walls", "periodic", "window"
+HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
 SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
+
+
+# Values of bed.ends: two walls that push the bed along, none, or a window that travels with the sample.
+WALLS, PERIODIC, WINDOW = "walls", "periodic", "window"
 
 
 def youngs_modulus(shear_modulus: float, poissons_ratio: float) -> float:
@@ -126,3 +129,57 @@ def smallest_rayleigh_time(particle: Mapping[str, Any]) -> float:
         particle["shear_modulus_pa"],
         particle["poissons_ratio"],
     )
+
+
+def wear_section(wear: Mapping[str, Any], particle: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the section with the accelerated coefficient, and of the patch only what its choice needs.
+
+    particle: the material that wears, which may know its true modulus (physical_shear_modulus_pa)
+    """
+    kept = {k: v for k, v in wear.items() if k != "patch_radius_m" or wear["patch"] == "radius"}
+    if wear["patch"] == "physical":
+        kept["physical_shear_modulus_pa"] = particle.get("physical_shear_modulus_pa")
+    return {**kept, "accelerated_wear_coefficient_per_pa": wear["wear_coefficient_per_pa"] * wear["acceleration"]}
+
+
+def law_parameters(run: Mapping[str, Any]) -> dict[str, float]:
+    """Return what the wear law of a run takes: the coefficient, acceleration included, and parameters of its own."""
+    wear = run["wear"]
+    return {"wear_coefficient_per_pa": wear["accelerated_wear_coefficient_per_pa"], **wear.get("parameters", {})}
+
+
+def run_kernels(run: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """Return {contact kernel: {parameter: value}} whose sums the wear law of a run needs."""
+    return law_kernels(run["wear"]["law"], law_parameters(run))
+
+
+def template_sections(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the sections that reach templates whole: `solver`, and `deck` with the user's own words, if any.
+
+    The stride of sampled contacts is there only where contacts are sampled.
+    """
+    sampled = settings["ledger"] == "dumps"
+    solver = {k: v for k, v in settings["solver"].items() if sampled or k != "sampling_interval_steps"}
+    return {"solver": solver, "deck": settings.get("deck", {})}
+
+
+def particle_section(name: str, materials: Mapping[str, Any], scale: float) -> dict[str, Any]:
+    """Return a bulk material; its lengths are coarse-grained, `scale` times the real ones."""
+    particle = dict(materials["particles"][name])
+    particle.pop("physical_shear_modulus_pa", None)  # concerns wear alone, and no bed is filled again for it
+    particle.pop("calibrated", None)  # provenance
+    distribution = particle.pop("size_distribution")
+    median_diameter = scale * particle.pop("median_diameter_m")
+    return {
+        "name": name,
+        **particle,
+        "scale": scale,
+        "median_diameter_m": median_diameter,
+        "diameters_m": [median_diameter * relative for relative in distribution["relative_diameter"]],
+        "mass_fractions": list(distribution["mass_fraction"]),
+    }
+
+
+def wall_section(name: str, materials: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a wall's material and its contact."""
+    return {"name": name, **materials["walls"][name]}

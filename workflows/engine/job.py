@@ -1,15 +1,19 @@
-"""What every job does alike: progress and faults go to the terminal and to the job's log."""
+"""What every job does alike: progress with the time left, faults and progress in its log, tables written whole."""
 
 from __future__ import annotations
 
 import contextlib
+import csv
 import os
 import sys
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
+
+SECONDS_BETWEEN_LINES = 15.0
+SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
 
 
 def let_jobs_import(root: Path) -> None:
@@ -51,3 +55,52 @@ def job_log(path: str | Path) -> Iterator[None]:
         except Exception:
             traceback.print_exc(file=log)
             raise
+
+
+def duration_text(seconds: float) -> str:
+    """Return a duration as people say it: 45 s, 3 min 20 s, 2 h 5 min."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    minutes, rest = divmod(whole, 60)
+    return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+class Progress:
+    """Prints the progress of `total` units of work, `done` of them finished before; the rate is this process's own."""
+
+    def __init__(
+        self,
+        name: str,
+        total: int,
+        done: int = 0,
+        stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ):
+        self.name, self.total, self.stream, self.clock = name, total, stream or sys.stderr, clock
+        self.start, self.start_time = done, clock()
+        self.last_line = float("-inf")
+
+    def update(self, done: int, what: str) -> None:
+        """Print a line if the last one is old enough; `what` names the present part of the work."""
+        now = self.clock()
+        if now - self.last_line < SECONDS_BETWEEN_LINES or done - self.start < SMALLEST_BASIS * self.total:
+            return
+        self.last_line = now
+        left = (self.total - done) * (now - self.start_time) / (done - self.start)
+        percent = 100.0 * done / max(self.total, 1)
+        self.say(f"{what}, {percent:.0f} % of the run, about {duration_text(left)} left")
+
+    def say(self, text: str) -> None:
+        """Print a line at once."""
+        print(f"{self.name}: {text}", file=self.stream, flush=True)
+
+
+def write_table(path: Path, rows: list[Mapping[str, Any]]) -> None:
+    """Write rows with the same keys as CSV, whole or not at all."""
+    part = path.with_suffix(".csv.part")
+    with open(part, "w", newline="") as stream:
+        table = csv.DictWriter(stream, fieldnames=list(rows[0]))
+        table.writeheader()
+        table.writerows(rows)
+    os.replace(part, path)

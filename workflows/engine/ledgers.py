@@ -19,8 +19,8 @@ from postproc.readers.load_ledger import read_load_ledger
 from postproc.wear.ledger import LedgerBuilder, columns_of_solver
 from workflows.engine import state
 from workflows.engine.chain import Chain
+from workflows.engine.derived import run_kernels
 from workflows.engine.schedule import Span
-from workflows.engine.sections import run_kernels
 
 LOAD_LEDGER = "load_ledger.bin"
 CONTACTS, SPINS, TOUCHING = "contacts.dump", "spins.dump", "touching.npy"

@@ -20,7 +20,7 @@ from typing import Any
 
 from postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
 from postproc.wear.kernels import kernel_column, kernel_parameters
-from workflows.engine.sections import run_kernels
+from workflows.engine.derived import run_kernels
 
 DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
 EXECUTABLE = "liggghts"

@@ -28,8 +28,8 @@ from postproc.wear.update import (
 from workflows.engine import state
 from workflows.engine.case import Case
 from workflows.engine.chain import SURFACE, Chain
+from workflows.engine.derived import law_parameters
 from workflows.engine.schedule import Span
-from workflows.engine.sections import law_parameters
 
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J")
 SUMS = (*SUMMED, "finnie_volume_m3", "worn_volume_m3")  # cell data of the surface, over all cycles so far

@@ -40,7 +40,7 @@ class Stage:
     surface_triangles: float = 0.0
 
     def terms(self) -> dict[str, float]:
-        """Return the amounts of work by term, see `workflows.forecast.cost_model`."""
+        """Return the amounts of work by term, see `workflows.forecast.rates`."""
         particle_steps = self.particles * self.steps
         cycles = self.decks if self.surface_triangles else 0
         return {

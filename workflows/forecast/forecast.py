@@ -6,22 +6,39 @@ A core hour is an hour of one core's processor time. Sizes are those of `Case.wo
 from __future__ import annotations
 
 import heapq
+import math
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
 
 from workflows.config.design import Study
-from workflows.engine.progress import duration_text
+from workflows.engine.job import duration_text
 from workflows.engine.work import Work
-from workflows.forecast.cost_model import OUTSIDE_TERMS, SOLVER_TERMS, TERMS, Rates, seconds
-from workflows.forecast.rates import RatesError, rates_file, read_rates
+from workflows.forecast.rates import (
+    OUTSIDE_TERMS,
+    SOLVER_TERMS,
+    TERMS,
+    Rates,
+    RatesError,
+    rates_file,
+    read_rates,
+    seconds,
+)
 
-# Memory of a job, measured as the largest resident sets of solver and driver. B per particle, per triangle, B alone.
-PARTICLE_MEMORY, SOLVER_TRIANGLE_MEMORY, SOLVER_MEMORY = 1.3e3, 3.4e3, 3.5e7  # per rank at most
 WORN_TRIANGLE_MEMORY, DRIVER_MEMORY = 3.1e3, 2.25e8
 MORE_CORES = (16, 64, 256)  # numbers of cores for which the wall time of a study is told besides the present one
 SECONDS_PER_HOUR, GIGABYTE = 3600.0, 1e9
+TIME_MARGIN = 2.0  # -, over the forecast: ranks do not share all work evenly, and nodes differ
+LEAST_MINUTES = 10  # Python, its libraries and a slow file system
+MEMORY_MARGIN = 1.5  # -, over the forecast
+LEAST_MEMORY_MB = 1000
+
+
+# Memory of a job, measured as the largest resident sets of solver and driver. B per particle, per triangle, B alone.
+PARTICLE_MEMORY, SOLVER_TRIANGLE_MEMORY, SOLVER_MEMORY = 1.3e3, 3.4e3, 3.5e7  # per rank at most
+
+
 SHOWN = {  # column of the table -> heading of the printed one
     "job": "job",
     "particles": "particles",
@@ -114,9 +131,6 @@ def totals(table: pd.DataFrame, cores: int) -> dict[str, float]:
     }
 
 
-# ---------------------------------------------------------------- words
-
-
 def forecast_text(heading: str, study: str, table: pd.DataFrame, cores: int, said: str) -> str:
     """Return the forecast as people read it: a line per job, totals, wall time on more cores, what it rests on."""
     rows = [[_number(row[column]) for column in SHOWN] for row in table.to_dict("records")]
@@ -181,3 +195,22 @@ def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
         )
         for row in rows
     ]
+
+
+def demands(study: Study, root: Path) -> dict[str, tuple[int, int]]:
+    """Return the minutes and MB that the jobs of a study which call the solver ask for at first, by their names.
+
+    Raises RatesError.
+    """
+    table = forecast_table(work_of(study), read_rates(rates_file(root)).rates)
+    return {row["job"]: (minutes(row["wall_h"]), megabytes(row["memory_gb"])) for row in table.to_dict("records")}
+
+
+def minutes(wall_hours: float) -> int:
+    """Return the minutes to ask for, for work that is expected to take so long (h)."""
+    return LEAST_MINUTES + math.ceil(60.0 * TIME_MARGIN * wall_hours)
+
+
+def megabytes(gigabytes: float) -> int:
+    """Return the MB to ask for, for work that is expected to need so many GB, of all ranks together."""
+    return LEAST_MEMORY_MB + math.ceil(1e3 * MEMORY_MARGIN * gigabytes)

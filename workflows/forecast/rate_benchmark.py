@@ -24,18 +24,17 @@ from pathlib import Path
 import pandas as pd
 
 from postproc.mesh import read_surface, write_surface
-from postproc.readers.solver_timing import run_times
+from postproc.readers.solver_log import run_times
 from workflows.config.design import Study, load_study
 from workflows.engine import state
 from workflows.engine.chain import Chain, span_of
 from workflows.engine.cycles import fill_bed, run_cycle
 from workflows.engine.inputs import inputs_digest
-from workflows.engine.progress import Progress
+from workflows.engine.job import Progress
 from workflows.engine.schedule import Span
 from workflows.engine.solver import LOG, die_with, processor_seconds
 from workflows.engine.work import Stage
-from workflows.forecast.cost_model import fitted_rates, seconds
-from workflows.forecast.rates import MachineRates, machine_facts
+from workflows.forecast.rates import MachineRates, fitted_rates, machine_facts, seconds
 
 BED_STUDY, BED_RUN = "demo", "R9_plain"
 PIN_STUDY, PIN_RUN = "pin_on_disc", "c17-conserving"

@@ -8,13 +8,28 @@ import json
 import os
 import platform
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from workflows.forecast.cost_model import TERMS
+import numpy as np
+import pandas as pd
 
 MEASURED, DEFAULT = Path("results/cost_rates.json"), Path("config/cost_rates.json")
+SOLVER_TERMS = (
+    "decks",
+    "triangles_read",
+    "steps",
+    "particle_steps",
+    "moving_particle_steps",
+    "particle_builds",
+    "triangle_steps",
+    "loaded_triangle_steps",
+)
+OUTSIDE_TERMS = ("jobs", "meshed_triangles", "cycles", "worn_triangles")
+TERMS = (*SOLVER_TERMS, *OUTSIDE_TERMS)
+Rates = Mapping[str, float]
 
 
 class RatesError(ValueError):
@@ -99,3 +114,33 @@ def _processor() -> str:
     except OSError:
         found = None
     return found[1].strip() if found else platform.processor() or platform.machine()
+
+
+def seconds(work: pd.DataFrame, rates: Rates, terms: Sequence[str] = TERMS) -> np.ndarray:
+    """Return the processor time (k,) s of k rows of work: the sum over terms of amount times rate.
+
+    terms: what counts, e.g. `SOLVER_TERMS`. Raises KeyError for a term without a rate.
+    """
+    return work[list(terms)].to_numpy(float) @ np.array([rates[term] for term in terms])
+
+
+def fitted_rates(work: pd.DataFrame, measured: Sequence[float], known: Rates | None = None) -> dict[str, float]:
+    """Return the rates (s) of the columns of `work` that explain measured times (k,) s best, none of them negative.
+
+    known: rates that are not looked for. Relative errors are made small, so that a short measurement counts as much as
+    a long one (Lawson and Hanson, Solving Least Squares Problems, 1974: non-negative least squares). Raises ValueError
+    where the measurements are too few or too alike to tell the rates apart, or a time is not above 0.
+    """
+    from scipy.optimize import nnls  # slow to import, and every study is forecast without it
+
+    known, times = dict(known or {}), np.asarray(measured, float)
+    if not (times > 0.0).all():
+        raise ValueError(f"measured times must be above 0 s, found {times.min():g}")
+    wanted = [term for term in work.columns if term not in known]
+    matrix = work[wanted].to_numpy(float) / times[:, None]
+    scale = np.linalg.norm(matrix, axis=0)
+    if len(times) < len(wanted) or not scale.all() or np.linalg.matrix_rank(matrix / scale) < len(wanted):
+        raise ValueError(f"{len(times)} measurements cannot tell the rates of {', '.join(wanted)} apart")
+    rest = 1.0 - seconds(work, known, list(known)) / times if known else np.ones(len(times))
+    found, _ = nnls(matrix / scale, rest)
+    return known | dict(zip(wanted, (found / scale).tolist(), strict=True))

@@ -22,9 +22,7 @@ from postproc.readers.cycle_folders import cycle_files
 from postproc.readers.solver_log import solver_version
 from workflows.config.design import Study, load_study
 from workflows.report.page import commit, cost_totals, jobs_of
-from workflows.report.page_parameters import page_parameters
-from workflows.report.pages import page_of
-from workflows.report.remarks import figure_remarks
+from workflows.report.page_parameters import figure_remarks, page_of, page_parameters
 from workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Table, Text, shown
 from workflows.report.text import number
 

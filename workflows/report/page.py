@@ -24,8 +24,7 @@ from postproc.tables.summary import read_summary
 from workflows.engine.case import find_case
 from workflows.engine.solver import LOG
 from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs, outside_solver_share
-from workflows.report.page_parameters import REPORT_FOLDER
-from workflows.report.pages import page_of
+from workflows.report.page_parameters import REPORT_FOLDER, page_of
 from workflows.report.sections import DIGITS, Block, Table, with_all_figures
 from workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 

@@ -1,14 +1,17 @@
-"""What the page of a study is told of its configuration, JSON-able."""
+"""What the page of a study, and every figure, is told of its configuration, JSON-able."""
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
+from postproc.wear.laws import NEUTRAL_LAW
 from workflows.config.design import Study
-from workflows.report.pages import page_of
+from workflows.engine.case import CASES_PACKAGE
 from workflows.report.products import Product, figures_of, products_of_study
-from workflows.report.remarks import figure_remarks
+from workflows.report.text import number_and_unit
 
 REPORT_FOLDER = Path(__file__).resolve().parent
 TEMPLATES = ("study.html.j2", "style.html.j2", "sections.html.j2")
@@ -61,3 +64,25 @@ def page_parameters(study: Study) -> dict[str, Any]:
 
 def _figure_words(product: Product) -> dict[str, Any]:
     return {"title": product.title, "caption": product.paragraphs, "file": product.file}
+
+
+def page_of(case: str) -> ModuleType:
+    """Return the module of a case's page."""
+    return importlib.import_module(f"{CASES_PACKAGE}.{case}.page")
+
+
+def figure_remarks(study: Study) -> list[str]:
+    """Return what every figure must say: what is smaller than at paper fidelity or else simpler, law, acceleration."""
+    now = study.settings
+    remarks = page_of(study.case.name).remarks(study)
+    if not study.case.wears:
+        return remarks
+    if now["wear"]["law"] != NEUTRAL_LAW:
+        given = [number_and_unit(key, value) for key, value in now["wear"].get("parameters", {}).items()]
+        law = " ".join([now["wear"]["law"], *([f"({', '.join(given)})"] if given else [])])
+        remarks.append(f"worn by the law {law}")
+    if now["wear"]["scheme"] != "conserving":
+        remarks.append("worn by the per-triangle rule, which removes more than the law's volume")
+    if now["wear"]["acceleration"] != 1.0:
+        remarks.append(f"wear accelerated {now['wear']['acceleration']:g} times")
+    return remarks

@@ -2,7 +2,7 @@
 
 from workflows.report.page_parameters import page_parameters, page_templates
 from workflows.report.products import outputs_of, paths_of, product_files, products_of, told_to
-from workflows.report.remarks import figure_remarks
+from workflows.report.page_parameters import figure_remarks
 
 STUDIES_OF = {}  # rule of a product -> what studies can have it, and the product
 for CASE in CASES.values():

@@ -33,7 +33,7 @@ from postproc.scans.comparison import (
 )
 from postproc.scans.registration import EVERYTHING, HOLDER, Registration, register
 from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.engine.progress import Progress
+from workflows.engine.job import Progress
 
 REGISTERED_POINTS = 200_000  # of the scan, at random, that are laid on the surface
 ACCURACY = 0.02  # mm, of the laser scanner of Yan 2022 (section 6.2.1)

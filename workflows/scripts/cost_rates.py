@@ -3,8 +3,7 @@
 import tempfile
 from pathlib import Path
 
-from workflows.engine.job import job_log
-from workflows.engine.progress import Progress
+from workflows.engine.job import Progress, job_log
 from workflows.forecast.rate_benchmark import measured_rates
 from workflows.forecast.rates import write_rates
 

@@ -16,7 +16,7 @@ from postproc.scans.comparison import (
     thinned_scan,
     volume_table,
 )
-from postproc.scans.rigid_motion import IDENTITY
+from postproc.scans.start import IDENTITY
 from tests.support import scanned_sample as sample
 
 CROP = 2e-3  # m

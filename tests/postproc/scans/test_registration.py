@@ -5,8 +5,7 @@ import pytest
 
 from postproc.mesh import SurfaceMesh
 from postproc.scans.registration import CELL, position_error, register, symmetries
-from postproc.scans.rigid_motion import IDENTITY, RigidMotion, largest_distance, turned_about
-from postproc.scans.start import plane_step
+from postproc.scans.start import IDENTITY, RigidMotion, largest_distance, plane_step, turned_about
 from postproc.wear.remesh_patch import OldSurface
 from tests.support import scanned_sample as sample
 

@@ -4,8 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.effects import half_normal_table, pseudo_error
-from postproc.statistics.factors import coded_table, factors_of
+from postproc.statistics.factors import coded_table, factors_of, half_normal_table, pseudo_error
 from postproc.statistics.model_terms import candidate_terms, told_apart
 from tests import REPOSITORY
 

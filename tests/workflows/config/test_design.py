@@ -16,7 +16,7 @@ from workflows.config.design import list_studies, load_study
 from workflows.config.layers import ConfigError
 from workflows.config.units import to_si
 from workflows.engine.derived import rayleigh_time, rolling_coefficient_for_solver, whole_steps, youngs_modulus
-from workflows.report.remarks import figure_remarks
+from workflows.report.page_parameters import figure_remarks
 
 ROUNDING = 1e-12  # relative; a few floating-point operations
 DIGITS_GIVEN = 1e-6  # relative; numbers worked out by hand to seven digits

@@ -14,8 +14,7 @@ from workflows.config.layers import ConfigError
 from workflows.config.readme import wear_laws
 from workflows.engine.solver import LEDGER_EXECUTABLE, cycle_fault, missing_kernels
 from workflows.engine.wear_step import law_volume
-from workflows.report.page_parameters import page_parameters
-from workflows.report.remarks import figure_remarks
+from workflows.report.page_parameters import figure_remarks, page_parameters
 from workflows.report.text import law_words, setting_rows
 
 STUDY = "studies/small.yaml"

@@ -18,7 +18,7 @@ from workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_laye
 from workflows.engine.case import case_names, find_case
 from workflows.engine.ledgers import PRODUCERS
 from workflows.engine.solver import CYCLE_EXECUTABLES
-from workflows.report.pages import page_of
+from workflows.report.page_parameters import page_of
 
 SETTINGS = "default.yaml"
 OWN_SETTINGS = "cases/sliding_sample.yaml"

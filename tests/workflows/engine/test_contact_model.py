@@ -7,11 +7,10 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
-from workflows.cases.sliding_sample.particle_size.collision import simulate, spheres_of
 
 from tests.support.tiny import tiny_chain, tiny_study
 from workflows.cases.sliding_sample.decks import bed_contacts
-from workflows.cases.sliding_sample.particle_size.collision import read_collisions
+from workflows.cases.sliding_sample.particle_size.collision import read_collisions, simulate, spheres_of
 from workflows.cases.sliding_sample.particle_size.packings import COLLISION
 from workflows.config.design import ConfigError, list_studies, load_study
 from workflows.config.schema import SCHEMA_FOLDER, load_schema

@@ -25,9 +25,9 @@ from workflows.engine import cycles, state, wear_step
 from workflows.engine.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
 from workflows.engine.chain import write_cycle, write_shared_files
 from workflows.engine.inputs import inputs_digest
+from workflows.engine.job import Progress
 from workflows.engine.ledgers import PRODUCERS
 from workflows.engine.pieces import PIECES
-from workflows.engine.progress import Progress
 from workflows.engine.schedule import first_span
 from workflows.engine.solver import SolverError
 from workflows.engine.wear_step import law_volume

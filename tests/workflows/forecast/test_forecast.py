@@ -5,35 +5,45 @@ from itertools import pairwise
 
 import pandas as pd
 import pytest
+import yaml
 
 from workflows.cases.sliding_sample.particle_size.packings import container
 from workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
 from workflows.cases.sliding_sample.work import cycles, settled_particles
-from workflows.config.design import list_studies, load_study
+from workflows.config.design import REPOSITORY, list_studies, load_study
 from workflows.config.units import to_si
 from workflows.engine.bulk_tests import time_step
-from workflows.engine.progress import duration_text
+from workflows.engine.job import duration_text
 from workflows.engine.work import Stage, Work
-from workflows.forecast.cost_model import TERMS
 from workflows.forecast.forecast import (
     DRIVER_MEMORY,
+    LEAST_MEMORY_MB,
+    LEAST_MINUTES,
     SOLVER_MEMORY,
     announcement,
+    demands,
     forecast_table,
     forecast_text,
+    megabytes,
     memory,
+    minutes,
     totals,
     wall_hours,
     work_of,
 )
-from workflows.forecast.rates import DEFAULT, read_rates
+from workflows.forecast.rates import DEFAULT, TERMS, rates_file, read_rates
 
 EXACT = 1e-12  # relative; rounding of a few sums
 PARTICLES = 0.02  # relative; of the three beds of the screening and of the demo's, as the solver counted them
 LONGEST = 15.0  # s, of all studies at all fidelities together; it takes about one
 RATES = dict.fromkeys(TERMS, 0.0) | {"particle_steps": 1e-6, "triangle_steps": 1e-7, "cycles": 2.0, "jobs": 1.0}
+PROFILES = REPOSITORY / "profiles"
+
+
 # Particles that LIGGGHTS 3.8.0 counted in levelled beds at quick fidelity: settings, and number by bed.
 SEVERAL_SCALES = {"particle_scale": 2.0, "bed": {"least_layers": 3.0, "width_mm": 100, "ahead_mm": 100}}
+
+
 COUNTED = {
     "demo": ({}, {"bed_1": 16045}),
     "screening": (SEVERAL_SCALES, {"bed_1": 9575, "bed_2": 8196, "bed_3": 4302}),
@@ -230,3 +240,31 @@ def test_damaged_rates_do_not_stop_a_study(repository, tmp_path, monkeypatch):
     (tmp_path / "results/cost_rates.json").write_text("{")
     said = announcement(load_study("demo", repository), {"worn_run_R9_plain"}, repository, 2)
     assert said.startswith("No forecast: results/cost_rates.json: no file of rates")
+
+
+@pytest.mark.parametrize("name", list_studies(REPOSITORY))
+def test_every_job_asks_for_more_than_its_forecast(name):
+    """All beds, runs and calibrations of a study are there, each with more time and memory than it is forecast to need,
+    and with half as much again and a start-up at most twice over."""
+    study = load_study(name, overrides={"fidelity": "paper"})
+    table = forecast_table(work_of(study), read_rates(rates_file(REPOSITORY)).rates).set_index("job")
+    asked = demands(study, REPOSITORY)
+    assert set(asked) == set(table.index)
+    for job, (runtime, room) in asked.items():
+        needed, largest = 60.0 * table.loc[job, "wall_h"], 1e3 * table.loc[job, "memory_gb"]
+        assert 1.5 * needed < runtime <= 2.0 * needed + LEAST_MINUTES + 1
+        assert largest < room <= 2.0 * largest + LEAST_MEMORY_MB + 1
+
+
+def test_nothing_to_do_still_takes_a_start():
+    """A job whose simulation another one has done asks for the time and memory of Python alone."""
+    assert (minutes(0.0), megabytes(0.0)) == (LEAST_MINUTES, LEAST_MEMORY_MB)
+
+
+def test_the_profile_lets_jobs_come_back():
+    """No job may ask for more than a longest one, so an interrupted one must be submitted again and be taken up."""
+    there, here = (yaml.safe_load((PROFILES / name / "config.yaml").read_text()) for name in ("slurm", "default"))
+    assert there["executor"] == "slurm"
+    assert there["retries"] > 1 and there["rerun-incomplete"]
+    assert {"runtime", "mem_mb"} <= set(there["resources"])
+    assert {key: there[key] for key in here if key != "cores"} == {key: here[key] for key in here if key != "cores"}

@@ -10,7 +10,6 @@ import pytest
 from workflows.config.design import load_study
 from workflows.engine.work import Stage
 from workflows.forecast import rate_benchmark
-from workflows.forecast.cost_model import TERMS
 from workflows.forecast.rate_benchmark import (
     BED_STUDY,
     DISCS,
@@ -26,6 +25,7 @@ from workflows.forecast.rate_benchmark import (
 )
 from workflows.forecast.rates import (
     DEFAULT,
+    TERMS,
     MachineRates,
     RatesError,
     machine_facts,

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from postproc.mesh import SurfaceMesh, write_surface
-from postproc.scans.rigid_motion import IDENTITY, RigidMotion, largest_distance
+from postproc.scans.start import IDENTITY, RigidMotion, largest_distance
 from tests.support import scanned_sample as sample
 from workflows.report.scans import main, named_surfaces
 

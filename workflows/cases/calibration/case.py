@@ -14,7 +14,7 @@ from workflows.config.run_checks import Check, CheckedRun, Fault
 from workflows.engine.bulk_simulations import simulation_bytes
 from workflows.engine.bulk_tests import deck_text
 from workflows.engine.case import Case, Parameters, Run, register
-from workflows.engine.sections import particle_section, template_sections, wall_section
+from workflows.engine.derived import particle_section, template_sections, wall_section
 from workflows.engine.work import Work
 
 PUBLISHED = Path(__file__).resolve().parents[3] / "config" / "published"

@@ -22,7 +22,7 @@ from workflows.cases.calibration.responses import RECOMMENDED, repeat_table, wit
 from workflows.config.design import load_study
 from workflows.engine import state
 from workflows.engine.case import Parameters
-from workflows.engine.progress import Progress
+from workflows.engine.job import Progress
 
 CHECKED = "checked_pairs.csv"
 MARKS = ["pair", "test", "seed", "particle_scale", "width_mm"]  # tell one row from another, with the parameters

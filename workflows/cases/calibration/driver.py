@@ -22,7 +22,7 @@ from workflows.cases.calibration.responses import RECOMMENDED, read_measured
 from workflows.cases.calibration.simulations import answer, simulate_all
 from workflows.engine import state
 from workflows.engine.case import Parameters
-from workflows.engine.progress import Progress
+from workflows.engine.job import Progress
 
 FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
 SHEAR_ANGLE = "shear_angle_deg"

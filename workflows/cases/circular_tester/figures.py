@@ -224,7 +224,7 @@ def tester_columns(job: Job) -> Any:
 def tester_bumps(job: Job) -> Any:
     """Draw wear by shape of the pattern (Fig 6.14)."""
     from postproc.mesh import read_surface
-    from postproc.tables.published import published_value
+    from postproc.tables.summary import published_value
     from workflows.cases.circular_tester.distribution import wear_by_bump
     from workflows.cases.circular_tester.plots.distribution import by_bump
 

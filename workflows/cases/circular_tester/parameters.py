@@ -12,11 +12,14 @@ from workflows.config.patterns import highest_point, pattern_section, size_ratio
 from workflows.engine.derived import (
     HEADROOM_DIAMETERS,
     derived_materials,
+    particle_section,
     physical_patch_factor,
     smallest_rayleigh_time,
+    template_sections,
+    wall_section,
+    wear_section,
     whole_steps,
 )
-from workflows.engine.sections import particle_section, template_sections, wall_section, wear_section
 from workflows.engine.templates import used_sections
 
 REPORTS_PER_REVOLUTION = 60  # lines of a log, of which the coefficient of variation of a revolution is made

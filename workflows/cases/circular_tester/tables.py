@@ -8,8 +8,7 @@ import numpy as np
 import pandas as pd
 
 from postproc.mesh import PLAIN, read_surface
-from postproc.tables.published import published_value
-from postproc.tables.summary import patterned_name
+from postproc.tables.summary import patterned_name, published_value
 from workflows.cases.circular_tester import comparison, distribution, flow, volume
 from workflows.cases.circular_tester.findings import Evidence, findings_table
 from workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, WORN_SURFACE, TesterRun, pair_of

@@ -15,7 +15,7 @@ import pandas as pd
 
 from postproc.mesh import PLAIN, read_surface
 from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient
 from postproc.wear.pattern_left import pattern_volume
 from postproc.wear.update import worn_faces

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
 from workflows.cases.pin_on_disc.volume import published_volume
 

@@ -12,7 +12,7 @@ import pandas as pd
 
 from postproc.mesh import read_surface
 from postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from workflows.cases.pin_on_disc.contours import section_table
 from workflows.cases.pin_on_disc.run_in import SIZES
 from workflows.cases.pin_on_disc.runs import CALIBRATED, common_revolution, reference_runs

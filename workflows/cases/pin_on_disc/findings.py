@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from workflows.cases.pin_on_disc.coefficient import coefficient_of_laboratory
 from workflows.cases.pin_on_disc.comparison import EDGES_PER_WIDTH, STABLE_PERCENT
 from workflows.cases.pin_on_disc.run_in import TESTED, run_in_table, run_in_words

@@ -8,9 +8,16 @@ from typing import Any
 
 from postproc.reference.sphere_contact import effective_modulus, hertz_overlap
 from workflows.config.run_checks import CheckedRun, Fault, millimetres, physical_modulus_known
-from workflows.engine.derived import physical_patch_factor, rayleigh_time, whole_steps, youngs_modulus
+from workflows.engine.derived import (
+    physical_patch_factor,
+    rayleigh_time,
+    template_sections,
+    wall_section,
+    wear_section,
+    whole_steps,
+    youngs_modulus,
+)
 from workflows.engine.schedule import LEAST_CYCLE_STEPS
-from workflows.engine.sections import template_sections, wall_section, wear_section
 
 FORCE_WINDOW = math.radians(0.25)  # rad of the track over which a row of forces.csv is a mean
 SETTLING_OSCILLATIONS = 60  # of the pin on its contact, until it rests on the flat disc; each leaves 0.83 at e = 0.9

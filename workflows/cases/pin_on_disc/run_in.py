@@ -13,7 +13,7 @@ import pandas as pd
 
 from postproc.mesh import read_surface
 from postproc.tables.display import MILLIMETRES
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from workflows.cases.pin_on_disc.contours import contour_table
 from workflows.cases.pin_on_disc.runs import whole_revolutions
 

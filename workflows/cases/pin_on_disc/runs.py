@@ -15,7 +15,7 @@ import pandas as pd
 from postproc.mesh import SurfaceMesh, read_surface
 from postproc.readers.cycle_folders import cycle_files
 from postproc.tables.display import MILLIMETRES
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "load_n", "track_radius_mm")
 SCHEMES = ("conserving", "per_triangle")  # in the order in which they are shown

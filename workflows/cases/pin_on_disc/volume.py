@@ -10,8 +10,7 @@ import pandas as pd
 
 from postproc.mesh import read_surface
 from postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
-from postproc.tables.published import published_value
-from postproc.tables.summary import totals_of_runs
+from postproc.tables.summary import published_value, totals_of_runs
 from postproc.wear.update import lost_volume
 from workflows.cases.pin_on_disc.runs import COEFFICIENT_TOLERANCE, SCHEMES, same_coefficient, whole_revolutions
 

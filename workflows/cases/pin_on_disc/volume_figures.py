@@ -155,7 +155,7 @@ def calibration(job: Job) -> Any:
     """Draw the wear coefficient that makes few revolutions stand for the laboratory's."""
     import pandas as pd
 
-    from postproc.tables.published import published_value
+    from postproc.tables.summary import published_value
     from workflows.cases.pin_on_disc import coefficient
     from workflows.cases.pin_on_disc.plots import volume as plots
     from workflows.cases.pin_on_disc.run_in import run_in_table
@@ -194,7 +194,7 @@ def calibration(job: Job) -> Any:
 )
 def size_invariance(job: Job) -> Any:
     """Draw simulated over theoretical volume against the scale of the pin."""
-    from postproc.tables.published import published_value
+    from postproc.tables.summary import published_value
     from workflows.cases.pin_on_disc import volume
     from workflows.cases.pin_on_disc.plots import volume as plots
     from workflows.cases.pin_on_disc.runs import of_runs, runs_and_published

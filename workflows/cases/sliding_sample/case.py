@@ -27,10 +27,19 @@ from workflows.config.patterns import dimension_columns, option_keys, pattern_se
 from workflows.config.units import to_si
 from workflows.engine import decks as deck
 from workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Run, register
-from workflows.engine.derived import ADAPTIVE, PERIODIC, WALLS, WINDOW, window_lengths
+from workflows.engine.derived import (
+    ADAPTIVE,
+    PERIODIC,
+    WALLS,
+    WINDOW,
+    particle_section,
+    template_sections,
+    wall_section,
+    wear_section,
+    window_lengths,
+)
 from workflows.engine.pieces import piece_ends
 from workflows.engine.schedule import Span
-from workflows.engine.sections import particle_section, template_sections, wall_section, wear_section
 from workflows.engine.solver import LOG
 from workflows.engine.templates import render, used_sections
 from workflows.engine.work import Stage, Work

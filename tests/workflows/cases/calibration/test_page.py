@@ -15,8 +15,7 @@ from workflows.cases.calibration.boxes import SIMULATIONS
 from workflows.cases.calibration.responses import RECOMMENDED
 from workflows.report import markdown
 from workflows.report.page import write_page
-from workflows.report.page_parameters import page_parameters, page_templates
-from workflows.report.pages import page_of
+from workflows.report.page_parameters import page_of, page_parameters, page_templates
 from workflows.report.products import (
     job_of,
     outputs_of,

@@ -20,8 +20,8 @@ from workflows.cases.circular_tester.key_numbers import result_table
 from workflows.cases.circular_tester.page import sections
 from workflows.engine import cycles
 from workflows.engine.derived import neighbour_skin
+from workflows.engine.job import write_table
 from workflows.engine.state import read_state
-from workflows.engine.tables import write_table
 from workflows.report.markdown import write_results
 from workflows.report.page_parameters import page_parameters
 from workflows.report.products import figures_of

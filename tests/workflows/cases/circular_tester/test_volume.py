@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from tests.support import tester_study as study
 from workflows.cases.circular_tester.volume import (
     TERMS,

@@ -21,7 +21,7 @@ from workflows.engine import cycles, state
 from workflows.engine.case import find_case
 from workflows.engine.chain import MOST_DECKS, Chain, deck_text, write_decks
 from workflows.engine.inputs import inputs_digest
-from workflows.engine.progress import Progress
+from workflows.engine.job import Progress
 from workflows.engine.schedule import known_spans
 
 GOLDEN = DATA / "golden_pin_on_disc.in"

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from tests import PUBLISHED
 from workflows.cases.pin_on_disc.comparison import (
     LABORATORY_ANGLES,

@@ -20,7 +20,7 @@ from postproc.plots.style import (
     named_once,
     new_figure,
 )
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from workflows.cases.circular_tester.distribution import share_of_bumps
 from workflows.cases.circular_tester.plots.flow import BAND_COLOUR, BANDS
 

@@ -12,10 +12,9 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from postproc.mesh import PLAIN
-from postproc.plots.spheres import draw_circles
-from postproc.plots.style import MAP, SMALLEST_FONT, colour, marker, named_once, new_figure
+from postproc.plots.style import MAP, SMALLEST_FONT, colour, draw_circles, marker, named_once, new_figure
 from postproc.tables.display import DEGREES, MILLIMETRES
-from postproc.tables.published import published_value
+from postproc.tables.summary import published_value
 from workflows.cases.circular_tester.flow import STEADINESS
 
 BAND_COLOUR = "#dddddd"  # of published ranges, behind what is simulated

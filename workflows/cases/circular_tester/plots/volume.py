@@ -24,8 +24,7 @@ from postproc.plots.style import (
     printed_table,
 )
 from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.published import published_value
-from postproc.tables.summary import patterned_name
+from postproc.tables.summary import patterned_name, published_value
 from workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
 from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from workflows.cases.circular_tester.volume import (

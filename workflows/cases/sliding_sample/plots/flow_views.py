@@ -13,8 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from postproc.mesh import SurfaceMesh, boundary_edges
-from postproc.plots.spheres import draw_circles
-from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure
+from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, draw_circles, new_figure
 from postproc.tables.display import MILLIMETRES, in_display_units
 from postproc.tables.film import section
 from postproc.wear.update import worn_faces

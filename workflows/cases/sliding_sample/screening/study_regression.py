@@ -12,10 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from postproc.statistics.effects import half_normal_table
-from postproc.statistics.factors import Factor
+from postproc.statistics.factors import Factor, half_normal_table
 from postproc.statistics.model_terms import Heredity, Term, candidate_terms, parse_term, term_name, told_apart
-from postproc.statistics.optimum import best_design
 from postproc.statistics.regression import CONSTANT, Fit, coefficient_table, fit, fit_measures, predict, residual_table
 from postproc.statistics.selection import (
     MOST_TERMS,
@@ -23,6 +21,7 @@ from postproc.statistics.selection import (
     Choice,
     PermutationTest,
     Search,
+    best_design,
     best_models,
     permutation_test,
 )
@@ -158,7 +157,7 @@ def residuals(study: Screening) -> pd.DataFrame:
 
 
 def effects(study: Screening) -> pd.DataFrame:
-    """Return the half-normal plot's data, see `effects.half_normal_table`."""
+    """Return the half-normal plot's data, see `factors.half_normal_table`."""
     return half_normal_table(study.candidates, study.coded, study.response, study.names)
 
 

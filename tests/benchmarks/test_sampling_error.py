@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.sampling import sampling_errors
+from benchmarks.sampling_error import sampling_errors
 
 EXACT = np.array([6.0, 2.0, 0.0])  # J per triangle
 ROUNDING = 1e-12  # relative; the sums have a handful of terms
