@@ -45,8 +45,6 @@ PERCENT = 100.0
 LIMIT = 0.02  # -, change of wear that matters
 SOURCE_STEP = 5e-6  # s (Yan 2022, section 3.4)
 CONFIDENCE = 0.95
-
-
 CASE = {
     "fidelity": "quick",
     "particle_scale": 2.0,
@@ -56,8 +54,6 @@ CASE = {
     "wear": {"acceleration": 1.0, "deform": False},
     "solver": {"picture_interval_mm": 100, "wear_interval_mm": 50},
 }
-
-
 FRACTIONS = (
     0.07,
     0.14,
@@ -69,8 +65,6 @@ FRACTIONS = (
     1.0,
     1.25,
 )  # -, time step over the Rayleigh time of the smallest particle
-
-
 # Pa -> time step over the Rayleigh time, larger where steps are very short. LIGGGHTS takes no Young's modulus below
 # 5 MPa; the last is that of the stone (config/materials.yaml).
 MODULI = {**dict.fromkeys((2.5e6, 7.0e6, 2.0e7, 7.0e7, 2.8e8), FRACTION), 2.8e9: 0.4, 3.1e10: 0.4}

@@ -27,15 +27,11 @@ NARROW = 0.15  # -, of the panel of ratios below and above 1, at least
 PACKING_LINE = {"linewidth": 0.6, "alpha": 0.45}  # of a single packing
 SOURCE_COLOUR = "#009E73"
 LINE_HEIGHT = 0.19  # inches
-
-
 TITLES = {
     "conserving": "conserving, patch spread twice",
     "spread_once": "conserving, patch spread once",
     "per_triangle": "per triangle (Yan 2022, Eq 5.7)",
 }
-
-
 COLUMNS = {
     "strokes": ("strokes", "{:.0f}"),
     "edges_per_width": ("edge over\nwidth", "1/{:.0f}"),

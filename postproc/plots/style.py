@@ -32,18 +32,12 @@ SMALLEST_PLAIN, LARGEST_PLAIN = 0.01, 1e4  # numbers on an axis without a power 
 TOP_ROOM = 0.04  # inches above the topmost text
 MOST_FACET_COLUMNS = 5
 OTHER_COLOUR = "#595959"
-BASE_COLOUR, PATTERN_COLOUR = "#56B4E9", BLUE
 MAP = "viridis"
 SKIRT_COLOUR = "#c9c9c9"
-
-
 # distinguishable with colour-blindness and in grey (M. Okabe and K. Ito, 2008)
 BLUE, ORANGE = "#0072B2", "#D55E00"
-
-
+BASE_COLOUR, PATTERN_COLOUR = "#56B4E9", BLUE
 PATTERNED_LOOK, PLAIN_LOOK, OTHER_LOOK = (BLUE, "o"), (ORANGE, "s"), (OTHER_COLOUR, "^")  # colour and marker
-
-
 LOOK = {
     "font.family": "sans-serif",
     "font.size": 10.0,

@@ -12,8 +12,6 @@ from postproc.mesh import PLAIN
 
 MEANS = ("mean_normal_force_N", "bed_over_floor_velocity")  # over time; the second where friction alone moves a bed
 AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
-
-
 SUMMED = (
     "worn_volume_m3",
     "base_worn_volume_m3",

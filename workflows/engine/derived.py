@@ -13,8 +13,6 @@ STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diame
 SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
-
-
 # Values of bed.ends: two walls that push the bed along, none, or a window that travels with the sample.
 WALLS, PERIODIC, WINDOW = "walls", "periodic", "window"
 

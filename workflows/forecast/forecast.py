@@ -33,12 +33,8 @@ TIME_MARGIN = 2.0  # -, over the forecast: ranks do not share all work evenly, a
 LEAST_MINUTES = 10  # Python, its libraries and a slow file system
 MEMORY_MARGIN = 1.5  # -, over the forecast
 LEAST_MEMORY_MB = 1000
-
-
 # Memory of a job, measured as the largest resident sets of solver and driver. B per particle, per triangle, B alone.
 PARTICLE_MEMORY, SOLVER_TRIANGLE_MEMORY, SOLVER_MEMORY = 1.3e3, 3.4e3, 3.5e7  # per rank at most
-
-
 SHOWN = {  # column of the table -> heading of the printed one
     "job": "job",
     "particles": "particles",

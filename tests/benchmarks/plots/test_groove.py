@@ -11,8 +11,6 @@ REMARKS = ["pin of radius 3 mm", "softened"]
 X = np.linspace(-2.0, 2.0, 9)  # mm
 BEDS = ["bed of 2 m", "window"]
 SEEDS = (1, 2)
-
-
 DEPTHS = {  # um
     ("conserving", 5): 301.0,
     ("conserving", 20): 305.0,

@@ -38,12 +38,8 @@ PARTICLES = 0.02  # relative; of the three beds of the screening and of the demo
 LONGEST = 15.0  # s, of all studies at all fidelities together; it takes about one
 RATES = dict.fromkeys(TERMS, 0.0) | {"particle_steps": 1e-6, "triangle_steps": 1e-7, "cycles": 2.0, "jobs": 1.0}
 PROFILES = REPOSITORY / "profiles"
-
-
 # Particles that LIGGGHTS 3.8.0 counted in levelled beds at quick fidelity: settings, and number by bed.
 SEVERAL_SCALES = {"particle_scale": 2.0, "bed": {"least_layers": 3.0, "width_mm": 100, "ahead_mm": 100}}
-
-
 COUNTED = {
     "demo": ({}, {"bed_1": 16045}),
     "screening": (SEVERAL_SCALES, {"bed_1": 9575, "bed_2": 8196, "bed_3": 4302}),
