@@ -1,367 +1,171 @@
-"""A bed in a window that travels with the sample: exchanges of bed behind it for fresh bed in front of it."""
+"""Decks of beds and sliding samples: complete, in order, and one golden deck."""
 
-import itertools
 import re
-import subprocess
-from dataclasses import replace
 
-import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.spatial import cKDTree
 
-from postproc.mesh import read_surface
-from postproc.readers.cycle_folders import PACKING
-from postproc.readers.load_ledger import read_load_ledger
-from postproc.readers.solver_log import exchanges, thermo_table
-from tests.support.tiny import tiny_chain, tiny_study
-from workflows.cases.sliding_sample.case import SlidingSample, exchanged_particles, front_lag
-from workflows.cases.sliding_sample.decks import exchange_steps, lowered_bed, sliding_sample
-from workflows.cases.sliding_sample.work import builds_per_step, run_stages
-from workflows.engine import cycles
-from workflows.engine.chain import write_cycle
-from workflows.engine.derived import window_lengths
-from workflows.engine.inputs import inputs_digest
-from workflows.engine.job import Progress
-from workflows.engine.ledgers import summed_by_solver
-from workflows.engine.schedule import first_span, known_spans
-from workflows.engine.solver import run_deck
-from workflows.engine.templates import TEMPLATES, _environment, render
+from tests import DATA
+from tests.support.law_cases import long_slip_registered, wear_settings
+from tests.support.tiny import tiny_study
+from workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
+from workflows.config.design import list_studies, load_study
+from workflows.engine import decks as deck
+from workflows.engine.schedule import known_spans
+from workflows.engine.templates import DeckError, render
 
-WINDOW = {
-    "particle_scale": 6,
-    "bed": {"ends": "window", "exchange_mm": 40, "ahead_mm": 160, "behind_mm": 40, "allow_thin_bed": True},
-    "sliding": {"run_in_mm": 60, "travel_mm": 120, "cycles": 2},
-    "solver": {"picture_interval_mm": 5},
-}
-EXCHANGE = 0.04  # m
-PICTURE_STEPS = 50  # between two snapshots of a cycle by hand
-ROUNDING = 1e-12  # m, of places that awk prints with 15 digits
-FRONT_LAG = 0.1  # -, 160 mm ahead of a small sample in a bed of two layers; seen 0.02
-PRINTED = 2e-6  # m, of places that the solver prints with six digits
-UNDISTURBED = 0.02  # m/s, of nine tenths of fresh bed against its floor; seen 0.005
-LOOSE = 0.5  # m/s, of the rest, a grain on top that tumbles down; seen 0.1, and 6 where the bed enters 1 mm too low
-# Relative, work of two ranks against one, that sums in another order: in a bed the difference grows some 300 times per
-# fifth of the cycle, from 6e-16 to 4e-11 at the look taken here; at its end one contact more or less is 2e-5.
-RANKS_PART = 1e-8
-UNDISTURBED_STEPS = 500  # since an exchange, in which the sample has not come near
+RESET = 'if "${begin_step} == 0" then "reset_timestep 0"'  # a later piece goes on counting
+GOLDEN = DATA / "golden_sliding_sample.in"
+SLIDING = [name for name in list_studies() if load_study(name).case.name == "sliding_sample"]
 
 
-def window_study(**changes):
-    return tiny_study(**{**WINDOW, **changes})
+def run_and_bed(study, name="R9_convex"):
+    return study.run(name).parameters, study.beds[study.bed_of(name)]
 
 
-def decks(study):
-    """Parameters of the decks of a run, cycle 0 first, and its bed."""
-    parameters, bed = study.run("R9_convex").parameters, study.beds[study.bed_of("R9_convex")]
-    later = [sliding_sample(parameters, bed, span, "run.restart") for span in known_spans(parameters)]
-    return [lowered_bed(parameters, bed, "bed.restart"), *later], bed
-
-
-# ---------------------------------------------------------------- when bed is exchanged
-
-
-@given(
-    st.lists(st.integers(1, 500), min_size=1, max_size=6),
-    st.integers(2, 200),
-    st.just(0) | st.integers(2, 60),
-    st.integers(1, 50),
+@pytest.mark.parametrize("name", SLIDING)
+@pytest.mark.parametrize("rolling_friction", ["cdt", "epsd2"])
+@pytest.mark.parametrize(
+    ("ledger", "ends"),
+    [("solver", "walls"), ("dumps", "walls"), ("solver", "periodic"), ("solver", "window"), ("dumps", "window")],
 )
-def test_each_exchange_is_done_once_in_whatever_cycles_the_travel_is_cut(cycles, every, look, lowering):
-    """From the instant at which the bed is set in motion on, every so many steps, in exactly one deck; only what falls
-    on a look at the wear is one step late."""
-    found, before = exchange_steps(-lowering, lowering + cycles[0], every), cycles[0]
-    done = [step - lowering for step in found]
-    for steps in cycles[1:]:
-        here = exchange_steps(before, steps, every, look)
-        assert all(0 < step <= steps for step in here)
-        assert not any(look and step < steps and step % look == 0 for step in here)
-        late = [step for step in here if (before + step) % every]
-        assert all(look and (step - 1) % look == 0 for step in late)
-        done += [before + step - (step in late) for step in here]
-        before += steps
-    assert done == list(range(0, before + 1, every))
+def test_every_deck_of_every_sliding_study_renders(name, rolling_friction, ledger, ends):
+    """No deck has an open word, a missing or an unused parameter, or a tab."""
+    changes = {"solver": {"rolling_friction": rolling_friction}, "ledger": ledger, "bed": {"ends": ends}}
+    study = load_study(name, overrides=changes)
+    texts = [render("settled_bed", settled_bed(bed)) for bed in study.beds.values()]
+    for run in study.runs:
+        parameters, bed = run_and_bed(study, run.name)
+        texts.append(render("lowered_bed", lowered_bed(parameters, bed, "bed.restart")))
+        texts.append(render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")))
+    for text in texts:
+        assert f"rolling_friction {rolling_friction}" in text
+        assert not re.search(r"\{\{|\}\}|\{%|%\}|\t|\bNone\b|\bnan\b", text)
 
 
-def test_decks_continue_each_others_travel():
-    """What a deck counts as travelled when it begins is what those before it counted when they ended."""
-    (first, *later), bed = decks(window_study())
-    steps = first["steps_before"] + first["end_step"]
-    for parameters in later:
-        assert parameters["steps_before"] == steps
-        steps += parameters["end_step"]
-    assert steps * later[0]["travel_per_step_m"] == pytest.approx(0.18, rel=1e-3)
-    assert later[0]["period_m"] == bed["length_m"]
+def test_golden_deck():
+    """The deck of the tiny chain's second cycle, word for word; a change of it is a decision."""
+    parameters, bed = run_and_bed(tiny_study())
+    text = render(
+        "sliding_sample",
+        sliding_sample(parameters, bed, cycle(parameters, 2), "../cycle_001/run.restart"),
+    )
+    assert text == GOLDEN.read_text()
 
 
-def test_the_window_is_as_long_whatever_the_travel():
-    """Behind 40, sample 40, ahead 160, exchange 40 mm, a held strip of two of the largest particles and room of one
-    and the neighbour skin off the wake; runs of all travels and velocities share the bed."""
-    largest, smallest = 6 * 1.2 * 2.65e-3, 6 * 0.8 * 2.65e-3
-    expected = 0.04 + 0.04 + 0.16 + 0.04 + 3.0 * largest + 0.2 * smallest
-    studies = [window_study(sliding={"run_in_mm": 60, "travel_mm": travel, "cycles": 2}) for travel in (120, 12000)]
-    for study in studies:
-        derived = study.run("R9_convex").parameters["derived"]
-        assert derived["bed_length_m"] == pytest.approx(expected, rel=1e-9)
-        assert derived["bed_start_m"] + derived["bed_length_m"] == pytest.approx(0.02 + 0.04)
-        assert derived["bed_travel_m"] == 0.0
-    assert studies[0].beds == studies[1].beds
-    face = decks(studies[0])[0][0]["face_m"]
-    strip, clearance = window_lengths(studies[0].run("R9_convex").parameters["particle"])
-    assert -0.02 - face - strip - EXCHANGE == pytest.approx(0.16)
-    assert face - studies[0].beds["bed_1"]["start_m"] == pytest.approx(clearance)
-
-
-def test_the_forecast_of_a_window_grows_with_the_travel_only():
-    """Ten times the travel: the same particles in ten times the steps. Each exchange makes a neighbour list anew."""
-    stages = []
-    for travel in (120, 1200):
-        study = window_study(sliding={"run_in_mm": 60, "travel_mm": travel, "cycles": 2})
-        parameters, bed = study.run("R9_convex").parameters, study.beds[study.bed_of("R9_convex")]
-        stages.append(run_stages(parameters, bed)[-1])
-        often = stages[-1].builds - builds_per_step(parameters) * stages[-1].steps
-        assert often == pytest.approx(travel / 1000.0 / EXCHANGE)
-    assert stages[0].particles == stages[1].particles
-    assert stages[1].steps == pytest.approx(10 * stages[0].steps, rel=1e-3)
-
-
-def test_decks_of_a_window_keep_ids_and_the_strip():
-    """Contacts are found by ids, which deleting must not renumber; the strip is held after gravity acts."""
-    for name, parameters in zip(("lowered_bed", "sliding_sample"), decks(window_study())[0], strict=False):
-        text = render(name, parameters)
-        assert "delete_atoms    group wake compress no" in text
-        assert text.index("fix  gravity") < text.index("fix  strip_held")
-        assert "boundary        p p fm" in text and "upstream_end" not in text
-
-
-def test_other_beds_do_not_know_of_exchanges():
-    """Without a window the travel between exchanges is no parameter, and no deck exchanges anything."""
-    one, other = (tiny_study(bed={"exchange_mm": travel}).run("R9_convex").parameters for travel in (30, 50))
-    assert one == other and "exchange_m" not in one["bed"]
-    for text in (render("lowered_bed", decks(tiny_study())[0][0]),):
-        assert not re.search(r"strip|exchange|packing", text)
-
-
-# ---------------------------------------------------------------- what enters
-
-
-class Window:
-    """The deck's own selection of fresh bed, outside the solver."""
-
-    def __init__(self, folder, packing, period):
-        self.folder, self.face, self.period = folder, -0.13, period
-        lines = [f"{k + 1} 1 0.01 2460 {x:.17g} {y:.17g} {z:.17g}" for k, (x, y, z) in enumerate(packing)]
-        (folder / "packing.dump").write_text("\n".join([*["ITEM"] * 9, *lines]) + "\n")
-        names = ("face_m", "strip_length_m", "clearance_m", "travel_per_step_m", "steps_before")
-        words = {name: 0.0 for name in names} | {
-            "ends": "window",
-            "cycle": 1,
-            "exchange_steps": [1],
-            "period_m": period,
-            "packing_file": "packing.dump",
-        }
-        text = _environment(TEMPLATES).get_template("_shared/fresh_bed.in.j2").render(words)
-        command = re.search(r"^shell +(awk .*?fresh_bed\.data\")$", text.replace("&\n", ""), re.MULTILINE)[1]
-        self.command = command.replace("\"'", "'").replace("'\"", "'").replace('"> ', "> ").removesuffix('"')
-
-    def fresh(self, travel, strip_start, newest):
-        """Ids and places of the particles that enter."""
-        values = {
-            "v_face": self.face,
-            "v_strip_start-v_face-v_nanometre": strip_start - self.face - 1e-9,
-            "v_travel": travel,
-            "v_newest": newest,
-        }
-        command = self.command
-        for name, value in values.items():
-            command = command.replace(f"$({name})", f"{value:.20g}")
-        subprocess.run(command, shell=True, check=True, cwd=self.folder)
-        lines = (self.folder / "fresh_bed.data").read_text().splitlines()
-        assert lines[2] == f"{len(lines) - 6} atoms" and lines[4] == "Atoms"
-        table = np.array([line.split() for line in lines[6:]], float).reshape(-1, 7)
-        assert (table[:, 1:4] == [1, 0.01, 2460]).all()
-        return table[:, 0].astype(int), table[:, 4:]
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_fresh_bed_continues_the_packing_over_periods_of_travel(tmp_path, seed):
-    """Exchanges at irregular travels, over two and a half periods: together they bring each particle of the packing as
-    often as it passes the face, at packing + travel less whole periods, with new ids; nothing overlaps
-    that does not in the packing."""
-    random = np.random.default_rng(seed)
-    period, spacing = 0.3, 0.01
-    cells = np.stack(np.meshgrid(np.arange(3), np.arange(30), np.arange(2), indexing="ij"), axis=-1).reshape(-1, 3)
-    packing = spacing * (cells + 0.5 + random.uniform(-0.2, 0.2, cells.shape)) + (0.0, -0.15, 0.0)
-    window = Window(tmp_path, packing, period)
-    bed, strip_start, travel, newest = np.empty((0, 3)), window.face + 0.02, 0.0, 1000
-    while travel < 2.5 * period:
-        ids, fresh = window.fresh(travel, strip_start, newest)
-        assert list(ids) == list(range(newest + 1, newest + 1 + len(ids)))
-        bed, newest = np.concatenate((bed, fresh)), newest + len(ids)
-        moved = random.uniform(0.0, 0.08)
-        bed, travel, strip_start = bed + np.array([0.0, moved, 0.0]), travel + moved, bed[:, 1].min() + moved
-    unwrapped = bed[:, 1] - travel  # where each was in an endless packing
-    covered = np.arange(-4, 3)[:, None] * period + packing[:, 1]
-    expected = np.sort(covered[(covered > unwrapped.min() - ROUNDING) & (covered < unwrapped.max() + ROUNDING)])
-    np.testing.assert_allclose(np.sort(unwrapped), expected, rtol=0.0, atol=ROUNDING * 1e2)
-    assert unwrapped.max() - unwrapped.min() > 2.4 * period
-    images = np.concatenate([packing + np.array([0.0, k * period, 0.0]) for k in (-1, 0, 1)])
-    closest = cKDTree(images).query(images, k=2)[0][:, 1].min()
-    assert cKDTree(bed).query(bed, k=2)[0][:, 1].min() == pytest.approx(closest, abs=ROUNDING * 1e2)
-
-
-# ---------------------------------------------------------------- particles are counted
-
-
-def _log(folder, counts, told):
-    rows = "\n".join(f"{step} {count}" for step, count in enumerate(counts))
-    (folder / "log.liggghts").write_text(f"Step Atoms\n{rows}\nLoop time of 1\n{told}")
-
-
-def test_the_count_of_particles_adds_up(tmp_path):
-    """What left and entered explains every count; one more that is gone stops the cycle with a sentence."""
-    told = "Exchange at step 5: 20 particles left, 25 entered, 105 are here.\n"
-    case = SlidingSample()
-    _log(tmp_path, [100, 100, 105, 105], told)
-    own = exchanged_particles(tmp_path)
-    assert own == {"left_particles": 20, "entered_particles": 25, "missing_particles": 0}
-    assert case.cycle_fault({}, own) is None
-    for counts, said in (([100, 100, 104], told), ([100, 100], told.replace("105", "104"))):
-        _log(tmp_path, counts, said)
-        assert exchanged_particles(tmp_path)["missing_particles"] == 1
-        assert case.cycle_fault({}, exchanged_particles(tmp_path)).startswith("1 particles are missing")
-
-
-# ---------------------------------------------------------------- the solver
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    """The folder of a run whose bed is in motion, and of its first wear cycle run by hand with many snapshots."""
-    chain = tiny_chain(window_study(), tmp_path_factory.mktemp("window"))
-    cycles.run_cycle(chain, None, inputs_digest(chain), Progress("window", 1))
-    span, folder = first_span(chain.parameters), chain.folder / "by_hand"
-    folder.mkdir()
-    triangles = write_cycle(chain, span, folder, read_surface(chain.surface))
-    text = (folder / "deck.in").read_text()
-    picture = re.search(r"picture_steps +equal (\d+)", text)[0]
-    (folder / "deck.in").write_text(text.replace(picture, f"picture_steps equal {PICTURE_STEPS}"))
-    cycles.simulate(chain, span, folder, triangles, Progress("window", 1))
-    return chain, folder
-
-
-def snapshots(run):
-    """(step, steps since the last exchange, places, velocities and spins, y of the strip's end) of a cycle's snapshots.
-
-    From its first exchange on; places in m, six digits as the solver prints them.
+@pytest.mark.parametrize(("ends", "grid"), [("walls", "* 1 1"), ("periodic", "* * 1"), ("window", "* * 1")])
+def test_ranks_share_a_bed_as_its_geometry_wants(ends, grid):
+    """A bed that travels through its domain is split across; one that fills it is the solver's to split. All decks of a
+    run say the same, and none knows how many ranks there will be.
     """
-    folder, first = run[1], decks(window_study())[0][0]
-    told = exchanges(folder / "log.liggghts")["step"]
-    for path in sorted(folder.glob("bed_*.dump"), key=lambda path: int(path.stem[4:])):
-        step = int(path.stem[4:])
-        if step > told[0]:
-            since = step - told[told < step][-1]
-            table = np.loadtxt(path, skiprows=9)
-            start = first["face_m"] + since * first["travel_per_step_m"]
-            yield step, since, table[:, 1:4], table[:, 4:10], start
-
-
-@pytest.mark.solver
-def test_particles_are_conserved_but_for_the_exchanged_ones(run):
-    """Between exchanges no count changes; the ledger of all steps is complete, whatever number of runs they took."""
-    chain, folder = run
-    own = exchanged_particles(folder)
-    assert own["missing_particles"] == 0 and own["left_particles"] > 0 and own["entered_particles"] > 0
-    counts = thermo_table(folder / "log.liggghts")["Atoms"]
-    assert len(np.unique(counts)) == len(exchanges(folder / "log.liggghts")["step"]) + 1
-    ledger = summed_by_solver(chain, first_span(chain.parameters), folder, read_surface(chain.surface))
-    assert ledger["sliding_work_J"].sum() > 0.0
-
-
-@pytest.mark.solver
-def test_the_held_strip_is_packing_that_travels_with_the_floor(run):
-    """Its particles move at the bed's velocity without spin, each where the packing has it, travelled on."""
-    first, second = decks(window_study())[0][:2]
-    packing = np.loadtxt(run[0].folder / "cycle_000" / PACKING, skiprows=9)[:, 4:]
-    seen = 0
-    for step, _, places, motion, start in snapshots(run):
-        held = (places[:, 1] > start - PRINTED) & (places[:, 1] < start + first["strip_length_m"] - PRINTED)
-        np.testing.assert_array_equal(motion[held], np.tile([0.0, 1.0, 0.0, 0.0, 0.0, 0.0], (held.sum(), 1)))
-        travel = (second["steps_before"] + step) * first["travel_per_step_m"]
-        expected = packing.copy()
-        expected[:, 1] = first["face_m"] + np.mod(expected[:, 1] + travel - first["face_m"], first["period_m"])
-        assert cKDTree(expected).query(places[held])[0].max() < PRINTED
-        seen += held.sum()
-    assert seen > 100
-
-
-@pytest.mark.solver
-def test_undisturbed_fresh_bed_rests_on_the_floor(run):
-    """What was let go at the last exchange, far ahead of the sample, hardly moves against the floor: nothing that
-    entered overlapped, nothing had to settle."""
-    strip = decks(window_study())[0][0]["strip_length_m"]
-    fastest = []
-    for _, since, places, motion, start in snapshots(run):
-        free = (places[:, 1] > start + strip) & (places[:, 1] < start + strip + EXCHANGE)
-        if since < UNDISTURBED_STEPS:
-            speeds = np.linalg.norm(motion[free, :3] - (0.0, 1.0, 0.0), axis=1)
-            fastest.append((np.quantile(speeds, 0.9), speeds.max()))
-    assert len(fastest) >= 5
-    assert (np.array(fastest) < (UNDISTURBED, LOOSE)).all()
-    assert abs(front_lag(run[0].parameters, run[1])) < FRONT_LAG
-
-
-@pytest.mark.solver
-def test_a_run_in_pieces_exchanges_as_often(run, tmp_path):
-    """Ended and begun again in the middle and at an exchange, a cycle has each exchange once and loses no particle."""
-    chain, whole = run
-    span = first_span(chain.parameters)
-    folder = chain.folder / "in_pieces"
-    folder.mkdir()
-    triangles = write_cycle(chain, span, folder, read_surface(chain.surface))
-    told = exchanges(whole / "log.liggghts")["step"]
-    log = ""
-    for begin, end in itertools.pairwise([0, int(told[0]), int(told[1]) - 100, span.steps]):
-        given = {"begin": "begin.restart", "begin_step": str(begin)} if begin else {}
-        run_deck(
-            folder,
-            triangles={"sample_1": triangles},
-            executable=cycles.cycle_executable(chain, span),
-            variables={**given, "stop": str(end)},
-        )
-        log += (folder / "log.liggghts").read_text()
-        if end < span.steps:
-            (folder / "checkpoint.restart").rename(folder / "begin.restart")
-    (folder / "log.liggghts").write_text(log)
-    np.testing.assert_array_equal(exchanges(folder / "log.liggghts")["step"], told)
-    assert exchanged_particles(folder)["missing_particles"] == 0
-    assert summed_by_solver(chain, span, folder, read_surface(chain.surface))["contact_time_s"].sum() > 0.0
-
-
-@pytest.mark.solver
-@pytest.mark.parametrize(("asked", "grid"), [("2 1 1", (2, 1)), ("* * 1", (1, 2))])
-def test_two_ranks_exchange_as_one_does(run, asked, grid):
-    """Split across, and as the solver chooses for the deck, which is along the travel: the same exchanges of as many
-    particles at the same steps, none lost, and up to a late look the same work but for the rounding of sums.
-    """
-    chain, whole = run
-    span = first_span(chain.parameters)
-    folder = chain.folder / f"grid_{grid[0]}_{grid[1]}"
-    folder.mkdir()
-    triangles = write_cycle(chain, span, folder, read_surface(chain.surface))
-    text = (folder / "deck.in").read_text()
-    assert len(re.findall(r"^processors +\* \* 1 ", text, re.MULTILINE)) == 1
-    (folder / "deck.in").write_text(re.sub(r"^processors .*", f"processors {asked}", text, flags=re.MULTILINE))
-    cycles.simulate(replace(chain, ranks=2), span, folder, triangles, Progress("window", 1))
-    assert f"{grid[0]} by {grid[1]} by 1 MPI processor grid" in (folder / "log.liggghts").read_text()
-    alone, shared = (exchanges(place / "log.liggghts") for place in (whole, folder))
-    for column, values in alone.items():
-        np.testing.assert_array_equal(shared[column], values, column)
-    assert exchanged_particles(folder)["missing_particles"] == 0
-    look = sorted(int(path.suffix[1:]) for path in whole.glob("load_ledger.bin.*"))[-2]
-    assert look > alone["step"][0]  # after fresh bed has come
-    work = [
-        read_load_ledger(place / f"load_ledger.bin.{look}").columns["sliding_work_J"].sum() for place in (whole, folder)
+    study = tiny_study(bed={"ends": ends, "ahead_mm": 60, "exchange_mm": 60})
+    parameters, bed = run_and_bed(study)
+    texts = [
+        render("settled_bed", settled_bed(bed)),
+        render("lowered_bed", lowered_bed(parameters, bed, "bed.restart")),
+        render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
     ]
-    assert work[1] == pytest.approx(work[0], rel=RANKS_PART)
+    for text in texts:
+        assert re.findall(r"^processors +(\S+ \S+ \S+)", text, re.MULTILINE) == [grid]
+
+
+def cycle(parameters, number):
+    """Span of a wear cycle."""
+    return known_spans(parameters)[number - 1]
+
+
+def cycle_deck(**changes):
+    parameters, bed = run_and_bed(tiny_study(**changes))
+    return render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 2), "run.restart"))
+
+
+def position(text, start):
+    """Place of the only line that begins so."""
+    found = [place for place, line in enumerate(text.splitlines()) if re.sub(" +", " ", line).startswith(start)]
+    assert len(found) == 1, f"{start}: lines {found}"
+    return found[0]
+
+
+def test_the_exact_ledger_stands_where_the_solver_wants_it():
+    """After mesh and wall, before the steps are reset; gone before the last restart file; no dump of contacts."""
+    text = cycle_deck()
+    order = (
+        *("fix sample_2 all mesh/surface/stress", "fix walls all wall/gran"),
+        *("fix load_ledger all load/ledger mesh sample_2 file load_ledger.bin", RESET, "run "),
+        *("unfix load_ledger", "write_restart run.restart"),
+    )
+    places = [position(text, start) for start in order]
+    assert places == sorted(places)
+    assert "solver/build/liggghts-ledger -in deck.in" in text.split("\n\n")[0]
+    for word in ("contacts.dump", "spins.dump", "wall/gran/local", "sampling"):
+        assert word not in text
+
+
+def test_sampled_contacts_run_with_any_liggghts():
+    """With ledger: dumps no trace of the fix is left, and spins stand before contacts, after the steps are reset."""
+    text = cycle_deck(ledger="dumps")
+    order = (RESET, "compute wall_contact", "dump spins", "dump contacts", "run ", "write_restart")
+    places = [position(text, start) for start in order]
+    assert places == sorted(places)
+    assert "# Runs by hand: liggghts -in deck.in" in text.split("\n\n")[0]
+    assert "ledger" not in text
+
+
+def test_a_law_with_a_kernel_asks_the_solver_for_it():
+    """The fix gets exactly the kernels that the law needs, each with its parameters in SI, all digits of them."""
+    with long_slip_registered():
+        chosen = {law: wear_settings(law) for law in ("archard", "finnie", "long_slip")}
+        chosen["long_slip"]["parameters"] = {"exponent": 5 / 3}
+        texts = {law: cycle_deck(wear=settings) for law, settings in chosen.items()}
+    asked = {law: re.search(r" file load_ledger.bin history \d+(.*)", text)[1] for law, text in texts.items()}
+    assert asked == {
+        "archard": "",
+        "finnie": " kernels finnie_work",
+        "long_slip": " kernels long_slip exponent 1.6666666666666667 length_m 0.002",
+    }
+
+
+def test_the_producer_adds_its_own_parameters_only():
+    """A parameter of the other producer is one that is never used."""
+    parameters, bed = run_and_bed(tiny_study())
+    given = sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")
+    with pytest.raises(DeckError, match=r"parameter contact_format is never used"):
+        render("sliding_sample", {**given, "contact_format": "%g"})
+    with pytest.raises(DeckError, match=r"parameter ledger_kernels is not given"):
+        render("sliding_sample", {key: value for key, value in given.items() if key != "ledger_kernels"})
+
+
+def test_bed_has_travelled_run_in_and_all_earlier_cycles():
+    """The end walls of cycle k start where cycle k-1 left them: the run-in and k-1 cycles on."""
+    parameters, _ = run_and_bed(tiny_study())
+    sliding = parameters["sliding"]
+    cycle = sliding["travel_m"] / sliding["cycles"]
+    assert deck.travelled(parameters, 0) == 0.0
+    for span in known_spans(parameters):
+        expected = sliding["run_in_m"] + (span.cycle - 1) * cycle
+        steps = parameters["derived"]["run_in_steps"] + span.first_step
+        assert deck.travelled(parameters, steps) == pytest.approx(expected, rel=1e-3)
+
+
+def test_every_particle_pair_keeps_its_own_property():
+    """Pair tables are symmetric and have the floor's value only where the floor takes part."""
+    table = settled_bed(run_and_bed(tiny_study())[1])["sliding_friction"]
+    assert table[0][0] == 0.21 and table[0][2] == 0.38
+    assert all(table[i][j] == table[j][i] for i in range(3) for j in range(3))
+
+
+def test_a_periodic_bed_has_no_ends():
+    """No wall at an end in any deck; the domain is periodic along the travel and exactly as long as the bed."""
+    parameters, bed = run_and_bed(tiny_study(bed={"ends": "periodic", "ahead_mm": 80}))
+    settled = settled_bed(bed)
+    texts = [
+        render("settled_bed", settled),
+        render("lowered_bed", lowered_bed(parameters, bed, "bed.restart")),
+        render("sliding_sample", sliding_sample(parameters, bed, cycle(parameters, 1), "run.restart")),
+    ]
+    for text in texts:
+        assert "boundary        p p fm" in text
+        assert not re.search(r"upstream_end|downstream_end|end_wall|move/mesh", text)
+    for text in texts[1:]:
+        assert "shear y ${velocity}" in text and "v_bed_pace" in text
+    assert settled["domain_end_m"] - settled["domain_start_m"] == pytest.approx(0.02 + 0.04 + 0.08, rel=1e-12)
+    assert settled["fill_gap_m"] == 0.0
