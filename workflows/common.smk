@@ -15,6 +15,7 @@ from workflows.engine.job import let_jobs_import
 from workflows.forecast.rates import rates_file
 from workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
 from workflows.engine.templates import template_sources
+from workflows.report.products import paths_of, told_to
 
 min_version("9.0")
 
@@ -163,6 +164,26 @@ def study_decks(study):
     """The decks of a study, rendered without the solver."""
     runs = [run.name for run in STUDIES[study].runs]
     return [f"results/{study}/decks/{name}" for name in STUDIES[study].case.deck_files(runs, list(STUDIES[study].beds))]
+
+
+def input_of(source):
+    """An input of a rule: a path, or an input function."""
+    return source if isinstance(source, str) else lambda wildcards: paths_of(source, study_of(wildcards))
+
+
+def in_report(product, paths):
+    """The outputs of a product, its figure marked for Snakemake's own report; the caption lies beside the rule."""
+    if not product.is_figure:
+        return paths
+    flagged = report(
+        paths["figure"], caption="caption.rst", category=product.category, labels={"figure": product.title}
+    )
+    return {**paths, "figure": flagged}
+
+
+def told_of(product):
+    """A param: what a product is told of a study."""
+    return lambda wildcards: told_to(product, study_of(wildcards))
 
 
 def used_rates(wildcards=None):

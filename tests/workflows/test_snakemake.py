@@ -208,7 +208,7 @@ def test_an_edited_template_renders_again(tmp_path):
     finish(snakemake(folder, "tiny_decks"))
     deck = folder / "results/tiny/decks/R9_plain/cycle_001/deck.in"
     assert "Nothing to be done" in finish(snakemake(folder, "tiny_decks"))
-    template = folder / "templates/sliding_sample.in.j2"
+    template = folder / "templates/sliding_sample/sliding_sample.in.j2"
     template.write_text(template.read_text() + "# the end\n")
     finish(snakemake(folder, "tiny_decks"))
     assert deck.read_text().endswith("# the end\n")

@@ -1,35 +1,13 @@
 """Tables and figures of a study, and its page."""
 
-from workflows.report.page_parameters import page_parameters, page_templates
-from workflows.report.products import outputs_of, paths_of, product_files, products_of, told_to
-from workflows.report.page_parameters import figure_remarks
+from workflows.report.page_parameters import figure_remarks, page_parameters, page_templates
+from workflows.report.products import outputs_of, product_files, products_of
 
 STUDIES_OF = {}  # rule of a product -> what studies can have it, and the product
 for CASE in CASES.values():
     for PRODUCT in products_of(CASE).values():
         names = [study.name for study in STUDIES.values() if study.case is CASE]
         STUDIES_OF.setdefault(PRODUCT.rule, ([], PRODUCT))[0].extend(names)
-
-
-def input_of(source):
-    """An input of a rule: a path, or an input function."""
-    return source if isinstance(source, str) else lambda wildcards: paths_of(source, study_of(wildcards))
-
-
-def in_report(product, paths):
-    """The outputs of a product, its figure marked for Snakemake's own report."""
-    if not product.is_figure:
-        return paths
-    flagged = report(
-        paths["figure"], caption="caption.rst", category=product.category, labels={"figure": product.title}
-    )
-    return {**paths, "figure": flagged}
-
-
-def told_of(product):
-    """A param: what a product is told of a study."""
-    return lambda wildcards: told_to(product, study_of(wildcards))
-
 
 for RULE_OF_PRODUCT, (NAMES, PRODUCT) in STUDIES_OF.items():
 

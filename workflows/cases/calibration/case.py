@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
@@ -17,6 +17,9 @@ from workflows.engine.case import Case, Parameters, Run, register
 from workflows.engine.derived import particle_section, template_sections, wall_section
 from workflows.engine.work import Work
 
+if TYPE_CHECKING:
+    from workflows.config.design import Study
+
 PUBLISHED = Path(__file__).resolve().parents[3] / "config" / "published"
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
 LEAST_SLOT_DIAMETERS = 5.0  # -, of a slot as simulated. Measured: at 4.0 an arch blocked it, friction 0.32 and 0.37
@@ -28,6 +31,21 @@ def published(name: str) -> pd.DataFrame:
         there = ", ".join(sorted(path.name for path in PUBLISHED.glob("*.csv")))
         raise ConfigError(f"config/published/{name}: there is no such file, found in its folder: {there or 'nothing'}.")
     return pd.read_csv(PUBLISHED / name)
+
+
+def calibration_box(study: Study) -> dict[str, Any]:
+    """Return the parameters of the first run, whose box is that of the calibration."""
+    return study.all_runs[0].parameters
+
+
+def measured_file(study: Study) -> str:
+    """Return the path, from the repository, of the table of measured responses."""
+    return f"config/published/{calibration_box(study)['calibration']['measured']}"
+
+
+def pairs_file(study: Study) -> str:
+    """Return the path, from the repository, of the table of pairs that others simulated."""
+    return f"config/published/{calibration_box(study)['calibration']['simulated_before']}"
 
 
 # ---------------------------------------------------------------- checks

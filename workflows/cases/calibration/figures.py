@@ -5,36 +5,21 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
 from workflows.report.products import Job, figure, tables
 
 if TYPE_CHECKING:
     from workflows.cases.calibration.outcome import Calibrated
-    from workflows.config.design import Study
 
 CATEGORY = "Calibration"
 SIZES_BEFORE = "config/published/shear_box_sizes.csv"
-
-
-def _parameters(study: Study) -> dict[str, Any]:
-    """Return the parameters of the calibration: those of the first box."""
-    return study.all_runs[0].parameters
-
-
-def _measured(study: Study) -> str:
-    return f"config/published/{_parameters(study)['calibration']['measured']}"
-
-
-def _pairs_before(study: Study) -> str:
-    return f"config/published/{_parameters(study)['calibration']['simulated_before']}"
-
-
 SIMULATED = {
-    "measured": _measured,
-    "pairs": _pairs_before,
+    "measured": measured_file,
+    "pairs": pairs_file,
     "simulations": "results/{study}/simulations.csv",
     "repeats": "results/{study}/repeats.csv",
 }
-TOLD = {"parameters": _parameters}
+TOLD = {"parameters": calibration_box}
 
 
 def _calibrated(job: Job) -> Calibrated:
@@ -133,8 +118,8 @@ def family(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Recommended and published pair",
-    inputs={"statements": "results/{study}/summary.csv", "pairs": _pairs_before},
-    told={"compared": lambda study: _parameters(study)["calibration"]["compared_pair"]},
+    inputs={"statements": "results/{study}/summary.csv", "pairs": pairs_file},
+    told={"compared": lambda study: calibration_box(study)["calibration"]["compared_pair"]},
     digits=6,
     caption="""
     Responses of both pairs simulated here with several packings (mean and its standard uncertainty), what the surrogate

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from workflows.cases.calibration.boxes import simulated_width
+from workflows.cases.calibration.case import calibration_box
 from workflows.report.sections import Section
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ DECKS = ()  # `snakemake <study>_decks` renders them
 
 def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is."""
-    return {"parameters": study.all_runs[0].parameters}
+    return {"parameters": calibration_box(study)}
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
@@ -43,7 +44,7 @@ def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
 
 def remarks(study: Study) -> list[str]:
     """Return what figures must say about model, convention and width."""
-    run = study.all_runs[0].parameters
+    run = calibration_box(study)
     solver = run["solver"]
     scale = run["particle"]["scale"]
     said = [

@@ -1,29 +1,16 @@
 """Calibrations: bulk tests simulated where a rule says, and their decks."""
 
+from workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
+
 
 localrules:
     bulk_test_deck,
 
 
-def first_box(wildcards):
-    """The parameters of the first run, whose box is that of the calibration."""
-    return study_of(wildcards).all_runs[0].parameters
-
-
-def published_file(key):
-    """An input function: the published table that a setting of the calibration names."""
-    return lambda wildcards: f"config/published/{first_box(wildcards)['calibration'][key]}"
-
-
-def simulations_at_once(wildcards):
-    """How many simulations a calibration has at the same time."""
-    return first_box(wildcards)["calibration"]["batch"]
-
-
 rule calibrated_parameters:
     input:
-        measured=published_file("measured"),
-        pairs=published_file("simulated_before"),
+        measured=lambda wildcards: measured_file(study_of(wildcards)),
+        pairs=lambda wildcards: pairs_file(study_of(wildcards)),
     output:
         simulations="results/{study}/simulations.csv",
         looks="results/{study}/looks.csv",
@@ -32,12 +19,12 @@ rule calibrated_parameters:
         "results/{study}/logs/calibrated_parameters.log",
     benchmark:
         "results/{study}/logs/calibrated_parameters.benchmark.tsv"
-    threads: simulations_at_once
+    threads: lambda wildcards: calibration_box(study_of(wildcards))["calibration"]["batch"]
     resources:
         runtime=asked("calibrated_parameters", 0),
         mem_mb=asked("calibrated_parameters", 1),
     params:
-        run=first_box,
+        run=lambda wildcards: calibration_box(study_of(wildcards)),
         templates=[template_sources("shear_box"), template_sources("draw_down")],
     message:
         "Calibration of {wildcards.study}"
@@ -47,14 +34,14 @@ rule calibrated_parameters:
 
 rule box_sizes:
     input:
-        pairs=published_file("simulated_before"),
+        pairs=lambda wildcards: pairs_file(study_of(wildcards)),
     output:
         "results/{study}/box_sizes.csv",
     log:
         "results/{study}/logs/box_sizes.log",
     benchmark:
         "results/{study}/logs/box_sizes.benchmark.tsv"
-    threads: simulations_at_once
+    threads: lambda wildcards: calibration_box(study_of(wildcards))["calibration"]["batch"]
     resources:
         runtime=asked("box_sizes", 0),
         mem_mb=asked("box_sizes", 1),
@@ -75,7 +62,7 @@ rule bulk_test_deck:
     wildcard_constraints:
         test="shear_box|draw_down",
     params:
-        run=first_box,
+        run=lambda wildcards: calibration_box(study_of(wildcards)),
         templates=[template_sources("shear_box"), template_sources("draw_down")],
     message:
         "Deck of the {wildcards.test}"
