@@ -1,1 +1,1 @@
-"""TODO."""
+"""Contact parameters calibrated on bulk tests: everything of the case."""

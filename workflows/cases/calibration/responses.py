@@ -16,7 +16,7 @@ from postproc.inference.problem import Measured, Problem
 GRID_POINTS = 41  # along each of the two parameters of a map
 PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior
 PICTURE_BINS = 40  # along each parameter
-RECOMMENDED, MEASURED = "recommended", "measured"
+RECOMMENDED = "recommended"  # name of the pair that a calibration found
 RESPONSE_NAMES = {
     "shear_angle_deg": "Shear angle, shear box (°)",
     "draw_down_shear_angle_deg": "Shear angle, draw-down (°)",

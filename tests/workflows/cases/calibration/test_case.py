@@ -53,3 +53,15 @@ def test_published_data_are_those_of_the_source():
     assert pairs["discharge_time_s"].notna().sum() == 6
     names = [SLIDING, ROLLING]
     assert pair_of(pairs, "calibrated", names, study().runs[0].parameters) == {SLIDING: 0.21, ROLLING: 0.4}
+
+
+def test_a_calibration_has_the_decks_of_its_tests_and_no_runs(tmp_path):
+    """Decks are those of both tests; simulations are the folders of bulk tests, not those of design rows."""
+    found = study()
+    runs = [run.name for run in found.runs]
+    assert found.case.deck_files(runs, []) == ["shear_box/deck.in", "draw_down/deck.in"]
+    assert not found.case.wears and found.beds == {}
+    for name in ("shear_box_0", "draw_down_1"):
+        (tmp_path / "simulations" / name).mkdir(parents=True)
+    (tmp_path / "simulations" / "lock").touch()
+    assert [path.name for path in found.case.simulation_folders(tmp_path, runs)] == ["draw_down_1", "shear_box_0"]

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of a calibration: tables in, figures out."""
