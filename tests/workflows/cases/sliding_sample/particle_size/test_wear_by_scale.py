@@ -12,6 +12,7 @@ from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     beside_published,
     critical_scale,
     critical_scale_text,
+    lines_beside,
     published_by_size_ratio,
     wear_by_scale,
     wear_by_size_ratio,
@@ -105,3 +106,13 @@ def test_ratios_stand_beside_convex_over_plain_wear():
     assert list(ours["particle_scale"]) == list(SCALES)
     for column in (*RATIOS, "wear_over_plain"):
         assert np.allclose(ours[column], theirs[column], rtol=ROUNDING), column
+
+
+def test_another_pattern_is_not_set_beside_the_sources():
+    """Curves have the surface's own name; of the source's lines only that of the plain sample is set beside them."""
+    lines, wear = pd.DataFrame({"curve": ["plain", "convex", "base", "bumps"]}), wear_by_scale(summary())
+    other = wear_by_scale(summary().replace({"surface": {"convex": "dimpled"}}))
+    assert set(other["curve"]) == {"plain", "dimpled", *PARTS}
+    assert critical_scale(other) == critical_scale(wear)
+    assert lines_beside(lines, wear)["curve"].tolist() == lines["curve"].tolist()
+    assert lines_beside(lines, other)["curve"].tolist() == ["plain"]
