@@ -60,8 +60,9 @@ def _apart(old: np.ndarray, new: np.ndarray) -> float:
     if (np.isnan(old) != np.isnan(new)).any():
         return np.inf
     same = (old == new) | np.isnan(old)
+    apart = np.abs(np.where(same, 0.0, old) - np.where(same, 0.0, new))  # infinite ones that are the same are 0 apart
     size = np.maximum(np.maximum(np.abs(old), np.abs(new)), np.finfo(float).tiny)
-    return float(np.where(same, 0.0, np.abs(old - new) / size).max(initial=0.0))
+    return float((apart / np.where(np.isfinite(size), size, 1.0)).max(initial=0.0))
 
 
 def compare(before: Path, after: Path, names: Mapping[str, str], tolerance: float) -> list[str]:

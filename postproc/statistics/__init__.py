@@ -1,1 +1,1 @@
-"""TODO."""
+"""Statistics of computer experiments: designs, regressions and their choice, steadiness, lines, verdicts."""

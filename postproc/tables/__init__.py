@@ -1,1 +1,1 @@
-"""TODO."""
+"""Tables from the files of runs: summaries, histories, depths, updates, films."""

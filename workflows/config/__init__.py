@@ -1,1 +1,1 @@
-"""TODO."""
+"""What is asked for: layers of settings, units, schemas, checks, studies and their runs."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""What a study will cost before it runs."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""What a study says: figures and tables as declarations, sections, the page in HTML and in Markdown."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""A submerged sample in the rotating bed of a circular wear tester."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Particle size: wear against particle scale, packings, single contacts."""
