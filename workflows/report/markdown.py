@@ -115,10 +115,9 @@ def provenance(folder: Path, study: Study) -> str:
     states = [path for simulation in simulations for path in cycle_files(simulation, "state.json")]
     solver = solver_words(states[0].parent / "log.liggghts")
     number = f"{len(simulations)} {'runs' if study.case.wears else 'simulations'} of {len(study.design_rows)} rows"
-    said = (
-        f"Simulated {simulated_between(states)} with {solver}, page written by {commit()}: {number}. "
-        f"{'; '.join(figure_remarks(study))}."
-    )
+    said = f"Simulated {simulated_between(states)} with {solver}, page written by {commit()}: {number}."
+    if remarks := figure_remarks(study):
+        said += f" {'; '.join(remarks)}."
     return f"{prose(said)}\n"
 
 

@@ -15,7 +15,7 @@ slow to import are imported inside the function: Snakemake reads all declaration
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
@@ -139,6 +139,19 @@ def _declared(module: str) -> dict[str, Product]:
 def products_of_study(study: Study) -> dict[str, Product]:
     """Return those of a case that a study has."""
     return {name: product for name, product in products_of(study.case).items() if product.when(study)}
+
+
+def rules_of(studies: Iterable[Study]) -> dict[str, tuple[list[str], Product]]:
+    """Return {rule: (names of the studies that can have it, product)}. Raises ValueError for a name declared twice."""
+    found: dict[str, tuple[list[str], Product]] = {}
+    for study in studies:
+        for product in products_of(study.case).values():
+            names, known = found.setdefault(product.rule, ([], product))
+            if known.make is not product.make:
+                modules = " and ".join(each.make.__module__ for each in (known, product))
+                raise ValueError(f"{product.name} is declared in {modules}, allowed is each name once.")
+            names.append(study.name)
+    return found
 
 
 def figures_of(study: Study) -> list[Product]:

@@ -1,15 +1,9 @@
 """Tables and figures of a study, and its page."""
 
 from workflows.report.page_parameters import figure_remarks, page_parameters, page_templates
-from workflows.report.products import outputs_of, product_files, products_of
+from workflows.report.products import outputs_of, product_files, rules_of
 
-STUDIES_OF = {}  # rule of a product -> what studies can have it, and the product
-for CASE in CASES.values():
-    for PRODUCT in products_of(CASE).values():
-        names = [study.name for study in STUDIES.values() if study.case is CASE]
-        STUDIES_OF.setdefault(PRODUCT.rule, ([], PRODUCT))[0].extend(names)
-
-for RULE_OF_PRODUCT, (NAMES, PRODUCT) in STUDIES_OF.items():
+for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
 
     rule:
         name:
