@@ -1,4 +1,4 @@
-"""Values that follow from a run's parameters. SI throughout: units are converted in design.py only."""
+"""Sections of a run's parameters that cases share, and values that follow from them. SI throughout."""
 
 from __future__ import annotations
 
