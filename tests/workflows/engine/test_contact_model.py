@@ -10,8 +10,7 @@ import pytest
 
 from tests.support.tiny import tiny_chain, tiny_study
 from workflows.cases.sliding_sample.decks import bed_contacts
-from workflows.cases.sliding_sample.particle_size.collision import read_collisions, simulate, spheres_of
-from workflows.cases.sliding_sample.particle_size.packings import COLLISION
+from workflows.cases.sliding_sample.particle_size.collision import SPEEDS, read_collisions, simulate, spheres_of
 from workflows.config.design import ConfigError, list_studies, load_study
 from workflows.config.schema import SCHEMA_FOLDER, load_schema
 from workflows.config.units import to_si
@@ -161,7 +160,7 @@ def test_a_bed_knows_only_what_its_deck_uses():
 def collided(folder, **solver):
     """Histories of single collisions with these settings."""
     run = tiny_study(solver=PROPERTIES | solver).runs[0].parameters
-    test = {"particle": run["particle"], "wall_material": run["sample_material"], "collision": COLLISION}
+    test = {"particle": run["particle"], "wall_material": run["sample_material"], "collision": SPEEDS}
     test |= {"solver": run["solver"], "deck": {}}
     return read_collisions(simulate(test, folder), spheres_of(test), time_step(test))
 
