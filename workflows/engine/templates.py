@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -61,6 +61,21 @@ def _trees(template: str, folder: Path, words: Mapping[str, Any]) -> dict[str, j
     `!=` and `in ("word", "other")`; all others count as taken.
     """
     environment = _environment(folder)
+    files = sorted(path for root in environment.loader.searchpath for path in Path(root).glob("**/*.in.j2"))
+    stamp = tuple(path.stat().st_mtime_ns for path in files)
+    return _pruned_trees(environment, template, _choices(words), _choices(words.get(SOLVER, {})), stamp)
+
+
+def _choices(words: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
+    """Return the words that can choose a branch: those that are no numbers with a fraction, lists or blocks."""
+    return tuple(sorted((name, value) for name, value in words.items() if isinstance(value, str | int)))
+
+
+@lru_cache(maxsize=256)  # a study asks for the same few templates once per run; `stamp` tells edited files
+def _pruned_trees(
+    environment: jinja2.Environment, template: str, chosen: tuple, of_solver: tuple, stamp: tuple[int, ...]
+) -> dict[str, jinja2.nodes.Template]:
+    words = {**dict(chosen), SOLVER: dict(of_solver)}
     trees: dict[str, jinja2.nodes.Template] = {}
     names = [f"{template}.in.j2"]
     for name in names:
