@@ -11,19 +11,7 @@ from workflows.cases.circular_tester import decks as tester_deck
 from workflows.cases.circular_tester.decks import HOLDER_SIZE
 from workflows.config.patterns import pattern_of
 from workflows.engine import decks as deck
-from workflows.engine.derived import neighbour_skin
-from workflows.engine.work import (
-    CYCLE_BYTES,
-    EMPTY_DIAMETERS,
-    LEDGER_TRIANGLE,
-    PICTURE_PARTICLE,
-    RESTART_PARTICLE,
-    RESTART_TRIANGLE,
-    RUN_TRIANGLE,
-    SOLVER_TRIANGLE,
-    SURFACE_TRIANGLE,
-    Stage,
-)
+from workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
 # Median diameters of the trough's width in which no particle's centre is: particles lie looser along its side walls.
 # Measured on beds of 9 and 13 diameters, within 1 % in particles; the bed's height is that of all beds.
@@ -67,12 +55,6 @@ def triangles(run: Parameters) -> float:
     return surface_triangles(run) + trough_triangles(run)
 
 
-def builds_per_step(run: Parameters) -> float:
-    """Return the builds of the neighbour list per time step (-): one when particles have moved by half its skin."""
-    skin = neighbour_skin(run["particle"])
-    return 2.0 * run["sliding"]["velocity_m_per_s"] * run["derived"]["time_step_s"] / skin
-
-
 def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
     """Return the stages of filling the trough and of turning it until the flow is steady."""
     parameters = tester_deck.tester_bed(bed)
@@ -97,12 +79,9 @@ def run_stages(run: Parameters) -> tuple[Stage, ...]:
 
 def bed_bytes(run: Parameters) -> float:
     """Return what a bed leaves on disk."""
-    return RESTART_PARTICLE * settled_particles(run) + CYCLE_BYTES
+    return bytes_of_bed(settled_particles(run))
 
 
 def run_bytes(run: Parameters) -> float:
-    """Return what a run leaves on disk: restart file, surface and last picture of the bed of every cycle."""
-    particles, number, surface = settled_particles(run), triangles(run), surface_triangles(run)
-    restart = RESTART_PARTICLE * particles + RESTART_TRIANGLE * number + CYCLE_BYTES
-    cycle = restart + (SOLVER_TRIANGLE + LEDGER_TRIANGLE + SURFACE_TRIANGLE) * surface + PICTURE_PARTICLE * particles
-    return restart + (SOLVER_TRIANGLE + RUN_TRIANGLE) * surface + run["sliding"]["cycles"] * cycle
+    """Return what a run leaves on disk."""
+    return bytes_of_run(settled_particles(run), triangles(run), surface_triangles(run), run["sliding"]["cycles"])

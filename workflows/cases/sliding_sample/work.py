@@ -12,22 +12,9 @@ from workflows.cases.sliding_sample.decks import lowered_bed, settled_bed
 from workflows.cases.sliding_sample.parameters import RAMP
 from workflows.config.patterns import pattern_of
 from workflows.engine import decks as deck
-from workflows.engine.derived import ADAPTIVE, WINDOW, neighbour_skin
-from workflows.engine.work import (
-    CYCLE_BYTES,
-    EMPTY_DIAMETERS,
-    LEDGER_TRIANGLE,
-    PICTURE_PARTICLE,
-    RESTART_PARTICLE,
-    RESTART_TRIANGLE,
-    RUN_TRIANGLE,
-    SOLVER_TRIANGLE,
-    SURFACE_TRIANGLE,
-    Stage,
-)
+from workflows.engine.derived import ADAPTIVE, WINDOW
+from workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
-# Median diameters of a bed's thickness in which no particle's centre is: half of one is taken off in levelling, the
-# rest is the looser layer on the floor. Measured on beds of 3 to 7.5 layers, within 1 % in particles.
 # Recession of the fastest node over the mean that Archard's law gives for the bed's weight on a plain floor. From the
 # 208 adaptive cycles of worn_bump at quick fidelity; the only number here that hangs on one run.
 FASTEST_OVER_MEAN = 217.0
@@ -72,12 +59,6 @@ def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
     )
 
 
-def builds_per_step(run: Parameters) -> float:
-    """Return the builds of the neighbour list per time step (-): one when particles have moved by half its skin."""
-    skin = neighbour_skin(run["particle"])
-    return 2.0 * run["sliding"]["velocity_m_per_s"] * run["derived"]["time_step_s"] / skin
-
-
 def exchanges_per_step(run: Parameters) -> float:
     """Return the exchanges of bed per time step (-) in a window that travels; each makes the neighbour list anew."""
     if run["bed"]["ends"] != WINDOW:
@@ -98,13 +79,10 @@ def cycles(run: Parameters) -> int:
 
 def bed_bytes(run: Parameters) -> float:
     """Return what a bed leaves on disk."""
-    return RESTART_PARTICLE * settled_particles(run) + CYCLE_BYTES
+    return bytes_of_bed(settled_particles(run))
 
 
 def run_bytes(run: Parameters) -> float:
-    """Return what a run leaves on disk: restart file, surface and last picture of the bed of every cycle."""
-    particles, triangles, number = settled_particles(run), surface_triangles(run), cycles(run)
-    restart = RESTART_PARTICLE * particles + RESTART_TRIANGLE * triangles + CYCLE_BYTES
-    cycle = restart + (SOLVER_TRIANGLE + LEDGER_TRIANGLE + SURFACE_TRIANGLE) * triangles
-    set_up = restart + (SOLVER_TRIANGLE + RUN_TRIANGLE) * triangles
-    return set_up + number * (cycle + PICTURE_PARTICLE * particles)
+    """Return what a run leaves on disk."""
+    triangles = surface_triangles(run)
+    return bytes_of_run(settled_particles(run), triangles, triangles, cycles(run))

@@ -18,7 +18,7 @@ from postproc.readers.solver_log import exchanges, thermo_table
 from tests.support.tiny import tiny_chain, tiny_study
 from workflows.cases.sliding_sample.case import SlidingSample, exchanged_particles, front_lag
 from workflows.cases.sliding_sample.decks import exchange_steps, lowered_bed, sliding_sample
-from workflows.cases.sliding_sample.work import builds_per_step, run_stages
+from workflows.cases.sliding_sample.work import run_stages
 from workflows.engine import cycles
 from workflows.engine.chain import write_cycle
 from workflows.engine.derived import window_lengths
@@ -28,6 +28,7 @@ from workflows.engine.ledgers import summed_by_solver
 from workflows.engine.schedule import first_span, known_spans
 from workflows.engine.solver import run_deck
 from workflows.engine.templates import TEMPLATES, _environment, render
+from workflows.engine.work import builds_per_step
 
 WINDOW = {
     "particle_scale": 6,
