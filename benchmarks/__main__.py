@@ -24,7 +24,7 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks.page import page, table_text
-from workflows.forecast.rates import machine_facts
+from bulkwear.workflows.forecast.rates import machine_facts
 
 # modules with `measures(folder, quick)`; what simulates comes last
 MODULES = (

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.measure import Measure, in_turn, measured, processor_times
-from postproc.readers.contacts import CONTACT_COLUMNS, read_contact_batches, read_contacts
-from postproc.readers.dump_text import read_frames
-from postproc.wear.ledger import LedgerBuilder
+from bulkwear.postproc.readers.contacts import CONTACT_COLUMNS, read_contact_batches, read_contacts
+from bulkwear.postproc.readers.dump_text import read_frames
+from bulkwear.postproc.wear.ledger import LedgerBuilder
 
 MEGABYTES, QUICK_MEGABYTES = 300.0, 10.0  # of the contact dump
 CONTACTS = 1000  # per frame

@@ -29,20 +29,20 @@ from benchmarks.runs import simulated_run, with_bed
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
 from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
-from postproc.plots.style import save
-from postproc.tables.summary import run_summary
-from workflows.cases.sliding_sample.comparison import ratio_intervals
-from workflows.cases.sliding_sample.flow_history import (
+from bulkwear.postproc.plots.style import save
+from bulkwear.postproc.tables.summary import run_summary
+from bulkwear.workflows.cases.sliding_sample.comparison import ratio_intervals
+from bulkwear.workflows.cases.sliding_sample.flow_history import (
     RunFlow,
     along_travel,
     run_bins,
     settled_value,
     undisturbed_particles,
 )
-from workflows.cases.sliding_sample.parameters import flow_measures
-from workflows.engine.chain import Chain
-from workflows.engine.solver import SolverError, die_with
-from workflows.engine.state import StateError
+from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.solver import SolverError, die_with
+from bulkwear.workflows.engine.state import StateError
 
 FAILED = "failed.txt"  # in the folder of a run whose simulation failed, with the reason
 SCALES, PACKINGS, OF_REFERENCE = (6,), 1, 3

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.measure import Measure, measured, processor_times
-from postproc.mesh import SurfaceMesh, edge_lengths_per_triangle
-from postproc.wear.caps import step_limit
-from postproc.wear.directions import rim_directions
-from postproc.wear.displacement import displace
-from postproc.wear.patch import ContactPatch, spread
-from postproc.wear.update import wear_update, with_depths
+from bulkwear.postproc.mesh import SurfaceMesh, edge_lengths_per_triangle
+from bulkwear.postproc.wear.caps import step_limit
+from bulkwear.postproc.wear.directions import rim_directions
+from bulkwear.postproc.wear.displacement import displace
+from bulkwear.postproc.wear.patch import ContactPatch, spread
+from bulkwear.postproc.wear.update import wear_update, with_depths
 
 SEED = 20220317
 CELLS, QUICK_CELLS = 224, 40  # per side; two triangles each: 100,352

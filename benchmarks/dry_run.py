@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.measure import Measure, in_turn, measured
-from workflows.config.design import list_studies
+from bulkwear.workflows.config.design import list_studies
 
 ROOT = Path(__file__).resolve().parents[1]
 PROFILES = ("default", "slurm")

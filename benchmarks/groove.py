@@ -19,7 +19,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.plots.figures import groove_convergence
-from postproc.plots.style import save
+from bulkwear.postproc.plots.style import save
 from tests.verification.groove_cases import (
     DEPTH,
     EDGES_PER_WIDTH,

@@ -15,9 +15,9 @@ from pathlib import Path
 
 from benchmarks.measure import Measure, in_turn, measured
 from benchmarks.runs import cycle_deck, particles_of, prepared_chain
-from workflows.engine.chain import Chain, deck_text
-from workflows.engine.schedule import first_span
-from workflows.engine.solver import CYCLE_EXECUTABLES, SCREEN, run_deck
+from bulkwear.workflows.engine.chain import Chain, deck_text
+from bulkwear.workflows.engine.schedule import first_span
+from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, SCREEN, run_deck
 
 PARTICLE_SCALE, QUICK_PARTICLE_SCALE = 1.85, 4.0  # the former makes some 20,000 particles of the demo's bed
 STEPS, QUICK_STEPS = 1200, 200  # time steps per run

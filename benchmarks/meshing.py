@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from benchmarks.measure import Measure, measured, processor_times
-from workflows.config.design import load_study
+from bulkwear.workflows.config.design import load_study
 
 SURFACES = (("demo", "R9_convex"), ("demo", "R9_plain"), ("pin_on_disc", "c17-conserving"))
 REPEATS, QUICK_REPEATS = 3, 1

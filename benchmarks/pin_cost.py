@@ -15,9 +15,9 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from meshes.disc import track_disc, track_stretch
-from postproc.mesh import SurfaceMesh, write_stl
-from postproc.reference.sphere_contact import touching_reach
+from bulkwear.meshes.disc import track_disc, track_stretch
+from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.reference.sphere_contact import touching_reach
 from tests.verification.ledger_cases import PIN_MOTION, RADIUS, hertz_overlap, pin, run, run_case
 from tests.verification.pin_cases import (
     ANGULAR_VELOCITY,

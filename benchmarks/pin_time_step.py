@@ -18,8 +18,8 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.plots.time_step import time_step_limit
-from postproc.mesh import SurfaceMesh
-from postproc.plots.style import save
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.plots.style import save
 from tests.verification.ledger_cases import LOAD, RADIUS
 from tests.verification.pin_cases import TIME_STEP, disc, ride, round_groove, stable_step, worn_groove
 

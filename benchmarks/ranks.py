@@ -13,7 +13,7 @@ from pathlib import Path
 from benchmarks.ledger_overhead import PARTICLE_SCALE, QUICK_PARTICLE_SCALE, Variant, seconds, variants
 from benchmarks.measure import Measure, in_turn, measured
 from benchmarks.runs import cycle_deck, particles_of, prepared_chain
-from workflows.engine.chain import Chain
+from bulkwear.workflows.engine.chain import Chain
 
 STEPS, QUICK_STEPS = 1500, 150
 ROUNDS, QUICK_ROUNDS = 5, 2

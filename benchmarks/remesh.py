@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.measure import Measure, measured, processor_times
-from postproc.mesh import SurfaceMesh
-from postproc.wear.mesh_faults import mesh_faults, with_target_edges
-from postproc.wear.remesh import remesh
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.mesh_faults import mesh_faults, with_target_edges
+from bulkwear.postproc.wear.remesh import remesh
 
 SEED = 20220317
 CELLS, QUICK_CELLS = 224, 30  # per side; two triangles each: 100,352

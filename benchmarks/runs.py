@@ -7,19 +7,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from postproc.mesh import SurfaceMesh, read_surface, write_surface
-from postproc.readers.solver_log import thermo_table
-from workflows.cases.sliding_sample.parameters import derived_parameters
-from workflows.config.design import Run, Study, load_study
-from workflows.config.layers import merge
-from workflows.config.patterns import sample_surface
-from workflows.engine import state
-from workflows.engine.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
-from workflows.engine.cycles import fill_bed, run_chain, run_cycle
-from workflows.engine.inputs import inputs_digest
-from workflows.engine.job import Progress
-from workflows.engine.schedule import first_span
-from workflows.engine.solver import LOG
+from bulkwear.postproc.mesh import SurfaceMesh, read_surface, write_surface
+from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters
+from bulkwear.workflows.config.design import Run, Study, load_study
+from bulkwear.workflows.config.layers import merge
+from bulkwear.workflows.config.patterns import sample_surface
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
+from bulkwear.workflows.engine.cycles import fill_bed, run_chain, run_cycle
+from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.schedule import first_span
+from bulkwear.workflows.engine.solver import LOG
 
 STUDY, RUN = "demo", "R9_convex"
 

@@ -19,15 +19,15 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.runs import cycle_deck, prepared_chain
-from postproc.plots.curves import sampling_error
-from postproc.plots.style import save
-from postproc.readers.contacts import read_contact_batches
-from postproc.readers.load_ledger import read_load_ledger
-from postproc.wear.ledger import LedgerBuilder
-from workflows.engine.chain import Chain, deck_text
-from workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, SAMPLE_MESH, SPINS, effective_modulus
-from workflows.engine.schedule import first_span
-from workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
+from bulkwear.postproc.plots.curves import sampling_error
+from bulkwear.postproc.plots.style import save
+from bulkwear.postproc.readers.contacts import read_contact_batches
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.postproc.wear.ledger import LedgerBuilder
+from bulkwear.workflows.engine.chain import Chain, deck_text
+from bulkwear.workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, SAMPLE_MESH, SPINS, effective_modulus
+from bulkwear.workflows.engine.schedule import first_span
+from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
 
 PARTICLE_SCALE = 2.0  # of the demo at its quick fidelity
 STRIDES = (1, 5, 10, 50, 100)  # steps between two samples

@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.runs import changed
-from postproc.mesh import PLAIN
-from postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
-from workflows.cases.sliding_sample.work import settled_particles
-from workflows.config.design import Run, load_study
-from workflows.engine import state
-from workflows.engine.chain import Chain, total_steps
-from workflows.engine.derived import WALLS
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
+from bulkwear.workflows.cases.sliding_sample.work import settled_particles
+from bulkwear.workflows.config.design import Run, load_study
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.chain import Chain, total_steps
+from bulkwear.workflows.engine.derived import WALLS
 
 STUDY, SURFACES = "particle_size", (PLAIN, "convex")
 SETTINGS: dict[str, Any] = {"fidelity": "quick"}

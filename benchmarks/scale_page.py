@@ -8,14 +8,14 @@ import pandas as pd
 
 from benchmarks.scale_case import CANDIDATES, REFERENCE
 from benchmarks.touched import mean_touched, mean_touched_on_flat, met_from_above, met_from_the_front
-from meshes.bump import bump_shell
-from meshes.sample import sample_top
-from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN
-from postproc.reference.sphere_contact import effective_modulus, hertz_overlap
-from postproc.wear.caps import GRAVITY
-from workflows.config.design import REPOSITORY
-from workflows.engine.derived import youngs_modulus
-from workflows.report.markdown import markdown, prose
+from bulkwear.meshes.bump import bump_shell
+from bulkwear.meshes.sample import sample_top
+from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN
+from bulkwear.postproc.reference.sphere_contact import effective_modulus, hertz_overlap
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.config.design import REPOSITORY
+from bulkwear.workflows.engine.derived import youngs_modulus
+from bulkwear.workflows.report.markdown import markdown, prose
 
 LINES = Path("config/published/particle_size_lines.csv")
 SCALES = (1, 2, 4, 6, 8)

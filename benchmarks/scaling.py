@@ -12,10 +12,10 @@ from benchmarks.ledger_overhead import PARTICLE_SCALE
 from benchmarks.ranks import ACROSS
 from benchmarks.runs import RUN, case_study
 from benchmarks.scaling_model import Bed, best_grid, deck_grid, efficiency, ghost_cost
-from workflows.config.design import Run, Study, load_study
-from workflows.engine.derived import neighbour_skin
-from workflows.forecast.forecast import work_of
-from workflows.forecast.rates import SOLVER_TERMS, rates_file, read_rates, seconds
+from bulkwear.workflows.config.design import Run, Study, load_study
+from bulkwear.workflows.engine.derived import neighbour_skin
+from bulkwear.workflows.forecast.forecast import work_of
+from bulkwear.workflows.forecast.rates import SOLVER_TERMS, rates_file, read_rates, seconds
 
 ROOT = Path(__file__).resolve().parents[1]
 RANKS = (2, 4, 8, 16, 32, 64)

@@ -15,11 +15,11 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.measure import Measure, measured
-from workflows.cases.calibration.boxes import SIMULATIONS
-from workflows.engine import state
-from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs
-from workflows.report.markdown import markdown
-from workflows.report.page import FORECAST, cost_totals
+from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs
+from bulkwear.workflows.report.markdown import markdown
+from bulkwear.workflows.report.page import FORECAST, cost_totals
 
 RESULTS = Path("results")
 SECONDS_PER_HOUR = 3600.0

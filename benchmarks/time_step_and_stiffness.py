@@ -25,14 +25,14 @@ from scipy import stats
 
 from benchmarks.plots.figures import Panel, deviation_figure
 from benchmarks.runs import changed
-from postproc.mesh import write_surface
-from postproc.plots.style import save
-from postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
-from workflows.config.design import Run, load_study
-from workflows.engine.chain import Chain
-from workflows.engine.cycles import fill_bed, run_chain
-from workflows.engine.solver import SolverError
-from workflows.report.markdown import bullet, prose
+from bulkwear.postproc.mesh import write_surface
+from bulkwear.postproc.plots.style import save
+from bulkwear.postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
+from bulkwear.workflows.config.design import Run, load_study
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.cycles import fill_bed, run_chain
+from bulkwear.workflows.engine.solver import SolverError
+from bulkwear.workflows.report.markdown import bullet, prose
 
 STUDY, RUN = "demo", "R9_plain"
 BED_THICKNESS = 0.022  # m: four layers, because only the lowest wear the sample

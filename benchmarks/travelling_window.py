@@ -41,18 +41,18 @@ from benchmarks.window_case import (
     said_beforehand,
     simulated,
 )
-from postproc.plots.style import save
-from postproc.readers.cycle_folders import cycle_files, cycle_folders
-from workflows.cases.sliding_sample.comparison import ratio_intervals
-from workflows.config.design import REPOSITORY, load_study
-from workflows.engine import state
-from workflows.engine.accounting import HISTORY
-from workflows.engine.chain import Chain
-from workflows.engine.derived import WALLS
-from workflows.engine.solver import die_with
-from workflows.forecast.forecast import forecast_table, work_of
-from workflows.forecast.rates import DEFAULT, read_rates
-from workflows.report.markdown import bullet, markdown, prose
+from bulkwear.postproc.plots.style import save
+from bulkwear.postproc.readers.cycle_folders import cycle_files, cycle_folders
+from bulkwear.workflows.cases.sliding_sample.comparison import ratio_intervals
+from bulkwear.workflows.config.design import REPOSITORY, load_study
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.accounting import HISTORY
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.derived import WALLS
+from bulkwear.workflows.engine.solver import die_with
+from bulkwear.workflows.forecast.forecast import forecast_table, work_of
+from bulkwear.workflows.forecast.rates import DEFAULT, read_rates
+from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 PLACE = "travelling_window"  # of the runs, in the folder of simulations of all benchmarks
 PACKINGS, QUICK_PACKINGS = 3, 2

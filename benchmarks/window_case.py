@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.runs import changed, simulated_run
-from postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
-from workflows.cases.sliding_sample.work import settled_particles
-from workflows.config.design import Run, load_study
-from workflows.engine.chain import Chain, total_steps
-from workflows.engine.derived import WALLS, WINDOW
+from bulkwear.postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
+from bulkwear.workflows.cases.sliding_sample.work import settled_particles
+from bulkwear.workflows.config.design import Run, load_study
+from bulkwear.workflows.engine.chain import Chain, total_steps
+from bulkwear.workflows.engine.derived import WALLS, WINDOW
 
 STUDY, ROW, SURFACES = "demo", "R9", ("plain", "convex")
 # -, of the Rayleigh time: the source's 5e-6 s, between, and what the screening takes

@@ -13,13 +13,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.plots.film import film_pictures, save_film
-from postproc.tables.depths import depth_quantity
-from postproc.tables.display import in_display_units
-from postproc.tables.film import film_frames, film_surfaces, frame_table
-from workflows.config.design import load_study
-from workflows.engine.state import read_state
-from workflows.report.page_parameters import figure_remarks
+from bulkwear.postproc.plots.film import film_pictures, save_film
+from bulkwear.postproc.tables.depths import depth_quantity
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.film import film_frames, film_surfaces, frame_table
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.state import read_state
+from bulkwear.workflows.report.page_parameters import figure_remarks
 
 STUDY, RUN = "worn_bump", "bump_convex"
 FRAMES = 24  # of the small film

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from meshes.gmsh_model import gmsh_model
-from meshes.relax import relax
-from meshes.shell import SWEEPS, Shell, foot_nodes
-from postproc.mesh import volume_above_plane
+from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.relax import relax
+from bulkwear.meshes.shell import SWEEPS, Shell, foot_nodes
+from bulkwear.postproc.mesh import volume_above_plane
 
 
 def bump_shell(half_width: float, half_length: float, height: float, element_size: float) -> Shell:

@@ -7,9 +7,9 @@ from types import ModuleType
 
 import numpy as np
 
-from meshes.gmsh_model import gmsh_model
-from meshes.plate import base_labels
-from postproc.mesh import SurfaceMesh
+from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.plate import base_labels
+from bulkwear.postproc.mesh import SurfaceMesh
 
 DELAUNAY = 5  # gmsh's number of the plane algorithm; the frontal one lays rows of coarse triangles along the track
 GROWTH = 0.3  # growth of an edge per distance from the band

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from meshes import disc, plane
-from meshes.lattice import Pattern, pattern_centres
-from meshes.sample import skirt_width
-from meshes.shell import shell_element_size
+from bulkwear.meshes import disc, plane
+from bulkwear.meshes.lattice import Pattern, pattern_centres
+from bulkwear.meshes.sample import skirt_width
+from bulkwear.meshes.shell import shell_element_size
 
 EQUILATERAL = math.sqrt(3.0) / 4.0  # area of an equilateral triangle over its edge squared
 # Mean area of a triangle over that of the equilateral one with the target edge, measured on meshes of the studies.

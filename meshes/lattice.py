@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.spatial import cKDTree
 
-from meshes.shell import Shell, height_area, height_shell, shell_element_size
+from bulkwear.meshes.shell import Shell, height_area, height_shell, shell_element_size
 
 RIM_MARGIN = 0.125  # of the foot's smaller radius: plane left between a shape and the rim, so that triangles fit there
 ROUNDING = 1e-9  # relative: a shape that fits exactly is not lost to the last digit

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.bump import bump_shell
-from meshes.lattice import Pattern, dimension, option
-from meshes.shell import Shell, shell_element_size
+from bulkwear.meshes.bump import bump_shell
+from bulkwear.meshes.lattice import Pattern, dimension, option
+from bulkwear.meshes.shell import Shell, shell_element_size
 
 MAJOR_AXES = ("along_travel", "across_travel")
 THOMSEN = 1.6075  # exponent of K. Thomsen's formula for the area of an ellipsoid; its error is below 1.1 %

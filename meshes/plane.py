@@ -8,8 +8,8 @@ from types import ModuleType
 
 import numpy as np
 
-from meshes.gmsh_model import gmsh_model
-from postproc.mesh import area_vectors
+from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.postproc.mesh import area_vectors
 
 GROWTH = 0.3  # growth of an edge per distance from a hole
 FRAME_EDGES = 2  # edges across the frame when it is wide: coarse, for nobody looks at its wear

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh
+from bulkwear.postproc.mesh import SurfaceMesh
 
 
 def base_labels(count: int) -> dict[str, np.ndarray]:

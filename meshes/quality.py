@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh, edge_lengths_per_triangle, smallest_angles
+from bulkwear.postproc.mesh import SurfaceMesh, edge_lengths_per_triangle, smallest_angles
 
 PARTS = ("base", "bump", "skirt")
 

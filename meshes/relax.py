@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from postproc.mesh import area_vectors, areas, centroids, directed_edges, sum_over_nodes
+from bulkwear.postproc.mesh import area_vectors, areas, centroids, directed_edges, sum_over_nodes
 
 FLIP_THRESHOLD = 1e-6  # rad above pi that the two opposite angles must exceed: ties do not flip for ever
 

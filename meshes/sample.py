@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.lattice import Pattern, millimetres, pattern_centres, pattern_faults, pattern_rows
-from meshes.plane import PlaneMesh, mesh_plane, rectangle_rim
-from postproc.mesh import SurfaceMesh, nonmanifold_edges, smallest_angles
+from bulkwear.meshes.lattice import Pattern, millimetres, pattern_centres, pattern_faults, pattern_rows
+from bulkwear.meshes.plane import PlaneMesh, mesh_plane, rectangle_rim
+from bulkwear.postproc.mesh import SurfaceMesh, nonmanifold_edges, smallest_angles
 
 SKIRT_DEPTH = 0.2  # of the height above the floor: how far the skirt reaches below the floor, so that no slit opens
 LARGEST_SKIRT_SLOPE = math.pi / 4  # a steeper ramp is a wall and would plough the bed

@@ -11,9 +11,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from meshes.plane import mesh_plane
-from meshes.relax import relax
-from postproc.mesh import areas
+from bulkwear.meshes.plane import mesh_plane
+from bulkwear.meshes.relax import relax
+from bulkwear.postproc.mesh import areas
 
 Shell = tuple[np.ndarray, np.ndarray, int]  # points (p, 3) m, triangles (t, 3), number of nodes on the foot: the first
 Height = Callable[[np.ndarray, np.ndarray], np.ndarray]  # of places x, y (m): m over the plane

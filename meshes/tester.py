@@ -12,10 +12,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from meshes.lattice import Pattern
-from meshes.plane import mesh_plane
-from meshes.sample import HOLDER, check_depth, sample_top
-from postproc.mesh import SurfaceMesh, boundary_edges
+from bulkwear.meshes.lattice import Pattern
+from bulkwear.meshes.plane import mesh_plane
+from bulkwear.meshes.sample import HOLDER, check_depth, sample_top
+from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges
 
 WHOLE_TURN = 2.0 * math.pi
 NO_HOLES = np.empty((0, 1, 2))

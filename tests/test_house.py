@@ -39,7 +39,9 @@ LAYERS = {
         *("workflows.forecast", "workflows.report", CASE),
     ),
 }
+PACKAGE = "bulkwear"  # that the library and the workflow are imported from
 OURS = ("postproc", "meshes", "workflows", "benchmarks", "tests")
+INSTALLED = ("postproc", "meshes", "workflows")
 LIBRARY = ("postproc", "meshes")
 WORKFLOW_MODULES = {"snakemake", "jinja2", "workflows"}
 DRAWING_MODULES = {"matplotlib", "PIL", "pyvista", "vtk", "vtkmodules"}
@@ -73,7 +75,12 @@ def name_of(path: Path) -> str:
 
 
 def imported(source: str) -> set[str]:
-    """Dotted names a module imports anywhere; `from a import b` counts as a and as a.b."""
+    """Dotted names a module imports anywhere, without `bulkwear.`; `from a import b` counts as a and as a.b."""
+    return {name.removeprefix(f"{PACKAGE}.") for name in spelled_imports(source)} - {PACKAGE}
+
+
+def spelled_imports(source: str) -> set[str]:
+    """Dotted names a module imports anywhere, as they are spelled."""
     names = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
@@ -87,6 +94,11 @@ def imported(source: str) -> set[str]:
 def roots(names: set[str]) -> set[str]:
     """Top-level packages of dotted names."""
     return {name.partition(".")[0] for name in names}
+
+
+def bare_imports(source: str) -> list[str]:
+    """Lines of Python or of a workflow that import a package of ours without the package that holds it."""
+    return re.findall(rf"^\s*(?:from|import) (?:{'|'.join(INSTALLED)})\b.*", source, re.MULTILINE)
 
 
 def inside(name: str, packages) -> bool:
@@ -202,6 +214,13 @@ def test_drawing_stays_in_plots():
     assert {name: found for name, found in guilty.items() if found} == {}
 
 
+def test_packages_are_imported_by_their_full_name():
+    """`postproc`, `meshes` and `workflows` are imported as parts of `bulkwear`: a module is there once in a process."""
+    sources = {name_of(path): path.read_text() for path in (*tracked("*.py"), *workflow_files())}
+    guilty = {name: bare_imports(source) for name, source in sources.items()}
+    assert {name: found for name, found in guilty.items() if found} == {}
+
+
 def test_wear_takes_arrays():
     """postproc.wear imports arithmetic only: numpy, scipy, meshes; no file is opened there."""
     for path in library_files("postproc.wear"):
@@ -312,16 +331,19 @@ def test_functions_stay_short():
 @pytest.mark.parametrize(
     ("module", "source"),
     [
-        ("postproc.wear.laws", "from postproc.readers.contacts import Contacts"),
-        ("postproc.wear.laws", "def f():\n    from postproc import plots"),
-        ("postproc.mesh", "import postproc.wear.laws"),
-        ("postproc.statistics.lines", "from postproc.plots import maps"),
-        ("postproc.tables.history", "from meshes.plate import plate"),
-        ("meshes.plate", "from postproc.wear import displacement"),
-        ("workflows.engine.cycles", "from workflows.config.design import Study"),
-        ("workflows.engine.chain", "def f():\n    from workflows.cases.pin_on_disc import case"),
-        ("workflows.config.design", "from workflows.cases.pin_on_disc.case import PinOnDisc"),
-        ("workflows.cases.pin_on_disc.case", "from workflows.cases.circular_tester.case import CircularTester"),
+        ("postproc.wear.laws", "from bulkwear.postproc.readers.contacts import Contacts"),
+        ("postproc.wear.laws", "def f():\n    from bulkwear.postproc import plots"),
+        ("postproc.mesh", "import bulkwear.postproc.wear.laws"),
+        ("postproc.statistics.lines", "from bulkwear.postproc.plots import maps"),
+        ("postproc.tables.history", "from bulkwear.meshes.plate import plate"),
+        ("meshes.plate", "from bulkwear.postproc.wear import displacement"),
+        ("workflows.engine.cycles", "from bulkwear.workflows.config.design import Study"),
+        ("workflows.engine.chain", "def f():\n    from bulkwear.workflows.cases.pin_on_disc import case"),
+        ("workflows.config.design", "from bulkwear.workflows.cases.pin_on_disc.case import PinOnDisc"),
+        (
+            "workflows.cases.pin_on_disc.case",
+            "from bulkwear.workflows.cases.circular_tester.case import CircularTester",
+        ),
     ],
 )
 def test_a_wrong_direction_is_found(module, source):
@@ -332,16 +354,22 @@ def test_a_wrong_direction_is_found(module, source):
 @pytest.mark.parametrize(
     ("module", "source"),
     [
-        ("postproc.wear.laws", "from postproc.mesh import areas\nimport numpy"),
-        ("postproc.plots.maps", "from postproc.tables import history"),
-        ("workflows.cases.pin_on_disc.case", "from workflows.cases.pin_on_disc.checks import PIN_CHECKS"),
-        ("workflows.cases.pin_on_disc.figures", "from workflows.report.products import figure"),
-        ("meshes.plate", "from postproc import mesh"),
+        ("postproc.wear.laws", "from bulkwear.postproc.mesh import areas\nimport numpy"),
+        ("postproc.plots.maps", "from bulkwear.postproc.tables import history"),
+        ("workflows.cases.pin_on_disc.case", "from bulkwear.workflows.cases.pin_on_disc.checks import PIN_CHECKS"),
+        ("workflows.cases.pin_on_disc.figures", "from bulkwear.workflows.report.products import figure"),
+        ("meshes.plate", "from bulkwear.postproc import mesh"),
     ],
 )
 def test_a_right_direction_is_allowed(module, source):
     """Imports down the chain are no breach."""
     assert layer_breaches(module, source) == []
+
+
+def test_a_bare_import_is_found():
+    """Inside functions too; another package of a like name and the full name are none."""
+    assert bare_imports("def f():\n    from postproc.mesh import areas\nimport meshes") != []
+    assert bare_imports("from bulkwear.postproc import mesh\nimport meshes_of_others") == []
 
 
 def test_a_circle_is_found():

@@ -8,14 +8,14 @@ from snakemake.cli import get_argument_parser
 from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
-from workflows.config.design import ConfigError, list_studies, load_study
-from workflows.config.targets import requested_studies
-from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
-from workflows.engine.job import let_jobs_import
-from workflows.forecast.rates import rates_file
-from workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
-from workflows.engine.templates import template_sources
-from workflows.report.products import paths_of, told_to
+from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
+from bulkwear.workflows.config.targets import requested_studies
+from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
+from bulkwear.workflows.engine.job import let_jobs_import
+from bulkwear.workflows.forecast.rates import rates_file
+from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
+from bulkwear.workflows.engine.templates import template_sources
+from bulkwear.workflows.report.products import paths_of, told_to
 
 min_version("9.0")
 
@@ -84,7 +84,7 @@ def jobs_by_study(jobs):
 
 def announce_cost(study, jobs):
     """Say in one line what those jobs of a study will cost."""
-    from workflows.forecast.forecast import announcement  # slow to import, and jobs need none
+    from bulkwear.workflows.forecast.forecast import announcement  # slow to import, and jobs need none
 
     logger.info(announcement(STUDIES[study], jobs, ROOT, CORES))
 
@@ -195,7 +195,7 @@ def solver_work(study):
     """A function of wildcards: the jobs of a study that call the solver, with their sizes."""
 
     def work(wildcards):
-        from workflows.forecast.forecast import work_of  # slow to import, and most jobs ask for no forecast
+        from bulkwear.workflows.forecast.forecast import work_of  # slow to import, and most jobs ask for no forecast
 
         return work_of(STUDIES[study])
 
@@ -213,7 +213,7 @@ def launcher_of(wildcards):
 
 @cache
 def demands_of(study):
-    from workflows.forecast.forecast import demands  # slow to import, and few jobs ask for it
+    from bulkwear.workflows.forecast.forecast import demands  # slow to import, and few jobs ask for it
 
     return demands(STUDIES[study], ROOT)
 

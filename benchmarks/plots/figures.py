@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from postproc.plots.style import BLUE, LARGEST_HEIGHT, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from bulkwear.postproc.plots.style import BLUE, LARGEST_HEIGHT, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 PANELS = {"spread_once": "conserving"}  # schemes that are drawn in the panel of another
 LINES = ((OTHER_COLOUR, ":"), (ORANGE, "--"), (BLUE, "-"))  # coarsest mesh first

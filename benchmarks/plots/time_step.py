@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 PANELS = {  # what is drawn and on which scale
     "force_deviation_over_load": ("Standard deviation of the vertical force, over the load (-)", "log"),

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh
-from postproc.readers.cycle_folders import cycle_folders
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.readers.cycle_folders import cycle_folders
 
 SHOWN_LENGTHS = 1.0  # piece of bed shown to either side of the middle of the sample, in lengths of the sample
 MOST_PARTICLES = 8_000  # drawn per picture: thicker beds become a slab behind the cut

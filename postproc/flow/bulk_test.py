@@ -14,9 +14,9 @@ from typing import Any
 
 import pandas as pd
 
-from postproc.flow.bed import read_snapshot
-from postproc.flow.free_surface import Slope, fitted_slope, surface_points
-from postproc.flow.outflow import check_count, check_not_blocked, discharge_time, outflow_curve
+from bulkwear.postproc.flow.bed import read_snapshot
+from bulkwear.postproc.flow.free_surface import Slope, fitted_slope, surface_points
+from bulkwear.postproc.flow.outflow import check_count, check_not_blocked, discharge_time, outflow_curve
 
 HEAP, LOG = "heap.dump", "log.liggghts"
 

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 import pandas as pd
 
-from postproc.readers.dump_text import BLOCK_BYTES, FrameBatch, read_frames
+from bulkwear.postproc.readers.dump_text import BLOCK_BYTES, FrameBatch, read_frames
 
 ZONES = ("central", "side", "ahead", "behind")
 QUANTITIES = ("velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s", "angular_speed_rad_per_s")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.readers.solver_log import thermo_table
 
 DISCHARGED = 0.99  # -, of the mass that flows out in the end; the last grains trickle
 LEAST_OUTFLOW = 0.2  # -, of the particles: an upper box that keeps more is blocked, no slope is so steep

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.flow.moving_bins import BETWEEN, add_dumps, interval_numbers
-from postproc.readers.dump_text import BLOCK_BYTES, FrameBatch
+from bulkwear.postproc.flow.moving_bins import BETWEEN, add_dumps, interval_numbers
+from bulkwear.postproc.readers.dump_text import BLOCK_BYTES, FrameBatch
 
 NEEDED = ("x", "y", "z", "omegax", "omegay", "omegaz")
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.special import logsumexp
 
-from postproc.inference.posterior import log_normal
-from postproc.inference.problem import Measured
-from postproc.inference.surrogate import Predictions, Surrogate, predictions
+from bulkwear.postproc.inference.posterior import log_normal
+from bulkwear.postproc.inference.problem import Measured
+from bulkwear.postproc.inference.surrogate import Predictions, Surrogate, predictions
 
 DRAWS = 1500  # from the posterior, for the expected information; its error is then below 0.1 bit
 

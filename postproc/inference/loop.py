@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.inference.acquisition import next_points, spread_over, surrogate_share
-from postproc.inference.posterior import FAMILY_SHARE, densest, posterior_weights, recommended
-from postproc.inference.problem import Experiment, Problem
-from postproc.inference.surrogate import Surrogate, fit_surrogates, predictions
+from bulkwear.postproc.inference.acquisition import next_points, spread_over, surrogate_share
+from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, posterior_weights, recommended
+from bulkwear.postproc.inference.problem import Experiment, Problem
+from bulkwear.postproc.inference.surrogate import Surrogate, fit_surrogates, predictions
 
 CANDIDATES_POWER = 12  # 4096 points carry the posterior
 SEED_SPACING = 1000  # the largest gap between primes below 4e8 is 282, and a simulation needs a handful of them

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from postproc.inference.problem import Measured
-from postproc.inference.surrogate import Predictions
+from bulkwear.postproc.inference.problem import Measured
+from bulkwear.postproc.inference.surrogate import Predictions
 
 FAMILY_SHARE = 0.95  # of the posterior, in the stated region and intervals
 CORE_SHARE = 0.5  # of the posterior, in the region that the recommendation is taken from

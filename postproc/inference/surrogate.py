@@ -15,7 +15,7 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
-from postproc.inference.problem import Problem
+from bulkwear.postproc.inference.problem import Problem
 
 SMOOTHNESS = 2.5  # of the Matern kernel: twice differentiable, as responses of friction are
 LENGTH_BOUNDS = (0.15, 5.0)  # -, of the parameter's range: neither shorter than the spacing of points nor a plane

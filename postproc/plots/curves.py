@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import (
+from bulkwear.postproc.plots.style import (
     BLUE,
     LARGEST_HEIGHT,
     ORANGE,

@@ -14,11 +14,11 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import rgb2hex
 
-from postproc.mesh import SurfaceMesh
-from postproc.plots.scene import add_sample, load_pyvista, new_plotter
-from postproc.plots.style import MAP
-from postproc.tables.depths import face_depth
-from postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.plots.scene import add_sample, load_pyvista, new_plotter
+from bulkwear.postproc.plots.style import MAP
+from bulkwear.postproc.tables.depths import face_depth
+from bulkwear.postproc.tables.display import MILLIMETRES
 
 PAGE_ZOOM = 1.7  # -, from all in view with much room to all in view
 VIEWERS_ICONS = "https://kitware.github.io/vtk-js/icon/favicon-"  # the only thing that the viewer would fetch

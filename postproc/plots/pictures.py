@@ -11,11 +11,11 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from postproc.mesh import SurfaceMesh
-from postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface_oblique, surface_plan, trimmed
-from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
-from postproc.tables.depths import area_quantile
-from postproc.tables.display import in_display_units
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface_oblique, surface_plan, trimmed
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
+from bulkwear.postproc.tables.depths import area_quantile
+from bulkwear.postproc.tables.display import in_display_units
 
 ROWS_PER_LINE = 7  # design rows side by side in small multiples
 SINGLES_PER_LINE = 3  # of them where each has one run

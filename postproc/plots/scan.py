@@ -9,10 +9,19 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.mesh import SurfaceMesh
-from postproc.plots.scene import common_bounds, depth_oblique
-from postproc.plots.style import BLUE, LARGEST_HEIGHT, MAP, ORANGE, OTHER_COLOUR, SMALLEST_FONT, new_figure, picture
-from postproc.scans.comparison import STEEPEST, depth_of_faces
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.plots.scene import common_bounds, depth_oblique
+from bulkwear.postproc.plots.style import (
+    BLUE,
+    LARGEST_HEIGHT,
+    MAP,
+    ORANGE,
+    OTHER_COLOUR,
+    SMALLEST_FONT,
+    new_figure,
+    picture,
+)
+from bulkwear.postproc.scans.comparison import STEEPEST, depth_of_faces
 
 DEVIATION_MAP = "RdBu_r"
 TOP_SHARE = 0.99  # of the cells: deeper ones share the top colour

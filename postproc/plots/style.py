@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from PIL import Image
 
-from postproc.mesh import PLAIN
+from bulkwear.postproc.mesh import PLAIN
 
 PUBLISHED = {"color": "black", "linestyle": "--", "linewidth": 1.2}
 TABLE_LINE = 0.5  # pt

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, colour, marker, new_figure
-from postproc.tables.updates import drawn_in_log
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, colour, marker, new_figure
+from bulkwear.postproc.tables.updates import drawn_in_log
 
 VOLUMES, STEP = "Share of the cycle's\nwear (%)", "Largest step over\nits cap (-)"
 ANGLE, FACES, BALANCE = "Smallest angle (°)", "Faces remeshed (bars)", "Error of the volume\nbalance (-)"

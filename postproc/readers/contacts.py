@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from postproc.readers.dump_text import BLOCK_BYTES, ContactDumpError, FrameBatch, dump_columns, read_frames
+from bulkwear.postproc.readers.dump_text import BLOCK_BYTES, ContactDumpError, FrameBatch, dump_columns, read_frames
 
 __all__ = ["ContactBatch", "ContactDumpError", "Contacts", "read_contact_batches", "read_contacts"]
 

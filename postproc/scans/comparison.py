@@ -14,11 +14,11 @@ import numpy as np
 import pandas as pd
 from scipy.spatial import cKDTree
 
-from postproc.mesh import SurfaceMesh, area_vectors, centroids, unit_normals, volume_above_plane
-from postproc.scans.start import RigidMotion
-from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
-from postproc.wear.depth import height_loss
-from postproc.wear.remesh_patch import ON_EDGE, OldSurface, barycentric, neighbours
+from bulkwear.postproc.mesh import SurfaceMesh, area_vectors, centroids, unit_normals, volume_above_plane
+from bulkwear.postproc.scans.start import RigidMotion
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
+from bulkwear.postproc.wear.depth import height_loss
+from bulkwear.postproc.wear.remesh_patch import ON_EDGE, OldSurface, barycentric, neighbours
 
 CELL = 0.5e-3  # m, side of the cells of the map
 STEP = 0.25e-3  # m, along a section

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh, unit_normals
-from postproc.scans.start import (
+from bulkwear.postproc.mesh import SurfaceMesh, unit_normals
+from bulkwear.postproc.scans.start import (
     IDENTITY,
     RigidMotion,
     largest_distance,
@@ -24,8 +24,8 @@ from postproc.scans.start import (
     truncated_misfit,
     turned_about,
 )
-from postproc.wear.remesh_patch import OldSurface
-from postproc.wear.update import worn_faces
+from bulkwear.postproc.wear.remesh_patch import OldSurface
+from bulkwear.postproc.wear.update import worn_faces
 
 HOLDER, EVERYTHING = "holder", "all"  # what may decide
 RIM_MARGIN = 0.5e-3  # m, of the holder's surface beside what wears that does not count: there scans are round

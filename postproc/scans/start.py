@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from postproc.mesh import SurfaceMesh, areas, unit_normals
+from bulkwear.postproc.mesh import SurfaceMesh, areas, unit_normals
 
 SURFACE_POINTS = 8000  # that stand for the surface
 PLANES = 600  # planes through three random points that are tried

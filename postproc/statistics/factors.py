@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from postproc.statistics.model_terms import SAME, Term, term_columns, term_name
+from bulkwear.postproc.statistics.model_terms import SAME, Term, term_columns, term_name
 
 MIDDLE = 1e-6  # -, how near, relative to the range, a middle level must be to the mean of the ends
 LARGEST_OF_NOISE = 2.5  # -, contrasts beyond so many preliminary errors do not count as noise (Lenth 1989)

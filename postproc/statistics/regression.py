@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from postproc.statistics.model_terms import Term, term_columns, term_name
+from bulkwear.postproc.statistics.model_terms import Term, term_columns, term_name
 
 CONSTANT = "Constant"
 LEAST_RESIDUAL = 1e-13  # -, of the total sum of squares: below it is rounding, and has no logarithm worth comparing

@@ -1,7 +1,7 @@
 """Write a definitive screening design as a table for config/designs: every factor at three levels, few runs.
 
-python -m postproc.statistics.screening_design --factor height_mm=1.5:6:log --factor velocity_m_per_s=0.5:2:log ... \\
-    --constant bed_thickness_mm=40 --output config/designs/mine.csv
+python -m bulkwear.postproc.statistics.screening_design --factor height_mm=1.5:6:log \\
+    --factor velocity_m_per_s=0.5:2:log ... --constant bed_thickness_mm=40 --output config/designs/mine.csv
 
 B. Jones and C. J. Nachtsheim, J. Qual. Technol. 43 (2011) 1-15; from conference matrices: L. Xiao, D. K. J. Lin and
 F. Bai, J. Qual. Technol. 44 (2012) 2-8; fake factors: B. Jones and C. J. Nachtsheim, Technometrics 59 (2017) 319-329.
@@ -20,8 +20,8 @@ from pathlib import Path
 
 import numpy as np
 
-from postproc.statistics.conference_matrix import conference_matrix, next_order
-from postproc.statistics.factors import Factor
+from bulkwear.postproc.statistics.conference_matrix import conference_matrix, next_order
+from bulkwear.postproc.statistics.factors import Factor
 
 FEWEST_FACTORS = 3
 FIRST_SEED, SEED_STEP = 20220317, 1000  # the solver takes the first few primes above a seed
@@ -126,7 +126,7 @@ def _number(option: str, text: str, number: str) -> float:
 
 def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="python -m postproc.statistics.screening_design",
+        prog="python -m bulkwear.postproc.statistics.screening_design",
         description="Write a definitive screening design as a design table of a study.",
         epilog="Columns and their units: config/README.md, Design table. A study checks the table before it runs.",
     )

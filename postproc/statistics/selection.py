@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from postproc.statistics.model_terms import Heredity, Term, obeys, term_columns
-from postproc.statistics.regression import SINGULAR, Fit, aicc, fit
+from bulkwear.postproc.statistics.model_terms import Heredity, Term, obeys, term_columns
+from bulkwear.postproc.statistics.regression import SINGULAR, Fit, aicc, fit
 
 MOST_TERMS = 4
 AS_GOOD = 2.0  # AICc above the best up to which a model is as good (K. P. Burnham and D. R. Anderson, 2002)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.readers.cycle_folders import cycle_files
-from postproc.tables.display import in_display_units
+from bulkwear.postproc.readers.cycle_folders import cycle_files
+from bulkwear.postproc.tables.display import in_display_units
 
 ROWS_PER_RUN = 400  # forces drawn per run; more would not show in a figure
 

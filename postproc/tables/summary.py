@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN
+from bulkwear.postproc.mesh import PLAIN
 
 MEANS = ("mean_normal_force_N", "bed_over_floor_velocity")  # over time; the second where friction alone moves a bed
 AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.tables.display import in_display_units
-from postproc.tables.history import runs_of
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.history import runs_of
 
 RUN = ["run", "row", "surface"]
 

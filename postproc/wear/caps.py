@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from postproc.mesh import shortest_edge_at_nodes
+from bulkwear.postproc.mesh import shortest_edge_at_nodes
 
 GRAVITY = 9.81  # m/s2
 AIMED_DEMAND = 0.8  # -, of the cap, that the next cycle is planned for: rates change from cycle to cycle

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from postproc.mesh import area_vectors, boundary_nodes, sum_over_nodes
+from bulkwear.postproc.mesh import area_vectors, boundary_nodes, sum_over_nodes
 
 LEAST_LABEL_ANGLE_SINE = 0.34  # -, 20 degrees: flatter, two labels cannot be told apart by a motion
 OUTWARD_TOLERANCE = 1e-9  # -, cosine: rounding of normals stays far below

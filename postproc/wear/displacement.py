@@ -25,9 +25,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from postproc.mesh import edge_lengths_per_triangle, shortest_edge_at_nodes
-from postproc.wear.directions import LabelParting, between_labels, loaded_directions
-from postproc.wear.hollows import handed_over
+from bulkwear.postproc.mesh import edge_lengths_per_triangle, shortest_edge_at_nodes
+from bulkwear.postproc.wear.directions import LabelParting, between_labels, loaded_directions
+from bulkwear.postproc.wear.hollows import handed_over
 
 CONVERGENCE = 1e-12  # -, summed volume errors of all nodes over the total volume; rounding is near 1e-15
 MOST_ITERATIONS = 200  # -, a step of a tenth of an edge needs about ten

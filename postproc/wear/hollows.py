@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from postproc.mesh import area_vectors
+from bulkwear.postproc.mesh import area_vectors
 
 STRENGTH = 1.5  # -, part handed over by the sine of the rise: any above 1 keeps hollows from running away
 

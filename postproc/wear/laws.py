@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from postproc.wear.kernels import kernel_column, kernel_parameters
+from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
 
 
 @dataclass(frozen=True)

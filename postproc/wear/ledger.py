@@ -12,7 +12,7 @@ from types import MappingProxyType, SimpleNamespace
 
 import numpy as np
 
-from postproc.wear.kernels import kernel_column, kernel_rate
+from bulkwear.postproc.wear.kernels import kernel_column, kernel_rate
 
 CONTACTS_PER_BATCH = 100_000
 LEDGER_FIELDS = (

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from postproc.mesh import (
+from bulkwear.postproc.mesh import (
     SurfaceMesh,
     area_vectors,
     areas,
@@ -23,8 +23,8 @@ from postproc.mesh import (
     smallest_angles,
     sum_over_nodes,
 )
-from postproc.wear.remesh_patch import border_nodes, neighbours
-from postproc.wear.update import worn_faces
+from bulkwear.postproc.wear.remesh_patch import border_nodes, neighbours
+from bulkwear.postproc.wear.update import worn_faces
 
 TARGET_EDGE = "target_edge_m"  # point data: edge length that the mesh should have at a node
 SIZE_CLASS_RATIO = 2.0  # -, faces are searched in classes of alike size, so few candidates are far away

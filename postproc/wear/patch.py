@@ -27,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from postproc.mesh import area_vectors, directed_edges, edge_lengths_per_triangle, unit_normals
+from bulkwear.postproc.mesh import area_vectors, directed_edges, edge_lengths_per_triangle, unit_normals
 
 MESH_VARIANCE = 5.0 / 16.0  # -, of the sum of squared edges: what a mesh adds to the square of the Hertz radius
 RINGS_PER_EDGE = 2.0  # -, quadrature points per mean edge along the radius: a patch of five edges is good to some 5 %

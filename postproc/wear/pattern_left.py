@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh, area_vectors
+from bulkwear.postproc.mesh import SurfaceMesh, area_vectors
 
 
 def pattern_volume(mesh: SurfaceMesh) -> float:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh
-from postproc.wear.mesh_faults import (
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.mesh_faults import (
     DEFAULT_BOUNDS,
     TARGET_EDGE,
     Bounds,
@@ -22,13 +22,13 @@ from postproc.wear.mesh_faults import (
     tangle_message,
     with_target_edges,
 )
-from postproc.wear.remesh_operations import LARGEST_OUTWARD, OUTWARD_BY_OPERATIONS, Limits, improve
-from postproc.wear.remesh_patch import OldSurface, rings
-from postproc.wear.remesh_piece import piece_round
-from postproc.wear.remesh_repair import RemeshError, badness, faults_after, untangled
-from postproc.wear.remesh_transfer import cut_out, transferred
-from postproc.wear.remesh_volume import lower, restore_volume, volume_gained
-from postproc.wear.update import worn_faces
+from bulkwear.postproc.wear.remesh_operations import LARGEST_OUTWARD, OUTWARD_BY_OPERATIONS, Limits, improve
+from bulkwear.postproc.wear.remesh_patch import OldSurface, rings
+from bulkwear.postproc.wear.remesh_piece import piece_round
+from bulkwear.postproc.wear.remesh_repair import RemeshError, badness, faults_after, untangled
+from bulkwear.postproc.wear.remesh_transfer import cut_out, transferred
+from bulkwear.postproc.wear.remesh_volume import lower, restore_volume, volume_gained
+from bulkwear.postproc.wear.update import worn_faces
 
 __all__ = ["RemeshError", "Remeshed", "remesh"]
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from postproc.mesh import area_vectors, smallest_angles, sum_over_nodes
-from postproc.wear.remesh_patch import (
+from bulkwear.postproc.mesh import area_vectors, smallest_angles, sum_over_nodes
+from bulkwear.postproc.wear.remesh_patch import (
     CURVE,
     FIXED,
     INNER,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import sparse
 
-from postproc.mesh import directed_edges, unit_normals
+from bulkwear.postproc.mesh import directed_edges, unit_normals
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
 ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside

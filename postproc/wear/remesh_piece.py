@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from postproc.mesh import SurfaceMesh, centroids
-from postproc.wear.mesh_faults import TARGET_EDGE, Bounds, MeshFaults, mesh_faults
-from postproc.wear.remesh_patch import border_nodes
+from bulkwear.postproc.mesh import SurfaceMesh, centroids
+from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, MeshFaults, mesh_faults
+from bulkwear.postproc.wear.remesh_patch import border_nodes
 
 REACH = 16.0  # -, over the largest target edge: rings that change, rings that share a volume, and room for cuts
 LARGEST_PIECE = 0.5  # -, of the faces; more than that is not worth a piece

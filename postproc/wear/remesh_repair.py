@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh, smallest_angles
-from postproc.wear.mesh_faults import (
+from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles
+from bulkwear.postproc.wear.mesh_faults import (
     TARGET_EDGE,
     Bounds,
     MeshFaults,
@@ -19,11 +19,26 @@ from postproc.wear.mesh_faults import (
     intersecting_faces,
     mesh_faults,
 )
-from postproc.wear.remesh_operations import LARGEST_OUTWARD, OUTWARD_BY_OPERATIONS, Limits, flipped_faces, improve
-from postproc.wear.remesh_patch import FIXED, OldSurface, Patch, adjacency, edges_of, freedom, rings, six_volumes
-from postproc.wear.remesh_transfer import cut_out, transferred
-from postproc.wear.remesh_volume import charge, restore_volume, volume_gained
-from postproc.wear.update import worn_faces
+from bulkwear.postproc.wear.remesh_operations import (
+    LARGEST_OUTWARD,
+    OUTWARD_BY_OPERATIONS,
+    Limits,
+    flipped_faces,
+    improve,
+)
+from bulkwear.postproc.wear.remesh_patch import (
+    FIXED,
+    OldSurface,
+    Patch,
+    adjacency,
+    edges_of,
+    freedom,
+    rings,
+    six_volumes,
+)
+from bulkwear.postproc.wear.remesh_transfer import cut_out, transferred
+from bulkwear.postproc.wear.remesh_volume import charge, restore_volume, volume_gained
+from bulkwear.postproc.wear.update import worn_faces
 
 MERGE_RINGS = 2  # of faces round the tangled ones that are looked at when edges are merged
 MOST_MERGES = 12  # in one repair

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from postproc.mesh import SurfaceMesh
-from postproc.wear.mesh_faults import TARGET_EDGE
-from postproc.wear.remesh_patch import OldSurface, Patch, barycentric, border_nodes
-from postproc.wear.update import CARRIED_VOLUME
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE
+from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch, barycentric, border_nodes
+from bulkwear.postproc.wear.update import CARRIED_VOLUME
 
 
 def labels_of(mesh: SurfaceMesh) -> np.ndarray:

@@ -10,8 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from postproc.mesh import area_vectors, sum_over_nodes
-from postproc.wear.displacement import (
+from bulkwear.postproc.mesh import area_vectors, sum_over_nodes
+from bulkwear.postproc.wear.displacement import (
     Displacement,
     StepTooLargeError,
     displace,

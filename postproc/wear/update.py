@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh, smallest_angles, volume_above_plane
-from postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
-from postproc.wear.directions import inward_directions, rim_directions
-from postproc.wear.patch import ContactPatch, spread
-from postproc.wear.schemes import scheme_of
+from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, volume_above_plane
+from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
+from bulkwear.postproc.wear.directions import inward_directions, rim_directions
+from bulkwear.postproc.wear.patch import ContactPatch, spread
+from bulkwear.postproc.wear.schemes import scheme_of
 
 BALANCE_TOLERANCE = 1e-9  # -, of alpha * work: rounding in sums over 1e6 triangles stays far below, a loss not
 GEOMETRY_ROUNDING = 1e-13  # -, of the volume under a sample: its sum over 1e5 triangles is good to about 1e-14

@@ -7,8 +7,8 @@ import pytest
 from benchmarks.ledger_overhead import variants
 from benchmarks.ranks import GRIDS, PROCESSORS
 from benchmarks.runs import RUN, case_study
+from bulkwear.workflows.engine.chain import Chain
 from tests.support.tiny import tiny_study
-from workflows.engine.chain import Chain
 
 STEPS = 100
 

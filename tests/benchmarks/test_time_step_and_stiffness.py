@@ -25,7 +25,7 @@ from benchmarks.time_step_and_stiffness import (
     verdict,
     with_derived,
 )
-from workflows.config.design import load_study
+from bulkwear.workflows.config.design import load_study
 
 SEEDS = (1, 1001, 2001)
 ROUNDING = 1e-9

@@ -9,7 +9,7 @@ import benchmarks.window_case as window
 from benchmarks import travelling_window
 from benchmarks.travelling_window import BLOCK, at_source_size, comparison, publish, run_row
 from benchmarks.window_case import BEDS, FULL, SOURCE_FRACTION, Case, chain_of, packing, said_beforehand
-from workflows.cases.sliding_sample.comparison import ratio_intervals
+from bulkwear.workflows.cases.sliding_sample.comparison import ratio_intervals
 
 WINDOW, COARSE = list(BEDS)[1], list(BEDS)[-1]
 STUDENT_95_2 = 4.302653  # two-sided 95 % point of Student's t with two degrees of freedom; tables

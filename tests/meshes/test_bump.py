@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.special import ellipe
 
-from meshes.bump import bump_shell
-from meshes.relax import flip_to_delaunay, relax
-from meshes.shell import foot_nodes, shell_element_size
-from postproc.mesh import (
+from bulkwear.meshes.bump import bump_shell
+from bulkwear.meshes.relax import flip_to_delaunay, relax
+from bulkwear.meshes.shell import foot_nodes, shell_element_size
+from bulkwear.postproc.mesh import (
     areas,
     boundary_edges,
     centroids,

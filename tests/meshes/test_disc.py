@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from meshes.disc import GROWTH, track_disc, track_stretch
-from postproc.mesh import (
+from bulkwear.meshes.disc import GROWTH, track_disc, track_stretch
+from bulkwear.postproc.mesh import (
     SurfaceMesh,
     area_vectors,
     boundary_edges,

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from meshes.disc import track_disc, track_stretch
-from meshes.estimate import disc_triangles, sample_triangles, stretch_triangles
-from meshes.pattern import ConvexPattern
-from meshes.sample import sliding_sample
+from bulkwear.meshes.disc import track_disc, track_stretch
+from bulkwear.meshes.estimate import disc_triangles, sample_triangles, stretch_triangles
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sliding_sample
 
 SAMPLE = 0.1  # relative; of the twenty-six samples of the screening within 7 %
 DISC = 0.05  # relative; of the studies' discs within 1 %

@@ -3,7 +3,7 @@
 import gmsh
 import pytest
 
-from meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.gmsh_model import gmsh_model
 
 
 def test_gmsh_is_closed_after_an_error():

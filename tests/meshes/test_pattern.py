@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes.lattice import pattern_centres, pattern_faults, pattern_rows
-from meshes.pattern import ConvexPattern
+from bulkwear.meshes.lattice import pattern_centres, pattern_faults, pattern_rows
+from bulkwear.meshes.pattern import ConvexPattern
 
 R5 = ConvexPattern(4e-3, 8e-3, 6e-3, row_spacing=40e-3, column_spacing=60e-3)
 R9 = ConvexPattern(8e-3, 2e-3, 6e-3, row_spacing=40e-3, column_spacing=20e-3)

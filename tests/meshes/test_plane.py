@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from meshes.plane import mesh_plane, rectangle_rim
-from postproc.mesh import area_vectors, boundary_edges
+from bulkwear.meshes.plane import mesh_plane, rectangle_rim
+from bulkwear.postproc.mesh import area_vectors, boundary_edges
 
 ROUNDING = 1e-12  # relative: sums of a few thousand float64 terms
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from meshes.plate import closed_box, flat_plate, sphere
-from postproc.mesh import (
+from bulkwear.meshes.plate import closed_box, flat_plate, sphere
+from bulkwear.postproc.mesh import (
     area_vectors,
     areas,
     boundary_edges,

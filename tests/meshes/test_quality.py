@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from meshes.quality import quality, quality_table
-from postproc.mesh import SurfaceMesh
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.meshes.quality import quality, quality_table
+from bulkwear.postproc.mesh import SurfaceMesh
 
 
 def test_squares_have_angles_of_45_degrees():

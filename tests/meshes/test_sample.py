@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes.lattice import pattern_centres
-from meshes.pattern import ConvexPattern
-from meshes.sample import SKIRT_DEPTH, sample_top, skirt_fall, skirt_width, sliding_sample
-from meshes.shell import foot_nodes
-from postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
+from bulkwear.meshes.lattice import pattern_centres
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import SKIRT_DEPTH, sample_top, skirt_fall, skirt_width, sliding_sample
+from bulkwear.meshes.shell import foot_nodes
+from bulkwear.postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
 
 HEIGHT, SLOPE = 0.3e-3, math.radians(3)  # m, rad: the defaults of the sliding study
 ROUNDING = 1e-11  # relative: sums of 1e5 float64 terms

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from meshes.estimate import sample_triangles
-from meshes.lattice import Pattern, dimension, pattern_faults
-from meshes.sample import sample_top, sliding_sample
-from meshes.shell import foot_nodes, height_area
-from meshes.tester import sample_block
-from postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
+from bulkwear.meshes.estimate import sample_triangles
+from bulkwear.meshes.lattice import Pattern, dimension, pattern_faults
+from bulkwear.meshes.sample import sample_top, sliding_sample
+from bulkwear.meshes.shell import foot_nodes, height_area
+from bulkwear.meshes.tester import sample_block
+from bulkwear.postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
 
 MM = 1e-3
 SIZE, ELEMENT = 30 * MM, 1 * MM

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from meshes.pattern import ConvexPattern
-from meshes.sample import sample_top
-from meshes.tester import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sample_top
+from bulkwear.meshes.tester import (
     annular_surface,
     consolidator,
     placed,
@@ -16,7 +16,7 @@ from meshes.tester import (
     trough,
     turn_angles,
 )
-from postproc.mesh import (
+from bulkwear.postproc.mesh import (
     SurfaceMesh,
     area_vectors,
     areas,

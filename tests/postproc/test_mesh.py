@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from meshes.plate import closed_box, flat_plate, sphere
-from postproc import mesh as pm
+from bulkwear.meshes.plate import closed_box, flat_plate, sphere
+from bulkwear.postproc import mesh as pm
 
 ROUNDING = 1e-12  # relative: sums of a few thousand float64 terms
 STL_DIGITS = 5e-9  # relative: nine significant digits

@@ -1,7 +1,7 @@
 """Bulk tests of a calibration's study, as its driver asks for them."""
 
-from workflows.cases.calibration.boxes import test_of as bulk_test_of
-from workflows.config.design import load_study
+from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
+from bulkwear.workflows.config.design import load_study
 
 SLIDING, ROLLING = "particle.contact.sliding_friction", "particle.contact.rolling_friction"
 PAIR = {SLIDING: 0.3, ROLLING: 0.3}

@@ -1,8 +1,8 @@
 """The study of a calibration with few simulations, and a formula in the solver's place."""
 
-from postproc.flow.bulk_test import RESPONSES, Measurement
+from bulkwear.postproc.flow.bulk_test import RESPONSES, Measurement
+from bulkwear.workflows.config.design import load_study
 from tests import PUBLISHED
-from workflows.config.design import load_study
 
 MEASURED, PAIRS = PUBLISHED / "gravel_tests.csv", PUBLISHED / "gravel_pairs.csv"
 SLIDING, ROLLING = "particle.contact.sliding_friction", "particle.contact.rolling_friction"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from workflows.config.design import Study
+from bulkwear.workflows.config.design import Study
 
 
 def leave_runs(study: Study, folder: Path, *further: str) -> None:

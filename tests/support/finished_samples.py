@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.tables.history import wear_history
-from postproc.tables.summary import summary_table
-from workflows.config.design import Study
-from workflows.report.page import write_page
-from workflows.report.page_parameters import page_parameters
-from workflows.report.products import figures_of
+from bulkwear.postproc.tables.history import wear_history
+from bulkwear.postproc.tables.summary import summary_table
+from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.report.page import write_page
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.products import figures_of
 
 CYCLES = 2
 RUN_WALL, RUN_SOLVER, BED_WALL, BED_SOLVER, OTHER_WALL = 100.0, 90.0, 50.0, 48.0, 2.0  # s, of each job

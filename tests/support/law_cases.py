@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from postproc.wear.kernels import KERNELS, Kernel
-from postproc.wear.laws import LAWS, Law, Parameter
-from workflows.config.schema import case_schema, load_schema
-from workflows.config.units import to_si
+from bulkwear.postproc.wear.kernels import KERNELS, Kernel
+from bulkwear.postproc.wear.laws import LAWS, Law, Parameter
+from bulkwear.workflows.config.schema import case_schema, load_schema
+from bulkwear.workflows.config.units import to_si
 
 ALPHA = 6.3e-13  # 1/Pa, steel on a pin-on-disc rig (Yan 2022, chapter 5)
 

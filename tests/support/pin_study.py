@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from meshes.disc import track_disc
-from postproc.mesh import SurfaceMesh, write_surface
+from bulkwear.meshes.disc import track_disc
+from bulkwear.postproc.mesh import SurfaceMesh, write_surface
+from bulkwear.workflows.cases.pin_on_disc.volume import law_volume
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.report.products import Job, Product, job_of, outputs_of, paths_of, products_of_study
 from tests import REPOSITORY
-from workflows.cases.pin_on_disc.volume import law_volume
-from workflows.engine.case import find_case
-from workflows.report.products import Job, Product, job_of, outputs_of, paths_of, products_of_study
 
 TRACK, PIN, LOAD = 22e-3, 3e-3, 5.0  # m, m, N
 CYCLES_PER_REVOLUTION = 2
@@ -103,9 +103,9 @@ def _write_run(folder: Path, scheme: str, coefficient: float, flat: SurfaceMesh,
 
 def tables(folder: Path) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
     """Runs, contours and volumes of a written study."""
-    from workflows.cases.pin_on_disc.run_in import contours_of_run
-    from workflows.cases.pin_on_disc.runs import of_runs, pin_runs
-    from workflows.cases.pin_on_disc.volume import volumes_of_run
+    from bulkwear.workflows.cases.pin_on_disc.run_in import contours_of_run
+    from bulkwear.workflows.cases.pin_on_disc.runs import of_runs, pin_runs
+    from bulkwear.workflows.cases.pin_on_disc.volume import volumes_of_run
 
     runs = pin_runs(folder / "design.csv")
     for run in runs["run"]:

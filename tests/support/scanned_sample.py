@@ -5,10 +5,10 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from meshes.pattern import ConvexPattern
-from meshes.sample import sliding_sample
-from postproc.mesh import SurfaceMesh
-from postproc.scans.start import RigidMotion, points_on
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.scans.start import RigidMotion, points_on
 
 SIDE, ELEMENT, HEIGHT = 0.06, 1.5e-3, 3e-3  # m
 PATTERN = ConvexPattern(8e-3, 2e-3, 6e-3, 20e-3, 20e-3)

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from postproc.plots.style import remarks_of, save
+from bulkwear.postproc.plots.style import remarks_of, save
 from tests import PUBLISHED as TABLES
 
 PUBLISHED = pd.read_csv(TABLES / "circular_tester.csv")

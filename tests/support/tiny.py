@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from postproc.mesh import write_surface
-from workflows.config.design import Study, load_study
-from workflows.engine.chain import Chain
-from workflows.engine.cycles import fill_bed
+from bulkwear.postproc.mesh import write_surface
+from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.cycles import fill_bed
 
 TINY = {
     "particle_scale": 4,

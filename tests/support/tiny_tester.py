@@ -4,9 +4,9 @@ import json
 from collections.abc import Iterable
 from pathlib import Path
 
+from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.report.products import job_of, outputs_of, paths_of, products_of, told_to, write_product
 from tests import REPOSITORY
-from workflows.config.design import Study, load_study
-from workflows.report.products import job_of, outputs_of, paths_of, products_of, told_to, write_product
 
 TINY = {
     "particle_scale": 4,

@@ -11,17 +11,17 @@ from unittest import mock
 
 import numpy as np
 
-from meshes.sample import sample_top
-from postproc.mesh import SurfaceMesh, unit_normals
-from postproc.readers.load_ledger import RADIUS as CONTACT_RADIUS
-from postproc.readers.load_ledger import WEIGHTS, LoadLedger
-from postproc.wear.caps import step_limit
-from postproc.wear.displacement import StepTooLargeError
-from postproc.wear.laws import worn_volume
-from postproc.wear.patch import ContactPatch, hertz_disc
-from postproc.wear.update import CARRIED_VOLUME, lost_volume, wear_update
+from bulkwear.meshes.sample import sample_top
+from bulkwear.postproc.mesh import SurfaceMesh, unit_normals
+from bulkwear.postproc.readers.load_ledger import RADIUS as CONTACT_RADIUS
+from bulkwear.postproc.readers.load_ledger import WEIGHTS, LoadLedger
+from bulkwear.postproc.wear.caps import step_limit
+from bulkwear.postproc.wear.displacement import StepTooLargeError
+from bulkwear.postproc.wear.laws import worn_volume
+from bulkwear.postproc.wear.patch import ContactPatch, hertz_disc
+from bulkwear.postproc.wear.update import CARRIED_VOLUME, lost_volume, wear_update
+from bulkwear.workflows.cases.pin_on_disc.contours import AREA_SHARE
 from tests.verification.ledger_cases import LOAD, PIN_MOTION, RADIUS, hertz_overlap, pin, run_case
-from workflows.cases.pin_on_disc.contours import AREA_SHARE
 
 EDGES_PER_WIDTH = (5, 10, 20)
 GROOVE_WIDTH = 2.1e-3  # m, width that holds 95 % of the section of a groove of radius RADIUS, DEPTH deep, rounded
@@ -122,7 +122,7 @@ def pressure_disc(rings: int) -> tuple[np.ndarray, np.ndarray]:
 
 def spread_once() -> AbstractContextManager:
     """Within this context the product spreads over the Hertz pressure itself, to show why it does not."""
-    return mock.patch("postproc.wear.patch.hertz_disc", pressure_disc)
+    return mock.patch("bulkwear.postproc.wear.patch.hertz_disc", pressure_disc)
 
 
 def worn_groove(

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.plate import flat_plate
-from postproc.mesh import SurfaceMesh, write_stl
-from postproc.readers.contacts import read_contact_batches
-from postproc.readers.load_ledger import LoadLedger, read_load_ledger
-from postproc.wear.ledger import LedgerBuilder
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.readers.contacts import read_contact_batches
+from bulkwear.postproc.readers.load_ledger import LoadLedger, read_load_ledger
+from bulkwear.postproc.wear.ledger import LedgerBuilder
 from tests import REPOSITORY
 
 BUILT = REPOSITORY / "solver" / "build" / "liggghts-ledger"  # by `make -C solver`

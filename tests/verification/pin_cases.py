@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.disc import track_disc, track_stretch
-from postproc.mesh import SurfaceMesh, write_stl
-from postproc.readers.load_ledger import LoadLedger, read_load_ledger
-from postproc.readers.solver_log import thermo_table
-from postproc.reference.sphere_contact import stable_time_step, touching_reach
+from bulkwear.meshes.disc import track_disc, track_stretch
+from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.readers.load_ledger import LoadLedger, read_load_ledger
+from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.reference.sphere_contact import stable_time_step, touching_reach
+from bulkwear.workflows.engine.derived import rayleigh_time, youngs_modulus
+from bulkwear.workflows.engine.templates import render
 from tests.verification.groove_cases import touching_height
 from tests.verification.ledger_cases import DENSITY, LOAD, MASS, RADIUS, effective_modulus, hertz_overlap, run
-from workflows.engine.derived import rayleigh_time, youngs_modulus
-from workflows.engine.templates import render
 
 TRACK_RADIUS = 0.022  # m; this and what follows: Yan 2022, Table 5.2 and section 5.4.1
 DISC_RADIUS, INNER_RADIUS = 0.024, 0.020  # m; nothing inside the inner one is touched

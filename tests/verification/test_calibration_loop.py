@@ -4,13 +4,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.inference.loop import packing_seed
-from postproc.inference.posterior import densest, interval
-from workflows.cases.calibration.boxes import test_of as bulk_test_of
-from workflows.cases.calibration.case import PUBLISHED
-from workflows.cases.calibration.driver import compared_pairs, read_posterior, run_calibration
-from workflows.cases.calibration.simulations import simulate_all
-from workflows.config.design import load_study
+from bulkwear.postproc.inference.loop import packing_seed
+from bulkwear.postproc.inference.posterior import densest, interval
+from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
+from bulkwear.workflows.cases.calibration.case import PUBLISHED
+from bulkwear.workflows.cases.calibration.driver import compared_pairs, read_posterior, run_calibration
+from bulkwear.workflows.cases.calibration.simulations import simulate_all
+from bulkwear.workflows.config.design import load_study
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 

@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.bed import last_snapshot, read_snapshot
-from postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
+from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.workflows.cases.circular_tester import decks as tester_deck
+from bulkwear.workflows.engine import cycles
 from tests.support.tiny import tiny_chain
 from tests.support.tiny_tester import tiny_tester
-from workflows.cases.circular_tester import decks as tester_deck
-from workflows.engine import cycles
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 

@@ -7,7 +7,7 @@ triangles at once. The figure is in docs/wear.md, made by benchmarks/groove.py.
 import numpy as np
 import pytest
 
-from postproc.mesh import smallest_angles
+from bulkwear.postproc.mesh import smallest_angles
 from tests.verification.groove_cases import EDGES_PER_WIDTH, GROOVE_WIDTH, rise_and_vertical, stroke_ledger, worn_groove
 from tests.verification.ledger_cases import RADIUS
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from meshes.plate import flat_plate
-from meshes.sample import sample_top
-from postproc.mesh import SurfaceMesh
-from postproc.wear.patch import ContactPatch, spread
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.meshes.sample import sample_top
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.patch import ContactPatch, spread
+from bulkwear.workflows.cases.pin_on_disc.contours import AREA_SHARE
 from tests.verification.groove_cases import (
     DEPTH,
     PASSES,
@@ -21,7 +22,6 @@ from tests.verification.groove_cases import (
     width_of_area,
 )
 from tests.verification.ledger_cases import LOAD, RADIUS
-from workflows.cases.pin_on_disc.contours import AREA_SHARE
 
 PATCH = 0.35e-3  # m, contact radius
 EDGE = PATCH / 12  # m

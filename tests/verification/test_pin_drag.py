@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.mesh import volume_above_plane, write_stl
-from postproc.readers.contacts import read_contact_batches
-from postproc.wear.laws import worn_volume
-from postproc.wear.ledger import LedgerBuilder
-from postproc.wear.update import wear_update
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import volume_above_plane, write_stl
+from bulkwear.postproc.readers.contacts import read_contact_batches
+from bulkwear.postproc.wear.laws import worn_volume
+from bulkwear.postproc.wear.ledger import LedgerBuilder
+from bulkwear.postproc.wear.update import wear_update
 from tests import DATA
 
 pytestmark = pytest.mark.solver

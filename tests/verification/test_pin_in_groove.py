@@ -2,7 +2,7 @@
 
 import pytest
 
-from postproc.reference.sphere_contact import safe_time_step
+from bulkwear.postproc.reference.sphere_contact import safe_time_step
 from tests.verification.ledger_cases import LOAD, MASS, RADIUS, effective_modulus
 from tests.verification.pin_cases import TIME_STEP, disc, ride, round_groove, stable_step, worn_groove
 

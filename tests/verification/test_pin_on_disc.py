@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from postproc.mesh import SurfaceMesh, write_stl
-from postproc.readers.load_ledger import SUMS, read_load_ledger
+from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.readers.load_ledger import SUMS, read_load_ledger
 from tests.verification.ledger_cases import PIN_MOTION, RADIUS, hertz_overlap, ledger_of_dumps, pin, run, run_case
 from tests.verification.pin_cases import (
     ANGULAR_VELOCITY,

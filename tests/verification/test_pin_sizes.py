@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshes.disc import track_disc
+from bulkwear.meshes.disc import track_disc
+from bulkwear.workflows.engine.derived import rayleigh_time
 from tests.verification.ledger_cases import total
 from tests.verification.pin_cases import PIN, RAYLEIGH_FRACTION, PinCase, arc, set_down
-from workflows.engine.derived import rayleigh_time
 
 pytestmark = pytest.mark.solver
 

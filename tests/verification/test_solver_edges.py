@@ -5,8 +5,8 @@ import subprocess
 import numpy as np
 import pytest
 
-from meshes.tester import sample_block
-from postproc.mesh import write_stl
+from bulkwear.meshes.tester import sample_block
+from bulkwear.postproc.mesh import write_stl
 
 pytestmark = pytest.mark.solver
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
+from bulkwear.meshes.plate import flat_plate
 from tests.verification.ledger_cases import DUMP_LINES, GRAVITY, ledger_of_dumps, run_case, total
 
 pytestmark = pytest.mark.solver

@@ -10,9 +10,9 @@ averages out over an oscillation but not on each triangle. Positions and sliding
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.mesh import areas, stl_corners
-from postproc.readers.mesh_loads import read_mesh_loads
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import areas, stl_corners
+from bulkwear.postproc.readers.mesh_loads import read_mesh_loads
 from tests.verification.ledger_cases import (
     DUMP_LINES,
     LOAD,

@@ -6,8 +6,9 @@ import subprocess
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.readers.load_ledger import read_load_ledger
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.workflows.engine.solver import missing_kernels
 from tests.support.law_cases import long_slip_registered
 from tests.verification.ledger_cases import (
     DUMP_LINES,
@@ -20,7 +21,6 @@ from tests.verification.ledger_cases import (
     said_when_refused,
     write_case,
 )
-from workflows.engine.solver import missing_kernels
 
 pytestmark = pytest.mark.solver
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.mesh import SurfaceMesh, stl_corners
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import SurfaceMesh, stl_corners
 from tests.verification.ledger_cases import (
     LOAD,
     PIN_MOTION,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
+from bulkwear.meshes.plate import flat_plate
 from tests.verification.ledger_cases import DENSITY, LOAD, MASS, RADIUS, hertz_overlap, run_case, total
 
 pytestmark = pytest.mark.solver

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.mesh import write_stl
-from postproc.readers.load_ledger import read_load_ledger
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import write_stl
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from tests.verification.ledger_cases import (
     LOAD,
     MESH_LINE,

@@ -6,8 +6,8 @@ import shutil
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.mesh import write_stl
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import write_stl
 from tests.verification.ledger_cases import (
     LEDGER_LINE,
     MESH_LINE,

@@ -7,8 +7,8 @@ import time
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.readers.load_ledger import announcement, read_load_ledger
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.readers.load_ledger import announcement, read_load_ledger
 from tests.verification.ledger_cases import (
     LEDGER_LINE,
     LOAD,

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from meshes.pattern import ConvexPattern
-from meshes.sample import sample_top
-from postproc.mesh import areas, centroids, unit_normals, volume_above_plane
-from postproc.wear.caps import step_limit
-from postproc.wear.mesh_faults import intersecting_faces, mesh_faults, with_target_edges
-from postproc.wear.pattern_left import pattern_volume
-from postproc.wear.remesh import remesh
-from postproc.wear.remesh_patch import neighbours
-from postproc.wear.update import wear_update
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sample_top
+from bulkwear.postproc.mesh import areas, centroids, unit_normals, volume_above_plane
+from bulkwear.postproc.wear.caps import step_limit
+from bulkwear.postproc.wear.mesh_faults import intersecting_faces, mesh_faults, with_target_edges
+from bulkwear.postproc.wear.pattern_left import pattern_volume
+from bulkwear.postproc.wear.remesh import remesh
+from bulkwear.postproc.wear.remesh_patch import neighbours
+from bulkwear.postproc.wear.update import wear_update
 
 pytestmark = pytest.mark.verify
 

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from workflows.environment import doctor
+from bulkwear.workflows.environment import doctor
 
 MORE_THAN_ANY_DISK_GB = 1e9
 LOCK = "ruff==0.1.2 \\\n    --hash=sha256:00\nnest-asyncio2==1.7\n"

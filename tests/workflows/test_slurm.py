@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine import cycles
+from bulkwear.workflows.engine.pieces import PIECES
+from bulkwear.workflows.engine.solver import DECK
+from bulkwear.workflows.environment.doctor import MPI_PROBE_DECK
 from tests.support.slurm import Slurm, missing_programs
 from tests.support.tiny import tiny_chain
 from tests.workflows.engine.test_cycles import solver_processes
 from tests.workflows.test_snakemake import REPOSITORY, TINY, workspace
-from workflows.config.design import load_study
-from workflows.engine import cycles
-from workflows.engine.pieces import PIECES
-from workflows.engine.solver import DECK
-from workflows.environment.doctor import MPI_PROBE_DECK
 
 ABSENT = missing_programs()
 pytestmark = [
@@ -36,7 +36,7 @@ PLAIN = TINY.replace("surfaces: [convex, plain]", "surfaces: [plain]")
 IN_PIECES = PLAIN + "solver: {checkpoint_interval_steps: 200}\n"
 # What Slurm keeps of a job's environment for it hides an allocation from Open MPI, or promises one that is not there.
 START_RANKS = """
-from workflows.engine.solver import SCREEN, run_deck
+from bulkwear.workflows.engine.solver import SCREEN, run_deck
 folder = Path(__file__).parent
 try:
     run_deck(folder, ranks=2)

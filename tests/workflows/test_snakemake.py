@@ -12,11 +12,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.config.targets import requested_studies
 from tests import REPOSITORY
-from workflows.config.design import ConfigError, load_study
-from workflows.config.targets import requested_studies
 
-PARTS = ("workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
+PARTS = ("bulkwear", "workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
 TIMEOUT = 300.0  # s, for a study that takes about 20 s on an idle machine
 TINY = """\
 title: A tiny study

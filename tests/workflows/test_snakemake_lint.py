@@ -4,7 +4,7 @@ import subprocess
 
 import pytest
 
-from workflows.environment import snakemake_lint
+from bulkwear.workflows.environment import snakemake_lint
 
 WAIVED_HINT = f"    * {snakemake_lint.WAIVED}:\n      This way, the used software\n      is documented.\n"
 OTHER_HINT = "    * No log directive defined:\n      Without a log directive, output goes to the terminal.\n"

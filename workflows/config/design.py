@@ -14,12 +14,20 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
-from workflows.config.law_settings import check_law, law_settings
-from workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml, with_row
-from workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
-from workflows.config.schema import case_schema, coerce_numbers, joined, leaves, load_schema, without_required
-from workflows.config.units import to_si
-from workflows.config.validation import (
+from bulkwear.workflows.config.law_settings import check_law, law_settings
+from bulkwear.workflows.config.layers import (
+    ConfigError,
+    Layer,
+    command_line_layer,
+    display_name,
+    merge,
+    read_yaml,
+    with_row,
+)
+from bulkwear.workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
+from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, leaves, load_schema, without_required
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.config.validation import (
     check_alternatives,
     check_calibrated_for,
     check_layer,
@@ -29,8 +37,8 @@ from workflows.config.validation import (
     read_design,
     unknown_name,
 )
-from workflows.engine.case import DEFAULT_CASE, Case, Run, find_case
-from workflows.engine.chain import sample_decks
+from bulkwear.workflows.engine.case import DEFAULT_CASE, Case, Run, find_case
+from bulkwear.workflows.engine.chain import sample_decks
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 

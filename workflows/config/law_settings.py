@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from postproc.wear.laws import LAWS
-from workflows.config.layers import ConfigError, KeyPath, Layer, dotted
-from workflows.config.schema import without_required
-from workflows.config.validation import UNIT_OF_SUFFIX, allowed_text, check_layer, locate, show, unknown_key
+from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, dotted
+from bulkwear.workflows.config.schema import without_required
+from bulkwear.workflows.config.validation import UNIT_OF_SUFFIX, allowed_text, check_layer, locate, show, unknown_key
 
 WEAR, LAW, PARAMETERS = "wear", "law", "parameters"
 

@@ -9,12 +9,12 @@ from collections.abc import Mapping
 from dataclasses import Field
 from typing import Any
 
-from meshes.lattice import Pattern
-from meshes.pattern import PATTERNS
-from meshes.sample import sliding_sample
-from postproc.mesh import PLAIN, SurfaceMesh
-from postproc.reference.size_ratios import equivalent_size_ratio
-from workflows.config.units import to_si
+from bulkwear.meshes.lattice import Pattern
+from bulkwear.meshes.pattern import PATTERNS
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh
+from bulkwear.postproc.reference.size_ratios import equivalent_size_ratio
+from bulkwear.workflows.config.units import to_si
 
 SURFACES = (*PATTERNS, PLAIN)
 SHAPE = "shape"  # key of the section `pattern` of a run's parameters: the name of its surface

@@ -1,6 +1,6 @@
 """Write config/README.md from the schemas: every key with its unit, what is allowed and what it means.
 
-python -m workflows.config.readme
+python -m bulkwear.workflows.config.readme
 """
 
 from __future__ import annotations
@@ -9,20 +9,20 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from postproc.wear.laws import LAWS, Law, Parameter
-from workflows.config.design import REPOSITORY
-from workflows.config.law_settings import parameters_schema
-from workflows.config.layers import dotted
-from workflows.config.run_checks import COMMON_CHECKS, Check
-from workflows.config.schema import leaves, load_schema, schema_file
-from workflows.config.validation import allowed_text
-from workflows.engine.case import case_names, find_case
+from bulkwear.postproc.wear.laws import LAWS, Law, Parameter
+from bulkwear.workflows.config.design import REPOSITORY
+from bulkwear.workflows.config.law_settings import parameters_schema
+from bulkwear.workflows.config.layers import dotted
+from bulkwear.workflows.config.run_checks import COMMON_CHECKS, Check
+from bulkwear.workflows.config.schema import leaves, load_schema, schema_file
+from bulkwear.workflows.config.validation import allowed_text
+from bulkwear.workflows.engine.case import case_names, find_case
 
 INTRODUCTION = """\
 # Configuration
 
 Generated from the schemas (`workflows/config/schemas`, `workflows/cases/*/*.schema.yaml`) and the wear laws
-(`postproc/wear/laws.py`) by `python -m workflows.config.readme`; edit these, not this page.
+(`postproc/wear/laws.py`) by `python -m bulkwear.workflows.config.readme`; edit these, not this page.
 
 * `default.yaml`: settings that all cases share.
 * `cases/<case>.yaml`: settings of one case, which stand above those.

@@ -10,16 +10,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from meshes.lattice import pattern_faults
-from workflows.config.layers import ConfigError, Layer
-from workflows.config.patterns import pattern_of
-from workflows.config.schema import load_schema
-from workflows.config.units import to_si
-from workflows.config.validation import allowed_text, locate, show
-from workflows.engine.templates import DeckError, solver_settings, template_variables
+from bulkwear.meshes.lattice import pattern_faults
+from bulkwear.workflows.config.layers import ConfigError, Layer
+from bulkwear.workflows.config.patterns import pattern_of
+from bulkwear.workflows.config.schema import load_schema
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.config.validation import allowed_text, locate, show
+from bulkwear.workflows.engine.templates import DeckError, solver_settings, template_variables
 
 if TYPE_CHECKING:
-    from workflows.engine.case import Case
+    from bulkwear.workflows.engine.case import Case
 
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
@@ -168,7 +168,7 @@ def physical_modulus_known(run: CheckedRun) -> Fault | None:
 
 
 def pattern_fits(run: CheckedRun) -> Fault | None:
-    """The shapes of a pattern neither overlap nor leave the sample (meshes.lattice decides)."""
+    """The shapes of a pattern neither overlap nor leave the sample (bulkwear.meshes.lattice decides)."""
     pattern, sample = pattern_of(run.parameters["pattern"]), run.parameters["sample"]
     if pattern is None:
         return None

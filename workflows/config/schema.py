@@ -10,10 +10,10 @@ from typing import Any
 
 import jsonschema
 
-from postproc.wear.laws import LAWS
-from workflows.config.layers import KeyPath, read_yaml
-from workflows.config.patterns import with_patterns
-from workflows.engine.case import case_names
+from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.config.layers import KeyPath, read_yaml
+from bulkwear.workflows.config.patterns import with_patterns
+from bulkwear.workflows.engine.case import case_names
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
 CASES_FOLDER = Path(__file__).parents[1] / "cases"

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from workflows.config.design import CONFIRMATION, REPOSITORY, RULE_NAMES, TARGETS, ConfigError, list_studies
-from workflows.config.validation import unknown_name
+from bulkwear.workflows.config.design import CONFIRMATION, REPOSITORY, RULE_NAMES, TARGETS, ConfigError, list_studies
+from bulkwear.workflows.config.validation import unknown_name
 
 DEFAULT_TARGET = "demo"
 BELOW_RESULTS = re.compile(r"(?:.*/)?results/([^/]+)/")

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from workflows.config.layers import (
+from bulkwear.workflows.config.layers import (
     INTEGER,
     NUMBER,
     ConfigError,
@@ -23,7 +23,7 @@ from workflows.config.layers import (
     dotted,
     read_csv_rows,
 )
-from workflows.config.schema import Validator, coerce_numbers, leaves, load_schema, subschema
+from bulkwear.workflows.config.schema import Validator, coerce_numbers, leaves, load_schema, subschema
 
 CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
 

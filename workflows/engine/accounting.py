@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh
-from postproc.readers.mesh_loads import read_mesh_loads
-from workflows.engine.case import CycleError
-from workflows.engine.chain import Chain
-from workflows.engine.ledgers import producer
-from workflows.engine.schedule import Span
-from workflows.engine.wear_step import law_volume, load_sums, on_whole_surface, wear
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.readers.mesh_loads import read_mesh_loads
+from bulkwear.workflows.engine.case import CycleError
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.ledgers import producer
+from bulkwear.workflows.engine.schedule import Span
+from bulkwear.workflows.engine.wear_step import law_volume, load_sums, on_whole_surface, wear
 
 LEDGER, FORCES, HISTORY = "ledger.parquet", "forces.csv", "wear_history.csv"
 

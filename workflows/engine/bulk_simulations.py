@@ -12,12 +12,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from postproc.flow.bulk_test import HEAP
-from postproc.readers.solver_log import failure, last_step, solver_version, thermo_table, warnings
-from workflows.engine import state
-from workflows.engine.bulk_tests import deck_text, write_test
-from workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds, run_deck
-from workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
+from bulkwear.postproc.flow.bulk_test import HEAP
+from bulkwear.postproc.readers.solver_log import failure, last_step, solver_version, thermo_table, warnings
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.bulk_tests import deck_text, write_test
+from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds, run_deck
+from bulkwear.workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
 
 POURED = 1.04  # -, poured particles over those that fill the box, as counted
 FILLED = "filled.dump"

@@ -20,12 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from postproc.mesh import write_stl
-from postproc.wear.caps import GRAVITY
-from workflows.engine import decks as deck
-from workflows.engine.derived import WALLS, derived_materials, rayleigh_time
-from workflows.engine.solver import DECK
-from workflows.engine.templates import render
+from bulkwear.postproc.mesh import write_stl
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.derived import WALLS, derived_materials, rayleigh_time
+from bulkwear.workflows.engine.solver import DECK
+from bulkwear.workflows.engine.templates import render
 
 MARGIN_DIAMETERS = 2.0  # -, room between the boxes and the domain, in largest diameters
 FILL_EXCESS = 1.1  # -, poured over levelled volume: loose packings of rough particles still fill the box

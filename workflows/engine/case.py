@@ -17,17 +17,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh
-from postproc.wear.caps import edge_limit
-from workflows.engine.schedule import Span, first_span
-from workflows.engine.work import Stage, Work
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.caps import edge_limit
+from bulkwear.workflows.engine.schedule import Span, first_span
+from bulkwear.workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from workflows.engine.schedule import Span
+    from bulkwear.workflows.engine.schedule import Span
 
-CASES_PACKAGE = "workflows.cases"  # of which each package is a case that registers itself when it is imported
+CASES_PACKAGE = "bulkwear.workflows.cases"  # of which each package is a case that registers itself when it is imported
 DEFAULT_CASE = "sliding_sample"  # of a study that names none
 SETUP_LOADS, SETUP_BED = "loads_0.vtk", "bed_0.dump"  # of a cycle's first instant: the last one of the cycle before
 

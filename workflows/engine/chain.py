@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from postproc.mesh import SurfaceMesh, read_surface, write_stl
-from workflows.engine import state
-from workflows.engine.case import Case
-from workflows.engine.schedule import Span, cycle_title, first_span, known_spans, next_span
-from workflows.engine.solver import DECK, LAUNCHER
-from workflows.engine.templates import render
+from bulkwear.postproc.mesh import SurfaceMesh, read_surface, write_stl
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.case import Case
+from bulkwear.workflows.engine.schedule import Span, cycle_title, first_span, known_spans, next_span
+from bulkwear.workflows.engine.solver import DECK, LAUNCHER
+from bulkwear.workflows.engine.templates import render
 
 MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
 SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"

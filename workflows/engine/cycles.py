@@ -12,13 +12,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from postproc.mesh import read_surface, write_surface
-from postproc.readers.load_ledger import announcement
-from postproc.readers.solver_log import solver_version, thermo_table, warnings
-from workflows.engine import state
-from workflows.engine.accounting import HISTORY, LEDGER, account_and_wear
-from workflows.engine.case import Case
-from workflows.engine.chain import (
+from bulkwear.postproc.mesh import read_surface, write_surface
+from bulkwear.postproc.readers.load_ledger import announcement
+from bulkwear.postproc.readers.solver_log import solver_version, thermo_table, warnings
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.accounting import HISTORY, LEDGER, account_and_wear
+from bulkwear.workflows.engine.case import Case
+from bulkwear.workflows.engine.chain import (
     RESTART,
     SURFACE,
     Chain,
@@ -32,12 +32,12 @@ from workflows.engine.chain import (
     write_cycle,
     write_shared_files,
 )
-from workflows.engine.inputs import inputs_digest
-from workflows.engine.job import Progress, write_table
-from workflows.engine.ledgers import producer
-from workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
-from workflows.engine.schedule import Span, first_span, known_spans
-from workflows.engine.solver import (
+from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.job import Progress, write_table
+from bulkwear.workflows.engine.ledgers import producer
+from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
+from bulkwear.workflows.engine.schedule import Span, first_span, known_spans
+from bulkwear.workflows.engine.solver import (
     CYCLE_EXECUTABLES,
     EXECUTABLE,
     LAUNCHER,
@@ -48,7 +48,7 @@ from workflows.engine.solver import (
     processor_seconds,
     run_deck,
 )
-from workflows.engine.wear_step import worn_surface
+from bulkwear.workflows.engine.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"
 BED_STEPS = (

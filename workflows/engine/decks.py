@@ -9,9 +9,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from postproc.wear.caps import GRAVITY
-from workflows.engine.derived import neighbour_skin, run_kernels
-from workflows.engine.templates import SOLVER, whole_sections
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.engine.derived import neighbour_skin, run_kernels
+from bulkwear.workflows.engine.templates import SOLVER, whole_sections
 
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
 FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere

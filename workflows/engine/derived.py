@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from postproc.wear.laws import law_kernels
+from bulkwear.postproc.wear.laws import law_kernels
 
 HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
@@ -71,7 +71,7 @@ def physical_patch_factor(parameters: dict[str, Any]) -> float:
     modulus = parameters["wear"].get("physical_shear_modulus_pa")
     if modulus is None:
         return 1.0
-    from postproc.wear.patch import physical_radius  # slow to import, and every job reads its study first
+    from bulkwear.postproc.wear.patch import physical_radius  # slow to import, and every job reads its study first
 
     particle, wall = parameters["particle"], parameters["sample_material"]
     pair = [(particle["shear_modulus_pa"], modulus), (wall["shear_modulus_pa"],) * 2]

@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from postproc.wear import WEAR_VERSION
-from workflows.engine import state
-from workflows.engine.case import Case, Parameters
-from workflows.engine.chain import Chain, write_bed
-from workflows.engine.schedule import first_span
+from bulkwear.postproc.wear import WEAR_VERSION
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.case import Case, Parameters
+from bulkwear.workflows.engine.chain import Chain, write_bed
+from bulkwear.workflows.engine.schedule import first_span
 
 DERIVED = (
     "time_step_s",

@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh, stl_corners
-from postproc.readers.contacts import read_contact_batches
-from postproc.readers.load_ledger import read_load_ledger
-from postproc.wear.ledger import LedgerBuilder, columns_of_solver
-from workflows.engine import state
-from workflows.engine.chain import Chain
-from workflows.engine.derived import run_kernels
-from workflows.engine.schedule import Span
+from bulkwear.postproc.mesh import SurfaceMesh, stl_corners
+from bulkwear.postproc.readers.contacts import read_contact_batches
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.postproc.wear.ledger import LedgerBuilder, columns_of_solver
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.derived import run_kernels
+from bulkwear.workflows.engine.schedule import Span
 
 LOAD_LEDGER = "load_ledger.bin"
 CONTACTS, SPINS, TOUCHING = "contacts.dump", "spins.dump", "touching.npy"

@@ -14,8 +14,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from postproc.readers.solver_log import last_step
-from workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds
+from bulkwear.postproc.readers.solver_log import last_step
+from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds
 
 PIECES, CHECKPOINT = "pieces.json", "checkpoint.restart"  # the second as the decks name it
 FORCED = "restart_forced_*"  # left by a solver that was asked to end

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from workflows.engine.derived import ADAPTIVE
+from bulkwear.workflows.engine.derived import ADAPTIVE
 
 LEAST_CYCLE_STEPS = 100  # fewer time steps do not resolve a single contact, let alone a cycle
 

@@ -18,9 +18,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
-from postproc.wear.kernels import kernel_column, kernel_parameters
-from workflows.engine.derived import run_kernels
+from bulkwear.postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
+from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
+from bulkwear.workflows.engine.derived import run_kernels
 
 DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
 EXECUTABLE = "liggghts"

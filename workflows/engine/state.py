@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from postproc.readers.cycle_folders import cycle_folders
+from bulkwear.postproc.readers.cycle_folders import cycle_folders
 
 STATE = "state.json"
 DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, areas, node_area_vectors, read_surface, smallest_angles, write_surface
-from postproc.wear.caps import next_cycle_factor, wanted_step
-from postproc.wear.laws import worn_volume
-from postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
-from postproc.wear.patch import ContactPatch, chosen_radius
-from postproc.wear.remesh import RemeshError, remesh
-from postproc.wear.update import (
+from bulkwear.postproc.mesh import SurfaceMesh, areas, node_area_vectors, read_surface, smallest_angles, write_surface
+from bulkwear.postproc.wear.caps import next_cycle_factor, wanted_step
+from bulkwear.postproc.wear.laws import worn_volume
+from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
+from bulkwear.postproc.wear.patch import ContactPatch, chosen_radius
+from bulkwear.postproc.wear.remesh import RemeshError, remesh
+from bulkwear.postproc.wear.update import (
     CARRIED_VOLUME,
     lost_volume,
     volume_balance,
@@ -25,11 +25,11 @@ from postproc.wear.update import (
     with_depths,
     worn_faces,
 )
-from workflows.engine import state
-from workflows.engine.case import Case
-from workflows.engine.chain import SURFACE, Chain
-from workflows.engine.derived import law_parameters
-from workflows.engine.schedule import Span
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.case import Case
+from bulkwear.workflows.engine.chain import SURFACE, Chain
+from bulkwear.workflows.engine.derived import law_parameters
+from bulkwear.workflows.engine.schedule import Span
 
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J")
 SUMS = (*SUMMED, "finnie_volume_m3", "worn_volume_m3")  # cell data of the surface, over all cycles so far

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from workflows.engine.derived import neighbour_skin
+from bulkwear.workflows.engine.derived import neighbour_skin
 
 # Median diameters of a bed's thickness in which no particle's centre is: half of one is taken off in levelling, the
 # rest is the looser layer on the floor. Measured on beds of 3 to 7.5 layers, within 1 % in particles.

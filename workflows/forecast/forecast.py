@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from workflows.config.design import Study
-from workflows.engine.job import duration_text
-from workflows.engine.work import Work
-from workflows.forecast.rates import (
+from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.engine.job import duration_text
+from bulkwear.workflows.engine.work import Work
+from bulkwear.workflows.forecast.rates import (
     OUTSIDE_TERMS,
     SOLVER_TERMS,
     TERMS,

@@ -23,18 +23,18 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.mesh import read_surface, write_surface
-from postproc.readers.solver_log import run_times
-from workflows.config.design import Study, load_study
-from workflows.engine import state
-from workflows.engine.chain import Chain, span_of
-from workflows.engine.cycles import fill_bed, run_cycle
-from workflows.engine.inputs import inputs_digest
-from workflows.engine.job import Progress
-from workflows.engine.schedule import Span
-from workflows.engine.solver import LOG, die_with, processor_seconds
-from workflows.engine.work import Stage
-from workflows.forecast.rates import MachineRates, fitted_rates, machine_facts, seconds
+from bulkwear.postproc.mesh import read_surface, write_surface
+from bulkwear.postproc.readers.solver_log import run_times
+from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.chain import Chain, span_of
+from bulkwear.workflows.engine.cycles import fill_bed, run_cycle
+from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.schedule import Span
+from bulkwear.workflows.engine.solver import LOG, die_with, processor_seconds
+from bulkwear.workflows.engine.work import Stage
+from bulkwear.workflows.forecast.rates import MachineRates, fitted_rates, machine_facts, seconds
 
 BED_STUDY, BED_RUN = "demo", "R9_plain"
 PIN_STUDY, PIN_RUN = "pin_on_disc", "c17-conserving"
@@ -59,7 +59,9 @@ DISCS = {
     "coarse disc": {"disc": {"element_size_mm": 0.25}},
     "fine disc": {"disc": {"element_size_mm": 0.1}},
 }
-JOB = "import workflows.engine.cycles, postproc.wear.remesh"  # what a job that runs wear cycles imports
+JOB = (
+    "import bulkwear.workflows.engine.cycles, bulkwear.postproc.wear.remesh"  # what a job that runs wear cycles imports
+)
 GROUPS = {  # kind of measurement -> the rates that those of its kind tell, given the ones above
     "neighbour lists": ("particle_builds",),
     "steps": (

@@ -18,15 +18,21 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from postproc.readers.cycle_folders import cycle_files
-from postproc.readers.solver_log import solver_version
-from postproc.tables.summary import read_summary
-from workflows.engine.case import find_case
-from workflows.engine.solver import LOG
-from workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs, outside_solver_share
-from workflows.report.page_parameters import REPORT_FOLDER, page_of
-from workflows.report.sections import DIGITS, Block, Table, with_all_figures
-from workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
+from bulkwear.postproc.readers.cycle_folders import cycle_files
+from bulkwear.postproc.readers.solver_log import solver_version
+from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.solver import LOG
+from bulkwear.workflows.report.cost import (
+    BENCHMARK_SUFFIX,
+    against_forecast,
+    benchmark_seconds,
+    job_costs,
+    outside_solver_share,
+)
+from bulkwear.workflows.report.page_parameters import REPORT_FOLDER, page_of
+from bulkwear.workflows.report.sections import DIGITS, Block, Table, with_all_figures
+from bulkwear.workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked

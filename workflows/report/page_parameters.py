@@ -7,11 +7,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from postproc.wear.laws import NEUTRAL_LAW
-from workflows.config.design import Study
-from workflows.engine.case import CASES_PACKAGE
-from workflows.report.products import Product, figures_of, products_of_study
-from workflows.report.text import number_and_unit
+from bulkwear.postproc.wear.laws import NEUTRAL_LAW
+from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.engine.case import CASES_PACKAGE
+from bulkwear.workflows.report.products import Product, figures_of, products_of_study
+from bulkwear.workflows.report.text import number_and_unit
 
 REPORT_FOLDER = Path(__file__).resolve().parent
 TEMPLATES = ("study.html.j2", "style.html.j2", "sections.html.j2")

@@ -7,7 +7,7 @@ slow to import are imported inside the function: Snakemake reads all declaration
 
     @figure("Wear", "Wear against travel", inputs={"wear": every_run("wear.csv")}, caption="Volumes over travel.")
     def wear_against_travel(job):
-        from postproc.plots import curves
+        from bulkwear.postproc.plots import curves
         ...
         return curves.wear_against_travel(history, job.remarks), history
 """
@@ -21,12 +21,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
-from workflows.engine.case import CASES_PACKAGE, Case
+from bulkwear.workflows.engine.case import CASES_PACKAGE, Case
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
-SHARED = "workflows.report.surfaces"  # figures that any case may show
+SHARED = "bulkwear.workflows.report.surfaces"  # figures that any case may show
 OfStudy = Callable[["Study"], Any]
 Source = str | OfStudy  # a path, in which {study} stands for its name, or what gives one path or several
 
@@ -196,7 +196,7 @@ def _float_format(product: Product, key: str) -> str | None:
 
 
 def _write_figure(drawn: Any, path: str) -> None:
-    from postproc.plots.style import save  # slow to import, and Snakemake reads this module first
+    from bulkwear.postproc.plots.style import save  # slow to import, and Snakemake reads this module first
 
     if callable(drawn):
         drawn(path)

@@ -1,7 +1,7 @@
 """Tables and figures of a study, and its page."""
 
-from workflows.report.page_parameters import figure_remarks, page_parameters, page_templates
-from workflows.report.products import outputs_of, product_files, rules_of
+from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters, page_templates
+from bulkwear.workflows.report.products import outputs_of, product_files, rules_of
 
 for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
 

@@ -1,6 +1,6 @@
 """Compare a scanned sample with its pristine surface and with simulated worn ones.
 
-python -m workflows.report.scans scan.ply results/demo/R9_convex/surface.vtu \\
+python -m bulkwear.workflows.report.scans scan.ply results/demo/R9_convex/surface.vtu \\
     R9=results/demo/R9_convex/worn_surface.vtu --leading-edge 12.5 -48 3
 
 The scan may lie anywhere and have any axes; it is laid on the holder's features, which did not wear. What comes out,
@@ -19,11 +19,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, read_surface
-from postproc.plots import scan as plots
-from postproc.plots.style import save
-from postproc.readers.point_cloud import METRES, inside_box, point_blocks, random_points
-from postproc.scans.comparison import (
+from bulkwear.postproc.mesh import SurfaceMesh, read_surface
+from bulkwear.postproc.plots import scan as plots
+from bulkwear.postproc.plots.style import save
+from bulkwear.postproc.readers.point_cloud import METRES, inside_box, point_blocks, random_points
+from bulkwear.postproc.scans.comparison import (
     ThinnedScan,
     bump_sections,
     depth_cells,
@@ -31,9 +31,9 @@ from postproc.scans.comparison import (
     thinned_scan,
     volume_table,
 )
-from postproc.scans.registration import EVERYTHING, HOLDER, Registration, register
-from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.engine.job import Progress
+from bulkwear.postproc.scans.registration import EVERYTHING, HOLDER, Registration, register
+from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
+from bulkwear.workflows.engine.job import Progress
 
 REGISTERED_POINTS = 200_000  # of the scan, at random, that are laid on the surface
 ACCURACY = 0.02  # mm, of the laser scanner of Yan 2022 (section 6.2.1)
@@ -151,7 +151,7 @@ def remarks(result: Compared, given: argparse.Namespace) -> list[str]:
 
 def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="python -m workflows.report.scans",
+        prog="python -m bulkwear.workflows.report.scans",
         description="Compare a scanned sample with its pristine surface and with simulated worn ones.",
         epilog="What comes out and what it means: docs/scans.md.",
     )

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from workflows.report.page_parameters import is_deformed
-from workflows.report.products import Job, every_run, figure
+from bulkwear.workflows.report.page_parameters import is_deformed
+from bulkwear.workflows.report.products import Job, every_run, figure
 
 DESIGN, SUMMARY = "results/{study}/design.csv", "results/{study}/summary.csv"
 SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
@@ -29,9 +29,9 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
 )
 def worn_surface(job: Job) -> Any:
     """Draw the worn surfaces of a study."""
-    from postproc.plots import pictures
-    from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-    from postproc.tables.history import runs_of
+    from bulkwear.postproc.plots import pictures
+    from bulkwear.postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+    from bulkwear.postproc.tables.history import runs_of
 
     runs, deformed = runs_of(job.files.design), job.told.deformed
     meshes = read_worn_surfaces(runs["run"], job.files.surfaces)
@@ -55,10 +55,10 @@ def worn_surface(job: Job) -> Any:
 )
 def worn_surface_3d(job: Job) -> Any:
     """Draw all runs of the row that is shown in detail on a page of their own."""
-    from postproc.plots.page import surfaces_page
-    from postproc.plots.pictures import colour_limits
-    from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-    from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
+    from bulkwear.postproc.plots.page import surfaces_page
+    from bulkwear.postproc.plots.pictures import colour_limits
+    from bulkwear.postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+    from bulkwear.postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
 
     summary, deformed = read_summary(job.files.summary), job.told.deformed
     shown = runs_of_rows(summary, rows_to_show(summary))
@@ -89,9 +89,9 @@ def worn_surface_3d(job: Job) -> Any:
 )
 def wear_updates(job: Job) -> Any:
     """Draw the updates along the travel, or the worst per run where there are many design rows."""
-    from postproc.plots import curves, updates
-    from postproc.tables.updates import update_summary
-    from postproc.tables.updates import wear_updates as table_of
+    from bulkwear.postproc.plots import curves, updates
+    from bulkwear.postproc.tables.updates import update_summary
+    from bulkwear.postproc.tables.updates import wear_updates as table_of
 
     table, draw = table_of(job.files.design, job.files.wear), updates.wear_updates
     if table["row"].nunique() > curves.FEW_ROWS:
@@ -119,10 +119,10 @@ def worn_film(job: Job) -> Any:
     """Film how a run of the row that is shown in detail wears, cycle by cycle."""
     import pandas as pd
 
-    from postproc.plots.film import film_pictures, save_film
-    from postproc.tables.depths import depth_quantity
-    from postproc.tables.film import film_frames, film_run, film_surfaces, frame_table
-    from postproc.tables.summary import read_summary
+    from bulkwear.postproc.plots.film import film_pictures, save_film
+    from bulkwear.postproc.tables.depths import depth_quantity
+    from bulkwear.postproc.tables.film import film_frames, film_run, film_surfaces, frame_table
+    from bulkwear.postproc.tables.summary import read_summary
 
     summary = read_summary(job.files.summary)
     run = film_run(summary)

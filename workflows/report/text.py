@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from postproc.wear.laws import LAWS, NEUTRAL_LAW
+from bulkwear.postproc.wear.laws import LAWS, NEUTRAL_LAW
 
 if TYPE_CHECKING:
     import pandas as pd

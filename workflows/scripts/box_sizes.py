@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from workflows.cases.calibration.driver import run_box_sizes
-from workflows.engine.job import job_log
+from bulkwear.workflows.cases.calibration.driver import run_box_sizes
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     table = run_box_sizes(

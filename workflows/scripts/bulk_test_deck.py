@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from workflows.cases.calibration.boxes import test_of
-from workflows.engine.bulk_tests import write_test
-from workflows.engine.job import job_log
+from bulkwear.workflows.cases.calibration.boxes import test_of
+from bulkwear.workflows.engine.bulk_tests import write_test
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     run = snakemake.params.run

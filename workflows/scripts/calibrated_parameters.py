@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from workflows.cases.calibration.driver import run_calibration
-from workflows.engine.job import job_log
+from bulkwear.workflows.cases.calibration.driver import run_calibration
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     tables = run_calibration(

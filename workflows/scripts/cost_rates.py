@@ -3,9 +3,9 @@
 import tempfile
 from pathlib import Path
 
-from workflows.engine.job import Progress, job_log
-from workflows.forecast.rate_benchmark import measured_rates
-from workflows.forecast.rates import write_rates
+from bulkwear.workflows.engine.job import Progress, job_log
+from bulkwear.workflows.forecast.rate_benchmark import measured_rates
+from bulkwear.workflows.forecast.rates import write_rates
 
 with job_log(snakemake.log[0]), tempfile.TemporaryDirectory() as folder:
     say = Progress("rates", 1).say

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from workflows.engine.job import job_log
-from workflows.forecast.forecast import forecast_table, forecast_text
-from workflows.forecast.rates import read_rates
+from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.forecast.forecast import forecast_table, forecast_text
+from bulkwear.workflows.forecast.rates import read_rates
 
 with job_log(snakemake.log[0]):
     found = read_rates(Path(snakemake.input.rates))

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from workflows.cases.sliding_sample.particle_size.packings import packing_costs, packing_table
-from workflows.engine.job import job_log
+from bulkwear.workflows.cases.sliding_sample.particle_size.packings import packing_costs, packing_table
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     asked = snakemake.params.runs, snakemake.params.packing, Path(snakemake.output.cost).parent

@@ -1,8 +1,8 @@
 """Make a figure or tables of a study."""
 
-from workflows.engine.case import find_case
-from workflows.engine.job import job_log
-from workflows.report.products import job_of, products_of, write_product
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.report.products import job_of, products_of, write_product
 
 with job_log(snakemake.log[0]):
     asked = snakemake.params

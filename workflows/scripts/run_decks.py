@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from workflows.engine.case import find_case
-from workflows.engine.chain import Chain, write_decks
-from workflows.engine.job import job_log
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.chain import Chain, write_decks
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     write_decks(

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from workflows.engine.case import find_case
-from workflows.engine.cycles import fill_bed
-from workflows.engine.job import job_log
-from workflows.engine.solver import LAUNCHER, ranks_here
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cycles import fill_bed
+from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.solver import LAUNCHER, ranks_here
 
 with job_log(snakemake.log[0]):
     folder = Path(snakemake.output.restart).parent

@@ -1,7 +1,7 @@
 """Write the summary of a study: one row per run."""
 
-from workflows.engine.case import find_case
-from workflows.engine.job import job_log
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     files = snakemake.input

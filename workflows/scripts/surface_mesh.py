@@ -1,8 +1,8 @@
 """Build the pristine surface of a run."""
 
-from postproc.mesh import write_surface
-from workflows.engine.case import find_case
-from workflows.engine.job import job_log
+from bulkwear.postproc.mesh import write_surface
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     write_surface(snakemake.output[0], find_case(snakemake.params.case).surface_mesh(snakemake.params.geometry))

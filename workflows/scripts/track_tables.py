@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from workflows.cases.pin_on_disc.run_in import contours_of_run
-from workflows.cases.pin_on_disc.runs import pin_runs
-from workflows.cases.pin_on_disc.volume import volumes_of_run
-from workflows.engine.job import job_log
+from bulkwear.workflows.cases.pin_on_disc.run_in import contours_of_run
+from bulkwear.workflows.cases.pin_on_disc.runs import pin_runs
+from bulkwear.workflows.cases.pin_on_disc.volume import volumes_of_run
+from bulkwear.workflows.engine.job import job_log
 
 with job_log(snakemake.log[0]):
     folder = Path(snakemake.input.wear).parent

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from workflows.engine.case import find_case
-from workflows.engine.chain import Chain
-from workflows.engine.cycles import run_chain
-from workflows.engine.job import job_log
-from workflows.engine.solver import LAUNCHER, ranks_here
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.cycles import run_chain
+from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.solver import LAUNCHER, ranks_here
 
 with job_log(snakemake.log[0]):
     run_chain(

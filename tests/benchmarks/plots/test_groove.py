@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from benchmarks.plots.figures import COLUMNS, Panel, deviation_figure, groove_convergence, wear_side_by_side
-from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, remarks_of
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, remarks_of
 
 REMARKS = ["pin of radius 3 mm", "softened"]
 X = np.linspace(-2.0, 2.0, 9)  # mm

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.plots.time_step import PANELS, time_step_limit
-from postproc.plots.style import remarks_of
+from bulkwear.postproc.plots.style import remarks_of
 
 RATIOS = [0.5, 0.9, 1.1, 1.3]
 GROOVES = {"shallow": 6.4, "deep": 59.3}  # contacts

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.bed import behind_cut, lag, last_snapshot, read_snapshot
+from bulkwear.postproc.flow.bed import behind_cut, lag, last_snapshot, read_snapshot
 
 HEADER = """ITEM: TIMESTEP
 7

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.free_surface import FreeSurfaceError, fitted_slope, scanned_heights, surface_points
+from bulkwear.postproc.flow.free_surface import FreeSurfaceError, fitted_slope, scanned_heights, surface_points
 
 LARGEST_ERROR = 0.5  # degrees, what a heap's angle may be missed by
 EXACT = 1e-9  # relative: the same arithmetic on mirrored or scaled numbers

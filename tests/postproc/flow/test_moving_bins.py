@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.moving_bins import (
+from bulkwear.postproc.flow.moving_bins import (
     MovingBins,
     bin_history,
     joined,
@@ -15,7 +15,7 @@ from postproc.flow.moving_bins import (
     surcharge_history,
     velocity_profile,
 )
-from postproc.readers.dump_text import ContactDumpError
+from bulkwear.postproc.readers.dump_text import ContactDumpError
 
 BINS = MovingBins(width=0.08, length=0.08, side_width=0.02, layer_height=0.005, layers=4)
 STEP = 1e-4  # m of travel per step

@@ -4,7 +4,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.outflow import OutflowError, check_count, check_not_blocked, discharge_time, mass_flow, outflow_curve
+from bulkwear.postproc.flow.outflow import (
+    OutflowError,
+    check_count,
+    check_not_blocked,
+    discharge_time,
+    mass_flow,
+    outflow_curve,
+)
 
 EXACT = 1e-9  # relative: interpolation on a straight line
 

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.packing import (
+from bulkwear.postproc.flow.packing import (
     contacts_of,
     inner_means,
     layer_edges,

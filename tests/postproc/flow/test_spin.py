@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from postproc.flow.spin import Segments, mean_spin, spin_along_sample
+from bulkwear.postproc.flow.spin import Segments, mean_spin, spin_along_sample
 
 SEGMENTS = Segments(width=0.02, length=0.04, layer_height=0.01)  # four pieces
 HEADING = "id x y z vx vy vz omegax omegay omegaz radius"

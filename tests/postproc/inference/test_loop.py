@@ -5,11 +5,23 @@ import math
 import numpy as np
 import pytest
 
-from postproc.inference.acquisition import expected_information, log_likelihood_variance, next_points, surrogate_share
-from postproc.inference.loop import calibrate, posterior
-from postproc.inference.posterior import densest, distance_from, interval, log_normal, posterior_weights, recommended
-from postproc.inference.problem import Experiment, Measured, Parameter, Problem
-from postproc.inference.surrogate import fit_surrogate
+from bulkwear.postproc.inference.acquisition import (
+    expected_information,
+    log_likelihood_variance,
+    next_points,
+    surrogate_share,
+)
+from bulkwear.postproc.inference.loop import calibrate, posterior
+from bulkwear.postproc.inference.posterior import (
+    densest,
+    distance_from,
+    interval,
+    log_normal,
+    posterior_weights,
+    recommended,
+)
+from bulkwear.postproc.inference.problem import Experiment, Measured, Parameter, Problem
+from bulkwear.postproc.inference.surrogate import fit_surrogate
 
 MOST_SIMULATIONS = 20  # what a closed loop may cost
 STATED_SHARE = 0.95  # of the posterior, in the interval that must hold the hidden parameters

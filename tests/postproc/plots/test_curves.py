@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots import curves
-from postproc.plots.style import LARGEST_HEIGHT, RESOLUTION, SMALLEST_FONT, WIDTH, remarks_of, save, scaled
+from bulkwear.postproc.plots import curves
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, RESOLUTION, SMALLEST_FONT, WIDTH, remarks_of, save, scaled
 
 REMARKS = [
     "sample 80 x 80 mm of 200 x 200 mm; bed width 100 mm of 300 mm; bed ahead of the sample 160 mm of 200 mm",

@@ -5,11 +5,11 @@ import pandas as pd
 import pytest
 from PIL import Image
 
-from meshes.sample import sliding_sample
-from postproc.mesh import SurfaceMesh
-from postproc.plots import film
-from postproc.plots.style import WIDTH
-from postproc.tables.film import frame_table
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.plots import film
+from bulkwear.postproc.plots.style import WIDTH
+from bulkwear.postproc.tables.film import frame_table
 
 REMARKS = ["particles at scale 4", "sample 40 x 40 mm of 200 x 200 mm"]
 DEPTH = 2e-6  # m, removed from the half x > 0 by the last frame

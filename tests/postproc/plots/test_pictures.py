@@ -7,13 +7,13 @@ import pandas as pd
 import pytest
 from matplotlib import colormaps
 
-from meshes.sample import sliding_sample
-from postproc.mesh import SurfaceMesh
-from postproc.plots import pictures
-from postproc.plots.page import surfaces_page
-from postproc.plots.scene import surface_plan, trimmed
-from postproc.plots.style import MAP, remarks_of
-from postproc.tables.depths import depth_table
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.plots import pictures
+from bulkwear.postproc.plots.page import surfaces_page
+from bulkwear.postproc.plots.scene import surface_plan, trimmed
+from bulkwear.postproc.plots.style import MAP, remarks_of
+from bulkwear.postproc.tables.depths import depth_table
 
 REMARKS = ["particles at scale 4", "sample 40 x 40 mm of 200 x 200 mm"]
 WIDTH = 0.04  # m

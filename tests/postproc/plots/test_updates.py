@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots import updates
-from postproc.plots.style import SMALLEST_FONT, remarks_of
-from postproc.tables.updates import update_summary
+from bulkwear.postproc.plots import updates
+from bulkwear.postproc.plots.style import SMALLEST_FONT, remarks_of
+from bulkwear.postproc.tables.updates import update_summary
 
 REMARKS = ["particles at scale 2", "wear accelerated 4000 times"]
 BOUND = 15.0  # degrees

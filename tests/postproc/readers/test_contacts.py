@@ -6,14 +6,14 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from postproc.readers.contacts import (
+from bulkwear.postproc.readers.contacts import (
     CONTACT_FIELDS,
     ContactDumpError,
     read_contact_batches,
     read_contacts,
 )
-from postproc.readers.dump_text import read_frames
-from postproc.wear.ledger import LedgerBuilder
+from bulkwear.postproc.readers.dump_text import read_frames
+from bulkwear.postproc.wear.ledger import LedgerBuilder
 from tests import DATA
 
 LAST_DIGIT = 2.3e-16  # one unit in the last place between this parser and Python's float

@@ -1,6 +1,6 @@
 """Folders of finished cycles."""
 
-from postproc.readers.cycle_folders import cycle_files, cycle_folders
+from bulkwear.postproc.readers.cycle_folders import cycle_files, cycle_folders
 
 
 def test_cycles_come_by_number_and_unfinished_ones_do_not(tmp_path):

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from postproc.readers.load_ledger import RADIUS, SUMS, WEIGHTS, LoadLedgerError, announcement, read_load_ledger
+from bulkwear.postproc.readers.load_ledger import RADIUS, SUMS, WEIGHTS, LoadLedgerError, announcement, read_load_ledger
 
 TRIANGLES, STEPS = 5, 400
 COLUMNS = (*SUMS, RADIUS, *WEIGHTS, "finnie_work_J")

@@ -6,8 +6,8 @@ import subprocess
 import numpy as np
 import pytest
 
-from postproc.readers.contacts import read_contacts
-from postproc.readers.mesh_loads import MeshLoadsError, read_mesh_loads
+from bulkwear.postproc.readers.contacts import read_contacts
+from bulkwear.postproc.readers.mesh_loads import MeshLoadsError, read_mesh_loads
 from tests import DATA
 
 SIX_DIGITS = 1e-5  # of a number in a dump

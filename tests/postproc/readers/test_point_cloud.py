@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from postproc.readers import point_cloud
-from postproc.readers.point_cloud import inside_box, point_blocks, random_points
+from bulkwear.postproc.readers import point_cloud
+from bulkwear.postproc.readers.point_cloud import inside_box, point_blocks, random_points
 
 POINTS = np.array([[1.5, -2.0, 3.25], [0.0, 4.0, -1.0], [7.0, 8.0, 9.0], [-1.0, 0.5, 0.25]])  # mm, exact in float32
 

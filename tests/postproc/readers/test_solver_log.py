@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from postproc.readers.solver_log import (
+from bulkwear.postproc.readers.solver_log import (
     KNOWN_CAUSES,
     SolverLogError,
     failure,

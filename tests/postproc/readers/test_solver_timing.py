@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from postproc.readers.solver_log import run_times
+from bulkwear.postproc.readers.solver_log import run_times
 
 LOG = """\
 Loop time of 0.25 on 1 procs for 300 steps with 18148 atoms, finish time Fri Nov 20 19:46:39 2026

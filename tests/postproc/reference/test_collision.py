@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from postproc.reference.collision import DURATION, collision, damping_ratio, largest_overlap, reduced
+from bulkwear.postproc.reference.collision import DURATION, collision, damping_ratio, largest_overlap, reduced
 
 BODIES = {"radius": 6e-4, "mass": 1.2e-5, "modulus": 9e7}  # m, kg, Pa: grains of gravel
 EXACT = 1e-8  # relative, of the integration

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from postproc.reference.size_ratios import (
+from bulkwear.postproc.reference.size_ratios import (
     PUBLISHED_CRITICAL_SCALE,
     PUBLISHED_DIAMETER,
     PUBLISHED_PATTERN,

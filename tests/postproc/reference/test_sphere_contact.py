@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from postproc.reference.sphere_contact import (
+from bulkwear.postproc.reference.sphere_contact import (
     SAFE_FRACTION,
     effective_modulus,
     hertz_overlap,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from postproc.mesh import SurfaceMesh
-from postproc.scans import comparison as scan_comparison
-from postproc.scans.comparison import (
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.scans import comparison as scan_comparison
+from bulkwear.postproc.scans.comparison import (
     POINTS_PER_CELL,
     bump_names,
     bump_sections,
@@ -16,7 +16,7 @@ from postproc.scans.comparison import (
     thinned_scan,
     volume_table,
 )
-from postproc.scans.start import IDENTITY
+from bulkwear.postproc.scans.start import IDENTITY
 from tests.support import scanned_sample as sample
 
 CROP = 2e-3  # m

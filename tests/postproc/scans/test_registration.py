@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from postproc.mesh import SurfaceMesh
-from postproc.scans.registration import CELL, position_error, register, symmetries
-from postproc.scans.start import IDENTITY, RigidMotion, largest_distance, plane_step, turned_about
-from postproc.wear.remesh_patch import OldSurface
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.scans.registration import CELL, position_error, register, symmetries
+from bulkwear.postproc.scans.start import IDENTITY, RigidMotion, largest_distance, plane_step, turned_about
+from bulkwear.postproc.wear.remesh_patch import OldSurface
 from tests.support import scanned_sample as sample
 
 POSITION = 20e-6  # m, asked of a registration: the accuracy of the scanner

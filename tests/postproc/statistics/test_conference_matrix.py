@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from postproc.statistics.conference_matrix import conference_matrix, next_order
+from bulkwear.postproc.statistics.conference_matrix import conference_matrix, next_order
 
 MADE = (4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 26, 28, 30, 32, 48, 50, 56)  # 10, 26, 28, 50: fields of prime powers
 DOUBLED = (16, 56)  # 15 and 55 are no prime powers

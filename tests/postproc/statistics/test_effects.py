@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.factors import coded_table, factors_of, half_normal_table, pseudo_error
-from postproc.statistics.model_terms import candidate_terms, told_apart
+from bulkwear.postproc.statistics.factors import coded_table, factors_of, half_normal_table, pseudo_error
+from bulkwear.postproc.statistics.model_terms import candidate_terms, told_apart
 from tests import REPOSITORY
 
 ROUNDING = 1e-10

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.factors import Factor, coded_table, factor_of, factors_of
+from bulkwear.postproc.statistics.factors import Factor, coded_table, factor_of, factors_of
 
 ROUNDING = 1e-13  # of a logarithm and its power
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from postproc.statistics.lines import CONFIDENCE, crossing, fitted_line, zero_of
+from bulkwear.postproc.statistics.lines import CONFIDENCE, crossing, fitted_line, zero_of
 
 SCALES = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])
 FEW = np.array([4.0, 6.0, 8.0])

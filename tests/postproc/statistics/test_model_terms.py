@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from postproc.statistics.model_terms import (
+from bulkwear.postproc.statistics.model_terms import (
     aliased_pairs,
     aliasing,
     candidate_terms,

@@ -7,8 +7,16 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from postproc.statistics.model_terms import candidate_terms, parse_term, term_columns
-from postproc.statistics.regression import aicc, coefficient_table, fit, fit_measures, predict, press, residual_table
+from bulkwear.postproc.statistics.model_terms import candidate_terms, parse_term, term_columns
+from bulkwear.postproc.statistics.regression import (
+    aicc,
+    coefficient_table,
+    fit,
+    fit_measures,
+    predict,
+    press,
+    residual_table,
+)
 from tests import DATA
 
 ROUNDING = 1e-10  # of sums over a few runs

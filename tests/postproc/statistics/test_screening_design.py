@@ -10,11 +10,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.factors import Factor, coded_table, factors_of
-from postproc.statistics.screening_design import coded_design, design_rows, design_text, main, parse_factor
+from bulkwear.postproc.statistics.factors import Factor, coded_table, factors_of
+from bulkwear.postproc.statistics.screening_design import coded_design, design_rows, design_text, main, parse_factor
+from bulkwear.workflows.config.schema import load_schema
+from bulkwear.workflows.config.validation import read_design
 from tests import REPOSITORY
-from workflows.config.schema import load_schema
-from workflows.config.validation import read_design
 
 COUNTS = range(4, 13)
 ROUNDING = 1e-12  # of logarithms of levels that double
@@ -218,7 +218,7 @@ def test_a_file_is_never_overwritten(tmp_path, capsys):
 def test_command_prints_a_table():
     """Without --output the table goes to stdout, and nothing else does."""
     words = [word for text in SIX for word in ("--factor", text)]
-    command = [sys.executable, "-m", "postproc.statistics.screening_design", *words]
+    command = [sys.executable, "-m", "bulkwear.postproc.statistics.screening_design", *words]
     done = subprocess.run(command, cwd=REPOSITORY, env=dict(os.environ), capture_output=True, text=True, check=True)
     assert len(list(csv.DictReader(done.stdout.splitlines()))) == 13
     assert done.stderr == ""

@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics import selection
-from postproc.statistics.factors import coded_table, factors_of
-from postproc.statistics.model_terms import candidate_terms, parse_term, term_columns, told_apart
-from postproc.statistics.regression import fit, fit_measures
-from postproc.statistics.selection import Search, all_models, best_models, largest_size, permutation_test
+from bulkwear.postproc.statistics import selection
+from bulkwear.postproc.statistics.factors import coded_table, factors_of
+from bulkwear.postproc.statistics.model_terms import candidate_terms, parse_term, term_columns, told_apart
+from bulkwear.postproc.statistics.regression import fit, fit_measures
+from bulkwear.postproc.statistics.selection import Search, all_models, best_models, largest_size, permutation_test
 from tests import REPOSITORY
 
 NAMES = "abdhvt"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from postproc.statistics.steady import LARGEST_DRIFT, common_start, steady_window, window_between
+from bulkwear.postproc.statistics.steady import LARGEST_DRIFT, common_start, steady_window, window_between
 
 TRAVEL = np.arange(0.005, 1.7, 0.01)  # m: middles of intervals of 10 mm
 TRANSIENT = 0.1  # m, decay length of the synthetic transient

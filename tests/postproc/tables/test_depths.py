@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.mesh import SurfaceMesh, areas
-from postproc.tables.depths import (
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import SurfaceMesh, areas
+from bulkwear.postproc.tables.depths import (
     area_quantile,
     area_share_above,
     carried_remark,

@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from postproc.tables.display import display_unit, in_display_units
+from bulkwear.postproc.tables.display import display_unit, in_display_units
 
 RELATIVE = 1e-12  # rounding of one product
 

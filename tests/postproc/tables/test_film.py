@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.pattern import ConvexPattern
-from meshes.sample import sliding_sample
-from postproc.mesh import SurfaceMesh, write_surface
-from postproc.tables.film import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import SurfaceMesh, write_surface
+from bulkwear.postproc.tables.film import (
     film_frames,
     film_run,
     film_surfaces,

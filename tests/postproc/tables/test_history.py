@@ -4,8 +4,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.tables.history import ROWS_PER_RUN, force_history, force_summary, wear_history, wear_within_cycles
-from workflows.cases.sliding_sample.evaluation import gradient_history
+from bulkwear.postproc.tables.history import (
+    ROWS_PER_RUN,
+    force_history,
+    force_summary,
+    wear_history,
+    wear_within_cycles,
+)
+from bulkwear.workflows.cases.sliding_sample.evaluation import gradient_history
 
 RELATIVE = 1e-12  # rounding of means over a thousand rows
 

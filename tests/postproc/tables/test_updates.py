@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.tables.updates import drawn_in_log, update_summary, wear_updates
+from bulkwear.postproc.tables.updates import drawn_in_log, update_summary, wear_updates
 
 RELATIVE = 1e-12  # rounding of a few products, and of CSV text
 WEAR = {

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.wear.caps import (
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.wear.caps import (
     AIMED_DEMAND,
     LARGEST_CYCLE_FACTOR,
     gap_closing_step,

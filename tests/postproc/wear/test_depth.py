@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate, sphere
-from postproc.mesh import node_area_vectors
-from postproc.wear import depth
-from postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
+from bulkwear.meshes.plate import flat_plate, sphere
+from bulkwear.postproc.mesh import node_area_vectors
+from bulkwear.postproc.wear import depth
+from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
 
 SEED = 20220317
 ROUNDING = 1e-9  # relative: depths are differences of coordinates some 1e4 times larger

@@ -5,18 +5,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshes.pattern import ConvexPattern
-from meshes.plate import closed_box, flat_plate, sphere
-from meshes.sample import sliding_sample
-from postproc.mesh import area_vectors, areas, enclosed_volume, shortest_edge_at_nodes, unit_normals
-from postproc.wear.directions import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.plate import closed_box, flat_plate, sphere
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import area_vectors, areas, enclosed_volume, shortest_edge_at_nodes, unit_normals
+from bulkwear.postproc.wear.directions import (
     OUTWARD_TOLERANCE,
     LabelParting,
     inward_directions,
     loaded_directions,
     rim_directions,
 )
-from postproc.wear.displacement import displace, swept_volume
+from bulkwear.postproc.wear.displacement import displace, swept_volume
 
 SEED = 20220317
 ROUNDING = 1e-12  # relative: sums over a few thousand numbers

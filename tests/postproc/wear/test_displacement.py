@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from meshes.pattern import ConvexPattern
-from meshes.plate import closed_box, flat_plate, sphere
-from meshes.sample import sample_top, sliding_sample
-from postproc.mesh import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.plate import closed_box, flat_plate, sphere
+from bulkwear.meshes.sample import sample_top, sliding_sample
+from bulkwear.postproc.mesh import (
     area_vectors,
     areas,
     boundary_edges,
@@ -19,8 +19,8 @@ from postproc.mesh import (
     unit_normals,
     volume_above_plane,
 )
-from postproc.wear.directions import inward_directions, rim_directions
-from postproc.wear.displacement import StepTooLargeError, displace, mean_area_vectors, swept_volume
+from bulkwear.postproc.wear.directions import inward_directions, rim_directions
+from bulkwear.postproc.wear.displacement import StepTooLargeError, displace, mean_area_vectors, swept_volume
 
 SEED = 20220317
 ROUNDING = 1e-12  # relative: the solver's own convergence, and sums over a few thousand numbers

@@ -10,11 +10,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from meshes.sample import sample_top
-from postproc.mesh import SurfaceMesh, areas
-from postproc.wear.caps import step_limit
-from postproc.wear.patch import ContactPatch
-from postproc.wear.update import wear_update
+from bulkwear.meshes.sample import sample_top
+from bulkwear.postproc.mesh import SurfaceMesh, areas
+from bulkwear.postproc.wear.caps import step_limit
+from bulkwear.postproc.wear.patch import ContactPatch
+from bulkwear.postproc.wear.update import wear_update
 
 LENGTH, WIDTH = 5.4e-3, 4.8e-3  # m, along and across the track; sections stay two patch radii off the ends
 OFF_NODES = 0.07e-3  # m, the track's x: no row of nodes follows it

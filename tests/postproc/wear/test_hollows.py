@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate, sphere
-from postproc.wear.displacement import displace
-from postproc.wear.hollows import STRENGTH, handed_over, handed_part
+from bulkwear.meshes.plate import flat_plate, sphere
+from bulkwear.postproc.wear.displacement import displace
+from bulkwear.postproc.wear.hollows import STRENGTH, handed_over, handed_part
 
 SEED = 20220317
 ROUNDING = 1e-12  # relative: sums of three numbers

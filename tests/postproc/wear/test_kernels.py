@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from postproc.wear.kernels import KERNELS, finnie_work, kernel_column, kernel_rate
-from postproc.wear.ledger import LedgerBuilder, contact_kinematics
+from bulkwear.postproc.wear.kernels import KERNELS, finnie_work, kernel_column, kernel_rate
+from bulkwear.postproc.wear.ledger import LedgerBuilder, contact_kinematics
 from tests import REPOSITORY
 from tests.support.law_cases import long_slip_registered
 

@@ -5,11 +5,11 @@ from string import Formatter
 import numpy as np
 import pytest
 
-from postproc.wear.kernels import KERNELS, kernel_column
-from postproc.wear.laws import LAWS, NEUTRAL_LAW, archard, finnie, law_kernels, worn_volume
+from bulkwear.postproc.wear.kernels import KERNELS, kernel_column
+from bulkwear.postproc.wear.laws import LAWS, NEUTRAL_LAW, archard, finnie, law_kernels, worn_volume
+from bulkwear.workflows.config.law_settings import parameters_schema
+from bulkwear.workflows.config.units import to_si
 from tests.support.law_cases import ALPHA, parameters_of
-from workflows.config.law_settings import parameters_schema
-from workflows.config.units import to_si
 
 
 def test_archard_is_coefficient_times_sliding_work():

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from postproc.wear.ledger import (
+from bulkwear.postproc.wear.ledger import (
     LEDGER_FIELDS,
     LedgerBuilder,
     columns_of_solver,

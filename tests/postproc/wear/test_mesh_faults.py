@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate, sphere
-from postproc.mesh import SurfaceMesh
-from postproc.wear.mesh_faults import (
+from bulkwear.meshes.plate import flat_plate, sphere
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.mesh_faults import (
     Bounds,
     aspects,
     folded_faces,

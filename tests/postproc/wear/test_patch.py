@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from scipy.special import j0
 
-from meshes.pattern import ConvexPattern
-from meshes.plate import closed_box, flat_plate, sphere
-from meshes.sample import sample_top, sliding_sample
-from postproc.mesh import areas, node_area_vectors, sum_over_nodes, unit_normals
-from postproc.wear.ledger import hertz_contact_radius
-from postproc.wear.patch import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.plate import closed_box, flat_plate, sphere
+from bulkwear.meshes.sample import sample_top, sliding_sample
+from bulkwear.postproc.mesh import areas, node_area_vectors, sum_over_nodes, unit_normals
+from bulkwear.postproc.wear.ledger import hertz_contact_radius
+from bulkwear.postproc.wear.patch import (
     MESH_VARIANCE,
     ContactPatch,
     barycentric_weights,

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from meshes.pattern import ConvexPattern
-from meshes.sample import sample_top
-from postproc.mesh import SurfaceMesh
-from postproc.wear.pattern_left import pattern_volume
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sample_top
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.pattern_left import pattern_volume
 
 MESH = 0.03  # relative; facets of 1 mm lie inside the ellipsoid
 ROUNDING = 1e-9  # relative

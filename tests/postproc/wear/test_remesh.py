@@ -5,10 +5,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from meshes.pattern import ConvexPattern
-from meshes.plate import sphere
-from meshes.sample import sliding_sample
-from postproc.mesh import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.plate import sphere
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import (
     SurfaceMesh,
     area_vectors,
     areas,
@@ -19,11 +19,11 @@ from postproc.mesh import (
     unit_normals,
     volume_above_plane,
 )
-from postproc.wear.depth import height_loss
-from postproc.wear.mesh_faults import TARGET_EDGE, mesh_faults, with_target_edges
-from postproc.wear.remesh import RemeshError, remesh
-from postproc.wear.remesh_transfer import labels_at_nodes
-from postproc.wear.update import wear_update, worn_faces
+from bulkwear.postproc.wear.depth import height_loss
+from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, mesh_faults, with_target_edges
+from bulkwear.postproc.wear.remesh import RemeshError, remesh
+from bulkwear.postproc.wear.remesh_transfer import labels_at_nodes
+from bulkwear.postproc.wear.update import wear_update, worn_faces
 
 SEED = 20220317
 VOLUME = 1e-12  # relative to the volume removed: sums over a few thousand faces

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from meshes.plate import flat_plate
-from postproc.mesh import SurfaceMesh, boundary_edges, nonmanifold_edges, volume_above_plane
-from postproc.wear.mesh_faults import DEFAULT_BOUNDS, with_target_edges
-from postproc.wear.remesh_piece import piece_round
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges, nonmanifold_edges, volume_above_plane
+from bulkwear.postproc.wear.mesh_faults import DEFAULT_BOUNDS, with_target_edges
+from bulkwear.postproc.wear.remesh_piece import piece_round
 
 SEED = 20220317
 BASE = -0.01  # m, a plane below the plate

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from meshes.disc import track_disc
-from meshes.plate import flat_plate, sphere
-from postproc.mesh import areas, enclosed_volume, volume_above_plane
-from postproc.wear.directions import rim_directions
-from postproc.wear.displacement import StepTooLargeError, displace
-from postproc.wear.schemes import SCHEMES, centroid_path_volume, per_triangle, scheme_of
-from postproc.wear.update import wear_update
+from bulkwear.meshes.disc import track_disc
+from bulkwear.meshes.plate import flat_plate, sphere
+from bulkwear.postproc.mesh import areas, enclosed_volume, volume_above_plane
+from bulkwear.postproc.wear.directions import rim_directions
+from bulkwear.postproc.wear.displacement import StepTooLargeError, displace
+from bulkwear.postproc.wear.schemes import SCHEMES, centroid_path_volume, per_triangle, scheme_of
+from bulkwear.postproc.wear.update import wear_update
 
 ROUNDING = 1e-12  # relative: sums over a few thousand numbers
 GEOMETRY = 1e-9  # relative: volumes of bodies are differences of numbers some 1e4 times larger

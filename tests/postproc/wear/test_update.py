@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from meshes.pattern import ConvexPattern
-from meshes.plate import flat_plate
-from meshes.sample import sliding_sample
-from postproc.mesh import SurfaceMesh, areas, smallest_angles
-from postproc.wear.caps import step_limit
-from postproc.wear.displacement import StepTooLargeError, swept_volume
-from postproc.wear.patch import ContactPatch
-from postproc.wear.update import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.mesh import SurfaceMesh, areas, smallest_angles
+from bulkwear.postproc.wear.caps import step_limit
+from bulkwear.postproc.wear.displacement import StepTooLargeError, swept_volume
+from bulkwear.postproc.wear.patch import ContactPatch
+from bulkwear.postproc.wear.update import (
     BALANCE_TOLERANCE,
     BalanceError,
     lost_volume,

@@ -8,15 +8,15 @@ import re
 
 import pytest
 
-from workflows.cases.sliding_sample.case import bed_parameters
-from workflows.cases.sliding_sample.page import BEYOND_BUMPS
-from workflows.cases.sliding_sample.parameters import ramp_hop
-from workflows.cases.sliding_sample.study import finds_regimes
-from workflows.config.design import list_studies, load_study
-from workflows.config.layers import ConfigError
-from workflows.config.units import to_si
-from workflows.engine.derived import rayleigh_time, rolling_coefficient_for_solver, whole_steps, youngs_modulus
-from workflows.report.page_parameters import figure_remarks
+from bulkwear.workflows.cases.sliding_sample.case import bed_parameters
+from bulkwear.workflows.cases.sliding_sample.page import BEYOND_BUMPS
+from bulkwear.workflows.cases.sliding_sample.parameters import ramp_hop
+from bulkwear.workflows.cases.sliding_sample.study import finds_regimes
+from bulkwear.workflows.config.design import list_studies, load_study
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine.derived import rayleigh_time, rolling_coefficient_for_solver, whole_steps, youngs_modulus
+from bulkwear.workflows.report.page_parameters import figure_remarks
 
 ROUNDING = 1e-12  # relative; a few floating-point operations
 DIGITS_GIVEN = 1e-6  # relative; numbers worked out by hand to seven digits

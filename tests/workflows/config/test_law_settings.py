@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.wear.kernels import KERNELS
+from bulkwear.postproc.wear.kernels import KERNELS
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.readme import wear_laws
+from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, cycle_fault, missing_kernels
+from bulkwear.workflows.engine.wear_step import law_volume
+from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
+from bulkwear.workflows.report.text import law_words, setting_rows
 from tests.support.law_cases import LONG_SLIP, long_slip_registered
 from tests.support.tiny import tiny_study
-from workflows.config.design import load_study
-from workflows.config.layers import ConfigError
-from workflows.config.readme import wear_laws
-from workflows.engine.solver import LEDGER_EXECUTABLE, cycle_fault, missing_kernels
-from workflows.engine.wear_step import law_volume
-from workflows.report.page_parameters import figure_remarks, page_parameters
-from workflows.report.text import law_words, setting_rows
 
 STUDY = "studies/small.yaml"
 BLOCK = "wear: {{law: long_slip, parameters: {}}}\n"

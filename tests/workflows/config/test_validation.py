@@ -6,19 +6,19 @@ import re
 
 import pytest
 
-from meshes.pattern import PATTERNS
-from postproc.wear.laws import LAWS
-from workflows.cases.sliding_sample.decks import LEDGERS
-from workflows.config.design import load_study
-from workflows.config.layers import ConfigError, command_line_layer, dotted, merge, read_yaml
-from workflows.config.patterns import SURFACES
-from workflows.config.readme import readme
-from workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
-from workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
-from workflows.engine.case import case_names, find_case
-from workflows.engine.ledgers import PRODUCERS
-from workflows.engine.solver import CYCLE_EXECUTABLES
-from workflows.report.page_parameters import page_of
+from bulkwear.meshes.pattern import PATTERNS
+from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.cases.sliding_sample.decks import LEDGERS
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.layers import ConfigError, command_line_layer, dotted, merge, read_yaml
+from bulkwear.workflows.config.patterns import SURFACES
+from bulkwear.workflows.config.readme import readme
+from bulkwear.workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
+from bulkwear.workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
+from bulkwear.workflows.engine.case import case_names, find_case
+from bulkwear.workflows.engine.ledgers import PRODUCERS
+from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES
+from bulkwear.workflows.report.page_parameters import page_of
 
 SETTINGS = "default.yaml"
 OWN_SETTINGS = "cases/sliding_sample.yaml"
@@ -714,5 +714,5 @@ def test_the_first_fault_of_a_file_is_reported(config):
 
 
 def test_the_page_of_keys_is_up_to_date(repository):
-    """config/README.md is what `python -m workflows.config.readme` writes."""
+    """config/README.md is what `python -m bulkwear.workflows.config.readme` writes."""
     assert (repository / "config" / "README.md").read_text(encoding="utf-8") == readme()

@@ -4,13 +4,13 @@ import math
 
 import pytest
 
-from postproc.wear.caps import GRAVITY
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.cases.calibration.boxes import with_values
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.bulk_simulations import simulated, simulation_folder
+from bulkwear.workflows.engine.bulk_tests import rest_energy
+from bulkwear.workflows.engine.solver import SolverError
 from tests.support.bulk_boxes import ROLLING, SEED, asked, small
-from workflows.cases.calibration.boxes import with_values
-from workflows.engine import state
-from workflows.engine.bulk_simulations import simulated, simulation_folder
-from workflows.engine.bulk_tests import rest_energy
-from workflows.engine.solver import SolverError
 
 EXACT = 1e-12  # relative: the same formula
 

@@ -8,17 +8,22 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.sliding_sample.decks import bed_contacts
+from bulkwear.workflows.cases.sliding_sample.particle_size.collision import (
+    SPEEDS,
+    read_collisions,
+    simulate,
+    spheres_of,
+)
+from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
+from bulkwear.workflows.config.schema import SCHEMA_FOLDER, load_schema
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine import cycles
+from bulkwear.workflows.engine.bulk_tests import time_step
+from bulkwear.workflows.engine.chain import bed_deck_text
+from bulkwear.workflows.engine.solver import run_deck
+from bulkwear.workflows.engine.templates import TEMPLATES, render, solver_settings, template_variables
 from tests.support.tiny import tiny_chain, tiny_study
-from workflows.cases.sliding_sample.decks import bed_contacts
-from workflows.cases.sliding_sample.particle_size.collision import SPEEDS, read_collisions, simulate, spheres_of
-from workflows.config.design import ConfigError, list_studies, load_study
-from workflows.config.schema import SCHEMA_FOLDER, load_schema
-from workflows.config.units import to_si
-from workflows.engine import cycles
-from workflows.engine.bulk_tests import time_step
-from workflows.engine.chain import bed_deck_text
-from workflows.engine.solver import run_deck
-from workflows.engine.templates import TEMPLATES, render, solver_settings, template_variables
 
 BLOCK, MATERIALS = "_shared/contact_model", "_shared/materials"
 HOOKE, LIQUID = ("contact_model", "hooke"), "washino/capillary/viscous"

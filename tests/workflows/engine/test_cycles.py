@@ -16,21 +16,21 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.mesh import areas, read_stl, read_surface, stl_corners
-from postproc.tables.summary import run_summary
-from postproc.wear.update import BALANCE_TOLERANCE
+from bulkwear.postproc.mesh import areas, read_stl, read_surface, stl_corners
+from bulkwear.postproc.tables.summary import run_summary
+from bulkwear.postproc.wear.update import BALANCE_TOLERANCE
+from bulkwear.workflows.engine import cycles, state, wear_step
+from bulkwear.workflows.engine.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
+from bulkwear.workflows.engine.chain import write_cycle, write_shared_files
+from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.ledgers import PRODUCERS
+from bulkwear.workflows.engine.pieces import PIECES
+from bulkwear.workflows.engine.schedule import first_span
+from bulkwear.workflows.engine.solver import SolverError
+from bulkwear.workflows.engine.wear_step import law_volume
 from tests import REPOSITORY
 from tests.support.tiny import tiny_chain, tiny_study
-from workflows.engine import cycles, state, wear_step
-from workflows.engine.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
-from workflows.engine.chain import write_cycle, write_shared_files
-from workflows.engine.inputs import inputs_digest
-from workflows.engine.job import Progress
-from workflows.engine.ledgers import PRODUCERS
-from workflows.engine.pieces import PIECES
-from workflows.engine.schedule import first_span
-from workflows.engine.solver import SolverError
-from workflows.engine.wear_step import law_volume
 
 pytestmark = pytest.mark.solver
 
@@ -51,7 +51,7 @@ LOOKS = {"wear_interval_mm": 2, "picture_interval_mm": 1}
 KILL_TIMEOUT = 120.0  # s, for a chain that takes seconds
 DRIVER = """
 import pickle, sys
-from workflows.engine.cycles import run_chain
+from bulkwear.workflows.engine.cycles import run_chain
 run_chain(pickle.load(open(sys.argv[1], "rb")))
 """
 
@@ -524,7 +524,7 @@ def test_a_failed_solver_shows_its_last_words_and_the_run_resumes(finished, tmp_
     """The message has the cause and the solver's own lines; finished cycles stay, and without the fault they go on."""
     chain = twin(finished, tmp_path)
     with monkeypatch.context() as broken:
-        broken.setattr("workflows.engine.chain.RESTART", "no_such.restart")
+        broken.setattr("bulkwear.workflows.engine.chain.RESTART", "no_such.restart")
         with pytest.raises(
             SolverError, match=r"cycle_001\.part/deck\.in: LIGGGHTS stopped: .*open restart file"
         ) as fault:

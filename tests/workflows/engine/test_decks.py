@@ -5,14 +5,14 @@ import shutil
 
 import pytest
 
+from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
+from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine import templates
+from bulkwear.workflows.engine.chain import bed_deck_text
+from bulkwear.workflows.engine.schedule import known_spans
+from bulkwear.workflows.engine.templates import TEMPLATES, DeckError, render, template_sources, template_variables
 from tests.support.tiny import tiny_study
-from workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
-from workflows.config.design import ConfigError, load_study
-from workflows.engine import decks as deck
-from workflows.engine import templates
-from workflows.engine.chain import bed_deck_text
-from workflows.engine.schedule import known_spans
-from workflows.engine.templates import TEMPLATES, DeckError, render, template_sources, template_variables
 
 NAMES = sorted(path.name.removesuffix(".in.j2") for path in TEMPLATES.glob("[!_]*/*.in.j2"))
 README = (TEMPLATES / "README.md").read_text()

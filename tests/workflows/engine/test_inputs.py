@@ -5,11 +5,11 @@ import pickle
 
 import pytest
 
+from bulkwear.workflows.cases.sliding_sample import case
+from bulkwear.workflows.engine import chain, inputs, templates
+from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
 from tests.support.tiny import tiny_study
 from tests.support.tiny_tester import tiny_tester
-from workflows.cases.sliding_sample import case
-from workflows.engine import chain, inputs, templates
-from workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
 
 
 def digest_of(study, run, change=lambda parameters: None):

@@ -6,18 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from postproc.mesh import SurfaceMesh
-from postproc.readers.load_ledger import RADIUS, SUMS, WEIGHTS, LoadLedgerError
-from postproc.wear.kernels import kernel_column
-from postproc.wear.laws import LAWS
-from postproc.wear.ledger import LEDGER_FIELDS
-from tests.support.law_cases import wear_settings
-from tests.support.tiny import tiny_study
-from workflows.engine import cycles
-from workflows.engine.chain import Chain
-from workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, PRODUCERS, SPINS, TOUCHING, SamplesError, producer
-from workflows.engine.schedule import known_spans
-from workflows.engine.solver import (
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.readers.load_ledger import RADIUS, SUMS, WEIGHTS, LoadLedgerError
+from bulkwear.postproc.wear.kernels import kernel_column
+from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.postproc.wear.ledger import LEDGER_FIELDS
+from bulkwear.workflows.engine import cycles
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, PRODUCERS, SPINS, TOUCHING, SamplesError, producer
+from bulkwear.workflows.engine.schedule import known_spans
+from bulkwear.workflows.engine.solver import (
     CYCLE_EXECUTABLES,
     EXECUTABLE,
     LEDGER_EXECUTABLE,
@@ -25,6 +23,8 @@ from workflows.engine.solver import (
     missing_program,
     run_deck,
 )
+from tests.support.law_cases import wear_settings
+from tests.support.tiny import tiny_study
 
 ROUND_OFF = 1e-9  # relative; the dump has nine digits and what is compared is one contact
 SURFACE = SurfaceMesh(
@@ -207,7 +207,7 @@ def test_a_missing_program_is_one_sentence(tmp_path, monkeypatch):
     """It says how to build or install it; nothing is run."""
     assert CYCLE_EXECUTABLES == {"solver": LEDGER_EXECUTABLE, "dumps": EXECUTABLE}
     there = str(tmp_path / "solver" / "build" / "liggghts-ledger")
-    monkeypatch.setattr("workflows.engine.solver.LEDGER_EXECUTABLE", there)
+    monkeypatch.setattr("bulkwear.workflows.engine.solver.LEDGER_EXECUTABLE", there)
     assert missing_program(there) == (
         f"{there}: there is no such program; `make setup` (or `make -C solver`) builds it, and a study with "
         "`ledger: dumps` does without."

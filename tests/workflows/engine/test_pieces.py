@@ -4,8 +4,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workflows.engine.pieces import CHECKPOINT, PIECES, finished_pieces, forget_pieces, piece_ends, simulate_in_pieces
-from workflows.engine.solver import LOG, SCREEN, SolverError
+from bulkwear.workflows.engine.pieces import (
+    CHECKPOINT,
+    PIECES,
+    finished_pieces,
+    forget_pieces,
+    piece_ends,
+    simulate_in_pieces,
+)
+from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError
 
 ENDS = [100, 200, 300, 340]
 

@@ -4,8 +4,8 @@ import itertools
 
 import pytest
 
+from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS, Span, cycle_title, first_span, known_spans, next_span
 from tests.support.tiny import tiny_study
-from workflows.engine.schedule import LEAST_CYCLE_STEPS, Span, cycle_title, first_span, known_spans, next_span
 
 RUN = "R9_convex"
 

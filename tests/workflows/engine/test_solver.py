@@ -1,6 +1,6 @@
 """How the solver is started."""
 
-from workflows.engine.solver import ranks_here
+from bulkwear.workflows.engine.solver import ranks_here
 
 
 def test_ranks_are_no_more_than_the_cores_of_this_machine(monkeypatch):

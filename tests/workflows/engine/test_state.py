@@ -2,7 +2,7 @@
 
 import pytest
 
-from workflows.engine import state
+from bulkwear.workflows.engine import state
 
 FILES = ("surface.vtu",)
 

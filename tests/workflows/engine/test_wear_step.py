@@ -4,14 +4,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.mesh import SurfaceMesh, areas, read_surface, write_surface
-from postproc.wear.mesh_faults import with_target_edges
-from postproc.wear.remesh import RemeshError
+from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface, write_surface
+from bulkwear.postproc.wear.mesh_faults import with_target_edges
+from bulkwear.postproc.wear.remesh import RemeshError
+from bulkwear.workflows.config.patterns import sample_surface
+from bulkwear.workflows.engine import wear_step
+from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.schedule import first_span
 from tests.support.tiny import tiny_study
-from workflows.config.patterns import sample_surface
-from workflows.engine import wear_step
-from workflows.engine.chain import Chain
-from workflows.engine.schedule import first_span
 
 RUN = "R9_convex"
 EXACT = 1e-12  # relative; sums of some thousand numbers

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from workflows.forecast.rates import OUTSIDE_TERMS, SOLVER_TERMS, TERMS, fitted_rates, seconds
+from bulkwear.workflows.forecast.rates import OUTSIDE_TERMS, SOLVER_TERMS, TERMS, fitted_rates, seconds
 
 EXACT = 1e-12  # relative; rounding of a dozen products and sums
 FIT = 1e-6  # relative; of a least-squares solution whose columns differ by many orders of magnitude

@@ -7,15 +7,15 @@ import pandas as pd
 import pytest
 import yaml
 
-from workflows.cases.sliding_sample.particle_size.packings import container
-from workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
-from workflows.cases.sliding_sample.work import cycles, settled_particles
-from workflows.config.design import REPOSITORY, list_studies, load_study
-from workflows.config.units import to_si
-from workflows.engine.bulk_tests import time_step
-from workflows.engine.job import duration_text
-from workflows.engine.work import Stage, Work
-from workflows.forecast.forecast import (
+from bulkwear.workflows.cases.sliding_sample.particle_size.packings import container
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
+from bulkwear.workflows.cases.sliding_sample.work import cycles, settled_particles
+from bulkwear.workflows.config.design import REPOSITORY, list_studies, load_study
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine.bulk_tests import time_step
+from bulkwear.workflows.engine.job import duration_text
+from bulkwear.workflows.engine.work import Stage, Work
+from bulkwear.workflows.forecast.forecast import (
     DRIVER_MEMORY,
     LEAST_MEMORY_MB,
     LEAST_MINUTES,
@@ -31,7 +31,7 @@ from workflows.forecast.forecast import (
     wall_hours,
     work_of,
 )
-from workflows.forecast.rates import DEFAULT, TERMS, rates_file, read_rates
+from bulkwear.workflows.forecast.rates import DEFAULT, TERMS, rates_file, read_rates
 
 EXACT = 1e-12  # relative; rounding of a few sums
 PARTICLES = 0.02  # relative; of the three beds of the screening and of the demo's, as the solver counted them

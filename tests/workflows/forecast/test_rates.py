@@ -7,10 +7,10 @@ from functools import partial
 
 import pytest
 
-from workflows.config.design import load_study
-from workflows.engine.work import Stage
-from workflows.forecast import rate_benchmark
-from workflows.forecast.rate_benchmark import (
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.work import Stage
+from bulkwear.workflows.forecast import rate_benchmark
+from bulkwear.workflows.forecast.rate_benchmark import (
     BED_STUDY,
     DISCS,
     GROUPS,
@@ -23,7 +23,7 @@ from workflows.forecast.rate_benchmark import (
     rates_from,
     typical,
 )
-from workflows.forecast.rates import (
+from bulkwear.workflows.forecast.rates import (
     DEFAULT,
     TERMS,
     MachineRates,

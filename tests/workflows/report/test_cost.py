@@ -3,7 +3,13 @@
 import pandas as pd
 import pytest
 
-from workflows.report.cost import against_forecast, benchmark_seconds, job_costs, outside_solver_share, run_cost
+from bulkwear.workflows.report.cost import (
+    against_forecast,
+    benchmark_seconds,
+    job_costs,
+    outside_solver_share,
+    run_cost,
+)
 
 RUN = pd.DataFrame({"solver_s": [30.0, 50.0], "other_s": [1.0, 3.0], "particles": [100, 200], "steps": [10, 20]})
 RELATIVE = 1e-12  # rounding of one quotient

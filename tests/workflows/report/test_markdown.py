@@ -2,10 +2,10 @@
 
 import pandas as pd
 
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.markdown import durations, markdown, provenance
+from bulkwear.workflows.report.page_parameters import page_parameters
 from tests.support.finished_runs import leave_runs
-from workflows.config.design import load_study
-from workflows.report.markdown import durations, markdown, provenance
-from workflows.report.page_parameters import page_parameters
 
 
 def test_durations_stand_beside_their_forecast(tmp_path):

@@ -6,6 +6,11 @@ import re
 
 import pytest
 
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.page import commit
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.products import figures_of
+from bulkwear.workflows.report.text import UNDEFINED, name_and_unit, number, setting_rows
 from tests.support.finished_samples import (
     BED_SOLVER,
     BED_WALL,
@@ -18,11 +23,6 @@ from tests.support.finished_samples import (
     embedded,
     finished_page,
 )
-from workflows.config.design import load_study
-from workflows.report.page import commit
-from workflows.report.page_parameters import page_parameters
-from workflows.report.products import figures_of
-from workflows.report.text import UNDEFINED, name_and_unit, number, setting_rows
 
 RELATIVE = 1e-9  # numbers pass through CSV text
 

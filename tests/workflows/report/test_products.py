@@ -7,11 +7,10 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from tests.support.tiny import tiny_study
-from workflows.config.design import list_studies, load_study
-from workflows.engine.case import case_names, find_case
-from workflows.report import products
-from workflows.report.products import (
+from bulkwear.workflows.config.design import list_studies, load_study
+from bulkwear.workflows.engine.case import case_names, find_case
+from bulkwear.workflows.report import products
+from bulkwear.workflows.report.products import (
     Product,
     figure,
     figures_of,
@@ -23,6 +22,7 @@ from workflows.report.products import (
     told_to,
     write_product,
 )
+from tests.support.tiny import tiny_study
 
 CASES = [find_case(name) for name in case_names()]
 

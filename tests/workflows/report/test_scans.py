@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.mesh import SurfaceMesh, write_surface
-from postproc.scans.start import IDENTITY, RigidMotion, largest_distance
+from bulkwear.postproc.mesh import SurfaceMesh, write_surface
+from bulkwear.postproc.scans.start import IDENTITY, RigidMotion, largest_distance
+from bulkwear.workflows.report.scans import main, named_surfaces
 from tests.support import scanned_sample as sample
-from workflows.report.scans import main, named_surfaces
 
 POSITION = 20e-6  # m
 BOX = ["--box", "-2000", "2000", "-2000", "2000", "-2000", "2000"]  # mm, all of the scan

@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from postproc.wear.caps import GRAVITY
-from workflows.engine import decks as deck
-from workflows.engine.bulk_simulations import POURED, filled_particles
-from workflows.engine.bulk_tests import Kind, Meshes, fill_top, filled_box, margin_of, register, time_step
-from workflows.engine.case import Parameters
-from workflows.engine.derived import PERIODIC, WALLS
-from workflows.engine.templates import used_sections
-from workflows.engine.work import Stage
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.bulk_simulations import POURED, filled_particles
+from bulkwear.workflows.engine.bulk_tests import Kind, Meshes, fill_top, filled_box, margin_of, register, time_step
+from bulkwear.workflows.engine.case import Parameters
+from bulkwear.workflows.engine.derived import PERIODIC, WALLS
+from bulkwear.workflows.engine.templates import used_sections
+from bulkwear.workflows.engine.work import Stage
 
 SHEAR_BOX, DRAW_DOWN = "shear_box", "draw_down"
 SIMULATIONS = "simulations"  # folder of a study's

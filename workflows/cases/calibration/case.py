@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from workflows.cases.calibration import boxes
-from workflows.config.layers import ConfigError
-from workflows.config.run_checks import Check, CheckedRun, Fault
-from workflows.engine.bulk_simulations import simulation_bytes
-from workflows.engine.bulk_tests import deck_text
-from workflows.engine.case import Case, Parameters, Run, register
-from workflows.engine.derived import particle_section, template_sections, wall_section
-from workflows.engine.work import Work
+from bulkwear.workflows.cases.calibration import boxes
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
+from bulkwear.workflows.engine.bulk_simulations import simulation_bytes
+from bulkwear.workflows.engine.bulk_tests import deck_text
+from bulkwear.workflows.engine.case import Case, Parameters, Run, register
+from bulkwear.workflows.engine.derived import particle_section, template_sections, wall_section
+from bulkwear.workflows.engine.work import Work
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 PUBLISHED = Path(__file__).resolve().parents[3] / "config" / "published"
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it

@@ -1,6 +1,6 @@
 """Simulate a pair that a calibration found in a test, or at a particle scale, that the calibration did not use.
 
-python -m workflows.cases.calibration.checked_pairs [--study calibration] [--pair recommended]
+python -m bulkwear.workflows.cases.calibration.checked_pairs [--study calibration] [--pair recommended]
     [--test draw_down] [--fidelity standard] [--seeds 2]
 
 Reads the pair from results/<study>/repeats.csv and adds a row per packing to results/<study>/checked_pairs.csv; what is
@@ -14,15 +14,15 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.flow.bulk_test import RESPONSES
-from postproc.inference.problem import Problem
-from workflows.cases.calibration.boxes import DRAW_DOWN, SIMULATIONS, simulated_width
-from workflows.cases.calibration.driver import repeated
-from workflows.cases.calibration.responses import RECOMMENDED, repeat_table, with_bands
-from workflows.config.design import load_study
-from workflows.engine import state
-from workflows.engine.case import Parameters
-from workflows.engine.job import Progress
+from bulkwear.postproc.flow.bulk_test import RESPONSES
+from bulkwear.postproc.inference.problem import Problem
+from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SIMULATIONS, simulated_width
+from bulkwear.workflows.cases.calibration.driver import repeated
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, repeat_table, with_bands
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.case import Parameters
+from bulkwear.workflows.engine.job import Progress
 
 CHECKED = "checked_pairs.csv"
 MARKS = ["pair", "test", "seed", "particle_scale", "width_mm"]  # tell one row from another, with the parameters

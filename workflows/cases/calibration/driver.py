@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.flow.bulk_test import RESPONSES
-from postproc.inference.loop import Posterior, Request, calibrate, packing_seed, posterior
-from postproc.inference.problem import Experiment, Parameter, Problem
-from workflows.cases.calibration.boxes import SHEAR_BOX, SIMULATIONS, simulated_width, test_of
-from workflows.cases.calibration.responses import RECOMMENDED, read_measured
-from workflows.cases.calibration.simulations import answer, simulate_all
-from workflows.engine import state
-from workflows.engine.case import Parameters
-from workflows.engine.job import Progress
+from bulkwear.postproc.flow.bulk_test import RESPONSES
+from bulkwear.postproc.inference.loop import Posterior, Request, calibrate, packing_seed, posterior
+from bulkwear.postproc.inference.problem import Experiment, Parameter, Problem
+from bulkwear.workflows.cases.calibration.boxes import SHEAR_BOX, SIMULATIONS, simulated_width, test_of
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, read_measured
+from bulkwear.workflows.cases.calibration.simulations import answer, simulate_all
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.case import Parameters
+from bulkwear.workflows.engine.job import Progress
 
 FIRST_REPEAT = 500  # number of the first packing that is repeated; a calibration has fewer, and shares none
 SHEAR_ANGLE = "shear_angle_deg"

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
-from workflows.report.products import Job, figure, tables
+from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
+from bulkwear.workflows.report.products import Job, figure, tables
 
 if TYPE_CHECKING:
-    from workflows.cases.calibration.outcome import Calibrated
+    from bulkwear.workflows.cases.calibration.outcome import Calibrated
 
 CATEGORY = "Calibration"
 SIZES_BEFORE = "config/published/shear_box_sizes.csv"
@@ -24,7 +24,7 @@ TOLD = {"parameters": calibration_box}
 
 def _calibrated(job: Job) -> Calibrated:
     """Return the finished calibration of a job with the inputs `SIMULATED` and told `TOLD`."""
-    from workflows.cases.calibration.outcome import read_calibrated
+    from bulkwear.workflows.cases.calibration.outcome import read_calibrated
 
     folder = Path(job.files.simulations).parent
     return read_calibrated(job.told.parameters, Path(job.files.measured), Path(job.files.pairs), folder)
@@ -38,7 +38,7 @@ def _calibrated(job: Job) -> Calibrated:
 )
 def statements(job: Job) -> Any:
     """Return what is said about the recommended and the compared pair, and a materials file with the former."""
-    from workflows.cases.calibration.outcome import calibrated_materials
+    from bulkwear.workflows.cases.calibration.outcome import calibrated_materials
 
     done = _calibrated(job)
     return {"summary": done.statements, "materials": calibrated_materials(done, job.told.materials, job.told.study)}
@@ -61,8 +61,8 @@ def heaps(job: Job) -> Any:
     """Draw the heaps of the recommended pair, one per test, with the slopes that were fitted."""
     import pandas as pd
 
-    from workflows.cases.calibration.outcome import recommended_heaps
-    from workflows.cases.calibration.plots.heaps import heaps as draw
+    from bulkwear.workflows.cases.calibration.outcome import recommended_heaps
+    from bulkwear.workflows.cases.calibration.plots.heaps import heaps as draw
 
     pictures, slopes = recommended_heaps(_calibrated(job))
     return draw(pictures, job.remarks), pd.concat(slopes, ignore_index=True)
@@ -83,8 +83,8 @@ def heaps(job: Job) -> Any:
 )
 def response_maps(job: Job) -> Any:
     """Draw every response over the first two parameters."""
-    from workflows.cases.calibration.plots import responses
-    from workflows.cases.calibration.responses import response_grid
+    from bulkwear.workflows.cases.calibration.plots import responses
+    from bulkwear.workflows.cases.calibration.responses import response_grid
 
     done = _calibrated(job)
     grid = response_grid(done.problem, done.known)
@@ -107,8 +107,8 @@ def response_maps(job: Job) -> Any:
 )
 def family(job: Job) -> Any:
     """Draw which pairs fit what was measured."""
-    from workflows.cases.calibration.plots import responses
-    from workflows.cases.calibration.responses import family_table
+    from bulkwear.workflows.cases.calibration.plots import responses
+    from bulkwear.workflows.cases.calibration.responses import family_table
 
     done = _calibrated(job)
     table = family_table(done.problem, done.simulations)
@@ -131,7 +131,7 @@ def pairs_against_bands(job: Job) -> Any:
     """Draw the responses of both pairs beside the measured bands."""
     import pandas as pd
 
-    from workflows.cases.calibration.plots import responses
+    from bulkwear.workflows.cases.calibration.plots import responses
 
     said, published = pd.read_csv(job.files.statements), pd.read_csv(job.files.pairs)
     other = published[published["row"] == job.told.compared].iloc[0]
@@ -153,7 +153,7 @@ def box_sizes(job: Job) -> Any:
     """Draw the shear angle in boxes of other sizes."""
     import pandas as pd
 
-    from workflows.cases.calibration.plots import responses
+    from bulkwear.workflows.cases.calibration.plots import responses
 
     sizes = pd.read_csv(job.files.sizes)
     return responses.box_sizes(sizes, pd.read_csv(job.files.before), job.remarks), sizes
@@ -175,8 +175,8 @@ def calibration_progress(job: Job) -> Any:
     """Draw how the calibration stopped, and what each response would still tell."""
     import pandas as pd
 
-    from workflows.cases.calibration.plots import responses
-    from workflows.cases.calibration.responses import information_table
+    from bulkwear.workflows.cases.calibration.plots import responses
+    from bulkwear.workflows.cases.calibration.responses import information_table
 
     done, looks = _calibrated(job), pd.read_csv(job.files.looks)
     information = information_table(done.problem, done.known)

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.inference.posterior import FAMILY_SHARE
-from workflows.cases.calibration.boxes import SIMULATIONS
-from workflows.cases.calibration.case import PUBLISHED
-from workflows.cases.calibration.checked_pairs import CHECKED, checked_means
-from workflows.cases.calibration.outcome import Calibrated, read_calibrated
-from workflows.cases.calibration.responses import (
+from bulkwear.postproc.inference.posterior import FAMILY_SHARE
+from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
+from bulkwear.workflows.cases.calibration.case import PUBLISHED
+from bulkwear.workflows.cases.calibration.checked_pairs import CHECKED, checked_means
+from bulkwear.workflows.cases.calibration.outcome import Calibrated, read_calibrated
+from bulkwear.workflows.cases.calibration.responses import (
     PARAMETER_NAMES,
     RECOMMENDED,
     information_table,
@@ -22,8 +22,8 @@ from workflows.cases.calibration.responses import (
     parameter_name,
     response_name,
 )
-from workflows.cases.calibration.simulations import BLOCKED, cost_table
-from workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
+from bulkwear.workflows.cases.calibration.simulations import BLOCKED, cost_table
+from bulkwear.workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
 
 INSIDE = (
     "Inside: at most one standard deviation of the measurement away; within its uncertainty: closer than that and the "

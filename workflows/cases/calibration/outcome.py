@@ -10,15 +10,15 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from postproc.flow.bed import read_snapshot
-from postproc.flow.bulk_test import HEAP, slope_table
-from postproc.inference.loop import Posterior
-from postproc.inference.problem import Problem
-from workflows.cases.calibration.boxes import SIMULATIONS, test_of, walls_of
-from workflows.cases.calibration.driver import compared_pairs, read_posterior, repeat_seeds
-from workflows.cases.calibration.responses import RECOMMENDED, interval_table, repeat_table, statement_table
-from workflows.cases.calibration.simulations import flowing
-from workflows.engine.case import Parameters
+from bulkwear.postproc.flow.bed import read_snapshot
+from bulkwear.postproc.flow.bulk_test import HEAP, slope_table
+from bulkwear.postproc.inference.loop import Posterior
+from bulkwear.postproc.inference.problem import Problem
+from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS, test_of, walls_of
+from bulkwear.workflows.cases.calibration.driver import compared_pairs, read_posterior, repeat_seeds
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, interval_table, repeat_table, statement_table
+from bulkwear.workflows.cases.calibration.simulations import flowing
+from bulkwear.workflows.engine.case import Parameters
 
 TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test"}
 

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.calibration.boxes import simulated_width
-from workflows.cases.calibration.case import calibration_box
-from workflows.report.sections import Section
+from bulkwear.workflows.cases.calibration.boxes import simulated_width
+from bulkwear.workflows.cases.calibration.case import calibration_box
+from bulkwear.workflows.report.sections import Section
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 RUNS_NOTE = (
     "Each row is a box in which the shear angle is compared; the calibration uses that of the first one. Width: of the "
@@ -27,7 +27,10 @@ def told(study: Study) -> dict[str, Any]:
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a calibration's page from the tables that its jobs left."""
-    from workflows.cases.calibration.findings import read_finished, sections_of  # slow to import, and few jobs need it
+    from bulkwear.workflows.cases.calibration.findings import (  # slow to import, and few jobs need it
+        read_finished,
+        sections_of,
+    )
 
     return sections_of(read_finished(study, folder), study["name"])
 

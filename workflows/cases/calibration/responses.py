@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 from scipy.ndimage import gaussian_filter
 
-from postproc.inference.acquisition import expected_information
-from postproc.inference.loop import Posterior, posterior
-from postproc.inference.posterior import FAMILY_SHARE, densest, distance_from, interval
-from postproc.inference.problem import Measured, Problem
+from bulkwear.postproc.inference.acquisition import expected_information
+from bulkwear.postproc.inference.loop import Posterior, posterior
+from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, distance_from, interval
+from bulkwear.postproc.inference.problem import Measured, Problem
 
 GRID_POINTS = 41  # along each of the two parameters of a map
 PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior

@@ -1,6 +1,6 @@
 """Calibrations: bulk tests simulated where a rule says, and their decks."""
 
-from workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
+from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
 
 
 localrules:

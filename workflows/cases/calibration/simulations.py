@@ -17,15 +17,15 @@ from typing import Any
 
 import pandas as pd
 
-from postproc.flow.bulk_test import MEASUREMENTS, Boxes, Measurement
-from postproc.flow.free_surface import FreeSurfaceError
-from postproc.flow.outflow import BlockedError, OutflowError
-from postproc.inference.loop import packing_seed
-from workflows.cases.calibration.boxes import DRAW_DOWN, slot_length
-from workflows.engine import state
-from workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
-from workflows.engine.bulk_tests import time_step
-from workflows.engine.solver import SolverError
+from bulkwear.postproc.flow.bulk_test import MEASUREMENTS, Boxes, Measurement
+from bulkwear.postproc.flow.free_surface import FreeSurfaceError
+from bulkwear.postproc.flow.outflow import BlockedError, OutflowError
+from bulkwear.postproc.inference.loop import packing_seed
+from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, slot_length
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
+from bulkwear.workflows.engine.bulk_tests import time_step
+from bulkwear.workflows.engine.solver import SolverError
 
 PACKINGS = 3  # of a test, before it is given up because arches block all of them
 NEXT_PACKING = 1000  # numbers on, where no calibration has a packing of its own

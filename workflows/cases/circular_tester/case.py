@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshes.tester import placed, sample_block
-from postproc.mesh import PLAIN, SurfaceMesh
-from postproc.readers.cycle_folders import LAYER_TABLE
-from postproc.readers.solver_log import thermo_rows
-from postproc.wear.caps import GRAVITY, gap_closing_step
-from workflows.cases.circular_tester import decks as tester_deck
-from workflows.cases.circular_tester import work as tester_work
-from workflows.cases.circular_tester.checks import TESTER_CHECKS
-from workflows.cases.circular_tester.parameters import bed_parameters, run_parameters
-from workflows.config.patterns import dimension_columns, option_keys, pattern_of, surface_name
-from workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Piece, Run, register
-from workflows.engine.pieces import piece_ends
-from workflows.engine.schedule import Span
-from workflows.engine.solver import LOG
-from workflows.engine.templates import render
-from workflows.engine.work import Stage
+from bulkwear.meshes.tester import placed, sample_block
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh
+from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE
+from bulkwear.postproc.readers.solver_log import thermo_rows
+from bulkwear.postproc.wear.caps import GRAVITY, gap_closing_step
+from bulkwear.workflows.cases.circular_tester import decks as tester_deck
+from bulkwear.workflows.cases.circular_tester import work as tester_work
+from bulkwear.workflows.cases.circular_tester.checks import TESTER_CHECKS
+from bulkwear.workflows.cases.circular_tester.parameters import bed_parameters, run_parameters
+from bulkwear.workflows.config.patterns import dimension_columns, option_keys, pattern_of, surface_name
+from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Piece, Run, register
+from bulkwear.workflows.engine.pieces import piece_ends
+from bulkwear.workflows.engine.schedule import Span
+from bulkwear.workflows.engine.solver import LOG
+from bulkwear.workflows.engine.templates import render
+from bulkwear.workflows.engine.work import Stage
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -191,7 +191,7 @@ class CircularTester(Case):
 
     def reduce(self, parameters: Parameters, span: Span, folder: Path) -> list[Path]:
         """Reduce the snapshots of the bed to what its lowest layer does; the last one stays for pictures."""
-        from workflows.cases.circular_tester.layer import LayerOverSample, reduce_layer
+        from bulkwear.workflows.cases.circular_tester.layer import LayerOverSample, reduce_layer
 
         sample = parameters["sample"]
         layer = LayerOverSample(
@@ -205,7 +205,7 @@ class CircularTester(Case):
 
     def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
         """Return what is left of the pattern: its volume over its feet, negative where it lies below them."""
-        from postproc.wear.pattern_left import pattern_volume
+        from bulkwear.postproc.wear.pattern_left import pattern_volume
 
         return {"pattern_volume_m3": pattern_volume(worn)}
 
@@ -238,7 +238,7 @@ class CircularTester(Case):
         self, design: Path, wear: Sequence[Path], pristine: Sequence[Path], worn: Sequence[Path]
     ) -> pd.DataFrame:
         """Return the totals of every run."""
-        from postproc.tables.summary import totals_of_runs
+        from bulkwear.postproc.tables.summary import totals_of_runs
 
         return totals_of_runs(design, wear)
 

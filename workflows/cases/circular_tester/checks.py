@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from workflows.cases.circular_tester.decks import CHANNEL, channel_length, half_width, mean_radius
-from workflows.config.run_checks import (
+from bulkwear.workflows.cases.circular_tester.decks import CHANNEL, channel_length, half_width, mean_radius
+from bulkwear.workflows.config.run_checks import (
     CheckedRun,
     Fault,
     deeper_than,
@@ -15,7 +15,7 @@ from workflows.config.run_checks import (
     pattern_fits,
     physical_modulus_known,
 )
-from workflows.engine.schedule import LEAST_CYCLE_STEPS
+from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 LEAST_LAYERS = 3.0  # of particles over the sample and under it: fewer are no bed
 SIDE_DIAMETERS = 2.0  # -, room between sample and side walls, in largest diameters: particles pass there without a jam

@@ -5,10 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.tables.display import CUBIC_MILLIMETRES
-from workflows.cases.circular_tester.runs import SIZE, VOLUME, WORN_OUT
-from workflows.cases.circular_tester.volume import PATTERNED, chosen, chosen_fit, element_increments, of_surface
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.workflows.cases.circular_tester.runs import SIZE, VOLUME, WORN_OUT
+from bulkwear.workflows.cases.circular_tester.volume import (
+    PATTERNED,
+    chosen,
+    chosen_fit,
+    element_increments,
+    of_surface,
+)
 
 MACHINE = ["shape", "particle_scale"]
 WORN_OUT_SHARE = 0.05  # of the pattern's volume: what is left of it then counts as nothing

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from meshes.tester import (
+from bulkwear.meshes.tester import (
     annular_surface,
     annular_wall,
     consolidator,
@@ -23,9 +23,9 @@ from meshes.tester import (
     submerged_pose,
     turn_angles,
 )
-from postproc.mesh import SurfaceMesh, write_stl
-from postproc.wear.caps import GRAVITY
-from workflows.engine.decks import (
+from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.engine.decks import (
     DOMAIN_MARGIN_DIAMETERS,
     FILL_EXCESS,
     FILL_FRACTION,
@@ -36,7 +36,7 @@ from workflows.engine.decks import (
     poured_particles,
     steps,
 )
-from workflows.engine.schedule import Span
+from bulkwear.workflows.engine.schedule import Span
 
 CHANNEL, RING = "channel", "ring"  # values of tester.shape
 BLOCK, CONSOLIDATOR, TROUGH = "block.stl", "consolidator.stl", "trough.stl"

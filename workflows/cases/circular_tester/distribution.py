@@ -11,14 +11,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN, SurfaceMesh, centroids, read_surface
-from postproc.readers.cycle_folders import cycle_folders
-from postproc.scans.comparison import bump_names, bump_sections, largest_losses
-from postproc.tables.depths import WORN_VOLUME
-from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
-from postproc.wear.update import worn_faces
-from workflows.cases.circular_tester.runs import MESH, SIZE, SURFACE, VOLUME, TesterRun
-from workflows.cases.circular_tester.volume import chosen
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, centroids, read_surface
+from bulkwear.postproc.readers.cycle_folders import cycle_folders
+from bulkwear.postproc.scans.comparison import bump_names, bump_sections, largest_losses
+from bulkwear.postproc.tables.depths import WORN_VOLUME
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
+from bulkwear.postproc.wear.update import worn_faces
+from bulkwear.workflows.cases.circular_tester.runs import MESH, SIZE, SURFACE, VOLUME, TesterRun
+from bulkwear.workflows.cases.circular_tester.volume import chosen
 
 COLUMNS = 5  # of the sample of 100 x 100 mm (Fig 6.1)
 NOTHING = np.empty((0, 3))  # no scan

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.circular_tester.runs import (
+from bulkwear.workflows.cases.circular_tester.runs import (
     MESH,
     RING,
     SIZE,
@@ -23,7 +23,7 @@ from workflows.cases.circular_tester.runs import (
     values_of_pair,
     values_of_runs,
 )
-from workflows.report.products import Job, every_run, figure, tables
+from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,7 +68,7 @@ def runs_of(job: Job) -> list[TesterRun]:
 )
 def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
     """Make the tables of all runs, of which most figures are drawn."""
-    from workflows.cases.circular_tester.tables import tables_of_runs
+    from bulkwear.workflows.cases.circular_tester.tables import tables_of_runs
 
     return tables_of_runs(runs_of(job), *read(job, "published", "published_fits", "published_findings"))
 
@@ -91,7 +91,7 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
 )
 def tester_hours(job: Job) -> Any:
     """Draw volumes against hours beside the experiment (Fig 6.4)."""
-    from workflows.cases.circular_tester.plots.volume import volume_by_hours
+    from bulkwear.workflows.cases.circular_tester.plots.volume import volume_by_hours
 
     fits, scale, compared, published = read(job, "fits", "time_scale", "comparison", "published")
     compared["note"] = compared["note"].fillna("")
@@ -112,8 +112,8 @@ def tester_hours(job: Job) -> Any:
 )
 def tester_volume(job: Job) -> Any:
     """Draw volumes by revolution with their fits (Fig 6.11)."""
-    from workflows.cases.circular_tester.plots.volume import volume_by_revolution
-    from workflows.cases.circular_tester.volume import chosen, whole_revolutions
+    from bulkwear.workflows.cases.circular_tester.plots.volume import volume_by_revolution
+    from bulkwear.workflows.cases.circular_tester.volume import chosen, whole_revolutions
 
     lost, fits, published = read(job, "lost_volumes", "fits", "published_fits")
     lost = whole_revolutions(chosen(lost, VOLUME, SIZE))
@@ -133,8 +133,8 @@ def tester_volume(job: Job) -> Any:
 )
 def tester_increments(job: Job) -> Any:
     """Draw what is lost per revolution (Fig 6.12)."""
-    from workflows.cases.circular_tester.plots.volume import element_increments as draw
-    from workflows.cases.circular_tester.volume import chosen, element_increments, whole_revolutions
+    from bulkwear.workflows.cases.circular_tester.plots.volume import element_increments as draw
+    from bulkwear.workflows.cases.circular_tester.volume import chosen, element_increments, whole_revolutions
 
     lost, crossings, published = read(job, "lost_volumes", "crossings", "published")
     grown = element_increments(whole_revolutions(chosen(lost, VOLUME, SIZE)))
@@ -153,7 +153,7 @@ def tester_increments(job: Job) -> Any:
 )
 def tester_benchmark(job: Job) -> Any:
     """Draw volumes after the short test by particle scale (Fig 6.10)."""
-    from workflows.cases.circular_tester.plots.volume import benchmark
+    from bulkwear.workflows.cases.circular_tester.plots.volume import benchmark
 
     predicted, published, published_fits = read(job, "predictions", "published", "published_fits")
     return benchmark(predicted, published, published_fits, job.remarks), predicted
@@ -175,8 +175,8 @@ def tester_benchmark(job: Job) -> Any:
 )
 def tester_worn_out(job: Job) -> Any:
     """Draw a pattern that is worn right off, beside the one of the study's coefficient."""
-    from workflows.cases.circular_tester.comparison import patterns_left, worn_out_at
-    from workflows.cases.circular_tester.plots.volume import worn_out
+    from bulkwear.workflows.cases.circular_tester.comparison import patterns_left, worn_out_at
+    from bulkwear.workflows.cases.circular_tester.plots.volume import worn_out
 
     runs = runs_of(job)
     _, plain = pair_of(runs)
@@ -202,8 +202,8 @@ def tester_worn_out(job: Job) -> Any:
 )
 def tester_columns(job: Job) -> Any:
     """Draw wear by column, after as many revolutions as both samples have (Fig 6.13)."""
-    from workflows.cases.circular_tester.distribution import surfaces_alike, wear_by_column
-    from workflows.cases.circular_tester.plots.distribution import by_column
+    from bulkwear.workflows.cases.circular_tester.distribution import surfaces_alike, wear_by_column
+    from bulkwear.workflows.cases.circular_tester.plots.distribution import by_column
 
     shared, worn = surfaces_alike(pair_of(runs_of(job)))
     table, remarks = wear_by_column(worn), [f"after {shared:g} revolutions", *job.remarks]
@@ -223,10 +223,10 @@ def tester_columns(job: Job) -> Any:
 )
 def tester_bumps(job: Job) -> Any:
     """Draw wear by shape of the pattern (Fig 6.14)."""
-    from postproc.mesh import read_surface
-    from postproc.tables.summary import published_value
-    from workflows.cases.circular_tester.distribution import wear_by_bump
-    from workflows.cases.circular_tester.plots.distribution import by_bump
+    from bulkwear.postproc.mesh import read_surface
+    from bulkwear.postproc.tables.summary import published_value
+    from bulkwear.workflows.cases.circular_tester.distribution import wear_by_bump
+    from bulkwear.workflows.cases.circular_tester.plots.distribution import by_bump
 
     patterned, _ = pair_of(runs_of(job))
     lost, published = read(job, "lost_volumes", "published")
@@ -250,9 +250,9 @@ def tester_bumps(job: Job) -> Any:
 )
 def tester_contours(job: Job) -> Any:
     """Draw sections of the pattern after several revolutions (Fig 6.16)."""
-    from postproc.mesh import read_surface
-    from workflows.cases.circular_tester.distribution import SHOWN_BUMPS, cycle_surfaces, top_of, worn_contours
-    from workflows.cases.circular_tester.plots.distribution import worn_contours as draw
+    from bulkwear.postproc.mesh import read_surface
+    from bulkwear.workflows.cases.circular_tester.distribution import SHOWN_BUMPS, cycle_surfaces, top_of, worn_contours
+    from bulkwear.workflows.cases.circular_tester.plots.distribution import worn_contours as draw
 
     patterned, _ = pair_of(runs_of(job))
     pristine = top_of(read_surface(patterned.folder / SURFACE))
@@ -275,8 +275,8 @@ def tester_force_columns(job: Job) -> Any:
     """Draw normal force by column (Fig 6.22)."""
     import pandas as pd
 
-    from workflows.cases.circular_tester.distribution import mean_force_by_column
-    from workflows.cases.circular_tester.plots.distribution import by_column
+    from bulkwear.workflows.cases.circular_tester.distribution import mean_force_by_column
+    from bulkwear.workflows.cases.circular_tester.plots.distribution import by_column
 
     forces = pd.concat([mean_force_by_column(run) for run in pair_of(runs_of(job))], ignore_index=True)
     return by_column(forces, "N", "Normal force (N)", *read(job, "published"), job.remarks), forces
@@ -298,8 +298,8 @@ def tester_force_columns(job: Job) -> Any:
 )
 def tester_mesh(job: Job) -> Any:
     """Draw what the size of the elements changes in volumes (Fig 6.8)."""
-    from workflows.cases.circular_tester.distribution import mesh_size_effect, volumes_of_meshes
-    from workflows.cases.circular_tester.plots.distribution import mesh_size
+    from bulkwear.workflows.cases.circular_tester.distribution import mesh_size_effect, volumes_of_meshes
+    from bulkwear.workflows.cases.circular_tester.plots.distribution import mesh_size
 
     lost, published = read(job, "lost_volumes", "published")
     at = volumes_of_meshes(lost)
@@ -318,8 +318,8 @@ def tester_mesh(job: Job) -> Any:
 )
 def tester_mesh_contours(job: Job) -> Any:
     """Draw what the size of the elements changes in sections (Fig 6.9)."""
-    from workflows.cases.circular_tester.distribution import contours_by_mesh, volumes_of_meshes
-    from workflows.cases.circular_tester.plots.distribution import worn_contours as draw
+    from bulkwear.workflows.cases.circular_tester.distribution import contours_by_mesh, volumes_of_meshes
+    from bulkwear.workflows.cases.circular_tester.plots.distribution import worn_contours as draw
 
     at = volumes_of_meshes(*read(job, "lost_volumes"))
     same = at["revolution"].iloc[0]
@@ -341,9 +341,9 @@ def tester_mesh_contours(job: Job) -> Any:
 )
 def tester_ring(job: Job) -> Any:
     """Draw what the straight channel changes against the whole ring."""
-    from workflows.cases.circular_tester.comparison import mean_ratios
-    from workflows.cases.circular_tester.plots.volume import channel_and_ring
-    from workflows.cases.circular_tester.volume import chosen, whole_revolutions
+    from bulkwear.workflows.cases.circular_tester.comparison import mean_ratios
+    from bulkwear.workflows.cases.circular_tester.plots.volume import channel_and_ring
+    from bulkwear.workflows.cases.circular_tester.volume import chosen, whole_revolutions
 
     lost, ratios = read(job, "lost_volumes", "ratios")
     scales = chosen(lost, RING)["particle_scale"].unique()

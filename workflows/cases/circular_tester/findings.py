@@ -12,13 +12,13 @@ import numpy as np
 import pandas as pd
 from scipy.stats import linregress
 
-from postproc.mesh import PLAIN
-from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
-from postproc.tables.summary import patterned_name
-from workflows.cases.circular_tester.comparison import mean_ratios
-from workflows.cases.circular_tester.distribution import share_of_bumps
-from workflows.cases.circular_tester.flow import FORCE, SPIN, VELOCITY
-from workflows.cases.circular_tester.volume import CONVEX, PATTERNED, SURE, TERMS, of_surface, volume_at
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
+from bulkwear.postproc.tables.summary import patterned_name
+from bulkwear.workflows.cases.circular_tester.comparison import mean_ratios
+from bulkwear.workflows.cases.circular_tester.distribution import share_of_bumps
+from bulkwear.workflows.cases.circular_tester.flow import FORCE, SPIN, VELOCITY
+from bulkwear.workflows.cases.circular_tester.volume import CONVEX, PATTERNED, SURE, TERMS, of_surface, volume_at
 
 LEAST_R_SQUARED = 0.99
 SIZE_SPREAD = 0.14  # -, largest from smallest of the plain sample's volumes over particle scales, Fig 6.10

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.readers.cycle_folders import LAYER_TABLE, cycle_files, cycle_folders
-from postproc.readers.solver_log import thermo_table
-from postproc.statistics.steady import FEWEST_VALUES, common_start, steady_window
-from workflows.cases.circular_tester.runs import LOG, TesterRun
+from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE, cycle_files, cycle_folders
+from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.statistics.steady import FEWEST_VALUES, common_start, steady_window
+from bulkwear.workflows.cases.circular_tester.runs import LOG, TesterRun
 
 STEADINESS = ("velocity_m_per_s", "bed_height_m", "wear_rate_m3_per_s")  # the three criteria of Fig 6.7
 WHOLE = 1e-6  # revolutions that an instant may lie before a whole one and belong to the next

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from workflows.cases.circular_tester.figures import DIGITS, PAIR, PUBLISHED, WEAR, of_study, read, runs_of
-from workflows.cases.circular_tester.runs import SURFACE
-from workflows.report.products import Job, figure
+from bulkwear.workflows.cases.circular_tester.figures import DIGITS, PAIR, PUBLISHED, WEAR, of_study, read, runs_of
+from bulkwear.workflows.cases.circular_tester.runs import SURFACE
+from bulkwear.workflows.report.products import Job, figure
 
 OF_SERIES = {"inputs": {**of_study("series"), **PUBLISHED}, "digits": DIGITS}
 OF_PARTICLES = {"inputs": WEAR, "told": PAIR, "digits": DIGITS}
@@ -26,8 +26,8 @@ SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
 )
 def tester_steadiness(job: Job) -> Any:
     """Draw how much velocity, bed height and wear rate vary in each revolution (Fig 6.7)."""
-    from workflows.cases.circular_tester.flow import STEADINESS, revolution_means, steady_revolutions
-    from workflows.cases.circular_tester.plots.flow import steadiness
+    from bulkwear.workflows.cases.circular_tester.flow import STEADINESS, revolution_means, steady_revolutions
+    from bulkwear.workflows.cases.circular_tester.plots.flow import steadiness
 
     series, published = read(job, "series", "published")
     means = revolution_means(series, STEADINESS)
@@ -45,7 +45,7 @@ def tester_steadiness(job: Job) -> Any:
 )
 def tester_spin(job: Job) -> Any:
     """Draw the spin of the lowest layer by revolution (Fig 6.17)."""
-    from workflows.cases.circular_tester.flow import SPIN
+    from bulkwear.workflows.cases.circular_tester.flow import SPIN
 
     return _by_revolution(job, SPIN)
 
@@ -58,7 +58,7 @@ def tester_spin(job: Job) -> Any:
 )
 def tester_velocity(job: Job) -> Any:
     """Draw the velocity of the lowest layer by revolution (Fig 6.18)."""
-    from workflows.cases.circular_tester.flow import VELOCITY
+    from bulkwear.workflows.cases.circular_tester.flow import VELOCITY
 
     return _by_revolution(job, VELOCITY)
 
@@ -74,15 +74,15 @@ def tester_velocity(job: Job) -> Any:
 )
 def tester_force(job: Job) -> Any:
     """Draw the normal force by revolution (Fig 6.21)."""
-    from workflows.cases.circular_tester.flow import FORCE
+    from bulkwear.workflows.cases.circular_tester.flow import FORCE
 
     return _by_revolution(job, FORCE)
 
 
 def _by_revolution(job: Job, measure: str) -> Any:
     """Draw a measure of the lowest layer by revolution."""
-    from workflows.cases.circular_tester.flow import flow_means
-    from workflows.cases.circular_tester.plots.flow import by_revolution
+    from bulkwear.workflows.cases.circular_tester.flow import flow_means
+    from bulkwear.workflows.cases.circular_tester.plots.flow import by_revolution
 
     series, published = read(job, "series", "published")
     means = flow_means(series)
@@ -119,10 +119,10 @@ def _motion(job: Job, quantity: str, label: str) -> Any:
     """Draw the particles of the lowest layer over both samples by a speed of `relative_motion`."""
     import pandas as pd
 
-    from postproc.mesh import read_surface
-    from workflows.cases.circular_tester.distribution import top_of
-    from workflows.cases.circular_tester.layer import layer_particles, outlines, relative_motion
-    from workflows.cases.circular_tester.plots.flow import relative_motion as draw
+    from bulkwear.postproc.mesh import read_surface
+    from bulkwear.workflows.cases.circular_tester.distribution import top_of
+    from bulkwear.workflows.cases.circular_tester.layer import layer_particles, outlines, relative_motion
+    from bulkwear.workflows.cases.circular_tester.plots.flow import relative_motion as draw
 
     runs = runs_of(job)
     particles = relative_motion(pd.concat([layer_particles(run, SHOWN_REVOLUTION) for run in runs], ignore_index=True))

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.summary import patterned_name, read_summary
-from workflows.cases.circular_tester.comparison import worn_out_at
-from workflows.cases.circular_tester.distribution import share_of_bumps
-from workflows.cases.circular_tester.flow import steady_revolutions
-from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
-from workflows.cases.circular_tester.volume import TERMS
-from workflows.config.design import REPOSITORY
-from workflows.report.sections import Block, Cards, Table, Text
-from workflows.report.text import UNDEFINED
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.summary import patterned_name, read_summary
+from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
+from bulkwear.workflows.cases.circular_tester.distribution import share_of_bumps
+from bulkwear.workflows.cases.circular_tester.flow import steady_revolutions
+from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
+from bulkwear.workflows.cases.circular_tester.volume import TERMS
+from bulkwear.workflows.config.design import REPOSITORY
+from bulkwear.workflows.report.sections import Block, Cards, Table, Text
+from bulkwear.workflows.report.text import UNDEFINED
 
 PUBLISHED_FITS = REPOSITORY / "config" / "published" / "circular_tester_volume.csv"
 FIT_DIGITS = 5

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.flow.bed import read_snapshot, snapshots
-from postproc.mesh import PLAIN, SurfaceMesh
-from postproc.readers.cycle_folders import LAYER_TABLE
-from workflows.cases.circular_tester.runs import TesterRun
+from bulkwear.postproc.flow.bed import read_snapshot, snapshots
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh
+from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE
+from bulkwear.workflows.cases.circular_tester.runs import TesterRun
 
 FIRST_SNAPSHOT = "bed_0.dump"  # of a cycle, the last one of the cycle before
 AXES = ["x_m", "y_m", "z_m"]

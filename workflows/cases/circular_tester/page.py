@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.circular_tester import decks as tester_deck
-from workflows.cases.circular_tester import key_numbers
-from workflows.report.sections import Pictures, Section
-from workflows.report.text import range_text
+from bulkwear.workflows.cases.circular_tester import decks as tester_deck
+from bulkwear.workflows.cases.circular_tester import key_numbers
+from bulkwear.workflows.report.sections import Pictures, Section
+from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 RUNS_NOTE = (
     "Layers: over the sample, its depth over the median diameter of the (scaled) particles, and under it. Particles: "

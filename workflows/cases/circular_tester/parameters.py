@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from postproc.wear.caps import GRAVITY
-from workflows.cases.circular_tester.decks import bed_length, half_width, mean_radius
-from workflows.config.patterns import highest_point, pattern_section, size_ratio
-from workflows.engine.derived import (
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.cases.circular_tester.decks import bed_length, half_width, mean_radius
+from bulkwear.workflows.config.patterns import highest_point, pattern_section, size_ratio
+from bulkwear.workflows.engine.derived import (
     HEADROOM_DIAMETERS,
     derived_materials,
     particle_section,
@@ -20,7 +20,7 @@ from workflows.engine.derived import (
     wear_section,
     whole_steps,
 )
-from workflows.engine.templates import used_sections
+from bulkwear.workflows.engine.templates import used_sections
 
 REPORTS_PER_REVOLUTION = 60  # lines of a log, of which the coefficient of variation of a revolution is made
 

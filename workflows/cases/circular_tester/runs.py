@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from workflows.cases.circular_tester.decks import pose
+from bulkwear.workflows.cases.circular_tester.decks import pose
 
 if TYPE_CHECKING:
-    from workflows.config.design import Run, Study
+    from bulkwear.workflows.config.design import Run, Study
 
 LOG, SURFACE, WORN_SURFACE = "log.liggghts", "surface.vtu", "worn_surface.vtu"  # files of a run
 VOLUME, SIZE, MESH, WORN_OUT, RING = "volume", "size", "mesh", "worn_out", "ring"  # series of the design
@@ -134,7 +134,7 @@ def pair_of(runs: Sequence[TesterRun]) -> tuple[TesterRun, TesterRun]:
     """Return the run with a pattern and the plain one of which most figures are made; the plain one sets the scale of
     time.
     """
-    from postproc.mesh import PLAIN  # slow to import, and Snakemake reads this module first
+    from bulkwear.postproc.mesh import PLAIN  # slow to import, and Snakemake reads this module first
 
     patterned, plain = sorted((run for run in runs if run.series == VOLUME), key=lambda run: run.surface == PLAIN)
     return patterned, plain

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN, read_surface
-from postproc.tables.summary import patterned_name, published_value
-from workflows.cases.circular_tester import comparison, distribution, flow, volume
-from workflows.cases.circular_tester.findings import Evidence, findings_table
-from workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, WORN_SURFACE, TesterRun, pair_of
-from workflows.cases.circular_tester.volume import (
+from bulkwear.postproc.mesh import PLAIN, read_surface
+from bulkwear.postproc.tables.summary import patterned_name, published_value
+from bulkwear.workflows.cases.circular_tester import comparison, distribution, flow, volume
+from bulkwear.workflows.cases.circular_tester.findings import Evidence, findings_table
+from bulkwear.workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, WORN_SURFACE, TesterRun, pair_of
+from bulkwear.workflows.cases.circular_tester.volume import (
     CONVEX,
     LONG,
     SHORT,

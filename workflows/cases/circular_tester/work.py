@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from meshes.estimate import sample_triangles
-from workflows.cases.circular_tester import decks as tester_deck
-from workflows.cases.circular_tester.decks import HOLDER_SIZE
-from workflows.config.patterns import pattern_of
-from workflows.engine import decks as deck
-from workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
+from bulkwear.meshes.estimate import sample_triangles
+from bulkwear.workflows.cases.circular_tester import decks as tester_deck
+from bulkwear.workflows.cases.circular_tester.decks import HOLDER_SIZE
+from bulkwear.workflows.config.patterns import pattern_of
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
 # Median diameters of the trough's width in which no particle's centre is: particles lie looser along its side walls.
 # Measured on beds of 9 and 13 diameters, within 1 % in particles; the bed's height is that of all beds.

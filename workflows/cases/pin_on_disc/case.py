@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshes.disc import track_disc, track_stretch
-from postproc.mesh import SurfaceMesh
-from postproc.reference.sphere_contact import safe_time_step, stable_time_step, touching_reach
-from workflows.cases.pin_on_disc import decks as pin_deck
-from workflows.cases.pin_on_disc.parameters import PIN_CHECKS, ROUNDING, run_parameters
-from workflows.engine.case import SETUP_LOADS, Case, Parameters, Piece, register
-from workflows.engine.schedule import Span
-from workflows.engine.solver import LOG
-from workflows.engine.templates import render
-from workflows.engine.work import Stage
+from bulkwear.meshes.disc import track_disc, track_stretch
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.reference.sphere_contact import safe_time_step, stable_time_step, touching_reach
+from bulkwear.workflows.cases.pin_on_disc import decks as pin_deck
+from bulkwear.workflows.cases.pin_on_disc.parameters import PIN_CHECKS, ROUNDING, run_parameters
+from bulkwear.workflows.engine.case import SETUP_LOADS, Case, Parameters, Piece, register
+from bulkwear.workflows.engine.schedule import Span
+from bulkwear.workflows.engine.solver import LOG
+from bulkwear.workflows.engine.templates import render
+from bulkwear.workflows.engine.work import Stage
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -179,7 +179,7 @@ class PinOnDisc(Case):
 
         Over all triangles, and over those in contact.
         """
-        from postproc.wear.schemes import centroid_path_volume
+        from bulkwear.postproc.wear.schemes import centroid_path_volume
 
         paths = before.points, worn.points, before.triangles
         return {
@@ -205,7 +205,7 @@ class PinOnDisc(Case):
         self, design: Path, wear: Sequence[Path], pristine: Sequence[Path], worn: Sequence[Path]
     ) -> pd.DataFrame:
         """Return each run's totals beside alpha F L and the volume that its geometry has lost."""
-        from workflows.cases.pin_on_disc.volume import summary_table
+        from bulkwear.workflows.cases.pin_on_disc.volume import summary_table
 
         return summary_table(design, wear, pristine, worn)
 
@@ -229,7 +229,7 @@ def _contact(parameters: Parameters) -> tuple[float, float, float, float, float]
 
 def _sums(parameters: Parameters, folder: Path) -> dict[str, np.ndarray]:
     """Return mean sum of the normal forces (N) and mean number of contacts in each window, from the ledger's sums."""
-    from postproc.readers.solver_log import thermo_table
+    from bulkwear.postproc.readers.solver_log import thermo_table
 
     thermo = thermo_table(folder / LOG)
     arc = thermo["run"] == thermo["run"].max()

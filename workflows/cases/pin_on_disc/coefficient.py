@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.summary import published_value
-from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
-from workflows.cases.pin_on_disc.volume import published_volume
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
+from bulkwear.workflows.cases.pin_on_disc.volume import published_volume
 
 CALIBRATED_FROM = 8  # revolutions on, where the thesis has its run-in behind it
 TOUCHED = "per triangle, volume by Eq 5.9 over touched triangles"

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import read_surface
-from postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
-from postproc.tables.summary import published_value
-from workflows.cases.pin_on_disc.contours import section_table
-from workflows.cases.pin_on_disc.run_in import SIZES
-from workflows.cases.pin_on_disc.runs import CALIBRATED, common_revolution, reference_runs
+from bulkwear.postproc.mesh import read_surface
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.pin_on_disc.contours import section_table
+from bulkwear.workflows.cases.pin_on_disc.run_in import SIZES
+from bulkwear.workflows.cases.pin_on_disc.runs import CALIBRATED, common_revolution, reference_runs
 
 EDGES_PER_WIDTH = 5.0  # -, meshes up to a fifth of the groove's width are to agree
 STABLE_PERCENT = 5.0  # within which they are to agree

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, boundary_edges, directed_edges, read_surface
-from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.cases.pin_on_disc.runs import SCHEMES, common_revolution, whole_revolutions
+from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges, directed_edges, read_surface
+from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
+from bulkwear.workflows.cases.pin_on_disc.runs import SCHEMES, common_revolution, whole_revolutions
 
 CONTOURS = 360  # 1 degree apart (Yan 2022, section 5.4.2; the 0.5 degrees of the text would make 720)
 OPENING_LEVEL = 0.1  # -, of a contour's depth: right at the rim the groove fades out over one edge of the mesh

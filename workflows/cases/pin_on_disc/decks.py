@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from meshes.estimate import disc_triangles, stretch_triangles
-from postproc.reference.sphere_contact import touching_reach
-from workflows.cases.pin_on_disc.parameters import PIN_RADII_BESIDE_TRACK, REST_OSCILLATIONS, SETTLING_OSCILLATIONS
-from workflows.engine.decks import REPORTS_PER_RUN, STEP_CHECK_MARGIN, exact_ledger, steps, whole_sections
-from workflows.engine.schedule import Span
-from workflows.engine.work import CYCLE_BYTES, RESTART_TRIANGLE, RUN_TRIANGLE, SURFACE_TRIANGLE, Stage
+from bulkwear.meshes.estimate import disc_triangles, stretch_triangles
+from bulkwear.postproc.reference.sphere_contact import touching_reach
+from bulkwear.workflows.cases.pin_on_disc.parameters import (
+    PIN_RADII_BESIDE_TRACK,
+    REST_OSCILLATIONS,
+    SETTLING_OSCILLATIONS,
+)
+from bulkwear.workflows.engine.decks import REPORTS_PER_RUN, STEP_CHECK_MARGIN, exact_ledger, steps, whole_sections
+from bulkwear.workflows.engine.schedule import Span
+from bulkwear.workflows.engine.work import CYCLE_BYTES, RESTART_TRIANGLE, RUN_TRIANGLE, SURFACE_TRIANGLE, Stage
 
 SKIN_OVER_RADIUS = 0.2  # -, neighbour skin over the pin's radius
 # Time steps that the solver takes per time step of a run, over the whole run: the driver splits them where many

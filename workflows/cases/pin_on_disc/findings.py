@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.tables.summary import published_value
-from workflows.cases.pin_on_disc.coefficient import coefficient_of_laboratory
-from workflows.cases.pin_on_disc.comparison import EDGES_PER_WIDTH, STABLE_PERCENT
-from workflows.cases.pin_on_disc.run_in import TESTED, run_in_table, run_in_words
-from workflows.cases.pin_on_disc.runs import REFERENCE, only_reference, pin_runs, whole_revolutions
-from workflows.cases.pin_on_disc.volume import CANDIDATES, groove_remark, shown_factors
-from workflows.config.design import REPOSITORY
-from workflows.report.sections import Block, Table, Text
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.pin_on_disc.coefficient import coefficient_of_laboratory
+from bulkwear.workflows.cases.pin_on_disc.comparison import EDGES_PER_WIDTH, STABLE_PERCENT
+from bulkwear.workflows.cases.pin_on_disc.run_in import TESTED, run_in_table, run_in_words
+from bulkwear.workflows.cases.pin_on_disc.runs import REFERENCE, only_reference, pin_runs, whole_revolutions
+from bulkwear.workflows.cases.pin_on_disc.volume import CANDIDATES, groove_remark, shown_factors
+from bulkwear.workflows.config.design import REPOSITORY
+from bulkwear.workflows.report.sections import Block, Table, Text
 
 PUBLISHED = REPOSITORY / "config" / "published"
 VOLUME_HEADS = {

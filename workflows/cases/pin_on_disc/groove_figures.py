@@ -6,9 +6,9 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from workflows.cases.pin_on_disc.case import MESHES
-from workflows.cases.pin_on_disc.volume_figures import CONTOURS, DESIGN, NORMALITY, PUBLISHED, has_series
-from workflows.report.products import Job, every_run, figure
+from bulkwear.workflows.cases.pin_on_disc.case import MESHES
+from bulkwear.workflows.cases.pin_on_disc.volume_figures import CONTOURS, DESIGN, NORMALITY, PUBLISHED, has_series
+from bulkwear.workflows.report.products import Job, every_run, figure
 
 DISTRIBUTION_REVOLUTION = 10  # Yan 2022, Fig 5.10 and 5.11
 WORN_DISCS = {"design": DESIGN, "published": PUBLISHED, "worn": every_run("worn_surface.vtu")}
@@ -32,10 +32,10 @@ def folder_of(files: SimpleNamespace) -> Path:
 )
 def disc_setup(job: Job) -> Any:
     """Draw the set-up of the pin on its disc."""
-    from postproc.mesh import read_surface
-    from postproc.tables.display import MILLIMETRES
-    from workflows.cases.pin_on_disc.plots import disc
-    from workflows.cases.pin_on_disc.runs import REFERENCE, reference_runs, runs_and_published
+    from bulkwear.postproc.mesh import read_surface
+    from bulkwear.postproc.tables.display import MILLIMETRES
+    from bulkwear.workflows.cases.pin_on_disc.plots import disc
+    from bulkwear.workflows.cases.pin_on_disc.runs import REFERENCE, reference_runs, runs_and_published
 
     runs, published = runs_and_published(job.files)
     run = runs.set_index("run").loc[next(iter(reference_runs(runs, published, REFERENCE).values()))]
@@ -58,10 +58,15 @@ def disc_setup(job: Job) -> Any:
 )
 def contour_extraction(job: Job) -> Any:
     """Draw how contours are taken from a worn disc."""
-    from postproc.mesh import read_surface
-    from workflows.cases.pin_on_disc.contours import MESH_ANGLE, section_table
-    from workflows.cases.pin_on_disc.plots import disc
-    from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, reference_runs, runs_and_published
+    from bulkwear.postproc.mesh import read_surface
+    from bulkwear.workflows.cases.pin_on_disc.contours import MESH_ANGLE, section_table
+    from bulkwear.workflows.cases.pin_on_disc.plots import disc
+    from bulkwear.workflows.cases.pin_on_disc.runs import (
+        REFERENCE,
+        coefficient_remark,
+        reference_runs,
+        runs_and_published,
+    )
 
     runs, published = runs_and_published(job.files)
     run = runs.set_index("run").loc[next(iter(reference_runs(runs, published, REFERENCE).values()))]
@@ -88,9 +93,9 @@ def mesh_series(job: Job) -> Any:
     """Draw depth and width of the groove against the size of the elements."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc import comparison
-    from workflows.cases.pin_on_disc.plots import contours as plots
-    from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, runs_and_published
+    from bulkwear.workflows.cases.pin_on_disc import comparison
+    from bulkwear.workflows.cases.pin_on_disc.plots import contours as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, runs_and_published
 
     runs, published = runs_and_published(job.files)
     series = comparison.mesh_series(runs, pd.read_csv(job.files.statistics).drop(columns="scheme"))
@@ -114,9 +119,9 @@ def mesh_contours(job: Job) -> Any:
     """Draw one section of every mesh after one revolution."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc.contours import mesh_sections
-    from workflows.cases.pin_on_disc.plots import contours as plots
-    from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, runs_and_published
+    from bulkwear.workflows.cases.pin_on_disc.contours import mesh_sections
+    from bulkwear.workflows.cases.pin_on_disc.plots import contours as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark, runs_and_published
 
     (runs, published), series = runs_and_published(job.files), pd.read_csv(job.files.series)
     sections = mesh_sections(folder_of(job.files), runs, series)
@@ -140,8 +145,8 @@ def normal_force(job: Job) -> Any:
     """Draw the force of the pin revolution by revolution."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc.plots import contours as plots
-    from workflows.cases.pin_on_disc.runs import (
+    from bulkwear.workflows.cases.pin_on_disc.plots import contours as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import (
         REFERENCE,
         force_boxes,
         reference_remark,
@@ -172,9 +177,9 @@ def normal_force(job: Job) -> Any:
 )
 def contour_distribution(job: Job) -> Any:
     """Draw how depth and opening are distributed round the disc."""
-    from workflows.cases.pin_on_disc.plots import contours as plots
-    from workflows.cases.pin_on_disc.run_in import histograms, published_ranges
-    from workflows.cases.pin_on_disc.runs import (
+    from bulkwear.workflows.cases.pin_on_disc.plots import contours as plots
+    from bulkwear.workflows.cases.pin_on_disc.run_in import histograms, published_ranges
+    from bulkwear.workflows.cases.pin_on_disc.runs import (
         REFERENCE,
         common_revolution,
         of_runs,
@@ -216,9 +221,9 @@ def run_in(job: Job) -> Any:
     """Draw the run-in: contours revolution by revolution and their normality. The table is of all runs."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc.plots import contours as plots
-    from workflows.cases.pin_on_disc.run_in import run_in_words, statistics_of
-    from workflows.cases.pin_on_disc.runs import (
+    from bulkwear.workflows.cases.pin_on_disc.plots import contours as plots
+    from bulkwear.workflows.cases.pin_on_disc.run_in import run_in_words, statistics_of
+    from bulkwear.workflows.cases.pin_on_disc.runs import (
         REFERENCE,
         of_runs,
         only_reference,
@@ -245,9 +250,9 @@ def run_in(job: Job) -> Any:
 )
 def contour_examples(job: Job) -> Any:
     """Draw sections at eight angles after the last revolutions."""
-    from workflows.cases.pin_on_disc.contours import example_sections
-    from workflows.cases.pin_on_disc.plots import contours as plots
-    from workflows.cases.pin_on_disc.runs import (
+    from bulkwear.workflows.cases.pin_on_disc.contours import example_sections
+    from bulkwear.workflows.cases.pin_on_disc.plots import contours as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import (
         REFERENCE,
         of_runs,
         reference_remark,
@@ -274,8 +279,8 @@ def contour_examples(job: Job) -> Any:
 )
 def worn_disc(job: Job) -> Any:
     """Draw the worn discs in three dimensions; the table is that of the unrolled track."""
-    from workflows.cases.pin_on_disc.contours import track_map, track_table
-    from workflows.cases.pin_on_disc.plots import disc
+    from bulkwear.workflows.cases.pin_on_disc.contours import track_map, track_table
+    from bulkwear.workflows.cases.pin_on_disc.plots import disc
 
     meshes, track, remarks = _reference_discs(job)
     table = track_table({scheme: track_map(mesh, track) for scheme, mesh in meshes.items()})
@@ -294,8 +299,8 @@ def worn_disc(job: Job) -> Any:
 )
 def unrolled_track(job: Job) -> Any:
     """Draw the unrolled tracks of worn discs as maps of depth."""
-    from workflows.cases.pin_on_disc.contours import track_map, track_table
-    from workflows.cases.pin_on_disc.plots import disc
+    from bulkwear.workflows.cases.pin_on_disc.contours import track_map, track_table
+    from bulkwear.workflows.cases.pin_on_disc.plots import disc
 
     meshes, track, remarks = _reference_discs(job)
     maps = {scheme: track_map(mesh, track) for scheme, mesh in meshes.items()}
@@ -304,7 +309,12 @@ def unrolled_track(job: Job) -> Any:
 
 def _reference_discs(job: Job) -> tuple[dict[str, Any], float, list[str]]:
     """Return worn discs by scheme, the radius (m) of their track, and what figures of them must say."""
-    from workflows.cases.pin_on_disc.runs import CALIBRATED, reference_discs, reference_remark, runs_and_published
+    from bulkwear.workflows.cases.pin_on_disc.runs import (
+        CALIBRATED,
+        reference_discs,
+        reference_remark,
+        runs_and_published,
+    )
 
     runs, published = runs_and_published(job.files)
     meshes, track = reference_discs(folder_of(job.files), runs, published)
@@ -327,9 +337,9 @@ def laboratory_contour(job: Job) -> Any:
     """Draw sections of worn discs beside the laboratory's contours."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc import comparison
-    from workflows.cases.pin_on_disc.plots import contours as plots
-    from workflows.cases.pin_on_disc.runs import CALIBRATED, reference_remark, runs_and_published
+    from bulkwear.workflows.cases.pin_on_disc import comparison
+    from bulkwear.workflows.cases.pin_on_disc.plots import contours as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import CALIBRATED, reference_remark, runs_and_published
 
     runs, published = runs_and_published(job.files)
     compared = comparison.compared_runs(runs, published)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES
-from postproc.tables.summary import read_summary
-from workflows.cases.pin_on_disc import findings
-from workflows.report.sections import Block, Cards, Pictures, Section, Table
-from workflows.report.text import range_text
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES
+from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.workflows.cases.pin_on_disc import findings
+from bulkwear.workflows.report.sections import Block, Cards, Pictures, Section, Table
+from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 RUNS_NOTE = (
     "Overlap: of pin and flat disc as simulated (Hertz); contact radius: of the same. Time step: the stated fraction "

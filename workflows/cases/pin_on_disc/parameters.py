@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from postproc.reference.sphere_contact import effective_modulus, hertz_overlap
-from workflows.config.run_checks import CheckedRun, Fault, millimetres, physical_modulus_known
-from workflows.engine.derived import (
+from bulkwear.postproc.reference.sphere_contact import effective_modulus, hertz_overlap
+from bulkwear.workflows.config.run_checks import CheckedRun, Fault, millimetres, physical_modulus_known
+from bulkwear.workflows.engine.derived import (
     physical_patch_factor,
     rayleigh_time,
     template_sections,
@@ -17,7 +17,7 @@ from workflows.engine.derived import (
     whole_steps,
     youngs_modulus,
 )
-from workflows.engine.schedule import LEAST_CYCLE_STEPS
+from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 FORCE_WINDOW = math.radians(0.25)  # rad of the track over which a row of forces.csv is a mean
 SETTLING_OSCILLATIONS = 60  # of the pin on its contact, until it rests on the flat disc; each leaves 0.83 at e = 0.9

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import read_surface
-from postproc.tables.display import MILLIMETRES
-from postproc.tables.summary import published_value
-from workflows.cases.pin_on_disc.contours import contour_table
-from workflows.cases.pin_on_disc.runs import whole_revolutions
+from bulkwear.postproc.mesh import read_surface
+from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.pin_on_disc.contours import contour_table
+from bulkwear.workflows.cases.pin_on_disc.runs import whole_revolutions
 
 SIGNIFICANCE = 0.05  # -, a p value above passes (Yan 2022, section 5.4.3)
 FITTED_PARAMETERS = 2  # of the normal distribution: mean and standard deviation, each takes a degree of freedom

@@ -12,10 +12,10 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import SurfaceMesh, read_surface
-from postproc.readers.cycle_folders import cycle_files
-from postproc.tables.display import MILLIMETRES
-from postproc.tables.summary import published_value
+from bulkwear.postproc.mesh import SurfaceMesh, read_surface
+from bulkwear.postproc.readers.cycle_folders import cycle_files
+from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.tables.summary import published_value
 
 DESIGN = ("run", "series", "scheme", "wear_coefficient_per_pa", "element_size_mm", "load_n", "track_radius_mm")
 SCHEMES = ("conserving", "per_triangle")  # in the order in which they are shown

@@ -8,11 +8,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import read_surface
-from postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
-from postproc.tables.summary import published_value, totals_of_runs
-from postproc.wear.update import lost_volume
-from workflows.cases.pin_on_disc.runs import COEFFICIENT_TOLERANCE, SCHEMES, same_coefficient, whole_revolutions
+from bulkwear.postproc.mesh import read_surface
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
+from bulkwear.postproc.tables.summary import published_value, totals_of_runs
+from bulkwear.postproc.wear.update import lost_volume
+from bulkwear.workflows.cases.pin_on_disc.runs import (
+    COEFFICIENT_TOLERANCE,
+    SCHEMES,
+    same_coefficient,
+    whole_revolutions,
+)
 
 VOLUMES = {
     "removed": "removed_volume_m3",

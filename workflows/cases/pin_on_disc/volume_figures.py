@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from workflows.cases.pin_on_disc.page import update_remark
-from workflows.report.products import Job, OfStudy, every_run, figure
+from bulkwear.workflows.cases.pin_on_disc.page import update_remark
+from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure
 
 DESIGN = "results/{study}/design.csv"
 PUBLISHED = "config/published/pin_on_disc.csv"
@@ -31,9 +31,9 @@ def has_series(name: str) -> OfStudy:
 )
 def pin_comparison(job: Job) -> Any:
     """Draw depth, width and volume beside those of laboratory and thesis."""
-    from workflows.cases.pin_on_disc import comparison
-    from workflows.cases.pin_on_disc.plots import volume as plots
-    from workflows.cases.pin_on_disc.runs import CALIBRATED, of_runs, reference_remark, runs_and_published
+    from bulkwear.workflows.cases.pin_on_disc import comparison
+    from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import CALIBRATED, of_runs, reference_remark, runs_and_published
 
     runs, published = runs_and_published(job.files)
     contours, volumes = (of_runs(runs, files) for files in (job.files.contours, job.files.volumes))
@@ -72,8 +72,8 @@ def excess_volume(job: Job) -> Any:
     """Draw what volumes above alpha F L are made of."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc.plots import volume as plots
-    from workflows.cases.pin_on_disc.volume import groove_remark, shown_factors
+    from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
+    from bulkwear.workflows.cases.pin_on_disc.volume import groove_remark, shown_factors
 
     published = pd.read_csv(job.files.published)
     shown = shown_factors(pd.read_csv(job.files.factors), published)
@@ -98,9 +98,9 @@ def wear_volume(job: Job) -> Any:
     """Draw volume against revolutions, and fit it as the published volumes are."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc.plots import volume as plots
-    from workflows.cases.pin_on_disc.runs import of_runs, pin_runs
-    from workflows.cases.pin_on_disc.volume import volume_fits
+    from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import of_runs, pin_runs
+    from bulkwear.workflows.cases.pin_on_disc.volume import volume_fits
 
     volumes = of_runs(pin_runs(job.files.design), job.files.volumes)
     volumes = volumes[volumes["series"] == "coefficient"]
@@ -122,8 +122,8 @@ def force_rise(job: Job) -> Any:
     """Draw how the summed normal force rises above the load; the table holds all factors of the volume."""
     import pandas as pd
 
-    from workflows.cases.pin_on_disc.plots import volume as plots
-    from workflows.cases.pin_on_disc.volume import excess_factors
+    from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
+    from bulkwear.workflows.cases.pin_on_disc.volume import excess_factors
 
     factors = excess_factors(pd.read_csv(job.files.volumes), pd.read_csv(job.files.fits))
     return plots.force_rise(factors, job.remarks), factors
@@ -155,11 +155,11 @@ def calibration(job: Job) -> Any:
     """Draw the wear coefficient that makes few revolutions stand for the laboratory's."""
     import pandas as pd
 
-    from postproc.tables.summary import published_value
-    from workflows.cases.pin_on_disc import coefficient
-    from workflows.cases.pin_on_disc.plots import volume as plots
-    from workflows.cases.pin_on_disc.run_in import run_in_table
-    from workflows.cases.pin_on_disc.runs import (
+    from bulkwear.postproc.tables.summary import published_value
+    from bulkwear.workflows.cases.pin_on_disc import coefficient
+    from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
+    from bulkwear.workflows.cases.pin_on_disc.run_in import run_in_table
+    from bulkwear.workflows.cases.pin_on_disc.runs import (
         REFERENCE,
         of_runs,
         only_reference,
@@ -194,10 +194,10 @@ def calibration(job: Job) -> Any:
 )
 def size_invariance(job: Job) -> Any:
     """Draw simulated over theoretical volume against the scale of the pin."""
-    from postproc.tables.summary import published_value
-    from workflows.cases.pin_on_disc import volume
-    from workflows.cases.pin_on_disc.plots import volume as plots
-    from workflows.cases.pin_on_disc.runs import of_runs, runs_and_published
+    from bulkwear.postproc.tables.summary import published_value
+    from bulkwear.workflows.cases.pin_on_disc import volume
+    from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
+    from bulkwear.workflows.cases.pin_on_disc.runs import of_runs, runs_and_published
 
     runs, published = runs_and_published(job.files)
     table = volume.size_invariance(volume.size_cases(of_runs(runs, job.files.volumes)))

@@ -8,26 +8,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from postproc.mesh import SurfaceMesh, write_stl
-from postproc.readers.cycle_folders import FLOW_TABLE, SPIN_TABLE
-from postproc.readers.solver_log import exchanges, thermo_rows, thermo_table
-from postproc.wear.caps import GRAVITY, gap_closing_step
-from workflows.cases.sliding_sample import work as sliding_work
-from workflows.cases.sliding_sample.checks import SLIDING_CHECKS
-from workflows.cases.sliding_sample.decks import (
+from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.readers.cycle_folders import FLOW_TABLE, SPIN_TABLE
+from bulkwear.postproc.readers.solver_log import exchanges, thermo_rows, thermo_table
+from bulkwear.postproc.wear.caps import GRAVITY, gap_closing_step
+from bulkwear.workflows.cases.sliding_sample import work as sliding_work
+from bulkwear.workflows.cases.sliding_sample.checks import SLIDING_CHECKS
+from bulkwear.workflows.cases.sliding_sample.decks import (
     end_wall_corners,
     lowered_bed,
     settled_bed,
     sliding_sample,
     wear_interval_steps,
 )
-from workflows.cases.sliding_sample.parameters import derived_parameters, flow_measures
-from workflows.cases.sliding_sample.study import varies_scale
-from workflows.config.patterns import dimension_columns, option_keys, pattern_section, sample_surface
-from workflows.config.units import to_si
-from workflows.engine import decks as deck
-from workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Run, register
-from workflows.engine.derived import (
+from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters, flow_measures
+from bulkwear.workflows.cases.sliding_sample.study import varies_scale
+from bulkwear.workflows.config.patterns import dimension_columns, option_keys, pattern_section, sample_surface
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Run, register
+from bulkwear.workflows.engine.derived import (
     ADAPTIVE,
     PERIODIC,
     WALLS,
@@ -38,11 +38,11 @@ from workflows.engine.derived import (
     wear_section,
     window_lengths,
 )
-from workflows.engine.pieces import piece_ends
-from workflows.engine.schedule import Span
-from workflows.engine.solver import LOG
-from workflows.engine.templates import render, used_sections
-from workflows.engine.work import Stage, Work
+from bulkwear.workflows.engine.pieces import piece_ends
+from bulkwear.workflows.engine.schedule import Span
+from bulkwear.workflows.engine.solver import LOG
+from bulkwear.workflows.engine.templates import render, used_sections
+from bulkwear.workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -143,8 +143,8 @@ class SlidingSample(Case):
 
     def further_work(self, study: Any) -> tuple[Work, ...]:
         """Return the containers in which the particles of a study of particle size are packed."""
-        from workflows.cases.sliding_sample.particle_size.packings import packing_work
-        from workflows.cases.sliding_sample.particle_size.study import packed_runs
+        from bulkwear.workflows.cases.sliding_sample.particle_size.packings import packing_work
+        from bulkwear.workflows.cases.sliding_sample.particle_size.study import packed_runs
 
         return (packing_work(packed_runs(study), to_si(study.settings)["packing"]),) if varies_scale(study) else ()
 
@@ -224,7 +224,7 @@ class SlidingSample(Case):
 
     def reduce(self, parameters: Parameters, span: Span, folder: Path) -> list[Path]:
         """Reduce the snapshots of the bed to the bins of its flow; the last one stays for pictures."""
-        from workflows.cases.sliding_sample.flow_history import RunFlow, reduce_snapshots
+        from bulkwear.workflows.cases.sliding_sample.flow_history import RunFlow, reduce_snapshots
 
         start = deck.travelled(parameters, span.first_step)
         return reduce_snapshots(folder, RunFlow(**flow_measures(parameters)), start)
@@ -235,7 +235,7 @@ class SlidingSample(Case):
 
     def worn_through(self, worn: SurfaceMesh) -> str | None:
         """Return a phrase if the sample is worn down to the floor."""
-        from postproc.wear.update import recession_fault
+        from bulkwear.postproc.wear.update import recession_fault
 
         return recession_fault(worn)
 
@@ -243,7 +243,7 @@ class SlidingSample(Case):
         self, design: Path, wear: Sequence[Path], pristine: Sequence[Path], worn: Sequence[Path]
     ) -> pd.DataFrame:
         """Return the totals of every run, and its wear over that of its plain twin."""
-        from postproc.tables.summary import summary_table
+        from bulkwear.postproc.tables.summary import summary_table
 
         return summary_table(design, wear)
 
@@ -256,7 +256,7 @@ def front_lag(parameters: Parameters, folder: Path) -> float:
 
     It is looked at just downstream of where the strip is before an exchange. Near 0 nothing there knows of the sample.
     """
-    from postproc.flow.bed import lag, read_snapshot, snapshots
+    from bulkwear.postproc.flow.bed import lag, read_snapshot, snapshots
 
     strip, clearance = window_lengths(parameters["particle"])
     start = parameters["derived"]["bed_start_m"] + clearance + parameters["bed"]["exchange_m"] + strip

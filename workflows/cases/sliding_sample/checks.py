@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from postproc.wear.caps import GRAVITY
-from workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
-from workflows.config.patterns import highest_point
-from workflows.config.run_checks import (
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
+from bulkwear.workflows.config.patterns import highest_point
+from bulkwear.workflows.config.run_checks import (
     Check,
     CheckedRun,
     Fault,
@@ -18,8 +18,8 @@ from workflows.config.run_checks import (
     pattern_fits,
     physical_modulus_known,
 )
-from workflows.engine.derived import ADAPTIVE, PERIODIC, WINDOW, window_lengths
-from workflows.engine.schedule import LEAST_CYCLE_STEPS
+from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, WINDOW, window_lengths
+from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
 LARGEST_TRAVEL = 100.0  # m, as the schema has it for sliding.travel_mm

@@ -13,9 +13,9 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from postproc.mesh import PLAIN
-from postproc.tables.display import in_display_units
-from workflows.cases.sliding_sample.evaluation import UNDECIDED
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.workflows.cases.sliding_sample.evaluation import UNDECIDED
 
 NO_REPLICATES = "each row is one packing: the scatter between packings is not known"
 

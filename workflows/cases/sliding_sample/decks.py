@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from postproc.readers.cycle_folders import PACKING
-from postproc.wear.caps import GRAVITY
-from workflows.engine.decks import (
+from bulkwear.postproc.readers.cycle_folders import PACKING
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.engine.decks import (
     DOMAIN_MARGIN_DIAMETERS,
     FILL_EXCESS,
     FILL_FRACTION,
@@ -24,9 +24,9 @@ from workflows.engine.decks import (
     symmetric_table,
     travelled,
 )
-from workflows.engine.derived import ROUNDING, WALLS, WINDOW, neighbour_skin, window_lengths
-from workflows.engine.schedule import Span
-from workflows.engine.templates import whole_sections
+from bulkwear.workflows.engine.derived import ROUNDING, WALLS, WINDOW, neighbour_skin, window_lengths
+from bulkwear.workflows.engine.schedule import Span
+from bulkwear.workflows.engine.templates import whole_sections
 
 PACKING_FREE_FALLS = 7.5  # -, the same for a bed that nothing moves afterwards: after 6 the last grain had tumbled down
 LOWERING_FREE_FALLS = 2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
@@ -125,7 +125,9 @@ def _exact_ledger_of_sample(run: Mapping[str, Any], span: Span) -> dict[str, Any
 
 def _sampled_contacts(run: Mapping[str, Any], span: Span) -> dict[str, Any]:
     """Return what a deck needs to write sampled contacts."""
-    from postproc.readers.contacts import CONTACT_COLUMNS  # slow to import, and every job reads its study first
+    from bulkwear.postproc.readers.contacts import (
+        CONTACT_COLUMNS,  # slow to import, and every job reads its study first
+    )
 
     columns = range(1, CONTACT_COLUMNS + 1)
     return {

@@ -10,7 +10,7 @@ from dataclasses import asdict
 import numpy as np
 import pandas as pd
 
-from postproc.statistics.steady import FEWEST_VALUES, Window, common_start, steady_window, window_between
+from bulkwear.postproc.statistics.steady import FEWEST_VALUES, Window, common_start, steady_window, window_between
 
 RIDES_ALONG = 0.85  # -, relative velocity: half-way from the continuous runs' 70 % to 100 % (Yan 2022, section 3.5.1)
 HEAPED = 1.0  # -, surcharge above which particles have accumulated over the sample

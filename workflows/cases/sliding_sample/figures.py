@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from workflows.cases.sliding_sample.study import finds_regimes, published_rows
-from workflows.report.page_parameters import is_deformed
-from workflows.report.products import Job, every_run, figure
+from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, published_rows
+from bulkwear.workflows.report.page_parameters import is_deformed
+from bulkwear.workflows.report.products import Job, every_run, figure
 
 DESIGN, SUMMARY = "results/{study}/design.csv", "results/{study}/summary.csv"
 SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
@@ -26,8 +26,8 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
 )
 def wear_against_travel(job: Job) -> Any:
     """Draw cumulative wear against travel."""
-    from postproc.plots import curves
-    from postproc.tables.history import wear_history
+    from bulkwear.postproc.plots import curves
+    from bulkwear.postproc.tables.history import wear_history
 
     history = wear_history(job.files.design, job.files.wear)
     return curves.wear_against_travel(history, job.remarks), history
@@ -44,9 +44,9 @@ def wear_against_travel(job: Job) -> Any:
 )
 def wear_split(job: Job) -> Any:
     """Draw the wear of base and pattern."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample import comparison
-    from workflows.cases.sliding_sample.plots import bars
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample import comparison
+    from bulkwear.workflows.cases.sliding_sample.plots import bars
 
     split = comparison.wear_split(read_summary(job.files.summary))
     return bars.wear_split(split, job.remarks), split
@@ -68,9 +68,9 @@ def depth_distribution(job: Job) -> Any:
     """Draw the distribution of depth over the area."""
     import pandas as pd
 
-    from postproc.plots import curves
-    from postproc.tables import depths
-    from postproc.tables.history import runs_of
+    from bulkwear.postproc.plots import curves
+    from bulkwear.postproc.tables import depths
+    from bulkwear.postproc.tables.history import runs_of
 
     shares = depths.depth_distribution(pd.read_csv(job.files.depths, usecols=["run", "depth_um", "area_mm2"]))
     table = runs_of(job.files.design).merge(shares, on="run")
@@ -90,10 +90,10 @@ def depth_distribution(job: Job) -> Any:
 )
 def bed(job: Job) -> Any:
     """Draw the bed over the samples of the row that is shown in detail."""
-    from postproc.flow.bed import shown_particles
-    from postproc.plots import pictures
-    from postproc.tables.depths import read_worn_surfaces
-    from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
+    from bulkwear.postproc.flow.bed import shown_particles
+    from bulkwear.postproc.plots import pictures
+    from bulkwear.postproc.tables.depths import read_worn_surfaces
+    from bulkwear.postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
 
     summary = read_summary(job.files.summary)
     shown = runs_of_rows(summary, rows_to_show(summary))
@@ -141,11 +141,11 @@ def flow_views_second(job: Job) -> Any:
 
 def _views(job: Job, place: int) -> Any:
     """Draw the flow over the samples of one of the rows that are shown in detail."""
-    from postproc.flow.bed import last_snapshot, read_snapshot
-    from postproc.tables.depths import read_worn_surfaces
-    from postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
-    from workflows.cases.sliding_sample.plots import flow_views as figures
-    from workflows.cases.sliding_sample.screening.regime_groups import published_rows_in_detail, rows_in_detail
+    from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
+    from bulkwear.postproc.tables.depths import read_worn_surfaces
+    from bulkwear.postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
+    from bulkwear.workflows.cases.sliding_sample.plots import flow_views as figures
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import published_rows_in_detail, rows_in_detail
 
     summary = read_summary(job.files.summary)
     rows = rows_to_show(summary)
@@ -173,9 +173,9 @@ def _views(job: Job, place: int) -> Any:
 )
 def forces(job: Job) -> Any:
     """Draw the forces on the samples: along the travel, or their means where there are many design rows."""
-    from postproc.plots import curves
-    from postproc.tables.history import force_history, force_summary
-    from workflows.cases.sliding_sample.plots import bars
+    from bulkwear.postproc.plots import curves
+    from bulkwear.postproc.tables.history import force_history, force_summary
+    from bulkwear.workflows.cases.sliding_sample.plots import bars
 
     table, draw = force_history(job.files.design, [Path(path).parent for path in job.files.wear]), curves.forces
     if table["row"].nunique() > curves.FEW_ROWS:
@@ -197,9 +197,9 @@ def forces(job: Job) -> Any:
 )
 def wear_law_comparison(job: Job) -> Any:
     """Draw the volumes by the study's law and by the solver's Finnie model."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.comparison import law_comparison
-    from workflows.cases.sliding_sample.plots import bars
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.comparison import law_comparison
+    from bulkwear.workflows.cases.sliding_sample.plots import bars
 
     table = law_comparison(read_summary(job.files.summary))
     return bars.wear_law_comparison(table, job.remarks), table

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.flow.bed import snapshots
-from postproc.flow.moving_bins import (
+from bulkwear.postproc.flow.bed import snapshots
+from bulkwear.postproc.flow.moving_bins import (
     BinSums,
     MovingBins,
     add_dumps,
@@ -20,11 +20,11 @@ from postproc.flow.moving_bins import (
     surcharge_history,
     velocity_profile,
 )
-from postproc.flow.spin import Segments, SpinSums, mean_spin
-from postproc.readers.cycle_folders import FLOW_TABLE, PACKING, SPIN_TABLE, cycle_files
-from postproc.statistics.steady import FEWEST_VALUES, steady_window
-from postproc.tables.display import MILLIMETRES, in_display_units
-from workflows.cases.sliding_sample.evaluation import regime_table
+from bulkwear.postproc.flow.spin import Segments, SpinSums, mean_spin
+from bulkwear.postproc.readers.cycle_folders import FLOW_TABLE, PACKING, SPIN_TABLE, cycle_files
+from bulkwear.postproc.statistics.steady import FEWEST_VALUES, steady_window
+from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
+from bulkwear.workflows.cases.sliding_sample.evaluation import regime_table
 
 FIRST_SNAPSHOT = "bed_0.dump"  # of a cycle, at its step 0
 COUNT_LINE = 4  # of a dump, with the number of its particles

@@ -8,14 +8,14 @@ from typing import Any
 
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.tables.depths import depth_summary
-from postproc.tables.display import in_display_units
-from postproc.tables.summary import read_history, read_summary
-from workflows.cases.sliding_sample.comparison import cycle_ratios, relative_wear_intervals
-from workflows.cases.sliding_sample.screening.findings import UNSURE
-from workflows.report.sections import Block, Cards, Table, Text
-from workflows.report.text import number
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.tables.depths import depth_summary
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.summary import read_history, read_summary
+from bulkwear.workflows.cases.sliding_sample.comparison import cycle_ratios, relative_wear_intervals
+from bulkwear.workflows.cases.sliding_sample.screening.findings import UNSURE
+from bulkwear.workflows.report.sections import Block, Cards, Table, Text
+from bulkwear.workflows.report.text import number
 
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 

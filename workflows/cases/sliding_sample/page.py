@@ -6,15 +6,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from postproc.reference.size_ratios import LARGEST_RATIO
-from workflows.cases.sliding_sample.key_numbers import key_numbers
-from workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
-from workflows.engine.derived import PERIODIC, WINDOW
-from workflows.report.sections import Pictures, Section
-from workflows.report.text import range_text
+from bulkwear.postproc.reference.size_ratios import LARGEST_RATIO
+from bulkwear.workflows.cases.sliding_sample.key_numbers import key_numbers
+from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
+from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
+from bulkwear.workflows.report.sections import Pictures, Section
+from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 RUNS_NOTE = (
     "Layers: thickness of the bed over the median diameter of the (scaled) particles. Equivalent size ratio: particle "
@@ -54,8 +54,8 @@ REDUCED = (
 
 def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is."""
-    from workflows.cases.sliding_sample.particle_size import page as particle_size
-    from workflows.cases.sliding_sample.screening import page as screening
+    from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size
+    from bulkwear.workflows.cases.sliding_sample.screening import page as screening
 
     by_regime, by_scale = finds_regimes(study), varies_scale(study)
     return {
@@ -69,8 +69,8 @@ def told(study: Study) -> dict[str, Any]:
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a page: what particle size asks, key numbers, screening, then wear and bed of any."""
-    from workflows.cases.sliding_sample.particle_size import page as particle_size
-    from workflows.cases.sliding_sample.screening import page as screening
+    from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size
+    from bulkwear.workflows.cases.sliding_sample.screening import page as screening
 
     of_study = study["told"]
     return _each_figure_once(

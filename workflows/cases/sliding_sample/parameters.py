@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from meshes.sample import skirt_width
-from postproc.wear.caps import GRAVITY
-from workflows.config.patterns import highest_point, size_ratio
-from workflows.engine.derived import (
+from bulkwear.meshes.sample import skirt_width
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.config.patterns import highest_point, size_ratio
+from bulkwear.workflows.engine.derived import (
     ADAPTIVE,
     HEADROOM_DIAMETERS,
     ROUNDING,

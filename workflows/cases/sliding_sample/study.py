@@ -6,11 +6,11 @@ import csv
 import re
 from typing import Any
 
-from postproc.mesh import PLAIN
-from workflows.cases.sliding_sample.parameters import flow_measures
-from workflows.config.design import FACTORS, REPOSITORY, Study
-from workflows.engine.case import Run
-from workflows.report.text import name_and_unit
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
+from bulkwear.workflows.config.design import FACTORS, REPOSITORY, Study
+from bulkwear.workflows.engine.case import Run
+from bulkwear.workflows.report.text import name_and_unit
 
 PUBLISHED_DESIGN = REPOSITORY / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
 PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size

@@ -6,14 +6,14 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from meshes.estimate import sample_triangles
-from postproc.wear.caps import GRAVITY
-from workflows.cases.sliding_sample.decks import lowered_bed, settled_bed
-from workflows.cases.sliding_sample.parameters import RAMP
-from workflows.config.patterns import pattern_of
-from workflows.engine import decks as deck
-from workflows.engine.derived import ADAPTIVE, WINDOW
-from workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
+from bulkwear.meshes.estimate import sample_triangles
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_bed
+from bulkwear.workflows.cases.sliding_sample.parameters import RAMP
+from bulkwear.workflows.config.patterns import pattern_of
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.derived import ADAPTIVE, WINDOW
+from bulkwear.workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
 # Recession of the fastest node over the mean that Archard's law gives for the bed's weight on a plain floor. From the
 # 208 adaptive cycles of worn_bump at quick fidelity; the only number here that hangs on one run.

@@ -2,9 +2,9 @@
 
 import pytest
 
+from bulkwear.workflows.cases.calibration import driver
+from bulkwear.workflows.cases.calibration.outcome import read_calibrated
 from tests.support.calibration_study import MEASURED, PAIRS, answers, study
-from workflows.cases.calibration import driver
-from workflows.cases.calibration.outcome import read_calibrated
 
 
 @pytest.fixture

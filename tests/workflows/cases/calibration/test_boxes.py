@@ -2,8 +2,7 @@
 
 import pytest
 
-from tests.support.bulk_boxes import PAIR, ROLLING, SLIDING, asked
-from workflows.cases.calibration.boxes import (
+from bulkwear.workflows.cases.calibration.boxes import (
     draw_down,
     draw_down_surfaces,
     shear_box,
@@ -12,7 +11,8 @@ from workflows.cases.calibration.boxes import (
     slot_length,
     with_values,
 )
-from workflows.engine.bulk_tests import deck_text
+from bulkwear.workflows.engine.bulk_tests import deck_text
+from tests.support.bulk_boxes import PAIR, ROLLING, SLIDING, asked
 
 EXACT = 1e-12  # relative: the same formula
 

@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.calibration.driver import pair_of
+from bulkwear.workflows.config.design import ConfigError, load_study
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
-from workflows.cases.calibration.driver import pair_of
-from workflows.config.design import ConfigError, load_study
 
 
 @pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])

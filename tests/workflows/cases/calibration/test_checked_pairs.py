@@ -5,9 +5,9 @@ import shutil
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.calibration.checked_pairs import check_pair, checked_means
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 from tests.support.calibration_study import ROLLING, SLIDING, study
-from workflows.cases.calibration.checked_pairs import check_pair, checked_means
-from workflows.cases.calibration.responses import RECOMMENDED
 
 
 def test_a_found_pair_is_checked_in_another_test(done, formula, tmp_path):

@@ -3,9 +3,8 @@
 import pandas as pd
 import pytest
 
-from postproc.inference.loop import packing_seed, posterior
-from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
-from workflows.cases.calibration.driver import (
+from bulkwear.postproc.inference.loop import packing_seed, posterior
+from bulkwear.workflows.cases.calibration.driver import (
     compared_pairs,
     pair_of,
     problem_of,
@@ -13,8 +12,9 @@ from workflows.cases.calibration.driver import (
     repeat_seeds,
     run_box_sizes,
 )
-from workflows.cases.calibration.responses import RECOMMENDED
-from workflows.engine.decks import primes
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
+from bulkwear.workflows.engine.decks import primes
+from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
 
 
 def test_problem_is_what_the_config_says():

@@ -3,10 +3,10 @@
 import pytest
 import yaml
 
+from bulkwear.workflows.cases.calibration.outcome import calibrated_materials
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
+from bulkwear.workflows.config.design import REPOSITORY, ConfigError, load_study
 from tests.support.calibration_study import SLIDING, study
-from workflows.cases.calibration.outcome import calibrated_materials
-from workflows.cases.calibration.responses import RECOMMENDED
-from workflows.config.design import REPOSITORY, ConfigError, load_study
 
 
 def test_statements_and_materials_of_a_calibration(done):

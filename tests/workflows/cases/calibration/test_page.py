@@ -9,14 +9,12 @@ import pytest
 import yaml
 from matplotlib.figure import Figure
 
-from tests import REPOSITORY
-from tests.support.calibration_study import study
-from workflows.cases.calibration.boxes import SIMULATIONS
-from workflows.cases.calibration.responses import RECOMMENDED
-from workflows.report import markdown
-from workflows.report.page import write_page
-from workflows.report.page_parameters import page_of, page_parameters, page_templates
-from workflows.report.products import (
+from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
+from bulkwear.workflows.report import markdown
+from bulkwear.workflows.report.page import write_page
+from bulkwear.workflows.report.page_parameters import page_of, page_parameters, page_templates
+from bulkwear.workflows.report.products import (
     job_of,
     outputs_of,
     paths_of,
@@ -24,7 +22,9 @@ from workflows.report.products import (
     told_to,
     write_product,
 )
-from workflows.report.sections import Pictures, Points, Table
+from bulkwear.workflows.report.sections import Pictures, Points, Table
+from tests import REPOSITORY
+from tests.support.calibration_study import study
 
 FIGURES = ["heaps", "response_maps", "family", "pairs_against_bands", "box_sizes", "calibration_progress"]
 
@@ -56,7 +56,7 @@ def folder(done, tmp_path_factory):
     (cycle / "state.json").write_text(json.dumps(told))
     (cycle / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0, compiled once)\n")
     with pytest.MonkeyPatch.context() as patch:
-        room = "workflows.cases.calibration"
+        room = "bulkwear.workflows.cases.calibration"
         patch.setattr(f"{room}.outcome.recommended_heaps", lambda done: ([], [pd.DataFrame({"response": []})]))
         patch.setattr(f"{room}.plots.heaps.heaps", lambda pictures, remarks: Figure())
         for product in products_of_study(study()).values():

@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.inference.loop import posterior
-from postproc.inference.problem import Experiment, Measured, Parameter, Problem
-from workflows.cases.calibration.responses import (
+from bulkwear.postproc.inference.loop import posterior
+from bulkwear.postproc.inference.problem import Experiment, Measured, Parameter, Problem
+from bulkwear.workflows.cases.calibration.responses import (
     family_table,
     information_table,
     interval_table,

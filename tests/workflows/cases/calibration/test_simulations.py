@@ -6,12 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from postproc.flow.bulk_test import HEAP, Measurement
-from postproc.flow.outflow import BlockedError
-from postproc.inference.loop import packing_seed
-from tests.support.bulk_boxes import asked, small
-from workflows.cases.calibration import simulations
-from workflows.cases.calibration.simulations import (
+from bulkwear.postproc.flow.bulk_test import HEAP, Measurement
+from bulkwear.postproc.flow.outflow import BlockedError
+from bulkwear.postproc.inference.loop import packing_seed
+from bulkwear.workflows.cases.calibration import simulations
+from bulkwear.workflows.cases.calibration.simulations import (
     BLOCKED,
     NEXT_PACKING,
     PACKINGS,
@@ -20,10 +19,11 @@ from workflows.cases.calibration.simulations import (
     measured,
     simulate_all,
 )
-from workflows.engine import state
-from workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
-from workflows.engine.bulk_tests import rest_energy
-from workflows.engine.solver import SolverError
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
+from bulkwear.workflows.engine.bulk_tests import rest_energy
+from bulkwear.workflows.engine.solver import SolverError
+from tests.support.bulk_boxes import asked, small
 
 
 @pytest.fixture(scope="module")

@@ -6,17 +6,17 @@ import re
 import numpy as np
 import pytest
 
-from meshes.tester import placed
-from postproc.mesh import area_vectors, edge_lengths_per_triangle
+from bulkwear.meshes.tester import placed
+from bulkwear.postproc.mesh import area_vectors, edge_lengths_per_triangle
+from bulkwear.workflows.cases.circular_tester import decks as tester_deck
+from bulkwear.workflows.cases.circular_tester.work import surface_triangles
+from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.chain import Chain, bed_deck_text, deck_text, write_bed
+from bulkwear.workflows.engine.schedule import known_spans
+from bulkwear.workflows.forecast.forecast import work_of
 from tests import DATA
 from tests.support.tiny_tester import ROWS, TINY, tiny_tester
-from workflows.cases.circular_tester import decks as tester_deck
-from workflows.cases.circular_tester.work import surface_triangles
-from workflows.config.design import ConfigError, load_study
-from workflows.engine.case import find_case
-from workflows.engine.chain import Chain, bed_deck_text, deck_text, write_bed
-from workflows.engine.schedule import known_spans
-from workflows.forecast.forecast import work_of
 
 GOLDEN = DATA / "golden_circular_tester.in"
 ROUND_OFF = 1e-9

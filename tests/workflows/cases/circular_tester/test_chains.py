@@ -8,23 +8,23 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.bed import last_snapshot, read_snapshot
-from postproc.mesh import read_surface
-from postproc.readers.solver_log import thermo_table
-from postproc.wear.update import worn_faces
+from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
+from bulkwear.postproc.mesh import read_surface
+from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.wear.update import worn_faces
+from bulkwear.workflows.cases.circular_tester import decks as tester_deck
+from bulkwear.workflows.cases.circular_tester import distribution as tester_distribution
+from bulkwear.workflows.cases.circular_tester.key_numbers import result_table
+from bulkwear.workflows.cases.circular_tester.page import sections
+from bulkwear.workflows.engine import cycles
+from bulkwear.workflows.engine.derived import neighbour_skin
+from bulkwear.workflows.engine.job import write_table
+from bulkwear.workflows.engine.state import read_state
+from bulkwear.workflows.report.markdown import write_results
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.products import figures_of
 from tests.support.tiny import tiny_chain
 from tests.support.tiny_tester import ROWS, make_products, tiny_tester
-from workflows.cases.circular_tester import decks as tester_deck
-from workflows.cases.circular_tester import distribution as tester_distribution
-from workflows.cases.circular_tester.key_numbers import result_table
-from workflows.cases.circular_tester.page import sections
-from workflows.engine import cycles
-from workflows.engine.derived import neighbour_skin
-from workflows.engine.job import write_table
-from workflows.engine.state import read_state
-from workflows.report.markdown import write_results
-from workflows.report.page_parameters import page_parameters
-from workflows.report.products import figures_of
 
 pytestmark = pytest.mark.solver
 

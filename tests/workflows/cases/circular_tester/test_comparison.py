@@ -4,8 +4,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from workflows.cases.circular_tester.comparison import mean_ratios, pattern_left, ratios_by_revolution, worn_out_at
-from workflows.cases.circular_tester.volume import whole_revolutions
+from bulkwear.workflows.cases.circular_tester.comparison import (
+    mean_ratios,
+    pattern_left,
+    ratios_by_revolution,
+    worn_out_at,
+)
+from bulkwear.workflows.cases.circular_tester.volume import whole_revolutions
 
 EXACT = 1e-9
 

@@ -4,12 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.pattern import ConvexPattern
-from meshes.plate import flat_plate
-from meshes.sample import sample_top
-from postproc.mesh import SurfaceMesh, areas, centroids
-from postproc.tables.depths import WORN_VOLUME
-from workflows.cases.circular_tester.distribution import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.meshes.sample import sample_top
+from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids
+from bulkwear.postproc.tables.depths import WORN_VOLUME
+from bulkwear.workflows.cases.circular_tester.distribution import (
     column_numbers,
     contour_losses,
     force_by_column,

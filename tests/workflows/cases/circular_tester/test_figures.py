@@ -3,13 +3,13 @@
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.circular_tester import figures
+from bulkwear.workflows.cases.circular_tester.comparison import ratios_by_revolution
+from bulkwear.workflows.cases.circular_tester.runs import pair_of, runs_of_values, values_of_pair, values_of_runs
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.report.products import figures_of, job_of, products_of
 from tests.support import tester_study as study
-from workflows.cases.circular_tester import figures
-from workflows.cases.circular_tester.comparison import ratios_by_revolution
-from workflows.cases.circular_tester.runs import pair_of, runs_of_values, values_of_pair, values_of_runs
-from workflows.config.design import load_study
-from workflows.engine.case import find_case
-from workflows.report.products import figures_of, job_of, products_of
 
 SERIES_OF = {
     "tester_mesh": "mesh",

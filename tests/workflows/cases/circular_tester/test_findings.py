@@ -6,14 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID
+from bulkwear.postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID
+from bulkwear.workflows.cases.circular_tester import volume as tester_volume
+from bulkwear.workflows.cases.circular_tester.comparison import ratios_by_revolution
+from bulkwear.workflows.cases.circular_tester.distribution import mesh_size_effect
+from bulkwear.workflows.cases.circular_tester.findings import OF_ANY_PATTERN, TESTS, Evidence, findings_table
+from bulkwear.workflows.cases.circular_tester.flow import revolution_means, steady_revolutions
+from bulkwear.workflows.cases.circular_tester.tables import crossings
 from tests.support import tester_study as study
-from workflows.cases.circular_tester import volume as tester_volume
-from workflows.cases.circular_tester.comparison import ratios_by_revolution
-from workflows.cases.circular_tester.distribution import mesh_size_effect
-from workflows.cases.circular_tester.findings import OF_ANY_PATTERN, TESTS, Evidence, findings_table
-from workflows.cases.circular_tester.flow import revolution_means, steady_revolutions
-from workflows.cases.circular_tester.tables import crossings
 
 THESIS = {  # surface, particle scale -> mm3 per revolution, per revolution2: the source's own, plain of scale 4 made up
     ("plain", 1.0): (73.64, 0.0),

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from tests.support import tester_study as study
-from workflows.cases.circular_tester.flow import (
+from bulkwear.workflows.cases.circular_tester.flow import (
     STEADINESS,
     revolution_means,
     revolution_numbers,
     steady_revolutions,
 )
+from tests.support import tester_study as study
 
 
 def test_variation_of_a_known_wave():

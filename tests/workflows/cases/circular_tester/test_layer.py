@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.tester import submerged_pose
-from postproc.mesh import SurfaceMesh
-from workflows.cases.circular_tester.layer import LayerOverSample, outlines, relative_motion
+from bulkwear.meshes.tester import submerged_pose
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.workflows.cases.circular_tester.layer import LayerOverSample, outlines, relative_motion
 
 
 def test_relative_motion():

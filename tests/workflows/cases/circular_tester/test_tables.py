@@ -3,9 +3,16 @@
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.circular_tester.tables import (
+    LABORATORY,
+    OURS,
+    THESIS,
+    THESIS_ALIKE,
+    comparison_table,
+    loss_rows,
+)
+from bulkwear.workflows.cases.circular_tester.volume import chosen_fit, predictions, time_scale, volume_fits
 from tests.support import tester_study as study
-from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE, comparison_table, loss_rows
-from workflows.cases.circular_tester.volume import chosen_fit, predictions, time_scale, volume_fits
 
 
 def test_comparison_table():

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from postproc.tables.summary import published_value
-from tests.support import tester_study as study
-from workflows.cases.circular_tester.volume import (
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.circular_tester.volume import (
     TERMS,
     chosen_fit,
     crossing,
@@ -20,6 +19,7 @@ from workflows.cases.circular_tester.volume import (
     volume_at,
     volume_fits,
 )
+from tests.support import tester_study as study
 
 EXACT = 1e-9  # relative, of fits to noiseless laws
 COEFFICIENT = 5e-9  # 1/Pa, of the synthetic runs

@@ -9,20 +9,20 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.mesh import read_stl, read_surface, write_surface
+from bulkwear.postproc.mesh import read_stl, read_surface, write_surface
+from bulkwear.workflows.cases.pin_on_disc.case import LOAD_TOLERANCE
+from bulkwear.workflows.cases.pin_on_disc.decks import pin_on_disc
+from bulkwear.workflows.cases.pin_on_disc.page import update_remark
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.engine import cycles, state
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.chain import MOST_DECKS, Chain, deck_text, write_decks
+from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.schedule import known_spans
 from tests import DATA, REPOSITORY
 from tests.workflows.engine.test_cycles import kill_when, start_driver, wait_until_no_solver
-from workflows.cases.pin_on_disc.case import LOAD_TOLERANCE
-from workflows.cases.pin_on_disc.decks import pin_on_disc
-from workflows.cases.pin_on_disc.page import update_remark
-from workflows.config.design import load_study
-from workflows.config.layers import ConfigError
-from workflows.engine import cycles, state
-from workflows.engine.case import find_case
-from workflows.engine.chain import MOST_DECKS, Chain, deck_text, write_decks
-from workflows.engine.inputs import inputs_digest
-from workflows.engine.job import Progress
-from workflows.engine.schedule import known_spans
 
 GOLDEN = DATA / "golden_pin_on_disc.in"
 TINY = {  # two revolutions of a small disc in four cycles, 30 times the coefficient: a groove that is felt

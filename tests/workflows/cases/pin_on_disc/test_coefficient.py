@@ -4,10 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
-from tests import PUBLISHED
-from tests.support import pin_study
-from workflows.cases.pin_on_disc.coefficient import (
+from bulkwear.postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient, scaling_factor
+from bulkwear.workflows.cases.pin_on_disc.coefficient import (
     PUBLISHED_FITS,
     TOUCHED,
     calibrated,
@@ -16,6 +14,8 @@ from workflows.cases.pin_on_disc.coefficient import (
     scaling_limits,
     step_cap_limits,
 )
+from tests import PUBLISHED
+from tests.support import pin_study
 
 VOLUME, ERROR, LOAD, DISTANCE, REVOLUTIONS = 0.565e-9, 0.089e-9, 5.0, 180.0, 1302.5  # m3, m3, N, m, -
 CIRCLE = DISTANCE / REVOLUTIONS  # m

@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.tables.summary import published_value
-from tests import PUBLISHED
-from workflows.cases.pin_on_disc.comparison import (
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.pin_on_disc.comparison import (
     LABORATORY_ANGLES,
     circular_segment,
     compared_cases,
@@ -17,8 +16,9 @@ from workflows.cases.pin_on_disc.comparison import (
     mesh_series,
     mesh_stability,
 )
-from workflows.cases.pin_on_disc.run_in import SIZES, statistics_of
-from workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark
+from bulkwear.workflows.cases.pin_on_disc.run_in import SIZES, statistics_of
+from bulkwear.workflows.cases.pin_on_disc.runs import REFERENCE, coefficient_remark
+from tests import PUBLISHED
 
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 RUNS = pd.DataFrame(

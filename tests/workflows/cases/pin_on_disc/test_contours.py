@@ -6,12 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.disc import track_disc
-from postproc.mesh import SurfaceMesh
-from tests import PUBLISHED
-from tests.verification import groove_cases
-from workflows.cases.pin_on_disc.comparison import mesh_series
-from workflows.cases.pin_on_disc.contours import (
+from bulkwear.meshes.disc import track_disc
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.workflows.cases.pin_on_disc.comparison import mesh_series
+from bulkwear.workflows.cases.pin_on_disc.contours import (
     CONTOURS,
     EXAMPLE_ANGLES,
     OPENING_LEVEL,
@@ -26,8 +24,10 @@ from workflows.cases.pin_on_disc.contours import (
     track_table,
     width_of_area,
 )
-from workflows.cases.pin_on_disc.run_in import statistics_of
-from workflows.cases.pin_on_disc.runs import reference_discs
+from bulkwear.workflows.cases.pin_on_disc.run_in import statistics_of
+from bulkwear.workflows.cases.pin_on_disc.runs import reference_discs
+from tests import PUBLISHED
+from tests.verification import groove_cases
 
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 TRACK, PIN = 22e-3, 3e-3  # m

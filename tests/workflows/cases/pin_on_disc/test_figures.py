@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, remarks_of
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, remarks_of
+from bulkwear.workflows.cases.pin_on_disc.plots import contours as contour_plots
+from bulkwear.workflows.cases.pin_on_disc.plots.contours import coefficient_name
+from bulkwear.workflows.cases.pin_on_disc.runs import window_forces
+from bulkwear.workflows.cases.pin_on_disc.volume import published_volume
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.report.products import figures_of
 from tests import PUBLISHED
 from tests.support import pin_study
-from workflows.cases.pin_on_disc.plots import contours as contour_plots
-from workflows.cases.pin_on_disc.plots.contours import coefficient_name
-from workflows.cases.pin_on_disc.runs import window_forces
-from workflows.cases.pin_on_disc.volume import published_volume
-from workflows.config.design import load_study
-from workflows.engine.case import find_case
-from workflows.report.products import figures_of
 
 FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
 NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")

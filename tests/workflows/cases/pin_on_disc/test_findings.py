@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.pin_on_disc import findings
+from bulkwear.workflows.report.sections import Table, Text
 from tests import PUBLISHED
-from workflows.cases.pin_on_disc import findings
-from workflows.report.sections import Table, Text
 
 NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
 STABILITY = pd.DataFrame(

@@ -4,13 +4,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.pin_on_disc import page
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.markdown import written
+from bulkwear.workflows.report.page import write_page
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.sections import Cards, Pictures, Table
 from tests.support import pin_study
-from workflows.cases.pin_on_disc import page
-from workflows.config.design import load_study
-from workflows.report.markdown import written
-from workflows.report.page import write_page
-from workflows.report.page_parameters import page_parameters
-from workflows.report.sections import Cards, Pictures, Table
 
 RELATIVE = 1e-9  # numbers pass through CSV text
 

@@ -4,11 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.disc import track_disc
-from postproc.mesh import SurfaceMesh, write_surface
-from tests import PUBLISHED
-from workflows.cases.pin_on_disc.contours import CONTOURS
-from workflows.cases.pin_on_disc.run_in import (
+from bulkwear.meshes.disc import track_disc
+from bulkwear.postproc.mesh import SurfaceMesh, write_surface
+from bulkwear.workflows.cases.pin_on_disc.contours import CONTOURS
+from bulkwear.workflows.cases.pin_on_disc.run_in import (
     SIGNIFICANCE,
     chi_squared_normality,
     contours_of_run,
@@ -22,7 +21,8 @@ from workflows.cases.pin_on_disc.run_in import (
     size_histogram,
     statistics_of,
 )
-from workflows.cases.pin_on_disc.runs import REFERENCE, only_reference, whole_revolutions
+from bulkwear.workflows.cases.pin_on_disc.runs import REFERENCE, only_reference, whole_revolutions
+from tests import PUBLISHED
 
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")

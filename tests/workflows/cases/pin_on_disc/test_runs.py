@@ -4,9 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests import PUBLISHED
-from tests.support import pin_study
-from workflows.cases.pin_on_disc.runs import (
+from bulkwear.workflows.cases.pin_on_disc.runs import (
     CALIBRATED,
     REFERENCE,
     force_boxes,
@@ -16,6 +14,8 @@ from workflows.cases.pin_on_disc.runs import (
     same_coefficient,
     window_forces,
 )
+from tests import PUBLISHED
+from tests.support import pin_study
 
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 

@@ -4,9 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests import PUBLISHED
-from tests.support import pin_study
-from workflows.cases.pin_on_disc.volume import (
+from bulkwear.workflows.cases.pin_on_disc.volume import (
     CANDIDATES,
     excess_factors,
     groove_remark,
@@ -21,6 +19,8 @@ from workflows.cases.pin_on_disc.volume import (
     volume_fits,
     volumes_of_run,
 )
+from tests import PUBLISHED
+from tests.support import pin_study
 
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")

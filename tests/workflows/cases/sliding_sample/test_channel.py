@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.bed import last_snapshot, read_snapshot
-from postproc.readers.solver_log import thermo_table
-from postproc.tables.summary import run_summary
+from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
+from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.tables.summary import run_summary
+from bulkwear.workflows.engine import cycles
 from tests.support.tiny import tiny_chain, tiny_study
-from workflows.engine import cycles
 
 pytestmark = pytest.mark.solver
 

@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from postproc.tables.summary import rows_to_show, runs_of_rows
-from workflows.cases.sliding_sample.comparison import (
+from bulkwear.postproc.tables.summary import rows_to_show, runs_of_rows
+from bulkwear.workflows.cases.sliding_sample.comparison import (
     NO_REPLICATES,
     by_setting,
     cycle_ratios,

@@ -4,14 +4,14 @@ import re
 
 import pytest
 
+from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
+from bulkwear.workflows.config.design import list_studies, load_study
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.schedule import known_spans
+from bulkwear.workflows.engine.templates import DeckError, render
 from tests import DATA
 from tests.support.law_cases import long_slip_registered, wear_settings
 from tests.support.tiny import tiny_study
-from workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
-from workflows.config.design import list_studies, load_study
-from workflows.engine import decks as deck
-from workflows.engine.schedule import known_spans
-from workflows.engine.templates import DeckError, render
 
 RESET = 'if "${begin_step} == 0" then "reset_timestep 0"'  # a later piece goes on counting
 GOLDEN = DATA / "golden_sliding_sample.in"

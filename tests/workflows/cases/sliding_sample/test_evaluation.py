@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from workflows.cases.sliding_sample.evaluation import (
+from bulkwear.workflows.cases.sliding_sample.evaluation import (
     CONTINUOUS,
     DISCONTINUOUS,
     MEASURES,

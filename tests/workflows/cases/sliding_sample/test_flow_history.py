@@ -6,9 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.moving_bins import bin_history
-from tests import REPOSITORY
-from workflows.cases.sliding_sample.flow_history import (
+from bulkwear.postproc.flow.moving_bins import bin_history
+from bulkwear.workflows.cases.sliding_sample.flow_history import (
     INTERVAL,
     RunFlow,
     flow_tables,
@@ -21,6 +20,7 @@ from workflows.cases.sliding_sample.flow_history import (
     study_regimes,
     undisturbed_particles,
 )
+from tests import REPOSITORY
 
 RUN = RunFlow(
     width=0.04,

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from bulkwear.workflows.cases.sliding_sample.study import published_rows, replicate_settings
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.products import figures_of
 from tests.support.finished_samples import CYCLES, embedded, finished_page
-from workflows.cases.sliding_sample.study import published_rows, replicate_settings
-from workflows.config.design import load_study
-from workflows.report.page_parameters import page_parameters
-from workflows.report.products import figures_of
 
 RELATIVE = 1e-9  # numbers pass through CSV text
 

@@ -11,24 +11,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from postproc.mesh import read_surface
-from postproc.readers.cycle_folders import PACKING
-from postproc.readers.load_ledger import read_load_ledger
-from postproc.readers.solver_log import exchanges, thermo_table
+from bulkwear.postproc.mesh import read_surface
+from bulkwear.postproc.readers.cycle_folders import PACKING
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.postproc.readers.solver_log import exchanges, thermo_table
+from bulkwear.workflows.cases.sliding_sample.case import SlidingSample, exchanged_particles, front_lag
+from bulkwear.workflows.cases.sliding_sample.decks import exchange_steps, lowered_bed, sliding_sample
+from bulkwear.workflows.cases.sliding_sample.work import run_stages
+from bulkwear.workflows.engine import cycles
+from bulkwear.workflows.engine.chain import write_cycle
+from bulkwear.workflows.engine.derived import window_lengths
+from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.ledgers import summed_by_solver
+from bulkwear.workflows.engine.schedule import first_span, known_spans
+from bulkwear.workflows.engine.solver import run_deck
+from bulkwear.workflows.engine.templates import TEMPLATES, _environment, render
+from bulkwear.workflows.engine.work import builds_per_step
 from tests.support.tiny import tiny_chain, tiny_study
-from workflows.cases.sliding_sample.case import SlidingSample, exchanged_particles, front_lag
-from workflows.cases.sliding_sample.decks import exchange_steps, lowered_bed, sliding_sample
-from workflows.cases.sliding_sample.work import run_stages
-from workflows.engine import cycles
-from workflows.engine.chain import write_cycle
-from workflows.engine.derived import window_lengths
-from workflows.engine.inputs import inputs_digest
-from workflows.engine.job import Progress
-from workflows.engine.ledgers import summed_by_solver
-from workflows.engine.schedule import first_span, known_spans
-from workflows.engine.solver import run_deck
-from workflows.engine.templates import TEMPLATES, _environment, render
-from workflows.engine.work import builds_per_step
 
 WINDOW = {
     "particle_scale": 6,

@@ -12,7 +12,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import LARGEST_HEIGHT, ORANGE, SMALLEST_FONT, new_figure
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, ORANGE, SMALLEST_FONT, new_figure
 
 SLOPE_COLOUR = ORANGE
 PARTICLE_COLOUR, PARTICLE_EDGE = "#d8dee4", "#8a949e"

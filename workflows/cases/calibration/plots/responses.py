@@ -14,10 +14,19 @@ from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from postproc.inference.posterior import CORE_SHARE, FAMILY_SHARE
-from postproc.inference.problem import Measured
-from postproc.plots.style import BLUE, LARGEST_HEIGHT, MAP, ORANGE, OTHER_COLOUR, SMALLEST_FONT, facets, new_figure
-from workflows.cases.calibration.responses import BAND, RECOMMENDED, parameter_name, response_name
+from bulkwear.postproc.inference.posterior import CORE_SHARE, FAMILY_SHARE
+from bulkwear.postproc.inference.problem import Measured
+from bulkwear.postproc.plots.style import (
+    BLUE,
+    LARGEST_HEIGHT,
+    MAP,
+    ORANGE,
+    OTHER_COLOUR,
+    SMALLEST_FONT,
+    facets,
+    new_figure,
+)
+from bulkwear.workflows.cases.calibration.responses import BAND, RECOMMENDED, parameter_name, response_name
 
 OURS, OTHERS = BLUE, ORANGE
 BAND_COLOUR = "#000000"

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 
-from postproc.plots.style import (
+from bulkwear.postproc.plots.style import (
     BASE_COLOUR,
     LARGEST_HEIGHT,
     MAP,
@@ -20,9 +20,9 @@ from postproc.plots.style import (
     named_once,
     new_figure,
 )
-from postproc.tables.summary import published_value
-from workflows.cases.circular_tester.distribution import share_of_bumps
-from workflows.cases.circular_tester.plots.flow import BAND_COLOUR, BANDS
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.circular_tester.distribution import share_of_bumps
+from bulkwear.workflows.cases.circular_tester.plots.flow import BAND_COLOUR, BANDS
 
 
 def by_column(table: pd.DataFrame, unit: str, quantity: str, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:

@@ -11,11 +11,11 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from postproc.mesh import PLAIN
-from postproc.plots.style import MAP, SMALLEST_FONT, colour, draw_circles, marker, named_once, new_figure
-from postproc.tables.display import DEGREES, MILLIMETRES
-from postproc.tables.summary import published_value
-from workflows.cases.circular_tester.flow import STEADINESS
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.plots.style import MAP, SMALLEST_FONT, colour, draw_circles, marker, named_once, new_figure
+from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
+from bulkwear.postproc.tables.summary import published_value
+from bulkwear.workflows.cases.circular_tester.flow import STEADINESS
 
 BAND_COLOUR = "#dddddd"  # of published ranges, behind what is simulated
 BANDS = 0.25  # opacity of published ranges in the colour of their surface

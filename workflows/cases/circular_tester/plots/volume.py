@@ -10,8 +10,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.mesh import PLAIN
-from postproc.plots.style import (
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.plots.style import (
     BLUE,
     LARGEST_HEIGHT,
     OTHER_COLOUR,
@@ -23,11 +23,11 @@ from postproc.plots.style import (
     new_figure,
     printed_table,
 )
-from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.summary import patterned_name, published_value
-from workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
-from workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
-from workflows.cases.circular_tester.volume import (
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.summary import patterned_name, published_value
+from bulkwear.workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
+from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
+from bulkwear.workflows.cases.circular_tester.volume import (
     CONVEX,
     TERMS,
     chosen_fit,

@@ -11,9 +11,17 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, PUBLISHED, SMALLEST_FONT, named_once, new_figure
-from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.cases.pin_on_disc.run_in import SIGNIFICANCE, SIZES
+from bulkwear.postproc.plots.style import (
+    LARGEST_HEIGHT,
+    MAP,
+    OTHER_COLOUR,
+    PUBLISHED,
+    SMALLEST_FONT,
+    named_once,
+    new_figure,
+)
+from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
+from bulkwear.workflows.cases.pin_on_disc.run_in import SIGNIFICANCE, SIZES
 
 SCHEME_COLOURS = {"conserving": "#0072B2", "per_triangle": "#D55E00"}
 SCHEME_NAMES = {"conserving": "conserving", "per_triangle": "per triangle (Yan 2022, Eq 5.7)"}

@@ -12,12 +12,12 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from postproc.mesh import SurfaceMesh, edge_lengths_per_triangle
-from postproc.plots.scene import load_pyvista, new_plotter, trimmed
-from postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture
-from postproc.tables.display import MICROMETRES, MILLIMETRES
-from workflows.cases.pin_on_disc.contours import CONTOURS, OPENING_LEVEL, contour_table, depth_map, track_radii
-from workflows.cases.pin_on_disc.plots.contours import SCHEME_COLOURS, SCHEME_NAMES
+from bulkwear.postproc.mesh import SurfaceMesh, edge_lengths_per_triangle
+from bulkwear.postproc.plots.scene import load_pyvista, new_plotter, trimmed
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture
+from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
+from bulkwear.workflows.cases.pin_on_disc.contours import CONTOURS, OPENING_LEVEL, contour_table, depth_map, track_radii
+from bulkwear.workflows.cases.pin_on_disc.plots.contours import SCHEME_COLOURS, SCHEME_NAMES
 
 PIN_COLOUR = "#D55E00"
 RELIEF_SPACING = 20e-6  # m, of the places across the track in 3-D

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.plots.style import (
+from bulkwear.postproc.plots.style import (
     LARGEST_HEIGHT,
     OTHER_COLOUR,
     PUBLISHED,
@@ -20,10 +20,10 @@ from postproc.plots.style import (
     new_figure,
     printed_table,
 )
-from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.wear.coefficient import scaling_factor
-from workflows.cases.pin_on_disc.coefficient import PUBLISHED_FITS, TOUCHED
-from workflows.cases.pin_on_disc.plots.contours import (
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.wear.coefficient import scaling_factor
+from bulkwear.workflows.cases.pin_on_disc.coefficient import PUBLISHED_FITS, TOUCHED
+from bulkwear.workflows.cases.pin_on_disc.plots.contours import (
     LABORATORY_COLOUR,
     LAW_COLOUR,
     SCHEME_COLOURS,
@@ -31,7 +31,7 @@ from workflows.cases.pin_on_disc.plots.contours import (
     SCHEME_NAMES,
     coefficient_name,
 )
-from workflows.cases.pin_on_disc.volume import CANDIDATES, VOLUMES, law_volume, published_volume
+from bulkwear.workflows.cases.pin_on_disc.volume import CANDIDATES, VOLUMES, law_volume, published_volume
 
 CANDIDATE_COLOURS = dict(zip(CANDIDATES, ("#56B4E9", "#999999", "#F0E442", "#E69F00", "#CC79A7"), strict=True))
 UNEXPLAINED_LOOK = {"color": "white", "edgecolor": "black", "hatch": "////", "linewidth": 0.6}

@@ -18,16 +18,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.readers.dump_text import read_frames
-from postproc.reference.collision import Collision, collision, reduced
-from postproc.reference.sphere_contact import effective_modulus
-from workflows.cases.sliding_sample.particle_size.study import by_scale
-from workflows.engine import decks as deck
-from workflows.engine.bulk_tests import bulk_materials, time_step
-from workflows.engine.case import Parameters
-from workflows.engine.derived import WALLS, derived_materials, youngs_modulus
-from workflows.engine.solver import DECK, run_deck
-from workflows.engine.templates import render
+from bulkwear.postproc.readers.dump_text import read_frames
+from bulkwear.postproc.reference.collision import Collision, collision, reduced
+from bulkwear.postproc.reference.sphere_contact import effective_modulus
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.bulk_tests import bulk_materials, time_step
+from bulkwear.workflows.engine.case import Parameters
+from bulkwear.workflows.engine.derived import WALLS, derived_materials, youngs_modulus
+from bulkwear.workflows.engine.solver import DECK, run_deck
+from bulkwear.workflows.engine.templates import render
 
 DUMP = "collision.dump"
 COLUMNS = (

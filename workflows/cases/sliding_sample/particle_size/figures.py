@@ -8,21 +8,21 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.sliding_sample.particle_size.study import (
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
     bed_floors,
     bumps_and_particles,
     plain_parameters,
     settled_beds,
 )
-from workflows.cases.sliding_sample.study import flow_runs, plain_runs, varies_scale
-from workflows.config.units import to_si
-from workflows.engine.state import digest
-from workflows.engine.templates import template_sources
-from workflows.report.page_parameters import is_deformed
-from workflows.report.products import Job, OfStudy, every_run, figure, tables
+from bulkwear.workflows.cases.sliding_sample.study import flow_runs, plain_runs, varies_scale
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine.state import digest
+from bulkwear.workflows.engine.templates import template_sources
+from bulkwear.workflows.report.page_parameters import is_deformed
+from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure, tables
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 SUMMARY, PROFILES = "results/{study}/summary.csv", "results/{study}/flow/profiles.csv"
 PUBLISHED_LINES = "config/published/particle_size_lines.csv"
@@ -61,9 +61,9 @@ def wear_against_scale(job: Job) -> Any:
     """Draw wear against particle scale with fitted lines and the critical scale."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
-    from workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
 
     wear = by_scale.wear_by_scale(read_summary(job.files.summary))
     published = by_scale.lines_beside(pd.read_csv(job.files.published), wear)
@@ -95,10 +95,10 @@ def wear_against_size_ratios(job: Job) -> Any:
     import numpy as np
     import pandas as pd
 
-    from postproc.reference.size_ratios import size_ratios
-    from workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
-    from workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance_table
-    from workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
+    from bulkwear.postproc.reference.size_ratios import size_ratios
+    from bulkwear.workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
+    from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance_table
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
 
     wear, lines = pd.read_csv(job.files.wear, dtype={"row": str}), pd.read_csv(job.files.published)
     rows = job.told.rows
@@ -126,9 +126,9 @@ def steady_by_scale(job: Job) -> Any:
     """Draw relative velocity and wear rate in their steady windows against particle scale."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.particle_size import published_sizes
-    from workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.particle_size import published_sizes
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
 
     scales = read_summary(job.files.summary).set_index("run")["particle_scale"].to_dict()
     table = published_sizes.steady_by_scale(read_summary(job.files.steady), scales)
@@ -148,10 +148,10 @@ def steady_by_scale(job: Job) -> Any:
 )
 def wear_maps(job: Job) -> Any:
     """Draw the worn surfaces of the smallest and the largest particle scale side by side."""
-    from postproc.plots import pictures
-    from postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.particle_size.wear_by_scale import smallest_and_largest
+    from bulkwear.postproc.plots import pictures
+    from bulkwear.postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import smallest_and_largest
 
     summary, deformed = read_summary(job.files.summary), job.told.deformed
     every = dict(zip(summary["run"], job.files.surfaces, strict=True))
@@ -213,9 +213,9 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
     """Draw a component of the velocity, with what is published of it where the job has that."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
-    from workflows.cases.sliding_sample.particle_size.wear_by_scale import over_the_sample, velocity_bounds
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+    from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import over_the_sample, velocity_bounds
 
     scales = read_summary(job.files.summary).set_index("run")["particle_scale"]
     table = over_the_sample(read_summary(job.files.profiles), scales)
@@ -240,10 +240,10 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
 )
 def angular_velocity_along_sample(job: Job) -> Any:
     """Draw the angular speed of the lowest layer along the samples round a circle, a curve per particle scale."""
-    from postproc.tables.display import MILLIMETRES, in_display_units
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.flow_history import RunFlow, spin_profiles
-    from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+    from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.flow_history import RunFlow, spin_profiles
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
 
     summary = read_summary(job.files.summary)[["run", "row", "surface", "particle_scale"]]
     starts = read_summary(job.files.profiles).groupby("run")["window_start_mm"].first() / MILLIMETRES
@@ -278,8 +278,8 @@ def packing_profiles(job: Job) -> Any:
     """Draw how the particles of a container per particle scale are packed."""
     import pandas as pd
 
-    from postproc.flow.packing import slabs_remark
-    from workflows.cases.sliding_sample.particle_size.plots import contacts
+    from bulkwear.postproc.flow.packing import slabs_remark
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
 
     table, packing = pd.read_csv(job.files.profiles), job.told.packing
     published = pd.read_csv(job.files.published).query("case == 'container'")
@@ -311,8 +311,8 @@ def bed_packing(job: Job) -> Any:
     """Count contacts in the beds of plain runs before and after the sample passed; draw them by particle scale."""
     import pandas as pd
 
-    from workflows.cases.sliding_sample.particle_size.packings import bed_packing_table
-    from workflows.cases.sliding_sample.particle_size.plots import contacts
+    from bulkwear.workflows.cases.sliding_sample.particle_size.packings import bed_packing_table
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
 
     told = job.told
     folders = {run: Path(path).parent for run, path in zip(told.runs, job.files.wear, strict=True)}
@@ -323,7 +323,7 @@ def bed_packing(job: Job) -> Any:
 
 
 def _collision_tests(study: Study) -> list[dict[str, Any]]:
-    from workflows.cases.sliding_sample.particle_size.collision import collision_tests
+    from bulkwear.workflows.cases.sliding_sample.particle_size.collision import collision_tests
 
     return collision_tests({run.name: run.parameters for run in study.runs})
 
@@ -344,8 +344,8 @@ def _collision_tests(study: Study) -> list[dict[str, Any]]:
 )
 def collisions(job: Job) -> Any:
     """Simulate single collisions at every particle scale; draw them in units of their size."""
-    from workflows.cases.sliding_sample.particle_size import collision
-    from workflows.cases.sliding_sample.particle_size.plots import contacts
+    from bulkwear.workflows.cases.sliding_sample.particle_size import collision
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
 
     histories, measures = collision.collision_tables(job.told.tests, Path(job.told.folder))
     largest = collision.spread_over_scales(measures)["spread"].max()
@@ -376,10 +376,10 @@ def size_findings(job: Job) -> Any:
     """Set what a study found beside the numbers of the source; tell of its critical scale."""
     import pandas as pd
 
-    from postproc.reference.size_ratios import PUBLISHED_CRITICAL_SCALE
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.particle_size import published_sizes
-    from workflows.cases.sliding_sample.particle_size.wear_by_scale import read_critical_scale
+    from bulkwear.postproc.reference.size_ratios import PUBLISHED_CRITICAL_SCALE
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.particle_size import published_sizes
+    from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import read_critical_scale
 
     files = job.files
     steady, profiles, wear = (read_summary(path) for path in (files.steady, files.profiles, files.wear))

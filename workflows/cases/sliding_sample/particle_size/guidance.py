@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 import pandas as pd
 
-from postproc.reference.size_ratios import (
+from bulkwear.postproc.reference.size_ratios import (
     LARGEST_RATIO,
     PUBLISHED_DIAMETER,
     PUBLISHED_PATTERN,

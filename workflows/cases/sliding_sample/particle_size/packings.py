@@ -11,16 +11,16 @@ from typing import Any
 
 import pandas as pd
 
-from postproc.flow.bed import read_snapshot
-from postproc.flow.bulk_test import HEAP
-from postproc.flow.packing import MEASURES, loose_and_dense, packing_profile, within
-from postproc.readers.cycle_folders import cycle_files
-from postproc.tables.display import in_display_units
-from postproc.wear.caps import GRAVITY
-from workflows.cases.sliding_sample.decks import bed_contacts
-from workflows.cases.sliding_sample.particle_size.study import by_scale
-from workflows.engine import decks as deck
-from workflows.engine.bulk_simulations import (
+from bulkwear.postproc.flow.bed import read_snapshot
+from bulkwear.postproc.flow.bulk_test import HEAP
+from bulkwear.postproc.flow.packing import MEASURES, loose_and_dense, packing_profile, within
+from bulkwear.postproc.readers.cycle_folders import cycle_files
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.workflows.cases.sliding_sample.decks import bed_contacts
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale
+from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.bulk_simulations import (
     FILLED,
     POURED,
     filled_particles,
@@ -28,14 +28,14 @@ from workflows.engine.bulk_simulations import (
     simulation_bytes,
     simulation_folder,
 )
-from workflows.engine.bulk_tests import Kind, fill_top, filled_box, margin_of, register, time_step
-from workflows.engine.case import Parameters
-from workflows.engine.chain import RESTART
-from workflows.engine.derived import PERIODIC, WINDOW
-from workflows.engine.solver import DECK, run_deck
-from workflows.engine.state import read_state
-from workflows.engine.templates import render, used_sections
-from workflows.engine.work import EMPTY_DIAMETERS, Stage, Work
+from bulkwear.workflows.engine.bulk_tests import Kind, fill_top, filled_box, margin_of, register, time_step
+from bulkwear.workflows.engine.case import Parameters
+from bulkwear.workflows.engine.chain import RESTART
+from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
+from bulkwear.workflows.engine.solver import DECK, run_deck
+from bulkwear.workflows.engine.state import read_state
+from bulkwear.workflows.engine.templates import render, used_sections
+from bulkwear.workflows.engine.work import EMPTY_DIAMETERS, Stage, Work
 
 REST_KEYS = ("energy_fraction", "check_interval_s", "calm_checks", "longest_s")
 END_DIAMETERS = 5.0  # -, of a bed next to its end walls, left out

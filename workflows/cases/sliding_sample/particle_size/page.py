@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from postproc.flow.packing import inner_means
-from postproc.mesh import PLAIN
-from postproc.reference.size_ratios import size_ratios
-from postproc.tables.display import in_display_units
-from postproc.tables.summary import patterned_name, read_summary
-from workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
-from workflows.cases.sliding_sample.particle_size.guidance import Pattern
-from workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT, AGREES, DIFFERS, UNSAID
-from workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
-from workflows.report.sections import Block, Pictures, Section, Table, Text
+from bulkwear.postproc.flow.packing import inner_means
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.reference.size_ratios import size_ratios
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.summary import patterned_name, read_summary
+from bulkwear.workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
+from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Pattern
+from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT, AGREES, DIFFERS, UNSAID
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
+from bulkwear.workflows.report.sections import Block, Pictures, Section, Table, Text
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 WEAR, FORCE, RATE = "worn_volume_mm3", "mean_normal_force_N", "worn_volume_per_metre_mm3_per_m"
 PATTERN = "pattern_worn_volume_mm3"

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.flow.packing import MEASURES, inner_means
-from postproc.mesh import PLAIN
-from postproc.statistics.lines import Crossing
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX, patterned_curve
+from bulkwear.postproc.flow.packing import MEASURES, inner_means
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.lines import Crossing
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX, patterned_curve
 
 AGREES, DIFFERS, UNSAID = "agrees", "differs", "cannot be said"
 # -, of a value told as "about": what is read off a figure's axis and told in whole tens of per cent

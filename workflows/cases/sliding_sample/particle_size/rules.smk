@@ -1,7 +1,7 @@
 """Containers of studies of particle size; their figures are declared in figures.py."""
 
-from workflows.cases.sliding_sample.particle_size.study import packed_runs
-from workflows.config.units import to_si
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import packed_runs
+from bulkwear.workflows.config.units import to_si
 
 
 rule packing_profiles:

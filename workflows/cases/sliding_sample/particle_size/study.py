@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.sliding_sample.study import plain_runs
-from workflows.config.patterns import pattern_of
-from workflows.engine.case import Parameters
+from bulkwear.workflows.cases.sliding_sample.study import plain_runs
+from bulkwear.workflows.config.patterns import pattern_of
+from bulkwear.workflows.engine.case import Parameters
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 
 def by_scale(runs: Mapping[str, Parameters]) -> dict[float, Parameters]:

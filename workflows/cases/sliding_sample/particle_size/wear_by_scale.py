@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, SizeRatios, size_ratios
-from postproc.statistics.lines import FEWEST_POINTS, Crossing, crossing, fitted_line
-from postproc.tables.summary import patterned_name
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, SizeRatios, size_ratios
+from bulkwear.postproc.statistics.lines import FEWEST_POINTS, Crossing, crossing, fitted_line
+from bulkwear.postproc.tables.summary import patterned_name
 
 CONVEX = "convex"  # the source's pattern
 PARTS = {"base": "base_worn_volume_m3", "bumps": "pattern_worn_volume_m3"}  # curves of patterned samples' parts

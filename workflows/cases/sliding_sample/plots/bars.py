@@ -9,8 +9,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from postproc.mesh import PLAIN
-from postproc.plots.style import (
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.plots.style import (
     BASE_COLOUR,
     LARGEST_HEIGHT,
     OTHER_COLOUR,
@@ -20,7 +20,7 @@ from postproc.plots.style import (
     marker,
     new_figure,
 )
-from postproc.tables.summary import patterned_name
+from bulkwear.postproc.tables.summary import patterned_name
 
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY_RUNS = 6  # from here on run names stand upright

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.mesh import PLAIN
-from postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, colour, marker, new_figure
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, colour, marker, new_figure
 
 LAYER = 5.0  # mm, of the published profiles, whose particles have their real size
 PANELS = {  # column of a profile -> its quantity in the published table and the label of the axis

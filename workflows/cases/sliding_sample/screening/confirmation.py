@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.tables.display import in_display_units
-from workflows.cases.sliding_sample.screening.regime_groups import ORDER, groups_of_rows
-from workflows.cases.sliding_sample.screening.regression_tables import WEAR
-from workflows.cases.sliding_sample.screening.study_regression import Screening, best_design_table
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import ORDER, groups_of_rows
+from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import WEAR
+from bulkwear.workflows.cases.sliding_sample.screening.study_regression import Screening, best_design_table
 
 DIGITS = 6  # significant, of a level in the design table
 PREDICTED = ("predicted", "run_low", "run_high")

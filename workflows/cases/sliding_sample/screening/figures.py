@@ -7,8 +7,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.sliding_sample.figures import DESIGN, SUMMARY, WEAR
-from workflows.cases.sliding_sample.study import (
+from bulkwear.workflows.cases.sliding_sample.figures import DESIGN, SUMMARY, WEAR
+from bulkwear.workflows.cases.sliding_sample.study import (
     compares_rows,
     equivalent_size_ratios,
     finds_regimes,
@@ -22,7 +22,7 @@ from workflows.cases.sliding_sample.study import (
     replicate_settings,
     run_in,
 )
-from workflows.report.products import Job, every_run, figure, tables
+from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,10 +54,10 @@ def relative_wear(job: Job) -> Any:
     """Draw patterned over plain wear."""
     import pandas as pd
 
-    from postproc.tables.summary import read_history, read_summary
-    from workflows.cases.sliding_sample.comparison import by_setting, relative_wear_table, replicate_remark
-    from workflows.cases.sliding_sample.plots import bars
-    from workflows.cases.sliding_sample.screening.regime_groups import published_relative_wear
+    from bulkwear.postproc.tables.summary import read_history, read_summary
+    from bulkwear.workflows.cases.sliding_sample.comparison import by_setting, relative_wear_table, replicate_remark
+    from bulkwear.workflows.cases.sliding_sample.plots import bars
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import published_relative_wear
 
     files, told = job.files, job.told
     runs = relative_wear_table(read_summary(files.summary), read_history(files.history), told.size_ratios)
@@ -90,10 +90,10 @@ def relative_velocity(job: Job) -> Any:
     """Bin the motion of the bed over every sample along its travel, and draw its relative velocity by regime."""
     import pandas as pd
 
-    from postproc.tables.history import runs_of
-    from workflows.cases.sliding_sample.flow_history import RunFlow, flow_tables, published_window
-    from workflows.cases.sliding_sample.plots.flow import along_travel
-    from workflows.cases.sliding_sample.screening.regime_groups import regime_remarks
+    from bulkwear.postproc.tables.history import runs_of
+    from bulkwear.workflows.cases.sliding_sample.flow_history import RunFlow, flow_tables, published_window
+    from bulkwear.workflows.cases.sliding_sample.plots.flow import along_travel
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import regime_remarks
 
     names = runs_of(job.files.design)
     folders = dict(zip(names["run"], [Path(path).parent for path in job.files.wear], strict=True))
@@ -128,12 +128,12 @@ def wear_gradient(job: Job) -> Any:
     """Draw the relative wear gradient along the travel by regime; where flow and wear are steady, in a table."""
     import pandas as pd
 
-    from postproc.tables.history import wear_within_cycles
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.evaluation import steady_table
-    from workflows.cases.sliding_sample.flow_history import published_window
-    from workflows.cases.sliding_sample.plots.flow import along_travel
-    from workflows.cases.sliding_sample.screening.regime_groups import gradients_by_group, regime_remarks
+    from bulkwear.postproc.tables.history import wear_within_cycles
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.evaluation import steady_table
+    from bulkwear.workflows.cases.sliding_sample.flow_history import published_window
+    from bulkwear.workflows.cases.sliding_sample.plots.flow import along_travel
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import gradients_by_group, regime_remarks
 
     regimes, folders = read_summary(job.files.regimes), [Path(path).parent for path in job.files.wear]
     table = gradients_by_group(wear_within_cycles(job.files.design, folders), regimes)
@@ -154,8 +154,8 @@ def profiles(job: Job) -> dict[str, pd.DataFrame]:
     """Make the profiles of the motion by layer of all rows."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.flow_history import row_profiles
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.flow_history import row_profiles
 
     rows = list(dict.fromkeys(read_summary(job.files.summary)["row"]))
     bins = pd.read_csv(job.files.bins, dtype={"run": str})
@@ -190,7 +190,7 @@ OF_PROFILES = {
 )
 def velocity_profiles(job: Job) -> Any:
     """Draw the velocity by layers over the rows that are shown in detail."""
-    from workflows.cases.sliding_sample.plots import flow
+    from bulkwear.workflows.cases.sliding_sample.plots import flow
 
     table, published = _profiles_in_detail(job)
     return flow.velocity_profiles(table, published, job.remarks), table
@@ -210,7 +210,7 @@ def velocity_profiles(job: Job) -> Any:
 )
 def angular_velocity_profiles(job: Job) -> Any:
     """Draw the angular speed by layers over the rows that are shown in detail."""
-    from workflows.cases.sliding_sample.plots import flow
+    from bulkwear.workflows.cases.sliding_sample.plots import flow
 
     table, published = _profiles_in_detail(job)
     return flow.angular_velocity_profiles(table, published, job.remarks), table
@@ -220,8 +220,8 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the profiles of the rows that are shown in detail, and what is published of them."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.regime_groups import (
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
         of_published_rows,
         published_rows_in_detail,
         rows_in_detail,
@@ -254,10 +254,14 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
 )
 def wear_by_regime(job: Job) -> Any:
     """Draw the relative wear of all runs by regime."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.comparison import replicate_remark, with_intervals
-    from workflows.cases.sliding_sample.screening.plots import regimes as figures
-    from workflows.cases.sliding_sample.screening.regime_groups import regime_remarks, wear_by_group, with_wear_rates
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.comparison import replicate_remark, with_intervals
+    from bulkwear.workflows.cases.sliding_sample.screening.plots import regimes as figures
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
+        regime_remarks,
+        wear_by_group,
+        with_wear_rates,
+    )
 
     summary, regimes = read_summary(job.files.summary), read_summary(job.files.regimes)
     runs = with_wear_rates(wear_by_group(summary, regimes), summary, job.told.beds)
@@ -282,10 +286,14 @@ def wear_by_regime(job: Job) -> Any:
 )
 def normal_force_by_regime(job: Job) -> Any:
     """Draw the normal force on all samples by regime."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.comparison import mean_of_replicates
-    from workflows.cases.sliding_sample.screening.plots import regimes as figures
-    from workflows.cases.sliding_sample.screening.regime_groups import force_by_group, force_remarks, regime_remarks
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.comparison import mean_of_replicates
+    from bulkwear.workflows.cases.sliding_sample.screening.plots import regimes as figures
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
+        force_by_group,
+        force_remarks,
+        regime_remarks,
+    )
 
     regimes, folders = read_summary(job.files.regimes), [Path(path).parent for path in job.files.wear]
     table = mean_of_replicates(force_by_group(read_summary(job.files.summary), folders, regimes), job.told.settings)
@@ -327,10 +335,13 @@ def findings(job: Job) -> dict[str, pd.DataFrame]:
     """Tell which findings of the source the study confirms, and its rows beside what the source tells of them."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.finding_tests import findings_table
-    from workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source
-    from workflows.cases.sliding_sample.screening.regression_tables import published_wear_by_row, screen_summary
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.finding_tests import findings_table
+    from bulkwear.workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source
+    from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import (
+        published_wear_by_row,
+        screen_summary,
+    )
 
     told, paths = job.told, {name: path for name, path in vars(job.files).items() if path}
     read = {name: (read_summary if name in OF_RUNS else pd.read_csv)(path) for name, path in paths.items()}

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
-from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES, RIDES_ALONG
-from workflows.cases.sliding_sample.screening.findings import (
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
+from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES, RIDES_ALONG
+from bulkwear.workflows.cases.sliding_sample.screening.findings import (
     CENTRAL,
     PERCENT,
     SIDE,

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.statistics.regression import CONSTANT
-from postproc.tables.display import MILLIMETRES
-from workflows.cases.sliding_sample.comparison import relative_wear_intervals
-from workflows.cases.sliding_sample.evaluation import CONTINUOUS
-from workflows.cases.sliding_sample.screening.regression_tables import has_factors
-from workflows.cases.sliding_sample.screening.regression_warnings import confounded
-from workflows.cases.sliding_sample.screening.study_regression import Screening
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.regression import CONSTANT
+from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.workflows.cases.sliding_sample.comparison import relative_wear_intervals
+from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS
+from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import has_factors
+from bulkwear.workflows.cases.sliding_sample.screening.regression_warnings import confounded
+from bulkwear.workflows.cases.sliding_sample.screening.study_regression import Screening
 
 UNSURE = 0.05  # -, from 1: between versions of the program the demo's relative wear has scattered by as much (README)
 CENTRAL, SIDE = "central", "side"

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.tables.display import in_display_units
-from postproc.tables.summary import patterned_name, read_summary
-from workflows.cases.sliding_sample.study import has_findings
-from workflows.report.sections import Block, Pictures, Points, Section, Table, Text
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.summary import patterned_name, read_summary
+from bulkwear.workflows.cases.sliding_sample.study import has_findings
+from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 
 if TYPE_CHECKING:
-    from workflows.config.design import Study
+    from bulkwear.workflows.config.design import Study
 
 TEXTS = (  # columns of words, which may be empty
     *("model", "given", "not_in_model", "warning"),

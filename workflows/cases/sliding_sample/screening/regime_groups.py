@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.readers.cycle_folders import cycle_files
-from postproc.tables.display import CUBIC_MILLIMETRES
-from postproc.tables.summary import rows_to_show
-from workflows.cases.sliding_sample.evaluation import (
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.readers.cycle_folders import cycle_files
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.summary import rows_to_show
+from bulkwear.workflows.cases.sliding_sample.evaluation import (
     CONTINUOUS,
     DISCONTINUOUS,
     UNDECIDED,

@@ -6,15 +6,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from workflows.cases.sliding_sample.figures import SUMMARY
-from workflows.cases.sliding_sample.screening.figures import REGIMES
-from workflows.cases.sliding_sample.study import CONDITIONS, PATTERN, factor_labels
-from workflows.report.products import Job, figure, tables
+from bulkwear.workflows.cases.sliding_sample.figures import SUMMARY
+from bulkwear.workflows.cases.sliding_sample.screening.figures import REGIMES
+from bulkwear.workflows.cases.sliding_sample.study import CONDITIONS, PATTERN, factor_labels
+from bulkwear.workflows.report.products import Job, figure, tables
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from workflows.cases.sliding_sample.screening.study_regression import Screening
+    from bulkwear.workflows.cases.sliding_sample.screening.study_regression import Screening
 
 COEFFICIENTS = "config/published/screening_coefficients.csv"
 OF_REGRESSION = {"told": {"factors": lambda study: study.factors}, "when": lambda study: bool(study.factors)}
@@ -44,13 +44,13 @@ def confirmation(job: Job) -> Any:
     """Draw what the runs of the best designs wear against what was predicted of them."""
     import pandas as pd
 
-    from postproc.tables.summary import patterned_name, read_summary
-    from workflows.cases.sliding_sample.screening.confirmation import (
+    from bulkwear.postproc.tables.summary import patterned_name, read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.confirmation import (
         check_fidelity,
         confirmation_remarks,
         confirmation_table,
     )
-    from workflows.cases.sliding_sample.screening.plots import regimes as figures
+    from bulkwear.workflows.cases.sliding_sample.screening.plots import regimes as figures
 
     predictions = pd.read_csv(job.files.prediction)
     check_fidelity(predictions, job.told.fidelity, job.files.prediction)
@@ -85,7 +85,7 @@ def regression(job: Job) -> dict[str, pd.DataFrame]:
     """Regress the wear of a study on its factors."""
     import pandas as pd
 
-    from workflows.cases.sliding_sample.screening.regression_tables import regression_tables
+    from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import regression_tables
 
     published = pd.read_csv(job.files.published), pd.read_csv(job.files.published_contours)
     return regression_tables(_screening(job)[0], *published)
@@ -114,9 +114,9 @@ def regression_coefficients(job: Job) -> Any:
     """Draw the coefficients beside the published ones, where the study has all their factors."""
     import pandas as pd
 
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.plots import regression as figures
-    from workflows.cases.sliding_sample.screening.regression_tables import has_factors
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.plots import regression as figures
+    from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import has_factors
 
     (study, remarks), table = _screening(job), read_summary(job.files.table)
     published = pd.read_csv(job.files.published)
@@ -137,8 +137,8 @@ def regression_coefficients(job: Job) -> Any:
 )
 def regression_residuals(job: Job) -> Any:
     """Draw the residuals."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.plots import regression as figures
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.plots import regression as figures
 
     table = read_summary(job.files.table)
     return figures.residual_plots(table, _screening(job)[1]), table
@@ -158,8 +158,8 @@ def regression_residuals(job: Job) -> Any:
 )
 def regression_half_normal(job: Job) -> Any:
     """Draw the sizes of contrasts."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.plots import regression as figures
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.plots import regression as figures
 
     table = read_summary(job.files.table)
     return figures.half_normal(table, _screening(job)[1]), table
@@ -180,8 +180,8 @@ def regression_half_normal(job: Job) -> Any:
 )
 def regression_contours(job: Job) -> Any:
     """Draw the response over pairs of factors."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.plots import regression as figures
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.plots import regression as figures
 
     (study, remarks), table = _screening(job), read_summary(job.files.table)
     doubling = [factor.name for factor in study.factors if factor.spacing == "log"]
@@ -196,8 +196,8 @@ def regression_contours(job: Job) -> Any:
 )
 def best_designs(job: Job) -> dict[str, pd.DataFrame]:
     """Make a design table of the best design of each flow regime, which <study>_confirmation simulates."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.confirmation import best_of_regimes, design_of
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.confirmation import best_of_regimes, design_of
 
     summary, regimes = read_summary(job.files.summary), read_summary(job.files.regimes)
     found = best_of_regimes(_screening(job)[0], summary, regimes, job.told.factors, CONDITIONS)
@@ -206,9 +206,9 @@ def best_designs(job: Job) -> dict[str, pd.DataFrame]:
 
 def _screening(job: Job) -> tuple[Screening, list[str]]:
     """Return a study's regression, and what its figures must say."""
-    from postproc.tables.summary import read_summary
-    from workflows.cases.sliding_sample.screening.regression_tables import screen_summary
-    from workflows.cases.sliding_sample.screening.regression_warnings import warnings_for_figures
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+    from bulkwear.workflows.cases.sliding_sample.screening.regression_warnings import warnings_for_figures
 
     study = screen_summary(read_summary(job.files.summary), job.told.factors)
     return study, [*job.remarks, *warnings_for_figures(study)]

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from postproc.mesh import PLAIN
-from postproc.statistics.factors import Factor, factor_of
-from postproc.statistics.model_terms import aliasing, candidate_terms, parse_term, term_columns
-from postproc.statistics.regression import CONSTANT
-from workflows.cases.sliding_sample.screening.regression_warnings import confounded, screening_warnings
-from workflows.cases.sliding_sample.screening.study_regression import (
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.factors import Factor, factor_of
+from bulkwear.postproc.statistics.model_terms import aliasing, candidate_terms, parse_term, term_columns
+from bulkwear.postproc.statistics.regression import CONSTANT
+from bulkwear.workflows.cases.sliding_sample.screening.regression_warnings import confounded, screening_warnings
+from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     Screening,
     best_design_table,
     chance_test,

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from postproc.statistics.model_terms import aliased_pairs, aliasing, obeys, term_name
-from postproc.statistics.regression import SINGULAR, press
-from postproc.statistics.selection import largest_size
-from workflows.cases.sliding_sample.screening.study_regression import Screening
+from bulkwear.postproc.statistics.model_terms import aliased_pairs, aliasing, obeys, term_name
+from bulkwear.postproc.statistics.regression import SINGULAR, press
+from bulkwear.postproc.statistics.selection import largest_size
+from bulkwear.workflows.cases.sliding_sample.screening.study_regression import Screening
 
 FEW_FREEDOM = 4  # degrees of freedom of the error; Student's t at 95 % is 2.8 there, and grows fast below
 CLEAR = 0.01  # -, correlation below which a main effect counts as clear of a term of second order

@@ -12,10 +12,18 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from postproc.statistics.factors import Factor, half_normal_table
-from postproc.statistics.model_terms import Heredity, Term, candidate_terms, parse_term, term_name, told_apart
-from postproc.statistics.regression import CONSTANT, Fit, coefficient_table, fit, fit_measures, predict, residual_table
-from postproc.statistics.selection import (
+from bulkwear.postproc.statistics.factors import Factor, half_normal_table
+from bulkwear.postproc.statistics.model_terms import Heredity, Term, candidate_terms, parse_term, term_name, told_apart
+from bulkwear.postproc.statistics.regression import (
+    CONSTANT,
+    Fit,
+    coefficient_table,
+    fit,
+    fit_measures,
+    predict,
+    residual_table,
+)
+from bulkwear.postproc.statistics.selection import (
     MOST_TERMS,
     PERMUTATIONS,
     Choice,

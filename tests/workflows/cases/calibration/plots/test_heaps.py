@@ -3,8 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from postproc.flow.free_surface import Slope
-from workflows.cases.calibration.plots.heaps import heaps
+from bulkwear.postproc.flow.free_surface import Slope
+from bulkwear.workflows.cases.calibration.plots.heaps import heaps
 
 REMARKS = ["particles at scale 5"]
 PARTICLES = pd.DataFrame({"x_m": [0.0, 0.01], "y_m": [0.0, 0.2], "z_m": [0.0, 0.14], "radius_m": [0.006, 0.007]})

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.inference.problem import Measured
-from postproc.plots.style import remarks_of
-from workflows.cases.calibration.plots import responses as plots
-from workflows.cases.calibration.responses import RECOMMENDED
+from bulkwear.postproc.inference.problem import Measured
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.workflows.cases.calibration.plots import responses as plots
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 
 NAMES = ["particle.contact.sliding_friction", "particle.contact.rolling_friction"]
 REMARKS = ["particles at scale 5"]

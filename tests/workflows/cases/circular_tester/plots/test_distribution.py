@@ -3,9 +3,9 @@
 import numpy as np
 import pandas as pd
 
+from bulkwear.workflows.cases.circular_tester.plots import distribution as tester
 from tests.support import tester_study as study
 from tests.support.tester_study import REMARKS, missing_words
-from workflows.cases.circular_tester.plots import distribution as tester
 
 
 def test_by_column(tmp_path):

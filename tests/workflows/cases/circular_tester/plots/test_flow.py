@@ -4,12 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.plate import flat_plate
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.workflows.cases.circular_tester.flow import STEADINESS, revolution_means, steady_revolutions
+from bulkwear.workflows.cases.circular_tester.layer import relative_motion
+from bulkwear.workflows.cases.circular_tester.plots import flow as tester
 from tests.support import tester_study as study
 from tests.support.tester_study import REMARKS, missing_words
-from workflows.cases.circular_tester.flow import STEADINESS, revolution_means, steady_revolutions
-from workflows.cases.circular_tester.layer import relative_motion
-from workflows.cases.circular_tester.plots import flow as tester
 
 
 def test_steadiness(tmp_path):

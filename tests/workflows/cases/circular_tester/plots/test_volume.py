@@ -4,13 +4,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests.support import tester_study as study
-from tests.support.tester_study import REMARKS, missing_words
-from workflows.cases.circular_tester.comparison import mean_ratios, pattern_left, ratios_by_revolution, worn_out_at
-from workflows.cases.circular_tester.plots import volume as tester_volume
-from workflows.cases.circular_tester.plots.volume import channel_and_ring, worn_out
-from workflows.cases.circular_tester.tables import comparison_table
-from workflows.cases.circular_tester.volume import (
+from bulkwear.workflows.cases.circular_tester.comparison import (
+    mean_ratios,
+    pattern_left,
+    ratios_by_revolution,
+    worn_out_at,
+)
+from bulkwear.workflows.cases.circular_tester.plots import volume as tester_volume
+from bulkwear.workflows.cases.circular_tester.plots.volume import channel_and_ring, worn_out
+from bulkwear.workflows.cases.circular_tester.tables import comparison_table
+from bulkwear.workflows.cases.circular_tester.volume import (
     chosen_fit,
     crossing,
     element_increments,
@@ -19,6 +22,8 @@ from workflows.cases.circular_tester.volume import (
     time_scale,
     volume_fits,
 )
+from tests.support import tester_study as study
+from tests.support.tester_study import REMARKS, missing_words
 
 
 @pytest.fixture(scope="module")

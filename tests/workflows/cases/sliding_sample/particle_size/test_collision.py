@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from workflows.cases.sliding_sample.particle_size.collision import (
+from bulkwear.workflows.cases.sliding_sample.particle_size.collision import (
     EXACT_STEP,
     MODELS,
     Spheres,
@@ -20,9 +20,9 @@ from workflows.cases.sliding_sample.particle_size.collision import (
     spheres_of,
     spread_over_scales,
 )
-from workflows.cases.sliding_sample.particle_size.study import packed_runs
-from workflows.config.design import load_study
-from workflows.engine.bulk_tests import time_step
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import packed_runs
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.bulk_tests import time_step
 
 SCALES = [1.0, 8.0]  # the source's smallest and largest
 SAME = 1e-3  # -, between scales; measured: 6e-10, the digits of a dump

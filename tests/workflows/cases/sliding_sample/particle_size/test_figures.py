@@ -5,11 +5,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from tests import REPOSITORY
-from workflows.cases.sliding_sample.particle_size import figures
-from workflows.cases.sliding_sample.study import published_flow
-from workflows.config.design import load_study
-from workflows.report.products import (
+from bulkwear.workflows.cases.sliding_sample.particle_size import figures
+from bulkwear.workflows.cases.sliding_sample.study import published_flow
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.products import (
     figures_of,
     job_of,
     outputs_of,
@@ -18,6 +17,7 @@ from workflows.report.products import (
     told_to,
     write_product,
 )
+from tests import REPOSITORY
 
 OWN = {each.product.name for each in vars(figures).values() if hasattr(each, "product")}
 SIMULATING = {"collisions": "collision", "bed_packing": "bed_contacts"}  # figure -> template of its deck

@@ -3,14 +3,14 @@
 import pandas as pd
 import pytest
 
-from tests import PUBLISHED
-from workflows.cases.sliding_sample.particle_size.guidance import (
+from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import (
     Particles,
     Pattern,
     guidance,
     guidance_table,
     published_bias,
 )
+from tests import PUBLISHED
 
 LINES = pd.read_csv(PUBLISHED / "particle_size_lines.csv")
 R5 = Pattern(4e-3, 8e-3, 6e-3, gap=44e-3)

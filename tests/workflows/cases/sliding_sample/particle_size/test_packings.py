@@ -6,12 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.flow.bed import read_snapshot
-from postproc.flow.bulk_test import HEAP
-from postproc.flow.packing import contacts_of, inner_means, loose_and_dense, packing_profile
-from tests.support.tiny import tiny_chain, tiny_study
-from workflows.cases.sliding_sample.decks import bed_contacts
-from workflows.cases.sliding_sample.particle_size.packings import (
+from bulkwear.postproc.flow.bed import read_snapshot
+from bulkwear.postproc.flow.bulk_test import HEAP
+from bulkwear.postproc.flow.packing import contacts_of, inner_means, loose_and_dense, packing_profile
+from bulkwear.workflows.cases.sliding_sample.decks import bed_contacts
+from bulkwear.workflows.cases.sliding_sample.particle_size.packings import (
     AT_REST_BEHIND,
     LEAVING_DIAMETERS,
     container,
@@ -21,13 +20,14 @@ from workflows.cases.sliding_sample.particle_size.packings import (
     packing_work,
     pieces,
 )
-from workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
-from workflows.config.design import load_study
-from workflows.config.units import to_si
-from workflows.engine.bulk_simulations import FILLED, simulated
-from workflows.engine.bulk_tests import deck_text, time_step
-from workflows.engine.solver import DECK, run_deck
-from workflows.engine.templates import render, used_sections
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine.bulk_simulations import FILLED, simulated
+from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
+from bulkwear.workflows.engine.solver import DECK, run_deck
+from bulkwear.workflows.engine.templates import render, used_sections
+from tests.support.tiny import tiny_chain, tiny_study
 
 SCALE = 8.0
 DIGITS = 0.02  # -, of the contacts: positions printed with six digits lose or invent a few. Measured: 2e-3

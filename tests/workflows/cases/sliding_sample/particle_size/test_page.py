@@ -3,14 +3,14 @@
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.sliding_sample.particle_size.page import sections, told
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.markdown import durations, provenance, written
+from bulkwear.workflows.report.page import environment
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.sections import Pictures, shown
 from tests.support.finished_runs import leave_runs
 from tests.workflows.cases.sliding_sample.particle_size.test_figures import OWN, make
-from workflows.cases.sliding_sample.particle_size.page import sections, told
-from workflows.config.design import load_study
-from workflows.report.markdown import durations, provenance, written
-from workflows.report.page import environment
-from workflows.report.page_parameters import page_parameters
-from workflows.report.sections import Pictures, shown
 
 WEAR = {4.0: 1.1, 6.0: 1.4, 8.0: 2.1}  # -, of the convex sample, over its plain twin's
 PRINTED = 0.005  # three digits of numbers around 1

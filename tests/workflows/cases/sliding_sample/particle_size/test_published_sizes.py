@@ -4,10 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.lines import Crossing
-from tests import PUBLISHED
-from tests.workflows.cases.sliding_sample.particle_size.test_wear_by_scale import summary
-from workflows.cases.sliding_sample.particle_size.published_sizes import (
+from bulkwear.postproc.statistics.lines import Crossing
+from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import (
     AGREES,
     DIFFERS,
     UNSAID,
@@ -17,13 +15,15 @@ from workflows.cases.sliding_sample.particle_size.published_sizes import (
     steady_by_scale,
     verdict,
 )
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     over_the_sample,
     read_critical_scale,
     smallest_and_largest,
     velocity_bounds,
     wear_by_scale,
 )
+from tests import PUBLISHED
+from tests.workflows.cases.sliding_sample.particle_size.test_wear_by_scale import summary
 
 RESULTS, PACKING = (pd.read_csv(PUBLISHED / f"{name}.csv") for name in ("particle_size_results", "packing"))
 SCALES = {"S4_convex": 4.0, "S4_plain": 4.0, "S5_convex": 5.0, "S5_plain": 5.0}

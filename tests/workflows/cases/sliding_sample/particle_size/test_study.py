@@ -2,11 +2,11 @@
 
 import pytest
 
-from workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance
-from workflows.cases.sliding_sample.particle_size.study import bumps_and_particles, by_scale
-from workflows.config.design import ConfigError, load_study
-from workflows.report.page_parameters import page_parameters
-from workflows.report.text import number, setting_rows
+from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles, by_scale
+from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.text import number, setting_rows
 
 ROUNDING = 1e-9  # relative
 ROWS = {"quick": [4, 6, 8], "standard": [2, 3, 4, 6, 8], "paper": [1, 2, 3, 4, 5, 6, 7, 8]}

@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
-from tests import PUBLISHED
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     PARTS,
     RATIOS,
     beside_published,
@@ -18,6 +17,7 @@ from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     wear_by_size_ratio,
     wear_lines,
 )
+from tests import PUBLISHED
 
 LINES = pd.read_csv(PUBLISHED / "particle_size_lines.csv")
 SCALES = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import remarks_of
-from workflows.cases.sliding_sample.plots import bars
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.workflows.cases.sliding_sample.plots import bars
 
 REMARKS = ["particles at scale 2", "travel 160 mm of 1000 mm"]
 RELATIVE = 1e-12  # rounding of heights and sums

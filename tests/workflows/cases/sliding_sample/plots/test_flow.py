@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import colour, remarks_of
+from bulkwear.postproc.plots.style import colour, remarks_of
+from bulkwear.workflows.cases.sliding_sample.plots import flow
 from tests import REPOSITORY
-from workflows.cases.sliding_sample.plots import flow
 
 REMARKS = ["particles at scale 2", "travel 160 mm of 1000 mm"]
 

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from meshes.pattern import ConvexPattern
-from meshes.sample import sliding_sample
-from postproc.plots.style import remarks_of
-from workflows.cases.sliding_sample.plots.flow_views import (
+from bulkwear.meshes.pattern import ConvexPattern
+from bulkwear.meshes.sample import sliding_sample
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.workflows.cases.sliding_sample.plots.flow_views import (
     ACROSS,
     BOTTOM,
     SIDE,

@@ -4,17 +4,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests import REPOSITORY as ROOT
-from tests.support.screening_study import FACTORS
-from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS
-from workflows.cases.sliding_sample.screening.confirmation import (
+from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS
+from bulkwear.workflows.cases.sliding_sample.screening.confirmation import (
     best_of_regimes,
     check_fidelity,
     confirmation_remarks,
     confirmation_table,
     design_of,
 )
-from workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+from tests import REPOSITORY as ROOT
+from tests.support.screening_study import FACTORS
 
 CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")
 NOISE = 0.02  # of ln(wear): small beside effects of 0.45 to 1.4 per coded unit

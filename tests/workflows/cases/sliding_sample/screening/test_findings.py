@@ -6,17 +6,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID
-from tests import REPOSITORY as ROOT
-from tests.support.screening_study import FACTORS
-from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES
-from workflows.cases.sliding_sample.screening.finding_tests import findings_table
-from workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source, side_of_one
-from workflows.cases.sliding_sample.screening.regression_tables import (
+from bulkwear.postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID
+from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES
+from bulkwear.workflows.cases.sliding_sample.screening.finding_tests import findings_table
+from bulkwear.workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source, side_of_one
+from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import (
     published_wear_by_row,
     regression_tables,
     screen_summary,
 )
+from tests import REPOSITORY as ROOT
+from tests.support.screening_study import FACTORS
 
 PUBLISHED = ROOT / "config" / "published"
 DIGITS = 0.01  # -, relative: coefficients of Table 3.10 have three digits

@@ -6,7 +6,15 @@ import pandas as pd
 import pytest
 from PIL import Image
 
-from postproc.tables.summary import read_summary
+from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.workflows.cases.sliding_sample.page import sections
+from bulkwear.workflows.cases.sliding_sample.screening import page as screening
+from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report import markdown
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.products import products_of_study
+from bulkwear.workflows.report.sections import Pictures
 from tests import PUBLISHED
 from tests.support.finished_runs import leave_runs
 from tests.support.finished_samples import (
@@ -16,14 +24,6 @@ from tests.support.finished_samples import (
     write_flow,
     write_results,
 )
-from workflows.cases.sliding_sample.page import sections
-from workflows.cases.sliding_sample.screening import page as screening
-from workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
-from workflows.config.design import load_study
-from workflows.report import markdown
-from workflows.report.page_parameters import page_parameters
-from workflows.report.products import products_of_study
-from workflows.report.sections import Pictures
 
 CONVEX, PLAIN = 1.5e-9, 2.0e-9  # m3 over 0.06 m of travel
 

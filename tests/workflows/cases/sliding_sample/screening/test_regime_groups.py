@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED
-from workflows.cases.sliding_sample.screening.regime_groups import (
+from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED
+from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
     by_group,
     force_by_group,
     force_remarks,

@@ -4,12 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import remarks_of
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.workflows.cases.sliding_sample.screening import regression_figures as declared
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.products import job_of, write_product
 from tests import PUBLISHED, REPOSITORY
 from tests.support.screening_study import FACTORS
-from workflows.cases.sliding_sample.screening import regression_figures as declared
-from workflows.config.design import load_study
-from workflows.report.products import job_of, write_product
 
 FIGURES = {
     "regression_coefficients": "coefficients",

@@ -4,15 +4,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests import REPOSITORY as ROOT
-from tests.support.screening_study import FACTORS
-from workflows.cases.sliding_sample.screening.regression_tables import (
+from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import (
     best_designs,
     contour_table,
     regression_tables,
     screen_summary,
     strongest_factor,
 )
+from tests import REPOSITORY as ROOT
+from tests.support.screening_study import FACTORS
 
 WEAR = 1e-9  # m3/m
 

@@ -4,10 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.statistics.factors import Factor, factors_of
-from tests import REPOSITORY
-from workflows.cases.sliding_sample.screening.regression_warnings import screening_warnings
-from workflows.cases.sliding_sample.screening.study_regression import (
+from bulkwear.postproc.statistics.factors import Factor, factors_of
+from bulkwear.workflows.cases.sliding_sample.screening.regression_warnings import screening_warnings
+from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     best_design_table,
     chance_test,
     chosen_coefficients,
@@ -18,6 +17,7 @@ from workflows.cases.sliding_sample.screening.study_regression import (
     screen,
     wear_at,
 )
+from tests import REPOSITORY
 
 SYMBOLS = "abdhvt"
 ROUNDING = 1e-9

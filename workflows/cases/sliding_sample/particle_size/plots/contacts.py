@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.plots.style import LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
 
 STATES = {"loose": "loose", "dense": "shaken", "difference": "shaken minus loose"}
 QUANTITIES = {"coordination_number": "Contacts of a particle (-)", "porosity": "Porosity (-)"}

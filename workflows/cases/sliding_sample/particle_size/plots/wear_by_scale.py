@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from postproc.mesh import PLAIN
-from postproc.plots.style import BLUE, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
-from postproc.statistics.lines import FEWEST_POINTS, Crossing, fitted_line
-from workflows.cases.sliding_sample.particle_size.plots.contacts import MARKERS, PUBLISHED_MARKS, scale_colours
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS, patterned_curve
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.plots.style import BLUE, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
+from bulkwear.postproc.statistics.lines import FEWEST_POINTS, Crossing, fitted_line
+from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import MARKERS, PUBLISHED_MARKS, scale_colours
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS, patterned_curve
 
 PARTS = {"base": ("#009E73", "^", "its base"), "bumps": ("#CC79A7", "v", "its pattern")}  # colour, marker and name
 RATIO_NAMES = {

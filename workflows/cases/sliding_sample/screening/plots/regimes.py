@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from postproc.mesh import PLAIN
-from postproc.plots.style import (
+from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.plots.style import (
     BASE_COLOUR,
     LARGEST_HEIGHT,
     OTHER_COLOUR,
@@ -22,8 +22,8 @@ from postproc.plots.style import (
     new_figure,
     scaled,
 )
-from postproc.tables.summary import patterned_name
-from workflows.cases.sliding_sample.screening.confirmation import interval_reach
+from bulkwear.postproc.tables.summary import patterned_name
+from bulkwear.workflows.cases.sliding_sample.screening.confirmation import interval_reach
 
 BAR = 0.4  # -, width of a bar over the distance of rows
 PLAIN_FILL = "#f4c9a8"  # of the plain samples' bars

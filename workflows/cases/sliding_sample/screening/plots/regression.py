@@ -12,8 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullLocator
 
-from postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, facet_columns, new_figure
-from postproc.statistics.regression import CONSTANT
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, facet_columns, new_figure
+from bulkwear.postproc.statistics.regression import CONSTANT
 
 BRIGHT = "#ffb000"  # of lines on the colour map
 OURS, PUBLISHED = "#0072B2", "#D55E00"

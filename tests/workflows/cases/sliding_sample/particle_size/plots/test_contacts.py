@@ -4,16 +4,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import remarks_of
-from tests import PUBLISHED
-from tests.workflows.cases.sliding_sample.particle_size.test_collision import gravel
-from workflows.cases.sliding_sample.particle_size.collision import COLLISIONS, MODELS, dimensionless
-from workflows.cases.sliding_sample.particle_size.plots.contacts import (
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.workflows.cases.sliding_sample.particle_size.collision import COLLISIONS, MODELS, dimensionless
+from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import (
     RANGE_COLOUR,
     bed_packing,
     collisions,
     packing_profiles,
 )
+from tests import PUBLISHED
+from tests.workflows.cases.sliding_sample.particle_size.test_collision import gravel
 
 PUBLISHED = pd.read_csv(PUBLISHED / "packing.csv")
 SCALES = [1.0, 4.0, 8.0]

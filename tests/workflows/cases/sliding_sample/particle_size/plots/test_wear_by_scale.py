@@ -4,24 +4,24 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import remarks_of
-from postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
-from postproc.statistics.lines import Crossing
-from tests.workflows.cases.sliding_sample.particle_size.test_published_sizes import RESULTS, profiles, steady_rows
-from tests.workflows.cases.sliding_sample.particle_size.test_wear_by_scale import LINES, SCALES, TRUTH, summary
-from workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import (
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
+from bulkwear.postproc.statistics.lines import Crossing
+from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import (
     spider_charts,
     steady_by_scale,
     wear_against_scale,
     wear_against_size_ratios,
 )
-from workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     critical_scale,
     published_by_size_ratio,
     velocity_bounds,
     wear_by_scale,
     wear_by_size_ratio,
 )
+from tests.workflows.cases.sliding_sample.particle_size.test_published_sizes import RESULTS, profiles, steady_rows
+from tests.workflows.cases.sliding_sample.particle_size.test_wear_by_scale import LINES, SCALES, TRUTH, summary
 
 
 def labels_of(axes):

@@ -4,8 +4,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import remarks_of
-from workflows.cases.sliding_sample.screening.plots.regimes import confirmation, normal_force_by_regime, wear_by_regime
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.workflows.cases.sliding_sample.screening.plots.regimes import (
+    confirmation,
+    normal_force_by_regime,
+    wear_by_regime,
+)
 
 REMARKS = ["particles at scale 2"]
 

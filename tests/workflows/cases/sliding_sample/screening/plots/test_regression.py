@@ -4,11 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from postproc.plots.style import remarks_of
-from postproc.statistics.factors import Factor, factors_of
-from tests import REPOSITORY
-from workflows.cases.sliding_sample.screening.plots import regression
-from workflows.cases.sliding_sample.screening.study_regression import (
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.postproc.statistics.factors import Factor, factors_of
+from bulkwear.workflows.cases.sliding_sample.screening.plots import regression
+from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     chance_test,
     chosen_coefficients,
     effects,
@@ -17,6 +16,7 @@ from workflows.cases.sliding_sample.screening.study_regression import (
     response_surface,
     screen,
 )
+from tests import REPOSITORY
 
 REMARKS = ["particles at scale 2", "travel 160 mm of 1000 mm"]
 LABELS = {name: f"{name} (mm)" for name in "abdhvt"}
