@@ -1,6 +1,6 @@
 """Contents page: <study> makes a study's report, <study>_decks its decks without the solver, <study>_forecast its cost.
 
-    snakemake                       the demo
+    snakemake                       the demo; in a project of your own its study (docs/project.md)
     snakemake screening --config fidelity=standard
     snakemake screening_forecast --config fidelity=paper
 
@@ -21,12 +21,20 @@ for RULES_OF_CASE in rules_of_cases():
 include: "workflows/submissions.smk"
 
 
+rule default_studies:
+    default_target: MADE_BY_DEFAULT
+    input:
+        [f"results/{name}/report.html" for name in default_studies(PROJECT)],
+    localrule: True
+    message:
+        "Reports of {input}"
+
+
 for STUDY in STUDIES:
 
     rule:
         name:
             STUDY
-        default_target: STUDY == "demo"
         input:
             f"results/{STUDY}/report.html",
             f"results/{STUDY}/summary.csv",
@@ -40,21 +48,3 @@ for STUDY in STUDIES:
             study_decks(STUDY),
         message:
             "Decks of the study, rendered without running the solver"
-
-    rule:
-        name:
-            f"{STUDY}_forecast"
-        input:
-            rates=used_rates,
-        log:
-            f"results/{STUDY}/logs/forecast.log",
-        localrule: True
-        params:
-            work=solver_work(STUDY),
-            study=STUDY,
-            heading=f"{STUDY}, fidelity {STUDIES[STUDY].fidelity}: {STUDIES[STUDY].title}",
-            cores=CORES,
-        message:
-            "What the study will cost"
-        script:
-            "workflows/scripts/forecast.py"

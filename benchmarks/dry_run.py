@@ -33,7 +33,7 @@ def planned(study: str, profile: str) -> tuple[float, float]:
 
 def measures(folder: Path, quick: bool) -> list[Measure]:
     """Return the wall time of each study and profile, and the processor time of both profiles against each other."""
-    studies = QUICK_STUDIES if quick else list_studies(ROOT)
+    studies = QUICK_STUDIES if quick else list_studies()
 
     def way(study: str, profile: str) -> Callable[[], tuple[float, float]]:
         return lambda: planned(study, profile)

@@ -13,8 +13,8 @@ from bulkwear.meshes.sample import sample_top
 from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN
 from bulkwear.postproc.reference.sphere_contact import effective_modulus, hertz_overlap
 from bulkwear.postproc.wear.caps import GRAVITY
-from bulkwear.workflows.config.design import REPOSITORY
 from bulkwear.workflows.engine.derived import youngs_modulus
+from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.markdown import markdown, prose
 
 LINES = Path("config/published/particle_size_lines.csv")
@@ -29,7 +29,7 @@ NEWTONS_TIMES = (1.0, 10.0)  # loads, over the bed's weight on a square as wide 
 
 def source_ratio(scale: float) -> float:
     """Return the convex sample's wear over the plain one's by the source's lines (-)."""
-    lines = pd.read_csv(REPOSITORY / LINES).set_index("curve")
+    lines = pd.read_csv(PACKAGE / LINES).set_index("curve")
     convex, plain = (lines.loc[name, "intercept"] + lines.loc[name, "slope"] * scale for name in ("convex", "plain"))
     return float(convex / plain)
 

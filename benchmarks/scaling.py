@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -17,7 +16,6 @@ from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.forecast.forecast import work_of
 from bulkwear.workflows.forecast.rates import SOLVER_TERMS, rates_file, read_rates, seconds
 
-ROOT = Path(__file__).resolve().parents[1]
 RANKS = (2, 4, 8, 16, 32, 64)
 FULL_SIZE: dict[str, tuple[str, dict[str, Any]]] = {  # name -> study and settings whose largest bed is modelled
     "demo": ("demo", {}),
@@ -45,7 +43,7 @@ def triangle_share(study: Study, run: Run) -> float:
     """Return the share (-) of the solver's time that triangles take, by the forecast of a run."""
     (job,) = [job for job in work_of(study) if (job.rule, job.wildcards) == ("worn_run", (run.name,))]
     work = pd.DataFrame([stage.terms() for stage in job.stages])
-    rates = read_rates(rates_file(ROOT)).rates
+    rates = read_rates(rates_file()).rates
     triangles, whole = (seconds(work, rates, terms).sum() for terms in (OF_TRIANGLES, SOLVER_TERMS))
     return float(triangles / whole)
 

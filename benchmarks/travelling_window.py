@@ -44,11 +44,12 @@ from benchmarks.window_case import (
 from bulkwear.postproc.plots.style import save
 from bulkwear.postproc.readers.cycle_folders import cycle_files, cycle_folders
 from bulkwear.workflows.cases.sliding_sample.comparison import ratio_intervals
-from bulkwear.workflows.config.design import REPOSITORY, load_study
+from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.accounting import HISTORY
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.derived import WALLS
+from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.engine.solver import die_with
 from bulkwear.workflows.forecast.forecast import forecast_table, work_of
 from bulkwear.workflows.forecast.rates import DEFAULT, read_rates
@@ -170,7 +171,7 @@ def at_source_size() -> pd.DataFrame:
     particle-steps and core hours are. Width, thickness and sample are the same, so a bed's length times its steps
     stands for the particle-steps.
     """
-    rates, rows = read_rates(REPOSITORY / DEFAULT).rates, []
+    rates, rows = read_rates(PACKAGE / DEFAULT).rates, []
     for name, given in BEDS.items():
         bed = {"ends": WALLS} if name == FULL else given["bed"]
         overrides = {"bed": {**bed, "exchange_mm": SOURCE_EXCHANGE}, "solver": {"rayleigh_fraction": given["fraction"]}}

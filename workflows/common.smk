@@ -9,19 +9,25 @@ from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
-from bulkwear.workflows.config.targets import requested_studies
-from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest
+from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
+from bulkwear.workflows.engine.case import case_folders
+from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest, surface_from
 from bulkwear.workflows.engine.job import let_jobs_import
-from bulkwear.workflows.forecast.rates import rates_file
+from bulkwear.workflows.engine.project import ProjectError, enter_project
 from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
-from bulkwear.workflows.engine.templates import template_sources
+from bulkwear.workflows.engine.templates import templates_digest
+from bulkwear.workflows.forecast.rates import rates_file
 from bulkwear.workflows.report.products import paths_of, told_to
 
 min_version("9.0")
 
-ROOT = Path(workflow.basedir)
 CORES = workflow.cores or 1  # on a cluster those of a submission of small jobs
-let_jobs_import(ROOT)
+# Another Snakefile may take this workflow as a module, and put words round the names of its rules.
+NAMING = naming(workflow.modifier.modify_rulename, workflow.modifier.base_snakefile is not None)
+MADE_BY_DEFAULT = not workflow.default_target  # unless that Snakefile has said before what is
+# The command line is read as Snakemake does it: the workflow has its targets only when this file has been read.
+GIVEN, _ = get_argument_parser().parse_known_args(sys.argv[1:])
+let_jobs_import()
 
 
 wildcard_constraints:
@@ -30,30 +36,44 @@ wildcard_constraints:
     bed=r"bed_\d+",
 
 
+def entered_project():
+    """The project, which is the working directory; says which of its files stand before the package's."""
+    try:
+        project = enter_project(Path.cwd())
+    except ProjectError as fault:
+        raise WorkflowError(str(fault)) from None
+    if not GIVEN.target_jobs:
+        for sentence in project.substitutes():
+            logger.info(sentence)
+    return project
+
+
 def checked_studies():
     """The studies that are asked for by name. A fault ends here, in one sentence, before a job starts.
 
-    Where nothing is made, as with --list and --lint, all that have no fault. The command line is read as Snakemake does
-    it: the workflow has its targets only when this file has been read.
+    Where nothing is made, as with --list and --lint, all that have no fault. A Snakefile that takes this workflow as a
+    module may name them: config of the module, `studies`.
     """
-    given, _ = get_argument_parser().parse_known_args(sys.argv[1:])
-    if given.lint or given.list_rules or given.list_target_rules:
-        return dict(filter(None, map(sound_study, list_studies(ROOT))))
+    settings = dict(config)
+    named = settings.pop("studies", None)
+    if GIVEN.lint or GIVEN.list_rules or GIVEN.list_target_rules:
+        return dict(filter(None, (sound_study(name, settings) for name in list_studies())))
     try:
-        names = requested_studies(given.targets, given.target_jobs, ROOT)
-        return {name: load_study(name, ROOT, dict(config)) for name in names}
-    except ConfigError as fault:
+        names = named or requested_studies(GIVEN.targets, GIVEN.target_jobs, names=NAMING)
+        return {name: load_study(name, overrides=settings) for name in names}
+    except (ConfigError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None
 
 
-def sound_study(name):
+def sound_study(name, settings):
     """A study's name and the study; None where it has a fault."""
     try:
-        return name, load_study(name, ROOT, dict(config))
-    except ConfigError as fault:
+        return name, load_study(name, overrides=settings)
+    except (ConfigError, ProjectError) as fault:
         logger.warning(f"Study {name} is left out: {fault}")
 
 
+PROJECT = entered_project()
 STUDIES = checked_studies()
 CASES = {study.case.name: study.case for study in STUDIES.values()}
 SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
@@ -64,7 +84,7 @@ BEFORE_TABLES = {"surface_mesh", "cost_rates", *SOLVER_RULES}
 onstart:
     # before the first job: a bed takes minutes to fill, and without its solver no run can follow
     for job in workflow.dag.needrun_jobs():
-        if job.rule.name == "worn_run":
+        if NAMING.ours(job.rule.name) == "worn_run":
             parameters = run_parameters(job.wildcards)
             if fault := cycle_fault(CYCLE_EXECUTABLES[parameters["ledger"]], parameters):
                 raise WorkflowError(fault)
@@ -76,9 +96,9 @@ def jobs_by_study(jobs):
     """The jobs that call the solver, by study: the names they have in forecasts."""
     found = {}
     for job in jobs:
-        if job.rule.name in SOLVER_RULES:
+        if (rule := NAMING.ours(job.rule.name)) in SOLVER_RULES:
             words = dict(job.wildcards.items())
-            found.setdefault(words.pop("study"), set()).add("_".join([job.rule.name, *words.values()]))
+            found.setdefault(words.pop("study"), set()).add("_".join([rule, *words.values()]))
     return found
 
 
@@ -86,12 +106,13 @@ def announce_cost(study, jobs):
     """Say in one line what those jobs of a study will cost."""
     from bulkwear.workflows.forecast.forecast import announcement  # slow to import, and jobs need none
 
-    logger.info(announcement(STUDIES[study], jobs, ROOT, CORES))
+    logger.info(announcement(STUDIES[study], jobs, CORES))
 
 
 def rules_of_cases():
     """The files of rules that the cases of these studies have of their own."""
-    return [path for case in CASES for path in sorted((ROOT / "workflows" / "cases" / case).rglob("rules.smk"))]
+    folders = dict.fromkeys(folder for case in CASES.values() for folder in case_folders(case))
+    return [path for folder in folders for path in sorted(folder.rglob("rules.smk"))]
 
 
 def study_of(wildcards):
@@ -111,8 +132,8 @@ def case_of(wildcards):
 
 
 def run_geometry(wildcards):
-    """The sections of a run's parameters that its surface depends on."""
-    return {name: run_parameters(wildcards)[name] for name in study_of(wildcards).case.geometry}
+    """The sections of a run's parameters that its surface depends on; of a project's case its code as well."""
+    return surface_from(study_of(wildcards).case, run_parameters(wildcards))
 
 
 @cache
@@ -188,7 +209,7 @@ def told_of(product):
 
 def used_rates(wildcards=None):
     """The rates that were measured on this machine, or the default ones."""
-    return str(rates_file(ROOT))
+    return str(rates_file())
 
 
 def solver_work(study):
@@ -215,7 +236,7 @@ def launcher_of(wildcards):
 def demands_of(study):
     from bulkwear.workflows.forecast.forecast import demands  # slow to import, and few jobs ask for it
 
-    return demands(STUDIES[study], ROOT)
+    return demands(STUDIES[study])
 
 
 def asked(rule, measure):

@@ -62,6 +62,13 @@ class Kernel:
 KERNELS: dict[str, Kernel] = {"finnie_work": Kernel(finnie_work)}
 
 
+def register_kernel(name: str, kernel: Kernel) -> None:
+    """Make a kernel known under a name, in place of one of that name. Raises ValueError for what is no kernel."""
+    if not isinstance(kernel, Kernel):
+        raise ValueError(f"contact kernel {name} is {type(kernel).__name__}, allowed is a Kernel(...)")
+    KERNELS[name] = kernel
+
+
 def kernel_column(name: str) -> str:
     """Return the ledger column of a kernel, unit included. Raises ValueError for a name that is no kernel."""
     return f"{name}_{_kernel(name).unit}"

@@ -27,6 +27,7 @@ class Parameter:
     meaning: one line
     lowest, highest: the allowed range, ends included
     default: None where the configuration must give it
+    unit: the one that the name ends in, as people write it (N of `force_n`); "-" of a pure number
     """
 
     name: str
@@ -34,6 +35,7 @@ class Parameter:
     lowest: float
     highest: float
     default: float | None = None
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -118,6 +120,32 @@ LAWS: dict[str, Law] = {
     ),
 }
 NEUTRAL_LAW = "archard"  # whose volume figures and pages name where they say nothing else
+
+
+def register_law(name: str, law: Law) -> None:
+    """Make a law known under a name, in place of one of that name.
+
+    Raises ValueError, without the end of its sentence, for what is no law, a parameter without a unit, kernels that are
+    not registered, and words that name other values than the law has.
+    """
+    if not isinstance(law, Law):
+        raise ValueError(f"law {name} is {type(law).__name__}, allowed is a Law(...)")
+    for parameter in law.parameters:
+        if not parameter.unit:
+            raise ValueError(
+                f"parameter {parameter.name} of the law {name} has no unit, allowed is the one that its name ends in "
+                "(N of force_n), or - of a pure number"
+            )
+    for kernel in law.kernels:
+        kernel_column(kernel)
+    given = {"wear_coefficient_per_pa", *(parameter.name for parameter in law.parameters)}
+    try:
+        law.words.format(**dict.fromkeys(given, ""))
+    except (KeyError, IndexError, ValueError) as fault:
+        raise ValueError(
+            f"words of the law {name} have {{{fault.args[0]}}}, allowed in braces are: {', '.join(sorted(given))}"
+        ) from None
+    LAWS[name] = law
 
 
 def law_kernels(name: str, parameters: Mapping[str, float]) -> dict[str, dict[str, float]]:

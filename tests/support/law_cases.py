@@ -39,8 +39,8 @@ LONG_SLIP = Law(
     "nobody",
     kernels=("long_slip",),
     parameters=(
-        Parameter("exponent", "of the length", 0.5, 3.0),
-        Parameter("length_mm", "a length", 0.1, 50.0, default=2.0),
+        Parameter("exponent", "of the length", 0.5, 3.0, unit="-"),
+        Parameter("length_mm", "a length", 0.1, 50.0, default=2.0, unit="mm"),
     ),
 )
 

@@ -6,14 +6,19 @@ from pathlib import Path
 
 import pytest
 
+from bulkwear.workflows.engine.project import Project
 from tests import REPOSITORY
 
 
 class ConfigCopy:
-    """A root with a copy of config/; `edit` replaces text that must stand in the file exactly once."""
+    """A root with a copy of config/; `edit` replaces text that must stand in the file exactly once.
+
+    project: that root as a project which nothing of the package's configuration stands behind
+    """
 
     def __init__(self, root: Path) -> None:
         self.root = root
+        self.project = Project(root, package=root)
 
     def path(self, name: str) -> Path:
         return self.root / "config" / name

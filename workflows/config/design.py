@@ -1,6 +1,7 @@
 """Turn a study's configuration into runs: merge, check, convert to SI, derive.
 
-    default.yaml <- case <- study <- fidelity block <- command line   settings, in the units that their keys spell
+    default.yaml <- case <- study <- fidelity block <- command line   settings, in the units that their keys spell;
+                                                                      the project's default and case over the package's
     settings x design row x surface -> Run.parameters                 SI, JSON-able
 
 Configuration faults raise ConfigError, one sentence each.
@@ -14,31 +15,36 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
-from bulkwear.workflows.config.law_settings import check_law, law_settings
+from bulkwear.workflows.config.law_settings import check_law
 from bulkwear.workflows.config.layers import (
     ConfigError,
     Layer,
-    command_line_layer,
     display_name,
-    merge,
-    read_yaml,
     with_row,
 )
 from bulkwear.workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
-from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, leaves, load_schema, without_required
+from bulkwear.workflows.config.schema import case_schema, leaves, load_schema
+from bulkwear.workflows.config.sources import (
+    DESIGN,
+    STUDIES,
+    Sources,
+    fidelity_of,
+    list_studies,
+    read_materials,
+    read_sources,
+)
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.validation import (
-    check_alternatives,
     check_calibrated_for,
-    check_layer,
     check_material_names,
     check_materials,
     locate,
     read_design,
     unknown_name,
 )
-from bulkwear.workflows.engine.case import DEFAULT_CASE, Case, Run, find_case
+from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
+from bulkwear.workflows.engine.project import Project, current_project
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 
@@ -46,7 +52,6 @@ TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besi
 FACTORS = "factors"  # key of a study
 FEWEST_RUNS = 5  # for which a regression is made: AICc needs four more than a model has terms
 ROWS = "rows"  # key of the settings
-DESIGN = "design"  # key of a study, and of its fidelity blocks
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
 RULE_NAMES = frozenset(
@@ -54,8 +59,7 @@ RULE_NAMES = frozenset(
     for path in Path(__file__).parents[1].rglob("*.smk")
     for found in re.finditer(r"^rule (\w+):", path.read_text(encoding="utf-8"), re.MULTILINE)
 )
-MATERIALS = "materials.yaml"  # in config, where a study names no other
-REPOSITORY = Path(__file__).resolve().parents[2]
+DESIGNS = "config/designs"
 
 
 @dataclass(frozen=True)
@@ -132,38 +136,33 @@ class Study:
         return self._beds[1].get(self.run(run_name).name)
 
 
-def list_studies(root: Path = REPOSITORY) -> list[str]:
-    """Return the names of the studies in config/studies."""
-    return sorted(path.stem for path in (Path(root) / "config" / "studies").glob("*.yaml"))
-
-
-def load_study(name: str, root: Path = REPOSITORY, overrides: dict[str, Any] | None = None) -> Study:
-    """Return a checked study with all its runs.
+def load_study(name: str, project: Project | None = None, overrides: dict[str, Any] | None = None) -> Study:
+    """Return a checked study of a project, by default the current one, or of the package, with all its runs.
 
     `overrides` are nested settings, as from the command line: {"fidelity": "standard", "particle_scale": 2}.
     <name>_confirmation is the study with everything of <name> but its design, which is that of its best designs.
     Raises ConfigError: one sentence with file, line, key or row, the value found and what is allowed.
     """
-    root = Path(root)
+    project = project or current_project()
     if not STUDY_NAME.fullmatch(name) or name in RULE_NAMES or name.endswith(TARGETS):
         raise ConfigError(
             f"config/studies/{name}.yaml: a study cannot be called {name}, allowed are small letters, digits and"
             f" underscores, not ending in {' or '.join(TARGETS)}, and none of {', '.join(sorted(RULE_NAMES))}."
         )
-    written = list_studies(root)
+    written = list_studies(project)
     confirms = name.removesuffix(CONFIRMATION) if name not in written and name.endswith(CONFIRMATION) else ""
     if (confirms or name) not in written:
-        raise ConfigError(unknown_name("config/studies", "study", confirms or name, written))
-    sources = _read_sources(confirms or name, root, overrides)
-    fidelity = _fidelity(sources)
+        raise ConfigError(unknown_name(STUDIES, "study", confirms or name, written))
+    sources = read_sources(confirms or name, project, overrides)
+    fidelity = fidelity_of(sources)
     layers = sources.stack(fidelity)
     check_law(layers)
     settings = sources.merged(layers)
-    materials = check_materials(read_yaml(_materials_file(settings, root), root))
+    materials = check_materials(read_materials(settings, project))
     check_material_names(layers, settings, materials, sources.case.material_keys)
     check_calibrated_for(layers, settings, materials, sources.case.material_keys)
     head = sources.head
-    designed = _rows_to_confirm(sources, confirms, root) if confirms else _design_rows(sources, fidelity, root)
+    designed = _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project)
     rows = designed if confirms else _chosen_rows(layers, settings, designed)
     names = {row_layer.values["row"] for row_layer in rows}
     all_runs = tuple(
@@ -199,124 +198,31 @@ def confirmation_design(study: str) -> str:
     return f"results/{study}/confirmation/design.csv"
 
 
-def _rows_to_confirm(sources: _Sources, study: str, root: Path) -> list[Layer]:
+def _rows_to_confirm(sources: Sources, study: str, project: Project) -> list[Layer]:
     """Return the checked rows of a study's best designs. Raises ConfigError where there are none (yet)."""
     if not sources.study.values.get(FACTORS):
         raise ConfigError(
             f"{sources.study.source}: {study} has nothing to confirm, allowed is a study with factors, whose regression"
             " finds a best design."
         )
-    path = root / confirmation_design(study)
+    path = project.folder / confirmation_design(study)
     if not path.is_file():
-        raise ConfigError(f"{display_name(path, root)}: there is no such file yet, `snakemake {study}` writes it.")
-    return read_design(path, root, sources.design_schema)
+        shown = display_name(path, project.folder)
+        raise ConfigError(f"{shown}: there is no such file yet, `snakemake {study}` writes it.")
+    return read_design(path, project.folder, sources.design_schema)
 
 
-def _materials_file(settings: dict[str, Any], root: Path) -> Path:
-    """Return the path of a study's materials: a file in config, or any other one, as a calibration writes it."""
-    name = settings.get("materials", MATERIALS)
-    in_config, elsewhere = root / "config" / name, root / name
-    return elsewhere if elsewhere.is_file() and not in_config.is_file() else in_config
-
-
-@dataclass(frozen=True)
-class _Sources:
-    """Where settings come from; `study` also holds the keys that are the study's own."""
-
-    case: Case
-    default: Layer
-    of_case: Layer
-    study: Layer
-    command: Layer
-
-    @property
-    def head(self) -> dict[str, Any]:
-        own = case_schema(self.case.name, "study")["properties"]
-        return {key: value for key, value in self.study.values.items() if key in own}
-
-    @property
-    def study_settings(self) -> Layer:
-        return self.study.part(set(self.study.values) - set(self.head))
-
-    @property
-    def design_schema(self) -> dict[str, Any]:
-        """The schema of a design row, with the columns that the study's surfaces need."""
-        schema, case = load_schema(f"cases/{self.case.name}/design"), self.case
-        needed = {column for surface in case.surfaces(self.study.values) for column in case.needed_columns(surface)}
-        return {**schema, "required": [c for c in schema["properties"] if c in needed or c in schema["required"]]}
-
-    def block(self, fidelity: str) -> Layer:
-        return self.study.inner(("fidelities", fidelity), f"fidelity {fidelity}")
-
-    @property
-    def partial_layers(self) -> list[Layer]:
-        """All layers that override some keys: the study's, those of its fidelities and the command line."""
-        blocks = [self.block(fidelity) for fidelity in self.study.values.get("fidelities", {})]
-        return [self.study_settings, *blocks, self.command]
-
-    def stack(self, fidelity: str) -> tuple[Layer, ...]:
-        """Return the layers from the weakest to the strongest."""
-        block = self.block(fidelity)
-        return (
-            *(self.default, self.of_case, self.study_settings),
-            *(block.part(set(block.values) - {DESIGN}), self.command),
-        )
-
-    def merged(self, layers: tuple[Layer, ...]) -> dict[str, Any]:
-        """Return the settings of the layers, the last one strongest."""
-        settings: dict[str, Any] = {}
-        alternatives = self.case.alternatives
-        for layer in layers:
-            if any(layer.holds(path) for path in alternatives):
-                for section, key in alternatives:
-                    settings.get(section, {}).pop(key, None)
-            settings = merge(settings, layer.values)
-        settings["wear"].pop("parameters", None)
-        of_law = {"wear": {"parameters": found}} if (found := law_settings(layers)) else {}
-        return coerce_numbers(merge(settings, of_law), case_schema(self.case.name, "settings"))
-
-
-def _read_sources(name: str, root: Path, overrides: dict[str, Any] | None) -> _Sources:
-    """Return the sources of a study, each checked by itself so that a fault is reported where it stands."""
-    study = read_yaml(root / "config" / "studies" / f"{name}.yaml", root)
-    named = study.part({"case"})
-    check_layer(named, without_required(load_schema("study")))
-    case = find_case(named.values.get("case", DEFAULT_CASE))
-    sources = _Sources(
-        case=case,
-        default=read_yaml(root / "config" / "default.yaml", root),
-        of_case=read_yaml(root / "config" / "cases" / f"{case.name}.yaml", root),
-        study=study,
-        command=command_line_layer(overrides),
-    )
-    shared, own = load_schema("settings"), load_schema(f"cases/{case.name}/settings")
-    of_study = case_schema(case.name, "study")
-    partial = without_required(joined(shared, own))
-    check_layer(sources.default, shared)
-    check_layer(sources.of_case, joined(without_required(shared), own))
-    check_layer(sources.study, {**of_study, "properties": of_study["properties"] | partial["properties"]})
-    offered = {k: v for k, v in partial["properties"].items() if k != "fidelity"}
-    within_block = {**partial, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
-    for fidelity in sources.study.values.get("fidelities", {}):
-        check_layer(sources.block(fidelity), within_block)
-    check_layer(sources.command, partial)
-    check_alternatives(sources.of_case, case.alternatives, required=True)
-    for layer in sources.partial_layers:
-        check_alternatives(layer, case.alternatives, required=False)
-    return sources
-
-
-def _design_rows(sources: _Sources, fidelity: str, root: Path) -> list[Layer]:
+def _design_rows(sources: Sources, fidelity: str, project: Project) -> list[Layer]:
     """Return the checked rows of the study's design table, or of the fidelity's own. Raises ConfigError."""
     block = sources.block(fidelity)
     source = block if DESIGN in block.values else sources.study
-    folder, name = root / "config" / "designs", source.values[DESIGN]
-    there = sorted(path.name for path in folder.glob("*.csv"))
+    name, there = source.values[DESIGN], project.names(DESIGNS, ".csv")
     if name not in there:
         raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
-    rows = read_design(folder / name, root, sources.design_schema)
+    path = project.file(f"{DESIGNS}/{name}")
+    rows = read_design(path, project.folder, sources.design_schema)
     if fault := sources.case.design_fault([row.values for row in rows]):
-        raise ConfigError(f"{display_name(folder / name, root)}: {fault}.")
+        raise ConfigError(f"{display_name(path, project.folder)}: {fault}.")
     return rows
 
 
@@ -335,7 +241,7 @@ def _can_tell(factors: dict[str, str], rows: list[Layer]) -> bool:
     return len(rows) >= FEWEST_RUNS and all(len({row.values[name] for row in rows}) > 1 for name in factors.values())
 
 
-def _factors(sources: _Sources, rows: list[Layer]) -> dict[str, str]:
+def _factors(sources: Sources, rows: list[Layer]) -> dict[str, str]:
     """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError."""
     factors = sources.study.values.get(FACTORS, {})
     for name, column in factors.items():
@@ -358,22 +264,8 @@ def _factors(sources: _Sources, rows: list[Layer]) -> dict[str, str]:
     return dict(factors)
 
 
-def _fidelity(sources: _Sources) -> str:
-    """Return the fidelity asked for: command line, else study, else default; the study must offer it."""
-    layers = (sources.default, sources.study_settings, sources.command)
-    source = next(layer for layer in reversed(layers) if "fidelity" in layer.values)
-    fidelity = source.values["fidelity"]
-    offered = sources.study.values.get("fidelities")
-    if offered is not None and fidelity not in offered:
-        raise ConfigError(
-            f"{source.where(('fidelity',))}: fidelity is '{fidelity}',"
-            f" allowed is one of {', '.join(offered)}, the fidelities of {sources.study.source}."
-        )
-    return fidelity
-
-
 def _checked_run(
-    sources: _Sources,
+    sources: Sources,
     layers: tuple[Layer, ...],
     settings: dict[str, Any],
     materials: dict[str, Any],

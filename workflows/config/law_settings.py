@@ -16,15 +16,24 @@ WEAR, LAW, PARAMETERS = "wear", "law", "parameters"
 
 
 def parameters_schema(law: str) -> dict[str, Any]:
-    """Return the schema of `wear.parameters` with a law; required are those without a default."""
+    """Return the schema of `wear.parameters` with a law; required are those without a default.
+
+    Raises ConfigError for a parameter whose unit is not the one that its name ends in.
+    """
     properties = {}
     for parameter in LAWS[law].parameters:
         suffix = max((s for s in UNIT_OF_SUFFIX if parameter.name.endswith(f"_{s}")), key=len, default="")
+        unit = UNIT_OF_SUFFIX.get(suffix, "-")
+        if parameter.unit != unit:
+            raise ConfigError(
+                f"law {law}: the unit of its parameter {parameter.name} is {parameter.unit!r}, allowed is {unit!r}, by "
+                f"the end of its name; names end in {', '.join(UNIT_OF_SUFFIX)}, or in none of a pure number."
+            )
         properties[parameter.name] = {
             "type": "number",
             "minimum": parameter.lowest,
             "maximum": parameter.highest,
-            "x-unit": UNIT_OF_SUFFIX.get(suffix, "-"),
+            "x-unit": unit,
             "description": parameter.meaning,
         }
     required = [parameter.name for parameter in LAWS[law].parameters if parameter.default is None]

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.postproc.wear.laws import LAWS, Law, Parameter
-from bulkwear.workflows.config.design import REPOSITORY
 from bulkwear.workflows.config.law_settings import parameters_schema
 from bulkwear.workflows.config.layers import dotted
 from bulkwear.workflows.config.run_checks import COMMON_CHECKS, Check
-from bulkwear.workflows.config.schema import leaves, load_schema, schema_file
+from bulkwear.workflows.config.schema import leaves, load_schema, schema_files
 from bulkwear.workflows.config.validation import allowed_text
 from bulkwear.workflows.engine.case import case_names, find_case
+from bulkwear.workflows.engine.project import PACKAGE
 
 INTRODUCTION = """\
 # Configuration
@@ -107,7 +107,7 @@ def sections_of_case(name: str) -> Iterator[str]:
     yield f"## Case `{name}`\n\n{(find_case(name).__doc__ or '').splitlines()[0]}\n"
     for title, kind, where in TABLES_OF_CASE:
         schema = f"cases/{name}/{kind}"
-        if schema_file(schema).is_file():
+        if schema_files(schema):
             yield f"### {title}\n\nKeys {where.format(case=name)}.\n\n{table(schema)}\n"
     yield f"### {CHECKS_TITLE}\n\n{listed(find_case(name).checks)}\n"
 
@@ -120,7 +120,7 @@ def readme() -> str:
     return "\n".join([INTRODUCTION, sections[0], wear_laws(), *sections[1:], common, *cases])
 
 
-def main(root: Path = REPOSITORY) -> None:
+def main(root: Path = PACKAGE) -> None:
     """Write config/README.md."""
     (root / "config" / "README.md").write_text(readme(), encoding="utf-8")
 

@@ -16,7 +16,7 @@ from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.config.schema import load_schema
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.validation import allowed_text, locate, show
-from bulkwear.workflows.engine.templates import DeckError, solver_settings, template_variables
+from bulkwear.workflows.engine.templates import DeckError, own_templates, solver_settings, template_variables
 
 if TYPE_CHECKING:
     from bulkwear.workflows.engine.case import Case
@@ -103,14 +103,15 @@ def model_properties_given(run: CheckedRun) -> Fault | None:
 
 
 def check_own_words(layers: tuple[Layer, ...], case: Case, words: Mapping[str, Any], decks: Callable[[], Any]) -> None:
-    """Raise ConfigError for a word of the user's own that no template of a case uses, or that is one of ours.
+    """Raise ConfigError for a word of the user's own that no template of a case uses, or that is one of ours, and for a
+    template of the project's own that uses a word which nobody gives.
 
     decks: renders a deck of each kind
     """
-    if not words:
-        return
     bed = (case.bed_template,) if case.bed_template else ()
     templates = (*case.run_templates, *bed, *case.more_templates)
+    if not words and not own_templates():
+        return
     for word in sorted(set(words).difference(*map(template_variables, templates))):
         raise ConfigError(
             f"{locate(layers, ('deck', word))}: deck.{word} stands in no template, allowed is a word that one of"
@@ -119,7 +120,8 @@ def check_own_words(layers: tuple[Layer, ...], case: Case, words: Mapping[str, A
     try:
         decks()
     except DeckError as fault:
-        raise ConfigError(f"{locate(layers, ('deck',))}: {fault}") from None
+        where = f"{locate(layers, ('deck',))}: " if words else ""
+        raise ConfigError(f"{where}{fault}") from None
 
 
 def element_resolves_pattern(run: CheckedRun) -> Fault | None:

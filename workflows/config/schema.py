@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, reduce
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +13,10 @@ import jsonschema
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.config.layers import KeyPath, read_yaml
 from bulkwear.workflows.config.patterns import with_patterns
-from bulkwear.workflows.engine.case import case_names
+from bulkwear.workflows.engine.case import case_folders, case_names, find_case
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
-CASES_FOLDER = Path(__file__).parents[1] / "cases"
+OF_CASES = "cases/"  # names of schemas that are a case's: cases/<case>/<kind>
 
 
 def _is_number(_checker: Any, value: Any) -> bool:
@@ -31,16 +31,22 @@ _TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _
 Validator = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=_TYPES)
 
 
-def schema_file(name: str) -> Path:
-    """Return the file of a schema, which of a case (cases/<case>/<kind>) lies in its folder."""
-    folder = CASES_FOLDER.parent if name.startswith("cases/") else SCHEMA_FOLDER
-    return folder / f"{name}.schema.yaml"
+def schema_files(name: str) -> list[Path]:
+    """Return the files of a schema; those of a case (cases/<case>/<kind>) lie in its folder, and in those of the cases
+    that it extends, first.
+    """
+    if not name.startswith(OF_CASES):
+        return [SCHEMA_FOLDER / f"{name}.schema.yaml"]
+    case, kind = name.removeprefix(OF_CASES).split("/")
+    files = (folder / f"{kind}.schema.yaml" for folder in reversed(case_folders(find_case(case))))
+    return [path for path in files if path.is_file()]
 
 
 @cache
 def load_schema(name: str) -> dict[str, Any]:
-    """Return the schema of that name. Raises jsonschema.SchemaError if it is no schema."""
-    schema = with_patterns(read_yaml(schema_file(name), SCHEMA_FOLDER).values)
+    """Return the schema of that name, empty without a file. Raises jsonschema.SchemaError if it is no schema."""
+    parts = (with_patterns(read_yaml(path, SCHEMA_FOLDER).values) for path in schema_files(name))
+    schema = reduce(joined, parts, {}) or {"type": "object", "additionalProperties": False, "properties": {}}
     if name == "settings":
         schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
     if name == "study":
@@ -53,7 +59,8 @@ def joined(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
     """Return the schema of blocks with the keys of both; a block that both have is joined in turn."""
     properties = dict(first.get("properties", {}))
     for key, inner in second["properties"].items():
-        properties[key] = joined(properties[key], inner) if key in properties else inner
+        blocks = "properties" in inner and "properties" in properties.get(key, {})
+        properties[key] = joined(properties[key], inner) if blocks else inner
     required = list(dict.fromkeys([*first.get("required", []), *second.get("required", [])]))
     return {**second, **first, "properties": properties, "required": required}
 
@@ -61,8 +68,7 @@ def joined(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
 @cache
 def case_schema(case: str, kind: str) -> dict[str, Any]:
     """Return the schema of a case's settings or studies: what all cases share, and its own."""
-    own = f"cases/{case}/{kind}"
-    return joined(load_schema(kind), load_schema(own)) if schema_file(own).is_file() else load_schema(kind)
+    return joined(load_schema(kind), load_schema(f"{OF_CASES}{case}/{kind}"))
 
 
 def without_required(schema: Any) -> Any:

@@ -3,49 +3,89 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
-from pathlib import Path
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 
-from bulkwear.workflows.config.design import CONFIRMATION, REPOSITORY, RULE_NAMES, TARGETS, ConfigError, list_studies
+from bulkwear.workflows.config.design import CONFIRMATION, RULE_NAMES, TARGETS, ConfigError, list_studies
+from bulkwear.workflows.config.sources import own_studies
 from bulkwear.workflows.config.validation import unknown_name
+from bulkwear.workflows.engine.project import Project, current_project
 
-DEFAULT_TARGET = "demo"
+DEMO = "demo"  # of the package
 BELOW_RESULTS = re.compile(r"(?:.*/)?results/([^/]+)/")
 
 
+@dataclass(frozen=True)
+class Naming:
+    """What a Snakefile that takes the workflow as a module puts round names of rules: `use rule * ... as a_*_b`.
+
+    is_module: whether it is one; then names that are none of ours are that Snakefile's own
+    """
+
+    before: str = ""
+    after: str = ""
+    is_module: bool = False
+
+    def ours(self, name: str) -> str | None:
+        """Return the name of a rule as this workflow has it; None for one that is not named so."""
+        if not (name.startswith(self.before) and name.endswith(self.after)):
+            return None
+        return name[len(self.before) : len(name) - len(self.after)]
+
+
+def naming(modify: Callable[[str], str], is_module: bool) -> Naming:
+    """Return how a function changes names: what it puts before and after them."""
+    before, _, after = modify("\0").partition("\0")
+    return Naming(before, after, is_module)
+
+
+def default_studies(project: Project) -> list[str]:
+    """Return the studies that are made where no target is asked for: the package's demo, or all of a project's own."""
+    own = own_studies(project)
+    return [DEMO] if project.is_package and DEMO in own else own
+
+
 def requested_studies(
-    targets: Iterable[str], jobs: Iterable[tuple[str, Mapping[str, str]]] = (), root: Path = REPOSITORY
+    targets: Iterable[str],
+    jobs: Iterable[tuple[str, Mapping[str, str]]] = (),
+    project: Project | None = None,
+    names: Naming = Naming(),
 ) -> list[str]:
     """Return the names of the studies that targets and jobs need, of best designs after those that they are found in.
 
     jobs: rule and wildcards of those that Snakemake starts by themselves, as on a cluster. Without targets and jobs
-    the default target counts, all studies where there is none. Raises ConfigError for a target that is no study's, no
-    rule and no file.
+    those that are made by default count; so they do where another Snakefile, which takes the workflow as a module, is
+    asked for something of its own. Raises ConfigError for a target that is no
+    study's, no rule and no file.
     """
-    written = list_studies(root)
-    words = [*targets, *(_word_of(rule, wildcards) for rule, wildcards in jobs)]
-    if not words:
-        return [DEFAULT_TARGET] if DEFAULT_TARGET in written else written
-    names = (name for word in words for name in _studies_of(word, written))
-    return list(dict.fromkeys(names))
+    project = project or current_project()
+    written = list_studies(project)
+    words = [*targets, *(_word_of(rule, wildcards, names) for rule, wildcards in jobs)]
+    wanted: list[str] = []
+    for word in words:
+        studies = _studies_of(word, written, names)
+        wanted += default_studies(project) if studies is None else studies
+    return list(dict.fromkeys(wanted if words else default_studies(project)))
 
 
-def _word_of(rule: str, wildcards: Mapping[str, str]) -> str:
+def _word_of(rule: str, wildcards: Mapping[str, str], names: Naming) -> str:
     """Return what stands for a job as a target does; a rule without the wildcard is that of a target or of no study."""
-    return f"results/{wildcards['study']}/" if "study" in wildcards else rule
+    return f"results/{wildcards['study']}/" if "study" in wildcards and names.ours(rule) in RULE_NAMES else rule
 
 
-def _studies_of(word: str, written: list[str]) -> list[str]:
-    """Return the studies that a target needs, none for a rule or a file of no study."""
+def _studies_of(word: str, written: list[str], names: Naming) -> list[str] | None:
+    """Return the studies that a target needs, none for a rule or a file of no study; None for what is not ours."""
     below = BELOW_RESULTS.match(word)
-    if not below and (word in RULE_NAMES or "/" in word or "." in word):
-        return []
-    name = below[1] if below else word
-    for ending in () if below else TARGETS:
+    name = below[1] if below else names.ours(word)
+    if not below and (name in RULE_NAMES or "/" in word or "." in word):
+        return None if names.is_module and name not in RULE_NAMES else []
+    for ending in () if below or name is None else TARGETS:
         name = name.removesuffix(ending)
-    base = name if name in written else name.removesuffix(CONFIRMATION)
-    if base not in written:
-        *first, last = (*TARGETS, CONFIRMATION)
-        sentence = unknown_name("command line", "target", word, written).removesuffix(".")
-        raise ConfigError(f"{sentence}, alone or with the ending {', '.join(first)} or {last}.")
-    return list(dict.fromkeys([base, name]))
+    base = name if name in written or name is None else name.removesuffix(CONFIRMATION)
+    if base in written:
+        return list(dict.fromkeys([base, name]))
+    if names.is_module:
+        return None
+    *first, last = (*TARGETS, CONFIRMATION)
+    sentence = unknown_name("command line", "target", word, written).removesuffix(".")
+    raise ConfigError(f"{sentence}, alone or with the ending {', '.join(first)} or {last}.")

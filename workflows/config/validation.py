@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -246,11 +246,23 @@ def _check_columns(header: list[str], schema: dict[str, Any], source: str) -> No
             raise ConfigError(f"{source}, header: column {column} is missing, allowed are {allowed}.")
 
 
-def check_materials(layer: Layer) -> dict[str, Any]:
-    """Return the materials as floats after all checks. Raises ConfigError."""
+def check_materials(layers: Sequence[Layer]) -> dict[str, Any]:
+    """Return the materials of all files as floats after all checks; those of a later file stand for the earlier's of
+    their name. Raises ConfigError.
+    """
     schema = load_schema("materials")
-    check_layer(layer, schema)
-    for name, particle in layer.values["particles"].items():
+    check_layer(layers[0], schema)
+    for layer in layers[1:]:
+        check_layer(layer, {**schema, "required": []})
+    for layer in layers:
+        _check_distributions(layer)
+    kinds = dict.fromkeys(kind for layer in layers for kind in layer.values)
+    together = {kind: {k: v for each in layers for k, v in each.values.get(kind, {}).items()} for kind in kinds}
+    return coerce_numbers(together, schema)
+
+
+def _check_distributions(layer: Layer) -> None:
+    for name, particle in layer.values.get("particles", {}).items():
         distribution = particle["size_distribution"]
         path = ("particles", name, "size_distribution", "mass_fraction")
         fractions, count = distribution["mass_fraction"], len(distribution["relative_diameter"])
@@ -263,7 +275,6 @@ def check_materials(layer: Layer) -> dict[str, Any]:
             raise ConfigError(
                 f"{layer.where(path)}: {dotted(path)} has the sum {math.fsum(fractions):.10g}, allowed is 1."
             )
-    return coerce_numbers(layer.values, schema)
 
 
 def unknown_name(source: str, noun: str, name: str, known: list[str]) -> str:

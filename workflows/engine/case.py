@@ -9,17 +9,26 @@ slow to import and needed in jobs only are imported where they are used: every j
 from __future__ import annotations
 
 import importlib
-import pkgutil
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.caps import edge_limit
+from bulkwear.workflows.engine.project import (
+    CASES_OF_PACKAGE,
+    ProjectError,
+    cases_folders,
+    current_project,
+    import_fault,
+)
 from bulkwear.workflows.engine.schedule import Span, first_span
+from bulkwear.workflows.engine.state import file_digest
 from bulkwear.workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
@@ -27,7 +36,7 @@ if TYPE_CHECKING:
 
     from bulkwear.workflows.engine.schedule import Span
 
-CASES_PACKAGE = "bulkwear.workflows.cases"  # of which each package is a case that registers itself when it is imported
+CASES_PACKAGE = "bulkwear.workflows.cases"  # whose packages are the cases, each registered when it is imported
 DEFAULT_CASE = "sliding_sample"  # of a study that names none
 SETUP_LOADS, SETUP_BED = "loads_0.vtk", "bed_0.dump"  # of a cycle's first instant: the last one of the cycle before
 
@@ -62,7 +71,8 @@ class Run:
 class Case:
     """A case; subclasses override what they need, and their module registers one of them.
 
-    name: of its folder in `workflows/cases`, and in studies
+    name: of its folder, and in studies; a case that extends another one also has what that one's folder has: schemas,
+        defaults, page, figures, rules
     material_keys: (section, key, kind in materials.yaml) of the settings that name a material
     checks: of a run, see run_checks.py
     run_templates: names of the templates of a run's decks; bed_template: of the deck of a bed; more_templates: of
@@ -300,14 +310,67 @@ def register(case: Case) -> Case:
 
 
 def case_names() -> list[str]:
-    """Return the names of all cases: the packages of `CASES_PACKAGE`."""
-    package = importlib.import_module(CASES_PACKAGE)
-    return sorted(found.name for found in pkgutil.iter_modules(package.__path__) if found.ispkg)
+    """Return the names of all cases: the folders with a module `case`, of the project and of the package."""
+    return sorted({path.parent.name for folder in cases_folders() for path in folder.glob("*/case.py")})
 
 
 def find_case(name: str) -> Case:
-    """Return the case of that name, imported when it is first asked for. Raises ValueError naming all cases."""
+    """Return the case of that name, imported when it is first asked for.
+
+    Raises ValueError naming all cases, ProjectError for one that cannot be imported or registers no case of its name.
+    """
     if name not in case_names():
         raise ValueError(f"case is '{name}', allowed is one of {', '.join(case_names())}.")
-    importlib.import_module(f"{CASES_PACKAGE}.{name}.case")
+    package = importlib.import_module(CASES_PACKAGE)
+    package.__path__[:] = map(str, cases_folders())
+    path = next(file for folder in cases_folders() if (file := folder / name / "case.py").is_file())
+    try:
+        module = importlib.import_module(f"{CASES_PACKAGE}.{name}.case")
+    except Exception as fault:
+        raise ProjectError(import_fault(fault, path, _shown(path))) from fault
+    if Path(module.__file__) != path:
+        raise ProjectError(f"{_shown(path)}: the case {name} of another project is in use, allowed is one of a name.")
+    if name not in _REGISTERED:
+        raise ProjectError(
+            f"{_shown(path)}: it registers no case {name}, allowed is register(...) of a Case of that name."
+        )
     return _REGISTERED[name]
+
+
+def _shown(path: Path) -> str:
+    folder = current_project().folder
+    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else str(path)
+
+
+def case_packages(case: Case) -> list[str]:
+    """Return the packages of a case and of those that its class extends, its own first."""
+    classes = [each for each in type(case).__mro__ if issubclass(each, Case) and each is not Case]
+    return list(dict.fromkeys(each.__module__.rpartition(".")[0] for each in classes))
+
+
+def case_folders(case: Case) -> list[Path]:
+    """Return the folders of `case_packages`."""
+    return [Path(sys.modules[f"{package}.case"].__file__).parent for package in case_packages(case)]
+
+
+def case_module(case: Case, name: str) -> ModuleType:
+    """Return a module of a case's folder, or the one of the case that it extends. Raises ModuleNotFoundError."""
+    file = Path(*name.split(".")).with_suffix(".py")
+    there = zip(case_packages(case), case_folders(case), strict=True)
+    package = next((package for package, folder in there if (folder / file).is_file()), case_packages(case)[0])
+    return importlib.import_module(f"{package}.{name}")
+
+
+def code_of_project(case: Case) -> dict[str, str]:
+    """Return {file: its hash} of a project's own case, figures and page aside: what cycles of its runs depend on.
+
+    Empty for the package's cases, whose results have a version (`bulkwear.postproc.wear.WEAR_VERSION`).
+    """
+    folders = [folder for folder in case_folders(case) if CASES_OF_PACKAGE not in folder.parents]
+    shown = {f"{name}.py" for name in ("page", *case.figure_modules)}
+    return {
+        path.relative_to(folder.parent).as_posix(): file_digest(path)
+        for folder in folders
+        for path in sorted(folder.rglob("*.py"))
+        if path.relative_to(folder).as_posix() not in shown and "plots" not in path.parts
+    }

@@ -14,8 +14,9 @@ from typing import Any
 
 from bulkwear.postproc.wear import WEAR_VERSION
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.case import Case, Parameters
+from bulkwear.workflows.engine.case import Case, Parameters, code_of_project
 from bulkwear.workflows.engine.chain import Chain, write_bed
+from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.schedule import first_span
 
 DERIVED = (
@@ -60,7 +61,22 @@ def run_digest(case: Case, parameters: Parameters, bed: Parameters | None) -> st
             for section, values in sections.items()
         },
     }
+    consumed |= _code_of_project(case, parameters)
     return state.digest(consumed, *case.sample_decks(parameters, bed))
+
+
+def _code_of_project(case: Case, parameters: Parameters) -> dict[str, Any]:
+    """Return the hashes of Python files of the project that a run depends on; nothing where all is the package's."""
+    law = dict(current_project().own_laws).get(parameters["wear"]["law"]) if "wear" in parameters else None
+    found = {"law": state.file_digest(law) if law else "", "case": code_of_project(case)}
+    return {name: value for name, value in found.items() if value}
+
+
+def surface_from(case: Case, parameters: Parameters) -> dict[str, Any]:
+    """Return the sections of a run's parameters that its surface is made from; of a project's case with its code."""
+    sections = {name: parameters[name] for name in case.geometry}
+    code = code_of_project(case)
+    return SimulatedFrom(sections, state.digest(sections, code)) if code else sections
 
 
 def inputs_digest(chain: Chain) -> str:

@@ -12,13 +12,17 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
+import bulkwear
+from bulkwear.workflows.engine.project import enter_project
+
 SECONDS_BETWEEN_LINES = 15.0
 SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
 
 
-def let_jobs_import(root: Path) -> None:
-    """Let the Python scripts of all jobs import this project's packages, wherever Snakemake puts the scripts."""
-    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
+def let_jobs_import() -> None:
+    """Let the Python scripts of all jobs import this very package, wherever Snakemake puts the scripts."""
+    beside = str(Path(bulkwear.__file__).parents[1])
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [beside, os.environ.get("PYTHONPATH")]))
 
 
 class _Both:
@@ -38,15 +42,16 @@ class _Both:
 
 
 @contextlib.contextmanager
-def job_log(path: str | Path) -> Iterator[None]:
-    """Copy standard error to a log. A fault of the user's or the solver's ends the job with its sentence alone.
+def project_job(log_path: str | Path) -> Iterator[None]:
+    """Work in the project of the working directory, and copy standard error to a log.
 
-    Faults are ValueError, RuntimeError and OSError of this project's own modules: their messages are sentences for
-    people. The log gets the traceback too. Exit code 1.
+    A fault of the user's or the solver's ends the job with its sentence alone, exit code 1. Faults are ValueError,
+    RuntimeError and OSError of our own modules: their messages are sentences. The log gets the traceback too.
     """
-    with open(path, "a") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
+    with open(log_path, "a") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
         print(time.strftime("--- started %Y-%m-%d %H:%M:%S"), file=log)
         try:
+            enter_project(Path.cwd())
             yield
         except (ValueError, RuntimeError, OSError) as fault:
             print(f"\n{fault}\n", file=sys.stderr)

@@ -1,12 +1,6 @@
 """Surfaces, beds and runs: everything up to what calls the solver, and the same decks without calling it."""
 
 
-# A deck is rendered in a second: on a cluster, where snakemake was called.
-localrules:
-    bed_deck,
-    run_decks,
-
-
 rule surface_mesh:
     output:
         "results/{study}/{run}/surface.vtu",
@@ -86,6 +80,7 @@ rule bed_deck:
         "results/{study}/decks/beds/{bed}/deck.in",
     log:
         "results/{study}/logs/bed_deck_{bed}.log",
+    localrule: True  # a deck is rendered in a second: on a cluster, where snakemake was called
     params:
         case=case_of,
         bed=lambda wildcards: simulated_bed(wildcards.study, wildcards.bed),
@@ -102,6 +97,7 @@ rule run_decks:
         "results/{study}/decks/{run}/cycle_000/deck.in",
     log:
         "results/{study}/logs/run_decks_{run}.log",
+    localrule: True
     params:
         case=case_of,
         run=lambda wildcards: simulated_run(wildcards.study, wildcards.run)[0],

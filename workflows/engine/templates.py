@@ -1,4 +1,4 @@
-"""Render the templates of templates/ into decks that run by hand.
+"""Render the templates of templates/, the project's before the package's, into decks that run by hand.
 
 A deck's parameters are SI numbers and words; what a template does not use, and what it uses but is not given, is an
 error. Two sections reach templates whole, and need not be used up: `solver`, as one mapping, and `deck`, the user's own
@@ -17,7 +17,9 @@ from typing import Any
 import jinja2
 import jinja2.meta
 
-TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+from bulkwear.workflows.engine.project import TEMPLATES, current_project
+from bulkwear.workflows.engine.state import digest
+
 SOLVER, OWN = "solver", "deck"  # sections of a run, a bed or a test that reach its templates whole
 TESTS = {"eq": operator.eq, "ne": operator.ne, "in": lambda value, several: value in several}  # of branches
 
@@ -26,15 +28,40 @@ class DeckError(ValueError):
     """A template and its parameters do not fit; the message names the template and the parameter."""
 
 
-def of_cases(folder: Path) -> list[Path]:
-    """Return the folders of cases below the one of all templates; a template is found by its name in any of them."""
+def template_folders() -> tuple[Path, ...]:
+    """Return the folders in which a template is found by its name: of the project, each case's, then of the package."""
+    roots = [folder / TEMPLATES for folder in current_project().folders]
+    return tuple(found for root in roots if root.is_dir() for found in (root, *_of_cases(root)))
+
+
+def _of_cases(folder: Path) -> list[Path]:
     return sorted(path for path in folder.iterdir() if path.is_dir() and not path.name.startswith("_"))
 
 
+def own_templates() -> list[Path]:
+    """Return the templates that are the current project's own, not the package's."""
+    project = current_project()
+    return [] if project.is_package else sorted((project.folder / TEMPLATES).rglob("*.in.j2"))
+
+
+def template_file(name: str) -> Path:
+    """Return the file that a template of that name is read from. Raises DeckError where there is none."""
+    try:
+        return Path(_environment(template_folders()).loader.get_source(None, name)[1])
+    except jinja2.TemplateNotFound as missing:
+        raise DeckError(f"{TEMPLATES}/{missing.name}: no such template.") from missing
+
+
+def shown_template(template: str) -> str:
+    """Return the path of a template as messages show it: from the project's folder where it is the project's own."""
+    path, folder = template_file(f"{template}.in.j2"), current_project().folder
+    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else str(path)
+
+
 @cache
-def _environment(folder: Path) -> jinja2.Environment:
+def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([folder, *of_cases(folder)]),
+        loader=jinja2.FileSystemLoader(folders),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -54,13 +81,13 @@ def particles_and_walls(particles: float, walls: float, type_names: Sequence[str
     return [[particles if i == j == 0 else walls for j, _ in enumerate(type_names)] for i, _ in enumerate(type_names)]
 
 
-def _trees(template: str, folder: Path, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Template]:
+def _trees(template: str, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Template]:
     """Return {file name: syntax tree} of a template and its partials, without branches that `words` do not take.
 
     That is decided for branches `{% if name == "word" %}` whose name, or `solver.name`, `words` has, and for those with
     `!=` and `in ("word", "other")`; all others count as taken.
     """
-    environment = _environment(folder)
+    environment = _environment(template_folders())
     files = sorted(path for root in environment.loader.searchpath for path in Path(root).glob("**/*.in.j2"))
     stamp = tuple(path.stat().st_mtime_ns for path in files)
     return _pruned_trees(environment, template, _choices(words), _choices(words.get(SOLVER, {})), stamp)
@@ -82,7 +109,7 @@ def _pruned_trees(
         try:
             source = environment.loader.get_source(environment, name)[0]
         except jinja2.TemplateNotFound as missing:
-            raise DeckError(f"templates/{missing.name}: no such template.") from missing
+            raise DeckError(f"{TEMPLATES}/{missing.name}: no such template.") from missing
         trees[name] = environment.parse(source)
         for branch in trees[name].find_all(jinja2.nodes.If):
             _prune(branch, words)
@@ -123,34 +150,28 @@ def _solver_settings(node: jinja2.nodes.Node, chosen_by: str = "") -> Iterator[t
         yield from _solver_settings(child, asked or chosen_by)
 
 
-@cache  # a study asks for the same few templates once per run
-def template_parts(template: str, folder: Path = TEMPLATES) -> tuple[str, ...]:
-    """Return the file names of a template and of all partials that it includes. Raises DeckError if one is missing."""
-    return tuple(_trees(template, folder, {}))
-
-
-def template_sources(template: str, folder: Path = TEMPLATES) -> dict[str, str]:
+def template_sources(template: str) -> dict[str, str]:
     """Return {file name: text} of a template and its partials: what a deck depends on besides its parameters."""
-    loader = _environment(folder).loader
-    return {name: loader.get_source(_environment(folder), name)[0] for name in template_parts(template, folder)}
+    return {name: template_file(name).read_text(encoding="utf-8") for name in _trees(template, {})}
 
 
-def template_variables(
-    template: str, folder: Path = TEMPLATES, words: Mapping[str, Any] = MappingProxyType({})
-) -> set[str]:
+def templates_digest(*templates: str) -> str:
+    """Return the hash of templates and their partials, for what runs decks that no digest of a run holds."""
+    return digest(*map(template_sources, templates))
+
+
+def template_variables(template: str, words: Mapping[str, Any] = MappingProxyType({})) -> set[str]:
     """Return the names of all parameters that a template and its partials use, in the branches that `words` take."""
-    return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, folder, words).values()))
+    return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, words).values()))
 
 
-def solver_settings(
-    template: str, folder: Path = TEMPLATES, words: Mapping[str, Any] = MappingProxyType({})
-) -> dict[str, str]:
+def solver_settings(template: str, words: Mapping[str, Any] = MappingProxyType({})) -> dict[str, str]:
     """Return {setting of the solver's section that a template uses: the one whose value makes it do so}.
 
     words: as for `template_variables`; "" for what is used whatever the others are
     """
     found: dict[str, str] = {}
-    for tree in _trees(template, folder, words).values():
+    for tree in _trees(template, words).values():
         for name, chosen_by in _solver_settings(tree):
             found[name] = chosen_by if found.get(name, chosen_by) else ""
     return found
@@ -175,24 +196,27 @@ def used_sections(template: str, parameters: Mapping[str, Any], **words: Any) ->
     }
 
 
-def render(template: str, parameters: Mapping[str, Any], folder: Path = TEMPLATES) -> str:
+def render(template: str, parameters: Mapping[str, Any]) -> str:
     """Return the deck of a template, e.g. "settled_bed"; parameters hold its `whole_sections` too.
 
     Raises DeckError for missing and for unused parameters, and for an own word that is one of the other parameters.
     """
     own = parameters.get(OWN, {})
     given = {name: value for name, value in parameters.items() if name != OWN}
-    wanted = template_variables(template, folder, given)
-    missing = {f"solver.{name}" for name in solver_settings(template, folder, given)}
+    wanted = template_variables(template, given)
+    missing = {f"solver.{name}" for name in solver_settings(template, given)}
     missing -= {f"solver.{name}" for name in given.get(SOLVER, {})}
     for names, fault in (
-        ((wanted - {*given, *own}) | missing, "is not given"),
+        (
+            (wanted - {*given, *own}) | missing,
+            f"is not given, allowed are its deck's words and those of `{OWN}`",
+        ),
         (set(given) - wanted - {SOLVER}, "is never used"),
         (set(given) & set(own), "is one of ours, no word of deck may be called so"),
     ):
         if names:
-            raise DeckError(f"templates/{template}.in.j2: parameter {', '.join(sorted(names))} {fault}.")
+            raise DeckError(f"{shown_template(template)}: parameter {', '.join(sorted(names))} {fault}.")
     try:
-        return _environment(folder).get_template(f"{template}.in.j2").render({**given, **own})
+        return _environment(template_folders()).get_template(f"{template}.in.j2").render({**given, **own})
     except jinja2.TemplateError as fault:
-        raise DeckError(f"templates/{template}.in.j2: {fault}.") from fault
+        raise DeckError(f"{shown_template(template)}: {fault}.") from fault

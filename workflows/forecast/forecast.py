@@ -8,7 +8,6 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Collection, Mapping, Sequence
-from pathlib import Path
 
 import pandas as pd
 
@@ -147,10 +146,10 @@ def forecast_text(heading: str, study: str, table: pd.DataFrame, cores: int, sai
     )
 
 
-def announcement(study: Study, jobs: Collection[str], root: Path, cores: int) -> str:
+def announcement(study: Study, jobs: Collection[str], cores: int) -> str:
     """Return in one line what those jobs of a study will cost, or what is wrong with the rates."""
     try:
-        found = read_rates(rates_file(root))
+        found = read_rates(rates_file())
     except RatesError as fault:
         return f"No forecast: {fault}"
     table = forecast_table([job for job in work_of(study) if job.name in jobs], found.rates)
@@ -193,12 +192,12 @@ def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def demands(study: Study, root: Path) -> dict[str, tuple[int, int]]:
+def demands(study: Study) -> dict[str, tuple[int, int]]:
     """Return the minutes and MB that the jobs of a study which call the solver ask for at first, by their names.
 
     Raises RatesError.
     """
-    table = forecast_table(work_of(study), read_rates(rates_file(root)).rates)
+    table = forecast_table(work_of(study), read_rates(rates_file()).rates)
     return {row["job"]: (minutes(row["wall_h"]), megabytes(row["memory_gb"])) for row in table.to_dict("records")}
 
 

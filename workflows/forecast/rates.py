@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from bulkwear.workflows.engine.project import Project, current_project
+
 MEASURED, DEFAULT = Path("results/cost_rates.json"), Path("config/cost_rates.json")
 SOLVER_TERMS = (
     "decks",
@@ -62,9 +64,12 @@ class MachineRates:
         return f"rates of this machine ({where})"
 
 
-def rates_file(root: Path) -> Path:
-    """Return the file of rates that forecasts use: measured here, or the default of the project at `root`."""
-    return MEASURED if MEASURED.is_file() else root / DEFAULT
+def rates_file(project: Project | None = None) -> Path:
+    """Return the file of rates that forecasts in a project use, by default the current one: measured in it, or in the
+    package, or else the default.
+    """
+    project = project or current_project()
+    return Path(project.path(str(MEASURED if project.every(str(MEASURED)) else DEFAULT)))
 
 
 def read_rates(path: Path) -> MachineRates:

@@ -27,3 +27,24 @@ rule forecast_table:
         "Forecast of {wildcards.study}, to compare with what it takes"
     script:
         "../scripts/forecast_table.py"
+
+
+for STUDY in STUDIES:
+
+    rule:
+        name:
+            f"{STUDY}_forecast"
+        input:
+            rates=used_rates,
+        log:
+            f"results/{STUDY}/logs/forecast.log",
+        localrule: True
+        params:
+            work=solver_work(STUDY),
+            study=STUDY,
+            heading=f"{STUDY}, fidelity {STUDIES[STUDY].fidelity}: {STUDIES[STUDY].title}",
+            cores=CORES,
+        message:
+            "What the study will cost"
+        script:
+            "../scripts/forecast.py"

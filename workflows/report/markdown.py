@@ -21,7 +21,7 @@ from bulkwear.postproc.plots.style import save_small
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.workflows.config.design import Study, load_study
-from bulkwear.workflows.report.page import commit, cost_totals, jobs_of
+from bulkwear.workflows.report.page import cost_totals, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_of, page_parameters
 from bulkwear.workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Table, Text, shown
 from bulkwear.workflows.report.text import number
@@ -115,7 +115,7 @@ def provenance(folder: Path, study: Study) -> str:
     states = [path for simulation in simulations for path in cycle_files(simulation, "state.json")]
     solver = solver_words(states[0].parent / "log.liggghts")
     number = f"{len(simulations)} {'runs' if study.case.wears else 'simulations'} of {len(study.design_rows)} rows"
-    said = f"Simulated {simulated_between(states)} with {solver}, page written by {commit()}: {number}."
+    said = f"Simulated {simulated_between(states)} with {solver}, page written by {package_version()}: {number}."
     if remarks := figure_remarks(study):
         said += f" {'; '.join(remarks)}."
     return f"{prose(said)}\n"

@@ -22,6 +22,7 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.project import PACKAGE, current_project
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.report.cost import (
     BENCHMARK_SUFFIX,
@@ -34,7 +35,6 @@ from bulkwear.workflows.report.page_parameters import REPORT_FOLDER, page_of
 from bulkwear.workflows.report.sections import DIGITS, Block, Table, with_all_figures
 from bulkwear.workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 
-REPOSITORY = Path(__file__).resolve().parents[2]
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
 LONGEST_NAME = 40  # characters of a cell that is not broken into lines
 FORECAST = "forecast.csv"
@@ -239,7 +239,10 @@ def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
     log = next((log for run in simulation_folders(study, folder) for log in cycle_files(run, LOG)), None)
     said = solver_version(log) if log else None
     found = {"LIGGGHTS": said.removeprefix("Version ") if said else "not reported"}
-    found["this project"] = commit()
+    project = current_project()
+    found["bulkwear"] = package_version()
+    if not project.is_package:
+        found["this project"] = commit(project.folder)
     found["Python"] = f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
     for name in PACKAGES:
         try:
@@ -249,10 +252,16 @@ def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
     return found
 
 
-def commit(repository: Path = REPOSITORY) -> str:
-    """Return the commit of the project, and whether files differ from it; what is known where git is not
-    there.
-    """
+def package_version() -> str:
+    """Return the commit of the package, or the version that was installed."""
+    try:
+        return commit(PACKAGE) if (PACKAGE / ".git").exists() else f"version {importlib.metadata.version('bulkwear')}"
+    except importlib.metadata.PackageNotFoundError:
+        return "version not known"
+
+
+def commit(repository: Path) -> str:
+    """Return the commit of a repository, and whether files differ from it; what is known where git is not there."""
 
     def git(*words: str) -> str:
         command = ["git", "-c", f"safe.directory={repository}", *words]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from bulkwear.postproc.wear.laws import NEUTRAL_LAW
 from bulkwear.workflows.config.design import Study
-from bulkwear.workflows.engine.case import CASES_PACKAGE
+from bulkwear.workflows.engine.case import case_module, find_case
 from bulkwear.workflows.report.products import Product, figures_of, products_of_study
 from bulkwear.workflows.report.text import number_and_unit
 
@@ -68,7 +67,7 @@ def _figure_words(product: Product) -> dict[str, Any]:
 
 def page_of(case: str) -> ModuleType:
     """Return the module of a case's page."""
-    return importlib.import_module(f"{CASES_PACKAGE}.{case}.page")
+    return case_module(find_case(case), "page")
 
 
 def figure_remarks(study: Study) -> list[str]:

@@ -18,10 +18,11 @@ import importlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.engine.case import CASES_PACKAGE, Case
+from bulkwear.workflows.engine.case import Case, case_module
+from bulkwear.workflows.engine.project import CONFIG, current_project
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
@@ -119,21 +120,25 @@ def every_run(file: str) -> OfStudy:
 
 
 def paths_of(source: Source, study: Study) -> str | list[str]:
-    """Return the path, or the paths, of a source for a study."""
-    return source.format(study=study.name) if isinstance(source, str) else source(study)
+    """Return the path, or the paths, of a source for a study; the package's file where its project has none."""
+    paths = source.format(study=study.name) if isinstance(source, str) else source(study)
+    return _looked_up(paths) if isinstance(paths, str) else [_looked_up(path) for path in paths]
+
+
+def _looked_up(path: str) -> str:
+    return current_project().path(path) if path.startswith(f"{CONFIG}/") else path
 
 
 def products_of(case: Case) -> dict[str, Product]:
     """Return every figure and job of tables of a case by name, in the order in which pages show them."""
-    modules = [f"{CASES_PACKAGE}.{case.name}.{name}" for name in case.figure_modules]
+    modules = [case_module(case, name) for name in case.figure_modules]
     found = {name: product for module in modules for name, product in _declared(module).items()}
-    shared = _declared(SHARED)
+    shared = _declared(importlib.import_module(SHARED))
     return found | {name: shared[name] for name in case.shared_figures}
 
 
-def _declared(module: str) -> dict[str, Product]:
-    made = vars(importlib.import_module(module)).values()
-    return {each.product.name: each.product for each in made if hasattr(each, "product")}
+def _declared(module: ModuleType) -> dict[str, Product]:
+    return {each.product.name: each.product for each in vars(module).values() if hasattr(each, "product")}
 
 
 def products_of_study(study: Study) -> dict[str, Product]:

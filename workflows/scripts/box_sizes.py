@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from bulkwear.workflows.cases.calibration.driver import run_box_sizes
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     table = run_box_sizes(
         snakemake.params.runs, Path(snakemake.input.pairs), Path(snakemake.output[0]).parent, snakemake.threads
     )

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from bulkwear.workflows.cases.calibration.boxes import test_of
 from bulkwear.workflows.engine.bulk_tests import write_test
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     run = snakemake.params.run
     test = test_of(run, snakemake.wildcards.test, {}, run["calibration"]["seed"])
     write_test(test, Path(snakemake.output[0]).parent)

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from bulkwear.workflows.cases.calibration.driver import run_calibration
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     tables = run_calibration(
         snakemake.params.run,
         Path(snakemake.input.measured),

@@ -3,11 +3,11 @@
 import tempfile
 from pathlib import Path
 
-from bulkwear.workflows.engine.job import Progress, job_log
+from bulkwear.workflows.engine.job import Progress, project_job
 from bulkwear.workflows.forecast.rate_benchmark import measured_rates
 from bulkwear.workflows.forecast.rates import write_rates
 
-with job_log(snakemake.log[0]), tempfile.TemporaryDirectory() as folder:
+with project_job(snakemake.log[0]), tempfile.TemporaryDirectory() as folder:
     say = Progress("rates", 1).say
     say("a minute or two on an idle machine; other work on it makes them less sharp")
     write_rates(Path(snakemake.output[0]), measured_rates(Path(folder), say, snakemake.threads))

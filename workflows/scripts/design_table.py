@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bulkwear.workflows.engine.job import job_log, write_table
+from bulkwear.workflows.engine.job import project_job, write_table
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     write_table(Path(snakemake.output[0]), snakemake.params.rows)

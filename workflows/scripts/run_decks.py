@@ -4,9 +4,9 @@ from pathlib import Path
 
 from bulkwear.workflows.engine.case import find_case
 from bulkwear.workflows.engine.chain import Chain, write_decks
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     write_decks(
         Chain(
             name=snakemake.wildcards.run,

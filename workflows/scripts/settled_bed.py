@@ -4,10 +4,10 @@ from pathlib import Path
 
 from bulkwear.workflows.engine.case import find_case
 from bulkwear.workflows.engine.cycles import fill_bed
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 from bulkwear.workflows.engine.solver import LAUNCHER, ranks_here
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     folder = Path(snakemake.output.restart).parent
     ranks = ranks_here(snakemake.resources.tasks, snakemake.threads)
     case, launcher = find_case(snakemake.params.case), snakemake.resources.get("mpi", LAUNCHER)

@@ -1,9 +1,9 @@
 """Write the summary of a study: one row per run."""
 
 from bulkwear.workflows.engine.case import find_case
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     files = snakemake.input
     table = find_case(snakemake.params.case).summary(files.design, files.wear, files.pristine, files.worn)
     table.to_csv(snakemake.output[0], index=False)

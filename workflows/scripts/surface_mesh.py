@@ -2,7 +2,7 @@
 
 from bulkwear.postproc.mesh import write_surface
 from bulkwear.workflows.engine.case import find_case
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     write_surface(snakemake.output[0], find_case(snakemake.params.case).surface_mesh(snakemake.params.geometry))

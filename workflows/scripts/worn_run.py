@@ -5,10 +5,10 @@ from pathlib import Path
 from bulkwear.workflows.engine.case import find_case
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.cycles import run_chain
-from bulkwear.workflows.engine.job import job_log
+from bulkwear.workflows.engine.job import project_job
 from bulkwear.workflows.engine.solver import LAUNCHER, ranks_here
 
-with job_log(snakemake.log[0]):
+with project_job(snakemake.log[0]):
     run_chain(
         Chain(
             name=snakemake.wildcards.run,

@@ -24,7 +24,7 @@ FIDELITIES = ("quick", "standard", "paper")
 
 
 def parameters_of(config, run="R9_convex", overrides=None):
-    return load_study("small", config.root, overrides).run(run).parameters
+    return load_study("small", config.project, overrides).run(run).parameters
 
 
 # ---------------------------------------------------------------- the shipped studies
@@ -106,7 +106,7 @@ def test_a_study_whose_scale_follows_thickness_says_so():
 def test_an_unknown_study_is_named_with_the_nearest(config):
     """A misspelt study gives the studies there are."""
     with pytest.raises(ConfigError) as caught:
-        load_study("smal", config.root)
+        load_study("smal", config.project)
     assert str(caught.value) == ("config/studies: study is 'smal', allowed is one of small (the nearest is small).")
 
 
@@ -115,7 +115,7 @@ def test_an_unknown_study_is_named_with_the_nearest(config):
 
 def test_the_strongest_layer_wins_key_by_key(config):
     """default < study < fidelity block < command line; keys that a layer does not name come from below."""
-    settings = load_study("small", config.root, {"sample": {"length_mm": 70}, "bed": {"behind_mm": 123}}).settings
+    settings = load_study("small", config.project, {"sample": {"length_mm": 70}, "bed": {"behind_mm": 123}}).settings
     assert settings["sample"]["material"] == "steel"  # default
     assert settings["bed"]["ahead_mm"] == 150  # study
     assert (settings["sample"]["width_mm"], settings["bed"]["width_mm"]) == (80, 120)  # fidelity block
@@ -124,11 +124,11 @@ def test_the_strongest_layer_wins_key_by_key(config):
 
 def test_the_fidelity_comes_from_the_strongest_layer(config):
     """Command line before study before default; other blocks do not apply, an empty block is fine."""
-    assert load_study("small", config.root).fidelity == "quick"
+    assert load_study("small", config.project).fidelity == "quick"
     config.edit("studies/small.yaml", "title:", "fidelity: standard\ntitle:")
-    standard = load_study("small", config.root)
+    standard = load_study("small", config.project)
     assert (standard.fidelity, standard.settings["particle_scale"]) == ("standard", 1.0)
-    quick = load_study("small", config.root, {"fidelity": "quick"})
+    quick = load_study("small", config.project, {"fidelity": "quick"})
     assert (quick.fidelity, quick.settings["particle_scale"]) == ("quick", 2.0)
 
 
@@ -136,11 +136,11 @@ def test_a_fidelity_may_have_a_design_of_its_own(config):
     """The block's table replaces the study's at that fidelity, and only there; a missing one is named with its line."""
     config.edit("studies/small.yaml", "    particle_scale: 2.0", "    design: few.csv\n    particle_scale: 2.0")
     with pytest.raises(ConfigError, match=r"line 8, fidelity quick: design is 'few.csv', allowed is one of small.csv"):
-        load_study("small", config.root)
+        load_study("small", config.project)
     table = config.path("designs/small.csv").read_text(encoding="utf-8")
     config.write("designs/few.csv", "\n".join(table.splitlines()[:2]))
-    assert [run.row for run in load_study("small", config.root).runs] == ["R9", "R9"]
-    assert len(load_study("small", config.root, {"fidelity": "standard"}).design_rows) == 2
+    assert [run.row for run in load_study("small", config.project).runs] == ["R9", "R9"]
+    assert len(load_study("small", config.project, {"fidelity": "standard"}).design_rows) == 2
 
 
 def test_whole_and_decimal_numbers_give_the_same_parameters(config):
@@ -151,10 +151,10 @@ def test_whole_and_decimal_numbers_give_the_same_parameters(config):
 
 def test_loading_twice_gives_the_same_study_and_shares_nothing(config):
     """Parameters of one study can be changed without changing another (no shared mutable state)."""
-    first, untouched = (load_study("small", config.root) for _ in range(2))
+    first, untouched = (load_study("small", config.project) for _ in range(2))
     first.runs[0].parameters["particle"]["diameters_m"].append(1.0)
     first.runs[0].parameters["solver"]["ranks"] = 99
-    assert load_study("small", config.root) == untouched
+    assert load_study("small", config.project) == untouched
     assert first.runs[1] == untouched.runs[1]
 
 
@@ -230,7 +230,7 @@ def test_the_plain_twin_has_no_pattern_and_is_otherwise_equal(config):
 
 def test_the_design_table_has_one_row_per_run_with_units_in_the_names(config):
     """run, row and surface, then the factors as written."""
-    table = load_study("small", config.root).design_table()
+    table = load_study("small", config.project).design_table()
     assert [row["run"] for row in table] == ["R9_convex", "R9_plain", "R5_convex", "R5_plain"]
     assert table[3] == {
         "run": "R5_plain",
@@ -317,7 +317,7 @@ def test_a_cycle_is_whole_samples_and_lasts_exactly(duration, largest, interval,
 
 def test_the_travel_is_exact_and_the_time_step_close_to_its_limit(config):
     """cycles x steps x time step x velocity = travel; the time step is at most a sample per cycle lower."""
-    for run in load_study("small", config.root).runs:
+    for run in load_study("small", config.project).runs:
         derived, sliding = run.parameters["derived"], run.parameters["sliding"]
         total = derived["travel_steps"] * derived["time_step_s"] * sliding["velocity_m_per_s"]
         assert total == pytest.approx(1.0, rel=ROUNDING)
@@ -338,7 +338,7 @@ def test_the_bed_is_what_the_sample_travels_through(config):
 def test_a_periodic_bed_comes_round_again(config):
     """ahead 150 + behind 300 + sample 90 mm whatever the travel, which needs no room and no other bed."""
     studies = [
-        load_study("small", config.root, {"bed": {"ends": "periodic"}, "sliding": {"travel_mm": travel}})
+        load_study("small", config.project, {"bed": {"ends": "periodic"}, "sliding": {"travel_mm": travel}})
         for travel in (1000, 50000)
     ]
     for study in studies:
@@ -364,10 +364,10 @@ def test_the_bed_holds_the_mass_of_its_volume(config):
 def test_a_test_duration_becomes_a_travel(config):
     """2 h of test at 1 and 2 m/s, accelerated 3.6e4 times, are 0.2 s of simulation: 0.2 and 0.4 m of travel."""
     changes = {"wear": {"acceleration": 3.6e4}, "sliding": {"test_duration_h": 2.0}}
-    study = load_study("small", config.root, changes)
+    study = load_study("small", config.project, changes)
     assert "travel_mm" not in study.settings["sliding"]
     assert [run.parameters["sliding"]["travel_m"] for run in study.runs[::2]] == pytest.approx([0.2, 0.4])
-    travel = load_study("small", config.root, {"wear": {"acceleration": 3.6e4}, "sliding": {"travel_mm": 200}})
+    travel = load_study("small", config.project, {"wear": {"acceleration": 3.6e4}, "sliding": {"travel_mm": 200}})
     assert travel.run("R9_convex").parameters == study.run("R9_convex").parameters
     assert "test duration 2 h instead of a travel of 1000 mm" in figure_remarks(study)
 
@@ -376,9 +376,9 @@ def test_the_nearest_of_travel_and_test_duration_counts(config):
     """A fidelity's travel replaces the test duration of the study, and the command line's duration replaces both."""
     config.edit("studies/small.yaml", "fidelities:", "sliding: {test_duration_h: 1}\nfidelities:")
     config.edit("studies/small.yaml", "      width_mm: 120\n", "      width_mm: 120\n    sliding: {travel_mm: 400}\n")
-    assert "test_duration_h" not in load_study("small", config.root).settings["sliding"]
+    assert "test_duration_h" not in load_study("small", config.project).settings["sliding"]
     hours = {"sliding": {"test_duration_h": 0.5}, "wear": {"acceleration": 1e4}}
-    assert load_study("small", config.root, hours).settings["sliding"].get("travel_mm") is None
+    assert load_study("small", config.project, hours).settings["sliding"].get("travel_mm") is None
 
 
 def test_acceleration_multiplies_the_wear_coefficient(config):
@@ -393,7 +393,7 @@ def test_acceleration_multiplies_the_wear_coefficient(config):
 
 def test_convex_and_plain_share_a_bed_and_another_thickness_does_not(config):
     """Runs with equal bed parameters start from one bed."""
-    study = load_study("small", config.root)
+    study = load_study("small", config.project)
     assert study.bed_of("R9_convex") == study.bed_of("R9_plain") == "bed_1"
     assert study.bed_of("R5_convex") == study.bed_of("R5_plain") == "bed_2"
     assert list(study.beds) == ["bed_1", "bed_2"]
@@ -403,7 +403,7 @@ def test_convex_and_plain_share_a_bed_and_another_thickness_does_not(config):
 def test_velocity_and_pattern_do_not_make_another_bed(config):
     """Rows that differ in velocity, radii, spacing and height share a bed: it settles at rest."""
     config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30", "R5,4,8,60,3.0,2.0,40")
-    assert list(load_study("small", config.root).beds) == ["bed_1"]
+    assert list(load_study("small", config.project).beds) == ["bed_1"]
 
 
 @pytest.mark.parametrize(
@@ -424,7 +424,7 @@ def test_velocity_and_pattern_do_not_make_another_bed(config):
 )
 def test_what_settles_differently_is_another_bed(config, overrides):
     """Each setting that changes the settled bed changes the bed's parameters."""
-    run, other = (load_study("small", config.root, o).run("R9_plain") for o in (None, overrides))
+    run, other = (load_study("small", config.project, o).run("R9_plain") for o in (None, overrides))
     assert bed_parameters(run) != bed_parameters(other)
 
 
@@ -439,9 +439,9 @@ def test_what_settles_differently_is_another_bed(config, overrides):
 )
 def test_another_contact_or_distribution_is_another_bed(config, old, new):
     """Each property of the particles, and of their contact with the floor, belongs to the bed."""
-    before = bed_parameters(load_study("small", config.root).run("R9_plain"))
+    before = bed_parameters(load_study("small", config.project).run("R9_plain"))
     config.edit("materials.yaml", old, new)
-    assert bed_parameters(load_study("small", config.root).run("R9_plain")) != before
+    assert bed_parameters(load_study("small", config.project).run("R9_plain")) != before
 
 
 @pytest.mark.parametrize(
@@ -458,13 +458,13 @@ def test_another_contact_or_distribution_is_another_bed(config, old, new):
 )
 def test_what_does_not_touch_the_bed_keeps_it(config, overrides):
     """Sample, wear and output settings do not ask for another bed."""
-    run, other = (load_study("small", config.root, o).run("R9_plain") for o in (None, overrides))
+    run, other = (load_study("small", config.project, o).run("R9_plain") for o in (None, overrides))
     assert bed_parameters(run) == bed_parameters(other)
 
 
 def test_beds_settle_above_the_highest_bump_of_the_study(config):
     """The temporary floor of every bed is higher than every sample of the study, and the same for all."""
-    study = load_study("small", config.root)
+    study = load_study("small", config.project)
     floors = {bed["temporary_floor_m"] for bed in study.beds.values()}
     assert len(floors) == 1
     assert floors.pop() > 0.0003 + 0.006
@@ -473,7 +473,7 @@ def test_beds_settle_above_the_highest_bump_of_the_study(config):
 def test_an_unknown_run_is_refused(config):
     """Asking for the bed of a run that is not there names the nearest run."""
     with pytest.raises(ConfigError, match=r"run is 'R9_convx'.*\(the nearest is R9_convex\)"):
-        load_study("small", config.root).bed_of("R9_convx")
+        load_study("small", config.project).bed_of("R9_convx")
 
 
 # ---------------------------------------------------------------- remarks
@@ -482,7 +482,7 @@ def test_an_unknown_run_is_refused(config):
 def test_figures_say_what_is_reduced(config):
     """A reduced study names its scale, its smaller sample, bed and travel, and the acceleration."""
     config.edit("studies/small.yaml", "      width_mm: 120\n", "      width_mm: 120\n    sliding: {travel_mm: 400}\n")
-    assert figure_remarks(load_study("small", config.root, {"wear": {"acceleration": 1e4}})) == [
+    assert figure_remarks(load_study("small", config.project, {"wear": {"acceleration": 1e4}})) == [
         "particles at scale 2",
         "sample 80 x 90 mm of 200 x 200 mm",
         "bed width 120 mm of 300 mm",
@@ -495,13 +495,15 @@ def test_figures_say_what_is_reduced(config):
 def test_a_full_study_has_nothing_to_say(config):
     """At full size, scale 1, with a gentle ramp and without acceleration there are no remarks."""
     gentle = {"fidelity": "standard", "sample": {"skirt_slope_deg": 0.5}}
-    assert figure_remarks(load_study("small", config.root, gentle)) == []
+    assert figure_remarks(load_study("small", config.project, gentle)) == []
 
 
 def test_particles_scaled_beyond_their_bumps_are_said_on_every_figure(config):
     """R9's alpha_ER reaches 1 at scale 2.74 and R5's at 3.46: above, the rows are said with their scales."""
     thin = {"bed": {"allow_thin_bed": True}}
-    fine, one, both = (load_study("small", config.root, {"particle_scale": scale, **thin}) for scale in (2.7, 3, 3.5))
+    fine, one, both = (
+        load_study("small", config.project, {"particle_scale": scale, **thin}) for scale in (2.7, 3, 3.5)
+    )
     assert not any(remark.startswith(BEYOND_BUMPS) for remark in figure_remarks(fine))
     assert f"{BEYOND_BUMPS}: R9 (3, 2.7)" in figure_remarks(one)
     assert f"{BEYOND_BUMPS}: R9 (3.5, 2.7), R5 (3.5, 3.5)" in figure_remarks(both)
@@ -510,13 +512,13 @@ def test_particles_scaled_beyond_their_bumps_are_said_on_every_figure(config):
 def test_bumps_smaller_than_real_particles_are_no_matter_of_scale(config):
     """Where already real particles are larger than the bumps, the study simulates what it means to."""
     config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "R9,1.5,1.5,20,1.0,1.0,40")
-    study = load_study("small", config.root)
+    study = load_study("small", config.project)
     assert not any(remark.startswith(BEYOND_BUMPS) for remark in figure_remarks(study))
 
 
 def test_a_thin_bed_is_said_on_every_figure(config):
     """An allowed thin bed is marked in its runs and remarked with the rows it concerns and their layers."""
-    study = load_study("small", config.root, {"particle_scale": 4, "bed": {"allow_thin_bed": True}})
+    study = load_study("small", config.project, {"particle_scale": 4, "bed": {"allow_thin_bed": True}})
     assert [run.parameters["derived"]["thin_bed"] for run in study.runs] == [False, False, True, True]
     assert "fewer than three layers of particles in the bed: R5 (2.8)" in figure_remarks(study)
 
@@ -524,7 +526,7 @@ def test_a_thin_bed_is_said_on_every_figure(config):
 def test_exactly_three_layers_are_enough(config):
     """31 mm over particles of a third of it is 2.9999999999999996 in floating point: still three layers."""
     config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30", "R5,4,8,60,6.0,2.0,31")
-    study = load_study("small", config.root, {"particle_scale": 31 / 3 / 2.65})
+    study = load_study("small", config.project, {"particle_scale": 31 / 3 / 2.65})
     assert study.run("R5_plain").parameters["derived"]["layers"] < 3.0
     assert study.run("R5_plain").parameters["derived"]["thin_bed"] is False
 
@@ -561,9 +563,9 @@ def with_factors(config, factors, design="R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.
 
 def test_factors_of_a_regression(config):
     """Factors come with short names of the study's own; without them there is no regression."""
-    assert load_study("small", config.root).factors == {}
+    assert load_study("small", config.project).factors == {}
     with_factors(config, "{a: major_radius_mm, x: minor_radius_mm}")
-    assert load_study("small", config.root).factors == {"a": "major_radius_mm", "x": "minor_radius_mm"}
+    assert load_study("small", config.project).factors == {"a": "major_radius_mm", "x": "minor_radius_mm"}
 
 
 @pytest.mark.parametrize(
@@ -583,18 +585,18 @@ def test_factors_that_tell_nothing_are_refused(config, factors, design, sentence
     """Unknown columns, a single factor, too few rows and factors that stay the same are named, with the line."""
     with_factors(config, factors, design)
     with pytest.raises(ConfigError, match=re.escape(sentence)) as fault:
-        load_study("small", config.root)
+        load_study("small", config.project)
     assert "studies/small.yaml, line 5" in str(fault.value)
 
 
 def test_rows_with_seeds_are_replicates(config):
     """Rows that differ in their seed alone have beds of their own; without the column all have the setting's."""
-    assert load_study("small", config.root).run("R9_convex").parameters["bed"]["seed"] == 20220317
+    assert load_study("small", config.project).run("R9_convex").parameters["bed"]["seed"] == 20220317
     path = config.path("designs/small.csv")
     header, first, *_ = path.read_text().splitlines()
     name, _, rest = first.partition(",")
     path.write_text(f"{header},seed\n{name}-1,{rest},20220317\n{name}-2,{rest},20221317\n")
-    study = load_study("small", config.root)
+    study = load_study("small", config.project)
     seeds = [run.parameters["bed"]["seed"] for run in study.runs if run.surface == "convex"]
     assert seeds == [20220317, 20221317]
     assert all(isinstance(seed, int) for seed in seeds)
@@ -613,11 +615,11 @@ def test_best_designs_are_a_study_of_their_own(config):
     with pytest.raises(
         ConfigError, match=r"small/confirmation/design\.csv: there is no such file yet, `snakemake small`"
     ):
-        load_study("small_confirmation", config.root)
+        load_study("small_confirmation", config.project)
     folder = config.root / "results/small/confirmation"
     folder.mkdir(parents=True)
     (folder / "design.csv").write_text(BEST + "continuous,2,4,40,3,0.5,30\n")
-    study, base = (load_study(name, config.root) for name in ("small_confirmation", "small"))
+    study, base = (load_study(name, config.project) for name in ("small_confirmation", "small"))
     assert [run.name for run in study.runs] == ["continuous_convex", "continuous_plain"]
     assert (study.confirms, study.factors, base.confirms) == ("small", {}, "")
     assert finds_regimes(study) and finds_regimes(base)
@@ -625,15 +627,15 @@ def test_best_designs_are_a_study_of_their_own(config):
     assert study.title == "A small study: the best designs simulated"
     (folder / "design.csv").write_text(BEST + "continuous,2,4,40,3,0.5,thick\n")
     with pytest.raises(ConfigError, match=r"results/small/confirmation/design\.csv, line 2"):
-        load_study("small_confirmation", config.root)
+        load_study("small_confirmation", config.project)
 
 
 def test_a_study_without_factors_has_nothing_to_confirm(config):
     """Without a regression there is no best design; of a study that is not there neither."""
     with pytest.raises(ConfigError, match="small has nothing to confirm, allowed is a study with factors"):
-        load_study("small_confirmation", config.root)
+        load_study("small_confirmation", config.project)
     with pytest.raises(ConfigError, match="other"):
-        load_study("other_confirmation", config.root)
+        load_study("other_confirmation", config.project)
 
 
 # ---------------------------------------------------------------- chosen rows

@@ -60,14 +60,14 @@ def test_a_wrong_parameter_is_named_with_its_place_and_what_is_allowed(config, p
     """Unknown, in another unit, missing, out of range, no number: one sentence each."""
     law_in_study(config, parameters)
     with pytest.raises(ConfigError) as caught:
-        load_study("small", config.root)
+        load_study("small", config.project)
     assert str(caught.value) == f"config/studies/small.yaml, line 6: {fault}."
 
 
 def test_the_neutral_law_takes_no_parameter(config):
     """A parameter beside a law without any is refused with that law's name."""
     with pytest.raises(ConfigError) as caught:
-        load_study("small", config.root, {"wear": {"parameters": {"exponent": 2}}})
+        load_study("small", config.project, {"wear": {"parameters": {"exponent": 2}}})
     assert str(caught.value) == (
         "command line: wear.parameters.exponent (2) is no known parameter of the law archard, which has none."
     )
@@ -75,9 +75,9 @@ def test_the_neutral_law_takes_no_parameter(config):
 
 def test_parameters_reach_the_runs_in_si(config):
     """What is not given has its default; whole numbers and lengths in mm arrive as SI floats; archard gets no key."""
-    assert "parameters" not in load_study("small", config.root).settings["wear"]
+    assert "parameters" not in load_study("small", config.project).settings["wear"]
     law_in_study(config, "{exponent: 2}")
-    study = load_study("small", config.root)
+    study = load_study("small", config.project)
     assert study.settings["wear"]["parameters"] == {"exponent": 2.0, "length_mm": 2.0}
     for run in study.runs:
         assert run.parameters["wear"]["parameters"] == {"exponent": 2.0, "length_m": 0.002}
@@ -87,14 +87,14 @@ def test_parameters_reach_the_runs_in_si(config):
 def test_stronger_layers_override_single_parameters(config):
     """A value of the command line wins over the study's, the rest of the block stays."""
     law_in_study(config, "{exponent: 2, length_mm: 3}")
-    study = load_study("small", config.root, {"wear": {"parameters": {"exponent": 1.5}}})
+    study = load_study("small", config.project, {"wear": {"parameters": {"exponent": 1.5}}})
     assert study.settings["wear"]["parameters"] == {"exponent": 1.5, "length_mm": 3.0}
 
 
 def test_another_law_leaves_the_parameters_of_the_first_behind(config):
     """Whoever chooses archard over a study's law does not have to take its parameters away."""
     law_in_study(config, "{exponent: 2}")
-    study = load_study("small", config.root, {"wear": {"law": "archard"}})
+    study = load_study("small", config.project, {"wear": {"law": "archard"}})
     assert study.settings["wear"] == {**study.settings["wear"], "law": "archard"}
     assert "parameters" not in study.settings["wear"]
 

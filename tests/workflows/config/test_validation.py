@@ -490,7 +490,7 @@ BAD_COMBINATIONS = [
 
 def message_of(config, overrides=None) -> str:
     with pytest.raises(ConfigError) as caught:
-        load_study("small", config.root, overrides)
+        load_study("small", config.project, overrides)
     return str(caught.value)
 
 
@@ -535,11 +535,11 @@ def test_text_in_another_encoding_is_refused(config):
 
 def test_a_table_from_a_spreadsheet_is_read(config):
     """Byte order mark, CRLF, spaces and blank lines change nothing."""
-    plain = load_study("small", config.root)
+    plain = load_study("small", config.project)
     text = config.path(TABLE).read_text(encoding="utf-8")
     spread = "\ufeff" + text.replace("\n", "\r\n\r\n").replace(",", " , ")
     config.path(TABLE).write_bytes(spread.encode())
-    assert load_study("small", config.root) == plain
+    assert load_study("small", config.project) == plain
 
 
 @pytest.mark.parametrize(
@@ -591,7 +591,7 @@ def test_a_missing_file_is_named(config):
 def test_every_way_to_write_a_float_is_a_number(config, text):
     """YAML 1.2 floats are numbers, also without a point before the exponent (YAML 1.1: 63e-14 is text)."""
     config.edit(SETTINGS, "6.3e-13", text)
-    study = load_study("small", config.root)
+    study = load_study("small", config.project)
     assert study.settings["wear"]["wear_coefficient_per_pa"] == 6.3e-13
 
 
@@ -638,9 +638,9 @@ def test_every_number_has_a_range_a_unit_and_a_meaning(name):
 
 def test_the_sampling_interval_matters_to_sampled_contacts_only(config):
     """With the solver's ledger no cycle is too short to be sampled, and the interval is no parameter of any run."""
-    study = load_study("small", config.root, {"solver": {"sampling_interval_steps": 30000}})
+    study = load_study("small", config.project, {"solver": {"sampling_interval_steps": 30000}})
     assert all("sampling_interval_steps" not in run.parameters["solver"] for run in study.runs)
-    other = load_study("small", config.root, {"solver": {"sampling_interval_steps": 7}})
+    other = load_study("small", config.project, {"solver": {"sampling_interval_steps": 7}})
     assert [run.parameters for run in other.runs] == [run.parameters for run in study.runs]
 
 
@@ -673,7 +673,7 @@ def test_columns_of_a_pattern_are_needed_by_its_surface_only(config):
     config.edit(STUDY, "[convex, plain]", "[plain]")
     config.write(TABLE, "row,column_spacing_mm,velocity_m_per_s,bed_thickness_mm\nR9,20,1.0,40\n")
     config.edit(OWN_SETTINGS, "major_axis: along_travel, ", "")
-    assert [run.parameters["pattern"] for run in load_study("small", config.root).runs] == [None]
+    assert [run.parameters["pattern"] for run in load_study("small", config.project).runs] == [None]
 
 
 def test_a_pattern_lacks_no_word_that_describes_it(config):

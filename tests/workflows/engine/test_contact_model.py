@@ -22,7 +22,8 @@ from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.bulk_tests import time_step
 from bulkwear.workflows.engine.chain import bed_deck_text
 from bulkwear.workflows.engine.solver import run_deck
-from bulkwear.workflows.engine.templates import TEMPLATES, render, solver_settings, template_variables
+from bulkwear.workflows.engine.templates import render, solver_settings, template_variables
+from tests import REPOSITORY
 from tests.support.tiny import tiny_chain, tiny_study
 
 BLOCK, MATERIALS = "_shared/contact_model", "_shared/materials"
@@ -78,7 +79,7 @@ def named(text):
 
 def test_only_the_block_names_a_contact_model():
     """No other template spells a model: all walls and the pair style take the block's variable."""
-    for path in sorted(TEMPLATES.rglob("*.in.j2")):
+    for path in sorted((REPOSITORY / "templates").rglob("*.in.j2")):
         text = path.read_text()
         uses = re.findall(r"(?:wall/gran|pair_style +gran) model (\S+)", text)
         assert set(uses) <= {"${contact_model}"}, path
@@ -113,7 +114,7 @@ def test_every_setting_that_templates_use_is_in_a_schema():
         name = path.relative_to(SCHEMA_FOLDER).as_posix().removesuffix(".schema.yaml")
         keys = load_schema(name)["properties"].get("solver", {"properties": {}})["properties"]
         known |= set(to_si(dict.fromkeys(keys, 0.0)))
-    for path in TEMPLATES.glob("[!_]*/*.in.j2"):
+    for path in (REPOSITORY / "templates").glob("[!_]*/*.in.j2"):
         assert set(solver_settings(path.name.removesuffix(".in.j2"))) <= known
 
 

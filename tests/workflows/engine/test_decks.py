@@ -10,10 +10,13 @@ from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine import templates
 from bulkwear.workflows.engine.chain import bed_deck_text
+from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.schedule import known_spans
-from bulkwear.workflows.engine.templates import TEMPLATES, DeckError, render, template_sources, template_variables
+from bulkwear.workflows.engine.templates import DeckError, render, template_sources, template_variables
+from tests import REPOSITORY
 from tests.support.tiny import tiny_study
 
+TEMPLATES = REPOSITORY / "templates"
 NAMES = sorted(path.name.removesuffix(".in.j2") for path in TEMPLATES.glob("[!_]*/*.in.j2"))
 README = (TEMPLATES / "README.md").read_text()
 
@@ -40,24 +43,26 @@ def test_every_variable_of_the_templates_is_in_their_readme():
         ({"solver": {"model": "one"}}, {"kind", "often", "a", "b", "c", "d"}),
     ],
 )
-def test_a_branch_not_taken_asks_for_nothing(tmp_path, words, used):
+def test_a_branch_not_taken_asks_for_nothing(tmp_path, monkeypatch, words, used):
     """Only what the branch taken uses is wanted, its partials included; other conditions count as taken."""
-    (tmp_path / "case.in.j2").write_text(
+    monkeypatch.setattr(templates, "current_project", lambda: Project(tmp_path, package=tmp_path))
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates/case.in.j2").write_text(
         '{% if kind == "one" %}{% include "part.in.j2" %}{% else %}{{ b }}{% endif %}\n'
         "{% if often > 2 %}{{ c }}{% endif %}"
         '{% if solver.model in ("one", "three") %}{{ d }}{% endif %}'
     )
-    (tmp_path / "part.in.j2").write_text("{{ a }}")
+    (tmp_path / "templates/part.in.j2").write_text("{{ a }}")
     words = {"solver": {"model": "two"}} | words
-    assert template_variables("case", tmp_path, words) == used | {"solver"}
+    assert template_variables("case", words) == used | {"solver"}
 
 
 def test_missing_and_unused_parameters_are_errors():
     """The message names template and parameter."""
     given = settled_bed(run_and_bed(tiny_study())[1])
-    with pytest.raises(DeckError, match=r"templates/settled_bed\.in\.j2: parameter skin_m is not given"):
+    with pytest.raises(DeckError, match=r"templates/sliding_sample/settled_bed\.in\.j2: parameter skin_m is not given"):
         render("settled_bed", {key: value for key, value in given.items() if key != "skin_m"})
-    with pytest.raises(DeckError, match=r"templates/settled_bed\.in\.j2: parameter colour is never used"):
+    with pytest.raises(DeckError, match="parameter colour is never used"):
         render("settled_bed", {**given, "colour": "red"})
 
 
@@ -87,8 +92,7 @@ def test_random_seeds_are_primes_above_ten_thousand():
 def edited(tmp_path, monkeypatch):
     """A function that adds a line to a template of a copy, from which decks are made during a test."""
     shutil.copytree(TEMPLATES, tmp_path / "templates")
-    original = templates._environment
-    monkeypatch.setattr(templates, "_environment", lambda folder: original(tmp_path / "templates"))
+    monkeypatch.setattr(templates, "current_project", lambda: Project(tmp_path, package=tmp_path))
 
     def add(name, line):
         (path,) = (tmp_path / "templates").glob(f"*/{name}.in.j2")
@@ -122,7 +126,7 @@ def test_a_word_that_no_template_uses_is_refused(config):
     """One sentence names file, line and word, before the solver; so for a word of a fidelity's block."""
     config.edit("studies/small.yaml", "    particle_scale: 2.0\n", "    particle_scale: 2.0\n    deck: {my_word: 3}\n")
     with pytest.raises(ConfigError) as caught:
-        load_study("small", config.root)
+        load_study("small", config.project)
     assert str(caught.value) == (
         "config/studies/small.yaml, line 9, fidelity quick: deck.my_word stands in no template, allowed is a word that"
         " one of lowered_bed, sliding_sample, settled_bed, packed_container, bed_contacts, collision uses."
@@ -145,7 +149,8 @@ def test_a_word_of_ours_is_refused(name, word, template):
     with pytest.raises(ConfigError) as caught:
         load_study(name, overrides={"deck": {word: 3}})
     fault = f"parameter {word} is one of ours, no word of deck may be called so."
-    assert str(caught.value) == f"command line: templates/{template}.in.j2: {fault}"
+    shown = templates.template_file(f"{template}.in.j2").relative_to(REPOSITORY)
+    assert str(caught.value) == f"command line: {shown}: {fault}"
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,12 @@ import yaml
 from bulkwear.workflows.cases.sliding_sample.particle_size.packings import container
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
 from bulkwear.workflows.cases.sliding_sample.work import cycles, settled_particles
-from bulkwear.workflows.config.design import REPOSITORY, list_studies, load_study
+from bulkwear.workflows.config.design import list_studies, load_study
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.bulk_tests import time_step
 from bulkwear.workflows.engine.job import duration_text
 from bulkwear.workflows.engine.work import Stage, Work
+from bulkwear.workflows.forecast import forecast
 from bulkwear.workflows.forecast.forecast import (
     DRIVER_MEMORY,
     LEAST_MEMORY_MB,
@@ -32,6 +33,7 @@ from bulkwear.workflows.forecast.forecast import (
     work_of,
 )
 from bulkwear.workflows.forecast.rates import DEFAULT, TERMS, rates_file, read_rates
+from tests import REPOSITORY
 
 EXACT = 1e-12  # relative; rounding of a few sums
 PARTICLES = 0.02  # relative; of the three beds of the screening and of the demo's, as the solver counted them
@@ -57,9 +59,9 @@ def forecasts(repository):
     """Tables of every study at every fidelity by the default rates, and how long that took."""
     started, rates = time.process_time(), read_rates(repository / DEFAULT).rates
     found = {}
-    for name in list_studies(repository):
+    for name in list_studies():
         for fidelity in ("quick", "standard", "paper"):
-            study = load_study(name, repository, {"fidelity": fidelity})
+            study = load_study(name, overrides={"fidelity": fidelity})
             found[name, fidelity] = forecast_table(work_of(study), rates)
     return found, time.process_time() - started
 
@@ -89,14 +91,14 @@ def test_fidelities_cost_more_and_more(forecasts):
 
 def test_jobs_are_those_of_the_workflow(repository):
     """Runs start after their bed, or after the run that simulates both, for nothing; a calibration has two jobs."""
-    study = load_study("screening", repository)
+    study = load_study("screening")
     work = {each.name: each for each in work_of(study)}
     assert len(work) == len(study.beds) + len(study.runs)
     for run in study.runs:
         found, same = work[f"worn_run_{run.name}"], study.same_as(run.name)
         assert found.needs == (f"worn_run_{same}" if same else f"settled_bed_{study.bed_of(run.name)}")
         assert bool(found.stages) is not bool(same)
-    assert [each.name for each in work_of(load_study("calibration", repository))] == [
+    assert [each.name for each in work_of(load_study("calibration"))] == [
         "calibrated_parameters",
         "box_sizes",
     ]
@@ -105,7 +107,7 @@ def test_jobs_are_those_of_the_workflow(repository):
 @pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
 def test_packings_are_a_job_of_the_study_of_particle_size(repository, fidelity):
     """One job that waits for nothing, with a container per scale: filled, then shaken for as long as the study says."""
-    study = load_study("particle_size", repository, {"fidelity": fidelity})
+    study = load_study("particle_size", overrides={"fidelity": fidelity})
     first, *others = work_of(study)
     assert (first.name, first.needs) == ("packing_profiles", "")
     assert {each.rule for each in others} == {"settled_bed", "worn_run"}
@@ -124,7 +126,7 @@ def test_packings_of_larger_and_of_fewer_particles_cost_less(repository):
     rates = read_rates(repository / DEFAULT).rates
     seconds = {}
     for rows in (["S4"], ["S8"], ["S4", "S8"]):
-        work = work_of(load_study("particle_size", repository, {"rows": rows}))[:1]
+        work = work_of(load_study("particle_size", overrides={"rows": rows}))[:1]
         seconds["".join(rows)] = forecast_table(work, rates)["solver_s"].iloc[0]
     assert seconds["S4S8"] == pytest.approx(seconds["S4"] + seconds["S8"], rel=EXACT)
     assert seconds["S4"] > 2.0 * seconds["S8"]
@@ -133,14 +135,14 @@ def test_packings_of_larger_and_of_fewer_particles_cost_less(repository):
 def test_other_studies_have_no_packings(repository):
     """A study whose rows are of one particle scale, or of another case, has none in its forecast."""
     for name in ("demo", "screening", "pin_on_disc", "calibration", "circular_tester"):
-        assert "packing_profiles" not in {each.name for each in work_of(load_study(name, repository))}
+        assert "packing_profiles" not in {each.name for each in work_of(load_study(name))}
 
 
 @pytest.mark.parametrize("name", COUNTED)
 def test_particles_of_levelled_beds(repository, name):
     """Mass over volume, less what levelling takes off and the looser layer on the floor."""
     settings, counts = COUNTED[name]
-    study = load_study(name, repository, settings)
+    study = load_study(name, overrides=settings)
     for run in study.runs:
         counted = counts[study.bed_of(run.name)]
         assert settled_particles(run.parameters) == pytest.approx(counted, rel=PARTICLES)
@@ -148,8 +150,8 @@ def test_particles_of_levelled_beds(repository, name):
 
 def test_adaptive_cycles_of_a_run_that_was_done(repository):
     """The worn bump took 208 at quick fidelity, from which the number is scaled; twice the acceleration doubles it."""
-    run = load_study("worn_bump", repository).runs[0].parameters
-    twice = load_study("worn_bump", repository, {"wear": {"acceleration": 2.0e5}}).runs[0].parameters
+    run = load_study("worn_bump").runs[0].parameters
+    twice = load_study("worn_bump", overrides={"wear": {"acceleration": 2.0e5}}).runs[0].parameters
     assert cycles(run) == pytest.approx(208, abs=1)
     assert cycles(twice) == pytest.approx(2 * 208, abs=1)
 
@@ -210,7 +212,7 @@ def test_needs_that_are_done_already_are_not_waited_for():
 
 def test_the_text_has_a_line_per_job_the_totals_and_where_rates_come_from(repository):
     """What a person reads: jobs, core hours, wall time on these and on more cores, whose rates they are."""
-    study, found = load_study("screening", repository, {"fidelity": "paper"}), read_rates(repository / DEFAULT)
+    study, found = load_study("screening", overrides={"fidelity": "paper"}), read_rates(repository / DEFAULT)
     table = forecast_table(work_of(study), found.rates)
     text = forecast_text("screening, fidelity paper", study.name, table, 2, found.said())
     assert all(f"\n{name} " in text for name in table["job"])
@@ -221,30 +223,29 @@ def test_the_text_has_a_line_per_job_the_totals_and_where_rates_come_from(reposi
 def test_the_announcement_counts_what_is_left(repository, tmp_path, monkeypatch):
     """Before a study runs its missing jobs are told in one line; the ones that are done do not count."""
     monkeypatch.chdir(tmp_path)
-    study = load_study("demo", repository)
+    study = load_study("demo")
     table = forecast_table(work_of(study), read_rates(repository / DEFAULT).rates)
     last = table[table["job"] == "worn_run_R9_plain"]
-    said = announcement(study, {"worn_run_R9_plain"}, repository, 2)
+    said = announcement(study, {"worn_run_R9_plain"}, 2)
     assert said.startswith("Forecast of demo: 1 job of the solver") and "\n" not in said
     assert duration_text(3600.0 * totals(last, 2)["wall_h"]) in said
 
 
 def test_damaged_rates_do_not_stop_a_study(repository, tmp_path, monkeypatch):
     """The line says what is wrong instead of a forecast."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "results").mkdir()
-    (tmp_path / "results/cost_rates.json").write_text("{")
-    said = announcement(load_study("demo", repository), {"worn_run_R9_plain"}, repository, 2)
-    assert said.startswith("No forecast: results/cost_rates.json: no file of rates")
+    study = load_study("demo")
+    (tmp_path / "cost_rates.json").write_text("{")
+    monkeypatch.setattr(forecast, "rates_file", lambda: tmp_path / "cost_rates.json")
+    assert announcement(study, {"worn_run_R9_plain"}, 2).startswith(f"No forecast: {tmp_path}/cost_rates.json: no file")
 
 
-@pytest.mark.parametrize("name", list_studies(REPOSITORY))
+@pytest.mark.parametrize("name", list_studies())
 def test_every_job_asks_for_more_than_its_forecast(name):
     """All beds, runs and calibrations of a study are there, each with more time and memory than it is forecast to need,
     and with half as much again and a start-up at most twice over."""
     study = load_study(name, overrides={"fidelity": "paper"})
-    table = forecast_table(work_of(study), read_rates(rates_file(REPOSITORY)).rates).set_index("job")
-    asked = demands(study, REPOSITORY)
+    table = forecast_table(work_of(study), read_rates(rates_file()).rates).set_index("job")
+    asked = demands(study)
     assert set(asked) == set(table.index)
     for job, (runtime, room) in asked.items():
         needed, largest = 60.0 * table.loc[job, "wall_h"], 1e3 * table.loc[job, "memory_gb"]

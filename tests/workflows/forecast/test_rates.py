@@ -2,12 +2,14 @@
 
 import json
 import os
+import shutil
 from dataclasses import replace
 from functools import partial
 
 import pytest
 
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.work import Stage
 from bulkwear.workflows.forecast import rate_benchmark
 from bulkwear.workflows.forecast.rate_benchmark import (
@@ -25,6 +27,7 @@ from bulkwear.workflows.forecast.rate_benchmark import (
 )
 from bulkwear.workflows.forecast.rates import (
     DEFAULT,
+    MEASURED,
     TERMS,
     MachineRates,
     RatesError,
@@ -118,9 +121,9 @@ def in_a_folder(title, settings, folder):
 
 def test_the_benchmark_fills_one_bed_for_both_samples(repository):
     """Both samples start from the same bed, and the discs differ in their elements alone."""
-    beds = [load_study(BED_STUDY, repository, SHRUNK | settings).beds for settings in SAMPLES.values()]
+    beds = [load_study(BED_STUDY, overrides=SHRUNK | settings).beds for settings in SAMPLES.values()]
     assert beds[0] == beds[1] and len(beds[0]) == 1
-    discs = [load_study(PIN_STUDY, repository, settings).run(PIN_RUN).parameters["disc"] for settings in DISCS.values()]
+    discs = [load_study(PIN_STUDY, overrides=settings).run(PIN_RUN).parameters["disc"] for settings in DISCS.values()]
     assert {key for key in discs[0] if discs[0][key] != discs[1][key]} == {"element_size_m"}
 
 
@@ -143,12 +146,21 @@ def test_whose_rates_they_are(repository):
 
 
 def test_measured_rates_go_before_default_ones(repository, tmp_path, monkeypatch):
-    """In a folder with results/cost_rates.json that is used."""
+    """Those of the project, then those of the package; the project's own are a file of the working directory."""
     monkeypatch.chdir(tmp_path)
-    assert rates_file(repository) == repository / DEFAULT
-    (tmp_path / "results").mkdir()
-    write_rates(tmp_path / "results/cost_rates.json", rates())
-    assert not rates_file(repository).is_absolute()
+    mine, package = tmp_path / "mine", tmp_path / "package"
+    for folder in (mine, package):
+        (folder / "results").mkdir(parents=True)
+    (package / "config").mkdir()
+    shutil.copy(repository / DEFAULT, package / "config")
+    project = Project(mine, package)
+    assert rates_file(project) == package / DEFAULT
+    write_rates(package / MEASURED, rates())
+    assert rates_file(project) == package / MEASURED
+    write_rates(mine / MEASURED, rates())
+    assert rates_file(project) == mine / MEASURED
+    monkeypatch.chdir(mine)
+    assert rates_file(project) == MEASURED
 
 
 def test_a_file_that_does_not_tell_was_measured_alone(tmp_path):

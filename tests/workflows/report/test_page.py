@@ -30,7 +30,7 @@ RELATIVE = 1e-9  # numbers pass through CSV text
 @pytest.fixture
 def study(config):
     """A study of two design rows, each convex and plain."""
-    return load_study("small", config.root)
+    return load_study("small", config.project)
 
 
 @pytest.fixture

@@ -15,22 +15,24 @@ from bulkwear.workflows.engine.bulk_simulations import simulation_bytes
 from bulkwear.workflows.engine.bulk_tests import deck_text
 from bulkwear.workflows.engine.case import Case, Parameters, Run, register
 from bulkwear.workflows.engine.derived import particle_section, template_sections, wall_section
+from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.work import Work
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
-PUBLISHED = Path(__file__).resolve().parents[3] / "config" / "published"
+PUBLISHED = "config/published"
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
 LEAST_SLOT_DIAMETERS = 5.0  # -, of a slot as simulated. Measured: at 4.0 an arch blocked it, friction 0.32 and 0.37
 
 
 def published(name: str) -> pd.DataFrame:
     """Return a table of config/published. Raises ConfigError when there is none of that name."""
-    if not (PUBLISHED / name).is_file():
-        there = ", ".join(sorted(path.name for path in PUBLISHED.glob("*.csv")))
-        raise ConfigError(f"config/published/{name}: there is no such file, found in its folder: {there or 'nothing'}.")
-    return pd.read_csv(PUBLISHED / name)
+    project = current_project()
+    if name not in (there := project.names(PUBLISHED, ".csv")):
+        found = ", ".join(there) or "nothing"
+        raise ConfigError(f"{PUBLISHED}/{name}: there is no such file, found in its folder: {found}.")
+    return pd.read_csv(project.file(f"{PUBLISHED}/{name}"))
 
 
 def calibration_box(study: Study) -> dict[str, Any]:
@@ -39,13 +41,13 @@ def calibration_box(study: Study) -> dict[str, Any]:
 
 
 def measured_file(study: Study) -> str:
-    """Return the path, from the repository, of the table of measured responses."""
-    return f"config/published/{calibration_box(study)['calibration']['measured']}"
+    """Return the path of the table of measured responses."""
+    return current_project().path(f"{PUBLISHED}/{calibration_box(study)['calibration']['measured']}")
 
 
 def pairs_file(study: Study) -> str:
-    """Return the path, from the repository, of the table of pairs that others simulated."""
-    return f"config/published/{calibration_box(study)['calibration']['simulated_before']}"
+    """Return the path of the table of pairs that others simulated."""
+    return current_project().path(f"{PUBLISHED}/{calibration_box(study)['calibration']['simulated_before']}")
 
 
 # ---------------------------------------------------------------- checks

@@ -11,7 +11,7 @@ import pandas as pd
 
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
-from bulkwear.workflows.cases.calibration.case import PUBLISHED
+from bulkwear.workflows.cases.calibration.case import PUBLISHED, published
 from bulkwear.workflows.cases.calibration.checked_pairs import CHECKED, checked_means
 from bulkwear.workflows.cases.calibration.outcome import Calibrated, read_calibrated
 from bulkwear.workflows.cases.calibration.responses import (
@@ -23,6 +23,7 @@ from bulkwear.workflows.cases.calibration.responses import (
     response_name,
 )
 from bulkwear.workflows.cases.calibration.simulations import BLOCKED, cost_table
+from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
 
 INSIDE = (
@@ -41,7 +42,7 @@ def read_finished(study: Mapping[str, Any], folder: Path) -> Calibrated:
     """Return the finished calibration of a study's folder; study as told to its page."""
     parameters = study["told"]["parameters"]
     names = (parameters["calibration"][key] for key in ("measured", "simulated_before"))
-    return read_calibrated(parameters, *(PUBLISHED / name for name in names), folder)
+    return read_calibrated(parameters, *(current_project().file(f"{PUBLISHED}/{name}") for name in names), folder)
 
 
 def sections_of(done: Calibrated, study: str) -> list[Section]:
@@ -190,7 +191,7 @@ def simulations(done: Calibrated) -> list[Block]:
 def sizes(folder: Path) -> pd.DataFrame:
     """Return the shear angle in boxes of other sizes, ours and the published ones."""
     ours = pd.read_csv(folder / "box_sizes.csv").drop(columns="row")
-    theirs = pd.read_csv(PUBLISHED / "shear_box_sizes.csv").rename(
+    theirs = published("shear_box_sizes.csv").rename(
         columns={"shear_angle_deg": "mean", "deviation_deg": "deviation", "source": "varied"}
     )
     return pd.concat([ours, theirs], ignore_index=True)

@@ -3,10 +3,6 @@
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
 
 
-localrules:
-    bulk_test_deck,
-
-
 rule calibrated_parameters:
     input:
         measured=lambda wildcards: measured_file(study_of(wildcards)),
@@ -25,7 +21,7 @@ rule calibrated_parameters:
         mem_mb=asked("calibrated_parameters", 1),
     params:
         run=lambda wildcards: calibration_box(study_of(wildcards)),
-        templates=[template_sources("shear_box"), template_sources("draw_down")],
+        templates=templates_digest("shear_box", "draw_down"),
     message:
         "Calibration of {wildcards.study}"
     script:
@@ -47,7 +43,7 @@ rule box_sizes:
         mem_mb=asked("box_sizes", 1),
     params:
         runs=lambda wildcards: {run.name: run.parameters for run in study_of(wildcards).runs},
-        templates=template_sources("shear_box"),
+        templates=templates_digest("shear_box"),
     message:
         "Shear boxes of other sizes"
     script:
@@ -61,9 +57,10 @@ rule bulk_test_deck:
         "results/{study}/logs/bulk_test_deck_{test}.log",
     wildcard_constraints:
         test="shear_box|draw_down",
+    localrule: True
     params:
         run=lambda wildcards: calibration_box(study_of(wildcards)),
-        templates=[template_sources("shear_box"), template_sources("draw_down")],
+        templates=templates_digest("shear_box", "draw_down"),
     message:
         "Deck of the {wildcards.test}"
     script:

@@ -16,11 +16,11 @@ from bulkwear.workflows.cases.circular_tester.distribution import share_of_bumps
 from bulkwear.workflows.cases.circular_tester.flow import steady_revolutions
 from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from bulkwear.workflows.cases.circular_tester.volume import TERMS
-from bulkwear.workflows.config.design import REPOSITORY
+from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
 from bulkwear.workflows.report.text import UNDEFINED
 
-PUBLISHED_FITS = REPOSITORY / "config" / "published" / "circular_tester_volume.csv"
+PUBLISHED_FITS = PACKAGE / "config" / "published" / "circular_tester_volume.csv"
 FIT_DIGITS = 5
 FIT_HEADS = {
     TERMS[0]: ("linear", "mm³ per revolution"),

@@ -12,10 +12,10 @@ from bulkwear.workflows.cases.pin_on_disc.comparison import EDGES_PER_WIDTH, STA
 from bulkwear.workflows.cases.pin_on_disc.run_in import TESTED, run_in_table, run_in_words
 from bulkwear.workflows.cases.pin_on_disc.runs import REFERENCE, only_reference, pin_runs, whole_revolutions
 from bulkwear.workflows.cases.pin_on_disc.volume import CANDIDATES, groove_remark, shown_factors
-from bulkwear.workflows.config.design import REPOSITORY
+from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.sections import Block, Table, Text
 
-PUBLISHED = REPOSITORY / "config" / "published"
+PUBLISHED = PACKAGE / "config" / "published"
 VOLUME_HEADS = {
     "volume_mm3": ("volume", "mm³"),
     "constant_mm3": ("constant", "mm³"),

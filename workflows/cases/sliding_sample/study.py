@@ -8,11 +8,12 @@ from typing import Any
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
-from bulkwear.workflows.config.design import FACTORS, REPOSITORY, Study
+from bulkwear.workflows.config.design import FACTORS, Study
 from bulkwear.workflows.engine.case import Run
+from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.text import name_and_unit
 
-PUBLISHED_DESIGN = REPOSITORY / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
+PUBLISHED_DESIGN = PACKAGE / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
 PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
 CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")  # columns that are no property of the pattern
 PATTERN = (  # columns that make two rows the same

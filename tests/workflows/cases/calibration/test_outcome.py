@@ -5,7 +5,7 @@ import yaml
 
 from bulkwear.workflows.cases.calibration.outcome import calibrated_materials
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
-from bulkwear.workflows.config.design import REPOSITORY, ConfigError, load_study
+from bulkwear.workflows.config.design import ConfigError, load_study
 from tests.support.calibration_study import SLIDING, study
 
 
@@ -26,8 +26,8 @@ def test_another_study_uses_the_calibrated_materials(done, tmp_path):
     path = tmp_path / "materials.yaml"
     path.write_text(calibrated_materials(done, study().materials, "calibration"))
     with pytest.raises(ConfigError, match=r"solver\.rolling_friction is 'cdt', allowed is epsd2, in which"):
-        load_study("demo", REPOSITORY, {"materials": str(path)})
-    demo = load_study("demo", REPOSITORY, {"materials": str(path), "solver": {"rolling_friction": "epsd2"}})
+        load_study("demo", overrides={"materials": str(path)})
+    demo = load_study("demo", overrides={"materials": str(path), "solver": {"rolling_friction": "epsd2"}})
     contact = yaml.safe_load(path.read_text())["particles"]["river_gravel"]["contact"]
     assert demo.runs[0].parameters["particle"]["contact"] == contact
     assert "calibrated" not in demo.runs[0].parameters["particle"]

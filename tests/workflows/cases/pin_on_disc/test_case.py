@@ -145,7 +145,7 @@ def test_a_fault_of_a_rows_own_value_names_the_table(config):
     table = "row,series,revolutions\nhalf,coefficient,0.55\n"
     config.write("designs/pin_on_disc_quick.csv", table)
     with pytest.raises(ConfigError) as caught:
-        load_study("pin_on_disc", config.root)
+        load_study("pin_on_disc", config.project)
     assert str(caught.value) == (
         "config/designs/pin_on_disc_quick.csv, line 2, row half: revolutions is 0.55, allowed is a multiple of 1/12"
         " from 1 on, so that wear cycles are whole and a revolution has its contours."
@@ -172,7 +172,7 @@ def test_a_design_of_which_no_figures_can_be_made_is_refused(config, table, word
         config.write(name, (REPOSITORY / "config" / name).read_text(encoding="utf-8"))
     config.write("designs/pin_on_disc_quick.csv", table)
     with pytest.raises(ConfigError) as caught:
-        load_study("pin_on_disc", config.root)
+        load_study("pin_on_disc", config.project)
     assert str(caught.value) == f"config/designs/pin_on_disc_quick.csv: {words}"
 
 

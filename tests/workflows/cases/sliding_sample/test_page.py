@@ -20,7 +20,7 @@ def names_of(study):
 @pytest.fixture
 def study(config):
     """A study of two design rows, each convex and plain."""
-    return load_study("small", config.root)
+    return load_study("small", config.project)
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_key_numbers(page, study):
 
 def test_real_volume_is_without_acceleration(config, tmp_path):
     """A study accelerated 1e4 times prints volumes per metre as simulated and divided by 1e4."""
-    page = finished_page(tmp_path / "small", load_study("small", config.root, {"wear": {"acceleration": 1e4}}))
+    page = finished_page(tmp_path / "small", load_study("small", config.project, {"wear": {"acceleration": 1e4}}))
     results = embedded(page, "small_key_numbers.csv")
     ratio = results["worn_volume_per_metre_mm3_per_m"] / results["real_volume_per_metre_mm3_per_m"]
     np.testing.assert_allclose(ratio, 1e4, rtol=RELATIVE)
@@ -53,14 +53,14 @@ def test_real_volume_is_without_acceleration(config, tmp_path):
 def test_the_page_says_how_the_loads_were_summed(config, page, tmp_path):
     """Sampled contacts are a simplification with their interval; the solver's sum of every step is none."""
     assert "sampled" not in page
-    study = load_study("small", config.root, {"ledger": "dumps", "solver": {"sampling_interval_steps": 40}})
+    study = load_study("small", config.project, {"ledger": "dumps", "solver": {"sampling_interval_steps": 40}})
     assert "contacts sampled every 40 steps" in finished_page(tmp_path / "sampled", study)
 
 
 def test_the_page_tells_the_law(config, page, tmp_path):
     """Archard's words or Finnie's; the solver's own measure beside Archard's only; figures name another law."""
     assert "Archard: volume = coefficient times normal force" in page and "wears nothing" in page
-    study = load_study("small", config.root, {"wear": {"law": "finnie"}})
+    study = load_study("small", config.project, {"wear": {"law": "finnie"}})
     text = finished_page(tmp_path / "finnie", study)
     assert "Finnie: volume = coefficient times a function of the impact angle" in text and "wears nothing" not in text
     assert any("worn by the law finnie" in remark for remark in page_parameters(study)["remarks"])
@@ -68,18 +68,18 @@ def test_the_page_tells_the_law(config, page, tmp_path):
 
 def test_single_row_has_no_figure_of_rows(config):
     """A figure that compares design rows is left out where there is one row, and where nothing is plain."""
-    assert names_of(load_study("small", config.root))[0] == "relative_wear"
+    assert names_of(load_study("small", config.project))[0] == "relative_wear"
     config.edit("studies/small.yaml", "surfaces: [convex, plain]", "surfaces: [convex]")
-    assert "relative_wear" not in names_of(load_study("small", config.root))
+    assert "relative_wear" not in names_of(load_study("small", config.project))
     config.edit("studies/small.yaml", "surfaces: [convex]", "surfaces: [convex, plain]")
     config.edit("designs/small.csv", "R5,4,8,60,6.0,2.0,30\n", "")
-    assert "relative_wear" not in names_of(load_study("small", config.root))
+    assert "relative_wear" not in names_of(load_study("small", config.project))
 
 
 def test_only_what_deforms_has_updates_and_a_film(config):
     """The wear updates and the film, a GIF, are of studies that apply wear to the shape."""
-    deforming = figures_of(load_study("small", config.root))
-    rigid = names_of(load_study("small", config.root, {"wear": {"deform": False}}))
+    deforming = figures_of(load_study("small", config.project))
+    rigid = names_of(load_study("small", config.project, {"wear": {"deform": False}}))
     further = {product.name: product.suffix for product in deforming if product.name not in rigid}
     assert further == {"wear_updates": "png", "worn_film": "gif"}
 
@@ -87,7 +87,7 @@ def test_only_what_deforms_has_updates_and_a_film(config):
 def test_published_rows_have_the_published_factors(config):
     """A row is a published one by its factors, whatever its name; R5 of another thickness is none."""
     config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "own,8,2,20,6.0,1.0,40")
-    assert published_rows(load_study("small", config.root)) == {"own": "R9"}
+    assert published_rows(load_study("small", config.project)) == {"own": "R9"}
     screening = published_rows(load_study("screening"))
     assert len(screening) == 13 and all(ours == theirs for ours, theirs in screening.items())
 
@@ -105,7 +105,7 @@ def test_rows_that_differ_in_their_seed_are_replicates(config, tmp_path, page):
     assert "scatter from packing to packing is not known" in page
     assert "interval_low" not in embedded(page, "small_key_numbers.csv")
     config.write("designs/small.csv", REPLICATES)
-    study = load_study("small", config.root)
+    study = load_study("small", config.project)
     assert replicate_settings(study) == {"R9-1": "R9", "R9-2": "R9", "R5": "R5"}
     assert published_rows(study) == {"R9-1": "R9", "R9-2": "R9", "R9": "R9"}
     text = finished_page(tmp_path / "small", study)

@@ -16,8 +16,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
 )
 from bulkwear.workflows.cases.sliding_sample.study import flow_runs, plain_runs, varies_scale
 from bulkwear.workflows.config.units import to_si
-from bulkwear.workflows.engine.state import digest
-from bulkwear.workflows.engine.templates import template_sources
+from bulkwear.workflows.engine.templates import templates_digest
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure, tables
 
@@ -34,7 +33,7 @@ size_figure = partial(figure, "Particle size", when=varies_scale)
 
 def of_template(name: str) -> OfStudy:
     """Return what a product that runs a deck is told of its template: another text makes it again."""
-    return lambda study: digest(template_sources(name))
+    return lambda study: templates_digest(name)
 
 
 def below(folder: str) -> OfStudy:

@@ -19,7 +19,7 @@ rule packing_profiles:
     params:
         runs=lambda wildcards: packed_runs(study_of(wildcards)),
         packing=lambda wildcards: to_si(study_of(wildcards).settings)["packing"],
-        templates=template_sources("packed_container"),
+        templates=templates_digest("packed_container"),
     message:
         "Packings at every particle scale of {wildcards.study}"
     script:

@@ -60,7 +60,7 @@ def test_a_changed_deck_is_simulated_again(study, name, monkeypatch):
     told = told_to(products_of_study(study)[name], study)
     assert told["folder"].startswith("results/particle_size/particle_size/")
     assert told == told_to(products_of_study(study)[name], study)
-    monkeypatch.setattr(figures, "template_sources", lambda template: {template: f"{SIMULATING[name]}, changed"})
+    monkeypatch.setattr(figures, "templates_digest", lambda template: f"{SIMULATING[name]}, changed")
     assert told_to(products_of_study(study)[name], study)["template"] != told["template"]
 
 

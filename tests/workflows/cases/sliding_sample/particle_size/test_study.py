@@ -42,7 +42,7 @@ def test_a_scale_out_of_range_is_refused_with_its_row(config):
         "S1,8,2,20,6.0,1.0,40,0.5\n",
     )
     with pytest.raises(ConfigError, match=r"designs/small\.csv, line 2.*particle_scale is 0\.5.*from 1 to 20"):
-        load_study("small", config.root)
+        load_study("small", config.project)
 
 
 def test_guidance_is_of_real_particles_whatever_the_scale():

@@ -94,7 +94,7 @@ def study(config):
     )
     path = config.path("designs/small.csv")
     path.write_text(path.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\nR3,4,4,20,1.5,0.5,30\n")
-    return load_study("small", config.root)
+    return load_study("small", config.project)
 
 
 def test_a_study_with_factors_has_figures_and_tables_of_them(study):

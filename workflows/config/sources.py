@@ -1,0 +1,166 @@
+"""Where a study's settings come from: its own file, defaults of package and project, materials, the command line.
+
+Each file is checked by itself, so that a fault is reported where it stands.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+from bulkwear.workflows.config.law_settings import law_settings
+from bulkwear.workflows.config.layers import ConfigError, Layer, command_line_layer, merge, read_yaml
+from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, load_schema, without_required
+from bulkwear.workflows.config.validation import check_alternatives, check_layer
+from bulkwear.workflows.engine.case import DEFAULT_CASE, Case, case_folders, find_case
+from bulkwear.workflows.engine.project import Project, current_project
+
+DESIGN = "design"  # key of a study, and of its fidelity blocks
+MATERIALS = "materials.yaml"  # in config, where a study names no other
+STUDIES = "config/studies"
+
+
+def list_studies(project: Project | None = None) -> list[str]:
+    """Return the names of the studies of a project, by default the current one, and of the package."""
+    return [name.removesuffix(".yaml") for name in (project or current_project()).names(STUDIES, ".yaml")]
+
+
+def own_studies(project: Project) -> list[str]:
+    """Return the names of the studies that are the project's own."""
+    return sorted(path.stem for path in (project.folder / STUDIES).glob("*.yaml"))
+
+
+@dataclass(frozen=True)
+class Sources:
+    """Where settings come from; `study` also holds the keys that are the study's own.
+
+    defaults: of all cases, and of this one, the package's before the project's
+    """
+
+    case: Case
+    defaults: tuple[Layer, ...]
+    study: Layer
+    command: Layer
+
+    @property
+    def head(self) -> dict[str, Any]:
+        own = case_schema(self.case.name, "study")["properties"]
+        return {key: value for key, value in self.study.values.items() if key in own}
+
+    @property
+    def study_settings(self) -> Layer:
+        return self.study.part(set(self.study.values) - set(self.head))
+
+    @property
+    def design_schema(self) -> dict[str, Any]:
+        """The schema of a design row, with the columns that the study's surfaces need."""
+        schema, case = load_schema(f"cases/{self.case.name}/design"), self.case
+        needed = {column for surface in case.surfaces(self.study.values) for column in case.needed_columns(surface)}
+        return {**schema, "required": [c for c in schema["properties"] if c in needed or c in schema["required"]]}
+
+    def block(self, fidelity: str) -> Layer:
+        return self.study.inner(("fidelities", fidelity), f"fidelity {fidelity}")
+
+    @property
+    def partial_layers(self) -> list[Layer]:
+        """All layers that override some keys: the study's, those of its fidelities and the command line."""
+        blocks = [self.block(fidelity) for fidelity in self.study.values.get("fidelities", {})]
+        return [self.study_settings, *blocks, self.command]
+
+    def stack(self, fidelity: str) -> tuple[Layer, ...]:
+        """Return the layers from the weakest to the strongest."""
+        block = self.block(fidelity)
+        return (
+            *(*self.defaults, self.study_settings),
+            *(block.part(set(block.values) - {DESIGN}), self.command),
+        )
+
+    def merged(self, layers: tuple[Layer, ...]) -> dict[str, Any]:
+        """Return the settings of the layers, the last one strongest."""
+        settings: dict[str, Any] = {}
+        alternatives = self.case.alternatives
+        for layer in layers:
+            if any(layer.holds(path) for path in alternatives):
+                for section, key in alternatives:
+                    settings.get(section, {}).pop(key, None)
+            settings = merge(settings, layer.values)
+        settings["wear"].pop("parameters", None)
+        of_law = {"wear": {"parameters": found}} if (found := law_settings(layers)) else {}
+        return coerce_numbers(merge(settings, of_law), case_schema(self.case.name, "settings"))
+
+
+def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) -> Sources:
+    """Return the sources of a study, each checked by itself so that a fault is reported where it stands."""
+    study = _read_study(name, project)
+    named = study.part({"case"})
+    check_layer(named, without_required(load_schema("study")))
+    case = find_case(named.values.get("case", DEFAULT_CASE))
+    shared, own = load_schema("settings"), load_schema(f"cases/{case.name}/settings")
+    default = _read_defaults(["config/default.yaml"], project, shared)
+    files = [f"config/cases/{folder.name}.yaml" for folder in reversed(case_folders(case))]
+    of_case = _read_defaults(files, project, joined(without_required(shared), own))
+    sources = Sources(case, (*default, *of_case), study, command_line_layer(overrides))
+    of_study = case_schema(case.name, "study")
+    partial = without_required(joined(shared, own))
+    check_layer(sources.study, {**of_study, "properties": of_study["properties"] | partial["properties"]})
+    offered = {k: v for k, v in partial["properties"].items() if k != "fidelity"}
+    within_block = {**partial, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
+    for fidelity in sources.study.values.get("fidelities", {}):
+        check_layer(sources.block(fidelity), within_block)
+    check_layer(sources.command, partial)
+    check_alternatives(of_case[0], case.alternatives, required=True)
+    for layer in (*of_case[1:], *sources.partial_layers):
+        check_alternatives(layer, case.alternatives, required=False)
+    return sources
+
+
+def _read_study(name: str, project: Project) -> Layer:
+    """Return the file of a study. Raises ConfigError for a name that project and package both have."""
+    files = project.every(f"{STUDIES}/{name}.yaml")
+    if len(files) > 1:
+        raise ConfigError(
+            f"{STUDIES}/{name}.yaml: a study {name} is in the package too, {files[1]}, allowed is a name of its own: "
+            f"none of {', '.join(path.stem for path in sorted(files[1].parent.glob('*.yaml')))}."
+        )
+    return read_yaml(files[0], project.folder)
+
+
+def _read_defaults(names: list[str], project: Project, schema: dict[str, Any]) -> tuple[Layer, ...]:
+    """Return the files of defaults, the weaker first: of each name the package's, then the project's.
+
+    Together they give every key that the schema requires.
+    """
+    files = [path for name in names for path in reversed(project.every(name))] or [project.file(names[-1])]
+    layers = tuple(read_yaml(path, project.folder) for path in files)
+    if len(layers) > 1:
+        for layer in layers:
+            check_layer(layer, without_required(schema))
+    whole = reduce(merge, (layer.values for layer in layers), {})
+    last = layers[-1]
+    check_layer(Layer(last.source, whole, last.lines if len(layers) == 1 else {}), schema)
+    return layers
+
+
+def fidelity_of(sources: Sources) -> str:
+    """Return the fidelity asked for: command line, else study, else default; the study must offer it."""
+    layers = (*sources.defaults, sources.study_settings, sources.command)
+    source = next(layer for layer in reversed(layers) if "fidelity" in layer.values)
+    fidelity = source.values["fidelity"]
+    offered = sources.study.values.get("fidelities")
+    if offered is not None and fidelity not in offered:
+        raise ConfigError(
+            f"{source.where(('fidelity',))}: fidelity is '{fidelity}',"
+            f" allowed is one of {', '.join(offered)}, the fidelities of {sources.study.source}."
+        )
+    return fidelity
+
+
+def read_materials(settings: dict[str, Any], project: Project) -> list[Layer]:
+    """Return the files of a study's materials, the weaker first: in config of package and project, whose materials are
+    added to the package's or stand for those of their name; or any other file, as a calibration writes it.
+    """
+    name = settings.get("materials", MATERIALS)
+    elsewhere = project.folder / name
+    files = project.every(f"config/{name}") or [elsewhere if elsewhere.is_file() else project.file(f"config/{name}")]
+    return [read_yaml(path, project.folder) for path in reversed(files)]

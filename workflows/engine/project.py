@@ -1,0 +1,167 @@
+"""The two folders that a workflow reads: the package, which is this repository, and the project that is worked in.
+
+A project is any folder with `config/`; it may hold `templates/`, `cases/`, `laws/` and `meshes/` as well, and gets
+`results/`. A file is looked up in the project first, then in the package. The repository is its own project.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from bulkwear.postproc.wear.kernels import register_kernel
+from bulkwear.postproc.wear.laws import register_law
+
+PACKAGE = Path(__file__).resolve().parents[2]
+CONFIG, TEMPLATES, CASES, LAWS = "config", "templates", "cases", "laws"  # folders of a project
+CASES_OF_PACKAGE = PACKAGE / "workflows" / CASES
+LAW, KERNELS = "LAW", "KERNELS"  # what a module of laws/ has
+
+
+class ProjectError(ValueError):
+    """A project that cannot be worked in, in one sentence: file, what was found, what is allowed."""
+
+
+@dataclass(frozen=True)
+class Project:
+    """A project and the package that it is worked in with.
+
+    own_laws: (name, file) of the wear laws that are the project's
+    """
+
+    folder: Path
+    package: Path = PACKAGE
+    own_laws: tuple[tuple[str, Path], ...] = ()
+
+    @property
+    def is_package(self) -> bool:
+        """Return whether the package is its own project."""
+        return self.folder.resolve() == self.package.resolve()
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Return the folders in which a file is looked up, in this order."""
+        return (self.folder,) if self.is_package else (self.folder, self.package)
+
+    def every(self, name: str) -> list[Path]:
+        """Return the files of that path below project and package, the one that counts first."""
+        return [folder / name for folder in self.folders if (folder / name).is_file()]
+
+    def file(self, name: str) -> Path:
+        """Return the file of that path, the project's where it has one."""
+        return next(iter(self.every(name)), self.folder / name)
+
+    def path(self, name: str) -> str:
+        """Return the path of that file as rules have it: relative, where it is in the project that is worked in."""
+        found = self.file(name)
+        return name if found == self.folder / name and self.folder.resolve() == Path.cwd() else str(found)
+
+    def names(self, folder: str, suffix: str) -> list[str]:
+        """Return the names of all files in a folder of project and package."""
+        return sorted({path.name for root in self.folders for path in (root / folder).glob(f"*{suffix}")})
+
+    def substitutes(self) -> list[str]:
+        """Return a sentence for each file of the project that stands before one of the package."""
+        if self.is_package:
+            return []
+        said = [
+            f"{path.relative_to(self.folder)}: this project's, {'over' if path.suffix == '.yaml' else 'not'} the "
+            f"package's"
+            for path in sorted((self.folder / CONFIG).rglob("*"))
+            if path.is_file() and path.name != "README.md" and (self.package / path.relative_to(self.folder)).is_file()
+        ]
+        theirs = {path.name for path in (self.package / TEMPLATES).rglob("*.in.j2")}
+        said += [
+            f"{path.relative_to(self.folder)}: this project's, not the package's"
+            for path in sorted((self.folder / TEMPLATES).rglob("*.in.j2"))
+            if path.name in theirs
+        ]
+        own = (path.parent for path in sorted((self.folder / CASES).glob("*/case.py")))
+        said += [
+            f"{path.relative_to(self.folder)}: this project's, not the package's"
+            for path in own
+            if (CASES_OF_PACKAGE / path.name / "case.py").is_file()
+        ]
+        return said
+
+
+_entered: list[Project] = []
+
+
+def current_project() -> Project:
+    """Return the project that this process works in: the one it entered last, else the package itself."""
+    return _entered[-1] if _entered else Project(PACKAGE)
+
+
+def enter_project(folder: Path) -> Project:
+    """Work in a project from now on: its cases can be found, its wear laws are registered.
+
+    Raises ProjectError for a folder without `config/`, and for a law that cannot be used.
+    """
+    if not (folder / CONFIG).is_dir():
+        raise ProjectError(
+            f"{folder}: there is no folder {CONFIG} in it, allowed is a project, with {CONFIG}/studies and "
+            f"{CONFIG}/designs; `make project DIR=...` in the package makes one."
+        )
+    project = Project(folder)
+    if project.is_package:
+        _entered[:] = [project]
+        return project
+    laws = sorted((folder / LAWS).glob("[!_]*.py"))
+    for path in laws:
+        _register_law(path, folder)
+    _entered[:] = [Project(folder, own_laws=tuple((path.stem, path) for path in laws))]
+    return _entered[-1]
+
+
+def leave_project() -> None:
+    """Work in the package itself again; laws that were registered stay so."""
+    _entered.clear()
+
+
+def cases_folders() -> list[Path]:
+    """Return the folders that hold cases, a folder each: the project's, then the package's."""
+    project = current_project()
+    own = [] if project.is_package else [project.folder / CASES]
+    return [folder for folder in (*own, CASES_OF_PACKAGE) if folder.is_dir()]
+
+
+def _register_law(path: Path, folder: Path) -> None:
+    """Register the law of a module of laws/ under the name of its file, and the contact kernels it brings."""
+    name = path.relative_to(folder).as_posix()
+    module = _imported(path, f"bulkwear_{LAWS}_{path.stem}", name)
+    if not hasattr(module, LAW):
+        raise ProjectError(f"{name}: there is no {LAW} in it, allowed is a module with {LAW} = Law(...).")
+    try:
+        for kernel, declared in getattr(module, KERNELS, {}).items():
+            register_kernel(kernel, declared)
+        register_law(path.stem, getattr(module, LAW))
+    except ValueError as fault:
+        raise ProjectError(f"{name}: {fault}.") from None
+
+
+def _imported(path: Path, name: str, shown: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as fault:
+        raise ProjectError(import_fault(fault, path, shown)) from fault
+    return module
+
+
+def import_fault(fault: Exception, path: Path, shown: str) -> str:
+    """Return the sentence for a Python file of a project that cannot be imported.
+
+    shown: its path as the message shows it
+    """
+    steps = [step for step in traceback.extract_tb(fault.__traceback__) if Path(step.filename) == path]
+    line = fault.lineno if isinstance(fault, SyntaxError) else steps[-1].lineno if steps else None
+    where = f"{shown}, line {line}" if line else shown
+    words = fault.msg if isinstance(fault, SyntaxError) else str(fault)
+    return f"{where}: {type(fault).__name__}: {words}; allowed is a module that can be imported."
