@@ -6,6 +6,7 @@ together.
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -32,7 +33,7 @@ from bulkwear.workflows.engine.chain import (
     write_cycle,
     write_shared_files,
 )
-from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.inputs import SIMULATED_FROM, inputs_digest, simulated_from, why_again
 from bulkwear.workflows.engine.job import Progress, write_table
 from bulkwear.workflows.engine.ledgers import producer
 from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
@@ -67,8 +68,9 @@ def run_chain(chain: Chain) -> None:
     announce = Progress(chain.name, 1).say
     with state.only_driver(chain.folder, announce):
         inputs = inputs_digest(chain)
+        why = why_again(chain.folder, simulated_from(chain.case, chain.parameters, chain.bed))
         if moved := state.set_aside_others(chain.folder, inputs):
-            announce(moved)
+            announce(f"{why}; {moved}" if why else moved)
         if moved := state.fit_length(chain.folder, inputs, cycles_of(chain)):
             announce(moved)
         if chain.same_as and (shared := state.share_cycles(chain.folder, chain.same_as, inputs)):
@@ -122,6 +124,9 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
             raise state.StateError(f"{chain.name}: its inputs changed while {title(chain, cycle)} ran; start again.")
         kept = (*producer(chain.parameters).kept, *chain.case.kept)
         files = (RESTART, SURFACE, LEDGER, HISTORY, *kept) if span else (RESTART,)
+        if span is None:
+            found = simulated_from(chain.case, chain.parameters, chain.bed)
+            (folder / SIMULATED_FROM).write_text(json.dumps(found, indent=1) + "\n")
         state.write_state(folder, inputs, files, record)
         forget_pieces(folder)  # before anything that a repeated accounting would miss
         for path in spent:

@@ -7,8 +7,11 @@ them changes no hash, so nothing is simulated again for it.
 
 from __future__ import annotations
 
+import json
 import tempfile
+import textwrap
 from collections.abc import Mapping
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +27,10 @@ DERIVED = (
     "travel_steps",
     "physical_patch_factor",
 )  # what the driver reads of what follows
+
+
+SIMULATED_FROM = "simulated_from.json"  # in cycle 0 of a run
+LONGEST_LINE = 100  # characters of a deck's line or a setting in a sentence
 
 
 class SimulatedFrom(dict):
@@ -44,15 +51,22 @@ class SimulatedFrom(dict):
 
 
 def run_digest(case: Case, parameters: Parameters, bed: Parameters | None) -> str:
-    """Return the hash of what a run is simulated from besides its surface and the restart file of its bed.
+    """Return the hash of what a run is simulated from besides its surface and the restart file of its bed."""
+    found = simulated_from(case, parameters, bed)
+    return state.digest(found["settings"], *found["decks"])
 
-    How many cycles there are is left out where the case says that it changes none of them.
+
+def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -> dict[str, Any]:
+    """Return what a run is simulated from besides its surface and the restart file of its bed, JSON-able.
+
+    settings: what the driver reads; decks: texts of one of each kind. How many cycles there are is left out where the
+    case says that it changes none of them.
     """
     spans = (None, first_span(parameters))
     sections = {name: parameters[name] for name in case.consumed} | {
         "derived": {name: parameters["derived"][name] for name in DERIVED}
     }
-    consumed = {
+    settings = {
         "wear_version": WEAR_VERSION,
         "ledger": parameters["ledger"],
         "pieces": [case.piece_ends(parameters, bed, span) for span in spans],
@@ -60,9 +74,46 @@ def run_digest(case: Case, parameters: Parameters, bed: Parameters | None) -> st
             section: {key: value for key, value in values.items() if (section, key) not in case.length}
             for section, values in sections.items()
         },
+        **_code_of_project(case, parameters),
     }
-    consumed |= _code_of_project(case, parameters)
-    return state.digest(consumed, *case.sample_decks(parameters, bed))
+    return {"settings": settings, "decks": list(case.sample_decks(parameters, bed))}
+
+
+def why_again(run_folder: Path, found: Mapping[str, Any]) -> str | None:
+    """Return in a phrase what a run is simulated from now that its finished cycles were not; None if nothing is known.
+
+    found: as from `simulated_from`; cycle 0 keeps it
+    """
+    try:
+        before = json.loads((state.cycle_folder(run_folder, 0) / SIMULATED_FROM).read_text())
+    except (OSError, ValueError):
+        return None
+    now = json.loads(json.dumps(found))
+    if before == now:
+        return None
+    for number, (old, new) in enumerate(zip_longest(before["decks"], now["decks"], fillvalue="")):
+        if old != new:
+            return f"its deck of {'a wear cycle' if number else 'cycle 0'} changed, {_first_change(old, new)}"
+    return _changed_setting(before["settings"], now["settings"])
+
+
+def _first_change(old: str, new: str) -> str:
+    """Return the first line in which two decks differ."""
+    lines = enumerate(zip_longest(old.splitlines(), new.splitlines(), fillvalue=""), start=1)
+    number, was, now = next((number, *map(_one_line, pair)) for number, pair in lines if pair[0] != pair[1])
+    return f"line {number}: '{now}', it was '{was}'"
+
+
+def _one_line(text: str) -> str:
+    return textwrap.shorten(text, LONGEST_LINE, placeholder=" ...")
+
+
+def _changed_setting(old: Any, new: Any, name: str = "") -> str:
+    """Return the first setting that differs."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        key = next(key for key in {**old, **new} if old.get(key) != new.get(key))
+        return _changed_setting(old.get(key), new.get(key), f"{name}.{key}" if name else key)
+    return f"{name} is {_one_line(str(new))}, it was {_one_line(str(old))}"
 
 
 def _code_of_project(case: Case, parameters: Parameters) -> dict[str, Any]:

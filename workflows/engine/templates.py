@@ -44,6 +44,12 @@ def own_templates() -> list[Path]:
     return [] if project.is_package else sorted((project.folder / TEMPLATES).rglob("*.in.j2"))
 
 
+def _is_own(template: str) -> bool:
+    """Return whether a template, or a partial that it includes, is the current project's own."""
+    own = own_templates()
+    return bool(own) and any(template_file(name) in own for name in _trees(template, {}))
+
+
 def template_file(name: str) -> Path:
     """Return the file that a template of that name is read from. Raises DeckError where there is none."""
     try:
@@ -199,19 +205,18 @@ def used_sections(template: str, parameters: Mapping[str, Any], **words: Any) ->
 def render(template: str, parameters: Mapping[str, Any]) -> str:
     """Return the deck of a template, e.g. "settled_bed"; parameters hold its `whole_sections` too.
 
-    Raises DeckError for missing and for unused parameters, and for an own word that is one of the other parameters.
+    Raises DeckError for missing parameters, for unused ones but in a project's own template, and for an own word that
+    is one of the other parameters.
     """
     own = parameters.get(OWN, {})
     given = {name: value for name, value in parameters.items() if name != OWN}
     wanted = template_variables(template, given)
     missing = {f"solver.{name}" for name in solver_settings(template, given)}
     missing -= {f"solver.{name}" for name in given.get(SOLVER, {})}
+    unused = set() if _is_own(template) else set(given) - wanted - {SOLVER}
     for names, fault in (
-        (
-            (wanted - {*given, *own}) | missing,
-            f"is not given, allowed are its deck's words and those of `{OWN}`",
-        ),
-        (set(given) - wanted - {SOLVER}, "is never used"),
+        ((wanted - {*given, *own}) | missing, f"is not given, allowed are its deck's words and those of `{OWN}`"),
+        (unused, "is never used"),
         (set(given) & set(own), "is one of ours, no word of deck may be called so"),
     ):
         if names:
