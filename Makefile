@@ -71,8 +71,8 @@ format: setup ## Rewrite Python and Snakemake files in the house format
 	.venv/bin/ruff format .
 	.venv/bin/snakefmt $(SMK_FILES)
 
-lock: setup ## Resolve requirements.in again into requirements.txt (exact versions and hashes)
-	.venv/bin/uv pip compile --quiet requirements.in --output-file requirements.txt --upgrade --python-version 3.11 \
+lock: setup ## Resolve the dependencies of pyproject.toml again into requirements.txt (exact versions and hashes)
+	.venv/bin/uv pip compile --quiet pyproject.toml --all-extras --output-file requirements.txt --upgrade --python-version 3.11 \
 	    --generate-hashes --no-header --no-annotate --no-emit-index-url
 	awk '/^[^ ]/ {keep = /^uv==/} keep' requirements.txt >requirements-bootstrap.txt
 

@@ -1,9 +1,11 @@
 """The rules of the house: who may import whom, how long things may get, what may be tracked."""
 
 import ast
+import itertools
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -238,8 +240,9 @@ def test_snakemake_object_stays_in_scripts():
 
 
 def test_third_party_imports_are_direct_requirements():
-    """What is imported is named in requirements.in, not there by some other package's grace."""
-    lines = [line.partition("#")[0].strip() for line in text_of("requirements.in").splitlines()]
+    """What is imported is named in pyproject.toml, not there by some other package's grace."""
+    project = tomllib.loads(text_of("pyproject.toml"))["project"]
+    lines = itertools.chain(project["dependencies"], *project["optional-dependencies"].values())
     required = {re.sub(r"\[.*", "", line).replace("-", "_") for line in lines} | {"yaml", "PIL", "igl", "sklearn"}
     ours = {path.name for path in REPOSITORY.iterdir()}
     siblings = {path.stem for path in tracked("*.py")}
@@ -273,7 +276,7 @@ def test_scripts_only_unpack_and_call():
 # --- (c) what is tracked
 
 
-@pytest.mark.parametrize("name", ["requirements.in", "requirements.txt", "requirements-bootstrap.txt"])
+@pytest.mark.parametrize("name", ["pyproject.toml", "requirements.txt", "requirements-bootstrap.txt"])
 def test_requirements_name_no_address(name):
     """Requirements work with any package index: they name none."""
     assert WORDS_OF_AN_INDEX.search(text_of(name)) is None

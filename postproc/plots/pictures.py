@@ -11,11 +11,12 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface_oblique, surface_plan, trimmed
 from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
-from bulkwear.postproc.tables.depths import area_quantile
-from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.depths import area_quantile, depth_quantity, face_depth
+from bulkwear.postproc.tables.display import MICROMETRES, SQUARE_MILLIMETRES, in_display_units
+from bulkwear.postproc.wear.update import worn_faces
 
 ROWS_PER_LINE = 7  # design rows side by side in small multiples
 SINGLES_PER_LINE = 3  # of them where each has one run
@@ -62,6 +63,23 @@ def worn_surface(
         grid[1, column].set(xlabel="Across the travel, x (mm)", ylabel="y (mm)\nbed moves to +y →")
     unit, ticks = scaled("µm", limits[1])
     _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
+    return figure
+
+
+def draw_surface(mesh: SurfaceMesh, title: str = "") -> Figure:
+    """Draw one worn surface obliquely, coloured by its removed thickness (`removed_thickness_m`).
+
+    mesh: m, as from `postproc.wear.update.wear_update`, or the worn_surface.vtu of a run
+    """
+    worn = worn_faces(mesh)
+    area, depth = areas(mesh.points, mesh.triangles)[worn], face_depth(mesh, True)[worn] * MICROMETRES
+    limits = colour_limits(pd.DataFrame({"run": "", "area_mm2": area * SQUARE_MILLIMETRES, "depth_um": depth}))
+    figure = new_figure([])
+    axes = figure.subplots()
+    picture(axes, trimmed([surface_oblique(mesh, True, limits, common_bounds([mesh]))])[0])
+    axes.set_title(title)
+    unit, ticks = scaled("µm", limits[1])
+    _colour_bar(figure, axes, limits, f"{depth_quantity(True)} ({unit})", ticks)
     return figure
 
 

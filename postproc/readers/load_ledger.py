@@ -1,7 +1,7 @@
-"""The load ledger of a run as the solver wrote it: `load_ledger.bin` of `fix load/ledger`.
+"""The load ledger: as the solver wrote it, `load_ledger.bin` of `fix load/ledger`, and the table kept of a wear cycle.
 
-One line of ASCII JSON, then float64, little-endian, column after column, each with one value per triangle in the order
-of the mesh's facets. The solver has summed every contact of every step; nothing is left to sum here.
+The solver's file: one line of ASCII JSON, then float64, little-endian, column after column, each with one value per
+triangle in the order of the mesh's facets. The solver has summed every contact of every step; nothing is left to sum.
 """
 
 from __future__ import annotations
@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+TABLE = "ledger.parquet"  # of a finished cycle
 FORMAT = 1  # of the file, value of `load_ledger` in its header
 LONGEST_HEADER = 100_000  # bytes; a file without a line that short is no ledger
 SUMS = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J", "contact_time_s")
@@ -77,6 +79,25 @@ def read_load_ledger(
             raise LoadLedgerError(f"{path}: {what} is {found}, allowed is {allowed}.")
     columns = _columns(content, start, header, path)
     return LoadLedger(header["mesh"], header["steps"], float(header["time_s"]), columns, header)
+
+
+def read_ledger(path: Path | str) -> pd.DataFrame:
+    """Return the ledger of a finished wear cycle, a row per triangle, units in the names of its columns.
+
+    path: of the cycle's folder, or of its ledger.parquet
+
+    Raises LoadLedgerError, one sentence, where there is none.
+    """
+    path = Path(path)
+    file = path / TABLE if path.is_dir() else path
+    try:
+        return pd.read_parquet(file)
+    except (OSError, ValueError) as fault:
+        found = ", ".join(sorted(each.name for each in file.parent.glob("*"))) or "nothing"
+        raise LoadLedgerError(
+            f"{file}: no ledger can be read from it, allowed is the {TABLE} of a wear cycle, or its folder; found in "
+            f"that folder: {found}."
+        ) from fault
 
 
 def announcement(screen_path: Path | str) -> str | None:

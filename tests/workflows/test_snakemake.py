@@ -224,7 +224,7 @@ def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):
     process = snakemake(folder, "tiny")
     output, _ = process.communicate(timeout=TIMEOUT)
     assert process.returncode != 0
-    assert "liggghts-ledger: there is no such program; `make setup` (or `make -C solver`) builds it" in output
+    assert "liggghts-ledger: there is no such program, nor one of its name on the PATH" in output
     assert "Traceback" not in output
     assert not (folder / "results").exists()
 

@@ -21,11 +21,13 @@ from typing import Any
 from bulkwear.postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
 from bulkwear.workflows.engine.derived import run_kernels
+from bulkwear.workflows.engine.project import PACKAGE
 
 DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
 EXECUTABLE = "liggghts"
 LAUNCHER = "mpirun --bind-to none"  # starts the ranks of a solver; a cluster's profile may name another
-LEDGER_EXECUTABLE = str(Path(__file__).resolve().parents[2] / "solver" / "build" / "liggghts-ledger")
+BUILT = PACKAGE / "solver" / "build" / "liggghts-ledger"
+LEDGER_EXECUTABLE = str(BUILT) if BUILT.exists() else shutil.which(BUILT.name) or str(BUILT)
 CYCLE_EXECUTABLES = {"solver": LEDGER_EXECUTABLE, "dumps": EXECUTABLE}  # of wear cycles, by the ledger's producer
 OF_SLURM = ("SLURM_", "PMI_", "PMIX_")  # environment variables of a job
 POLL_SECONDS = 0.25  # between two looks at the log
@@ -43,8 +45,8 @@ def missing_program(executable: str) -> str | None:
         return None
     if executable == LEDGER_EXECUTABLE:
         return (
-            f"{executable}: there is no such program; `make setup` (or `make -C solver`) builds it, and a study with "
-            "`ledger: dumps` does without."
+            f"{executable}: there is no such program, nor one of its name on the PATH; `make setup` (or `make -C "
+            "solver`) builds it, and a study with `ledger: dumps` does without."
         )
     return f"{executable} is not on the PATH; `make setup` installs it and `make doctor` checks it."
 

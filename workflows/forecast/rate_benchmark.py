@@ -23,6 +23,7 @@ from pathlib import Path
 
 import pandas as pd
 
+import bulkwear
 from bulkwear.postproc.mesh import read_surface, write_surface
 from bulkwear.postproc.readers.solver_log import run_times
 from bulkwear.workflows.config.design import Study, load_study
@@ -209,5 +210,5 @@ def _loops(
 def _job(folder: Path) -> Measurement:
     """Return what starting a job of the workflow and importing what it needs takes; it needs no folder."""
     before = processor_seconds()
-    subprocess.run([sys.executable, "-c", JOB], cwd=Path(__file__).resolve().parents[2], check=True)
+    subprocess.run([sys.executable, "-c", JOB], cwd=Path(bulkwear.__file__).parents[1], check=True)
     return Measurement("job", "imports", {"jobs": 1}, processor_seconds() - before)

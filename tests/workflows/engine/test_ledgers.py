@@ -209,8 +209,8 @@ def test_a_missing_program_is_one_sentence(tmp_path, monkeypatch):
     there = str(tmp_path / "solver" / "build" / "liggghts-ledger")
     monkeypatch.setattr("bulkwear.workflows.engine.solver.LEDGER_EXECUTABLE", there)
     assert missing_program(there) == (
-        f"{there}: there is no such program; `make setup` (or `make -C solver`) builds it, and a study with "
-        "`ledger: dumps` does without."
+        f"{there}: there is no such program, nor one of its name on the PATH; `make setup` (or `make -C solver`) "
+        "builds it, and a study with `ledger: dumps` does without."
     )
     with pytest.raises(SolverError, match="make -C solver"):
         run_deck(tmp_path, executable=there)
