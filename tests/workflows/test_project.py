@@ -1,0 +1,224 @@
+"""Projects outside the package: run by --directory and as a module, side by side; told in a sentence what is wrong."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from bulkwear.__main__ import main
+from bulkwear.workflows.config.targets import Naming, naming, requested_studies
+from bulkwear.workflows.engine.project import PACKAGE, Project
+from tests.support.own_project import STUDY, TEMPLATE, WORD, own_project
+from tests.workflows.test_snakemake import finish, planned_jobs, snakemake
+
+ROUNDING = 1e-12  # relative; of a sum over triangles
+PROFILE = ("--workflow-profile", str(PACKAGE / "workflows/profiles/default"))
+
+
+# Runs a command where the package, mounted on itself, cannot be written to, not even by root.
+READ_ONLY = """
+mount --bind "$0" "$0" && mount -o remount,bind,ro "$0" || exit 77
+touch "$0/written" 2>/dev/null && exit 78
+exec "$@"
+"""
+NOT_ROOT = 77  # exit code of a command that could not mount
+
+
+def read_only() -> list[str]:
+    """What goes before a command so that it finds the package read-only; nothing where this user may not mount."""
+    before = ["unshare", "--mount", "sh", "-c", READ_ONLY, str(PACKAGE)]
+    try:
+        code = subprocess.run([*before, "true"], capture_output=True).returncode
+    except FileNotFoundError:
+        return []
+    assert code in (0, 1, NOT_ROOT), code
+    return before if code == 0 else []
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """Two projects on one package, all at the same time: one runs two studies at once by --directory, the other is a
+    Snakefile of its own that takes the workflow as a module. The package cannot be written to meanwhile.
+    """
+    place = tmp_path_factory.mktemp("with a space")
+    mine, other = own_project(place / "my project"), own_project(place / "the other one")
+    before = read_only()
+    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(mine), "--cores", "1")
+    running = {
+        "mine": snakemake(place, *outside, STUDY, before=before),
+        "second": snakemake(place, *outside, "results/second/summary.csv", before=before),
+        "module": snakemake(other, *PROFILE, "--cores", "1", before=before),
+    }
+    said = {name: finish(process) for name, process in running.items()}
+    return {"mine": mine, "other": other, "said": said}
+
+
+@pytest.mark.solver
+def test_a_project_runs_to_its_page(finished):
+    """Its study with its case, law, material and template; the wear is the law's."""
+    folder = finished["mine"] / "results" / STUDY
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "A dimpled sample" in page and "over 3" in page
+    deck = (folder / "A_plain/cycle_001/deck.in").read_text()
+    assert deck.endswith(f'print "{WORD}"\n') and "3300" in (folder / "beds/bed_1/deck.in").read_text()
+    wear = pd.read_csv(folder / "A_plain/wear.csv")
+    archard = 6.3e-13 * wear["sliding_work_J"].sum()
+    assert wear["worn_volume_m3"].sum() == pytest.approx(archard / 3.0, rel=ROUNDING)
+
+
+@pytest.mark.solver
+def test_two_studies_at_once_from_one_folder(finished):
+    """Each ends in its summary."""
+    for name in (STUDY, "second"):
+        assert list(pd.read_csv(finished["mine"] / f"results/{name}/summary.csv")["run"]) == ["A_plain"]
+
+
+@pytest.mark.solver
+def test_rules_on_top_take_results_on(finished):
+    """With a prefix on our rules: its own rule is made by default, and the results are those of the other project."""
+    results = finished["other"] / "results"
+    assert (results / "ranking.txt").read_text() == "A_plain\n"
+    path = f"results/{STUDY}/summary.csv"
+    assert (finished["other"] / path).read_bytes() == (finished["mine"] / path).read_bytes()
+    assert "rule bw_worn_run" in finished["said"]["module"] or "Wear cycles of A_plain" in finished["said"]["module"]
+    assert "Forecast of mine" in finished["said"]["module"]
+
+
+@pytest.mark.solver
+def test_the_log_says_which_file_won(finished):
+    """Once, and of those only that the package has as well."""
+    for said in finished["said"].values():
+        assert said.count("config/materials.yaml: this project's, over the package's") == 1
+        assert said.count("templates/sliding_sample/sliding_sample.in.j2: this project's, not the package's") == 1
+        assert said.count(": this project's") == 2
+
+
+@pytest.mark.solver
+def test_a_changed_line_is_told_before_a_run_is_done_again(finished, tmp_path):
+    """What differs in a deck and a law stands in a sentence; Snakemake's own reason is a line."""
+    mine = shutil.copytree(finished["mine"], tmp_path / "mine", symlinks=True)
+    arguments = (*PROFILE, "--snakefile", str(PACKAGE / "Snakefile"), "--dry-run", f"results/{STUDY}/summary.csv")
+    assert "differs" not in finish(snakemake(mine, *arguments))
+    study = mine / "config/studies/mine.yaml"
+    study.write_text(study.read_text().replace(WORD, "something else"))
+    said = finish(snakemake(mine, *arguments))
+    assert f"its deck of a wear cycle changed, line 119: 'print \"something else\"', it was 'print \"{WORD}\"'" in said
+    assert max(len(line) for line in said.splitlines() if line.startswith("Reason:")) < 400
+    study.write_text(study.read_text().replace("something else", WORD))
+    law = mine / "laws/hardened.py"
+    law.write_text(law.read_text().replace("/ parameters", "/ 2.0 / parameters"))
+    assert "A_plain of mine differs from what was simulated: law is " in finish(snakemake(mine, *arguments))
+
+
+def test_a_project_is_planned_on_a_cluster(tmp_path):
+    """The profile for Slurm of the package, on the project's study; the same jobs as on one machine."""
+    mine = own_project(tmp_path / "my project")
+    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(mine), "--dry-run", STUDY)
+    profiles = (str(PACKAGE / "workflows/profiles" / name) for name in ("default", "slurm"))
+    planned = [planned_jobs(finish(snakemake(tmp_path, *outside, "--workflow-profile", each))) for each in profiles]
+    assert planned[0] == planned[1] and planned[0]["worn_run"] == 1
+
+
+def test_one_command_makes_a_project(tmp_path, capsys):
+    """Its Snakefile takes the package as a module; both ways in plan the same, and its study is made by default."""
+    folder = tmp_path / "a new one"
+    assert main(["project", str(folder)]) == 0
+    assert f"cd '{folder}' && snakemake" in capsys.readouterr().out
+    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(folder))
+    ways = (snakemake(folder, "--dry-run"), snakemake(tmp_path, *outside, "--dry-run"))
+    planned = [planned_jobs(finish(process)) for process in ways]
+    assert planned[0] == planned[1] and planned[0]["worn_run"] == 2 and planned[0]["report"] == 1
+    assert {"demo", "screening", "first"} <= set(finish(snakemake(folder, "--list-target-rules")).split())
+    assert main(["project", str(folder)]) == 1
+    assert "there is something in it, allowed is a new or an empty folder" in capsys.readouterr().err
+
+
+def test_names_with_words_round_them_are_ours():
+    """A module's targets are recognised by what was put round them; what is not ours is the Snakefile's own."""
+    project = Project(PACKAGE)
+    named = naming(lambda name: f"bw_{name}_x", True)
+    assert named == Naming("bw_", "_x", True)
+    assert requested_studies(["bw_screening_x", "bw_calibration_decks_x"], project=project, names=named) == [
+        *("screening", "calibration")
+    ]
+    jobs = [("bw_worn_run_x", {"study": "screening"}), ("own_rule", {"study": "no study"})]
+    assert requested_studies([], jobs, project, named) == ["screening", "demo"]
+    assert requested_studies(["all", "figures/a.png"], project=project, names=named) == ["demo"]
+    assert requested_studies(["bw_cost_rates_x"], project=project, names=named) == []
+
+
+LAW, CASE, MINE = "laws/hardened.py", "cases/dimpled/case.py", "config/studies/mine.yaml"
+MODULE = "; allowed is a module that can be imported."
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "sentence"),
+    [
+        (MINE, f"deck: {{remark: {WORD}}}\n", "", f"{TEMPLATE}: parameter remark is not given, allowed are its deck's"),
+        (LAW, ', unit="-"', "", f"{LAW}: parameter hardening of the law hardened has no unit, allowed is the one that"),
+        (LAW, '"-"', '"N"', "law hardened: the unit of its parameter hardening is 'N', allowed is '-', by the end of"),
+        (LAW, "LAW = ", "RULE = ", f"{LAW}: there is no LAW in it, allowed is a module with LAW = Law(...)."),
+        (
+            LAW,
+            "{hardening}",
+            "{hardness}",
+            f"{LAW}: words of the law hardened have {{hardness}}, allowed in braces",
+        ),
+        (
+            CASE,
+            "import numpy as np\n",
+            "import numpie as np\n",
+            f"{CASE}, line 5: ModuleNotFoundError: No module",
+        ),
+        (CASE, "class DimpledSample(", "class DimpledSample((", f"{CASE}, line 11: SyntaxError: "),
+        (CASE, "register(DimpledSample())\n", "", f"{CASE}: it registers no case dimpled, allowed is register(...) of"),
+    ],
+)
+def test_a_bad_project_is_one_sentence(tmp_path, file, old, new, sentence):
+    """It names the file; nothing is made."""
+    folder = own_project(tmp_path / "my project")
+    text = (folder / file).read_text()
+    assert text.count(old) == 1
+    (folder / file).write_text(text.replace(old, new))
+    assert sentence in told_of(folder)
+
+
+def test_a_study_of_the_package_s_name_is_refused(tmp_path):
+    """It would be unclear whose it is."""
+    folder = own_project(tmp_path / "my project")
+    shutil.copy(folder / MINE, folder / "config/studies/demo.yaml")
+    assert "config/studies/demo.yaml: a study demo is in the package too" in told_of(folder, "demo")
+
+
+def told_of(folder: Path, study: str = STUDY) -> str:
+    """What is said of a project that cannot be worked in, and nothing else: one line."""
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, str(folder), study], cwd=PACKAGE, capture_output=True, text=True
+    )
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert not (folder / "results").exists()
+    return done.stderr
+
+
+LOADED = """
+import sys
+from pathlib import Path
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.project import enter_project
+try:
+    enter_project(Path(sys.argv[1]))
+    load_study(sys.argv[2])
+except ValueError as fault:
+    sys.exit(str(fault))
+"""
+
+
+def test_a_bad_project_ends_snakemake(tmp_path):
+    """With that sentence, before any job."""
+    process = snakemake(tmp_path, "--snakefile", str(PACKAGE / "Snakefile"), "--dry-run", STUDY)
+    output, _ = process.communicate()
+    assert process.returncode != 0
+    assert f"{tmp_path}: there is no folder config in it" in output and "Traceback" not in output
