@@ -19,7 +19,7 @@ SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 
-.PHONY: help setup doctor demo study forecast rates test verify screening report decks lint format lock clean
+.PHONY: help setup doctor demo study forecast project rates test verify screening report decks lint format lock clean
 
 help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
@@ -39,6 +39,9 @@ study: setup ## Run a whole study: make study STUDY=<name of a file in config/st
 
 forecast: setup ## What a study will cost: core hours, wall time, memory, disk of each run (STUDY=demo)
 	$(SNAKEMAKE) $(STUDY)_forecast
+
+project: setup ## Make a project of your own, a folder outside this clone: make project DIR=<folder>
+	@.venv/bin/python -m bulkwear project "$(or $(DIR),$(error make project DIR=<folder>: DIR is missing, allowed is a new folder))"
 
 rates: setup ## Measure what the solver's work costs on this machine, for forecasts; a minute or two, best with nothing beside it
 	$(SNAKEMAKE) cost_rates --force

@@ -32,6 +32,9 @@ Generated from the schemas (`workflows/config/schemas`, `workflows/cases/*/*.sch
   case; where they name a setting, the row overrides it.
 * `materials.yaml`: particles, walls and their contacts.
 
+A project of one's own has such a folder too; [docs/project.md](../docs/project.md) tells how its files and these go
+together.
+
 Every key with a dimension ends in its unit; another unit is refused, and so is an unknown key. Numbers are
 written as in YAML 1.2: `6.3e-13`, `1e-9` and `.5` are numbers, `'80'` and `80 mm` are not.
 """
