@@ -329,7 +329,7 @@ def find_case(name: str) -> Case:
     except Exception as fault:
         raise ProjectError(import_fault(fault, path, _shown(path))) from fault
     if Path(module.__file__) != path:
-        raise ProjectError(f"{_shown(path)}: the case {name} of another project is in use, allowed is one of a name.")
+        raise ProjectError(f"{_shown(path)}: {module.__file__} is in use here, allowed is one case of a name.")
     if name not in _REGISTERED:
         raise ProjectError(
             f"{_shown(path)}: it registers no case {name}, allowed is register(...) of a Case of that name."

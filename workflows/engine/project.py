@@ -14,11 +14,13 @@ from pathlib import Path
 from types import ModuleType
 
 from bulkwear.postproc.wear.kernels import register_kernel
+from bulkwear.postproc.wear.laws import LAWS as REGISTERED_LAWS
 from bulkwear.postproc.wear.laws import register_law
 
 PACKAGE = Path(__file__).resolve().parents[2]
 CONFIG, TEMPLATES, CASES, LAWS = "config", "templates", "cases", "laws"  # folders of a project
 CASES_OF_PACKAGE = PACKAGE / "workflows" / CASES
+LAWS_OF_PACKAGE = frozenset(REGISTERED_LAWS)
 LAW, KERNELS = "LAW", "KERNELS"  # what a module of laws/ has
 
 
@@ -68,25 +70,25 @@ class Project:
         """Return a sentence for each file of the project that stands before one of the package."""
         if self.is_package:
             return []
-        said = [
-            f"{path.relative_to(self.folder)}: this project's, {'over' if path.suffix == '.yaml' else 'not'} the "
-            f"package's"
-            for path in sorted((self.folder / CONFIG).rglob("*"))
-            if path.is_file() and path.name != "README.md" and (self.package / path.relative_to(self.folder)).is_file()
-        ]
         theirs = {path.name for path in (self.package / TEMPLATES).rglob("*.in.j2")}
-        said += [
-            f"{path.relative_to(self.folder)}: this project's, not the package's"
-            for path in sorted((self.folder / TEMPLATES).rglob("*.in.j2"))
-            if path.name in theirs
+        cases = {path.parent.name for path in CASES_OF_PACKAGE.glob("*/case.py")}
+        settings = (path for path in self._own(CONFIG, "*.*") if path.name != "README.md")
+        found = [
+            *(path for path in settings if (self.package / path).is_file()),
+            *(path for path in self._own(TEMPLATES, "*.in.j2") if path.name in theirs),
+            *(path.parent for path in self._own(CASES, "case.py") if path.parent.name in cases),
+            *(path for path in self._own(LAWS, "*.py") if path.stem in LAWS_OF_PACKAGE),
         ]
-        own = (path.parent for path in sorted((self.folder / CASES).glob("*/case.py")))
-        said += [
-            f"{path.relative_to(self.folder)}: this project's, not the package's"
-            for path in own
-            if (CASES_OF_PACKAGE / path.name / "case.py").is_file()
-        ]
-        return said
+        return [f"{path.as_posix()}: this project's, {_before(path)} the package's" for path in found]
+
+    def _own(self, folder: str, pattern: str) -> list[Path]:
+        """Return the project's files of a folder, from the project's folder."""
+        return sorted(path.relative_to(self.folder) for path in (self.folder / folder).rglob(pattern))
+
+
+def _before(path: Path) -> str:
+    """Return how a file of the project stands to the package's; of YAML, what it does not name is the package's."""
+    return "over" if path.parts[0] == CONFIG and path.suffix == ".yaml" else "not"
 
 
 _entered: list[Project] = []

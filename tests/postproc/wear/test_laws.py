@@ -1,12 +1,23 @@
 """Wear laws: worn volume from the ledger."""
 
+import re
 from string import Formatter
 
 import numpy as np
 import pytest
 
 from bulkwear.postproc.wear.kernels import KERNELS, kernel_column
-from bulkwear.postproc.wear.laws import LAWS, NEUTRAL_LAW, archard, finnie, law_kernels, worn_volume
+from bulkwear.postproc.wear.laws import (
+    LAWS,
+    NEUTRAL_LAW,
+    Law,
+    Parameter,
+    archard,
+    finnie,
+    law_kernels,
+    register_law,
+    worn_volume,
+)
 from bulkwear.workflows.config.law_settings import parameters_schema
 from bulkwear.workflows.config.units import to_si
 from tests.support.law_cases import ALPHA, parameters_of
@@ -136,3 +147,31 @@ def test_impossible_coefficient_is_refused(coefficient):
         archard({"sliding_work_J": np.ones(1)}, {"wear_coefficient_per_pa": coefficient})
     with pytest.raises(ValueError, match="wear_coefficient_per_pa is"):
         finnie({"finnie_work_J": np.ones(1)}, {"wear_coefficient_per_pa": coefficient})
+
+
+@pytest.mark.parametrize(
+    ("declared", "fault"),
+    [
+        (archard, "law odd is function, allowed is a Law(...)"),
+        (
+            Law(archard, "by {force_n}.", "nobody"),
+            "words of the law odd have {force_n}, allowed in braces are: wear_coef",
+        ),
+        (Law(archard, "so.", "nobody", kernels=("odd",)), "contact kernel 'odd' is unknown"),
+        (
+            Law(archard, "so.", "nobody", parameters=(Parameter("n", "of it", 1.0, 2.0),)),
+            "parameter n of the law odd has",
+        ),
+    ],
+)
+def test_a_law_that_is_none_is_not_registered(declared, fault):
+    """What is wrong is said, and nothing is registered."""
+    with pytest.raises(ValueError, match=re.escape(fault)):
+        register_law("odd", declared)
+    assert "odd" not in LAWS
+
+
+@pytest.mark.parametrize("law", sorted(LAWS))
+def test_the_laws_that_are_there_could_be_registered(law):
+    """They keep the rules that laws of a project must keep."""
+    register_law(law, LAWS[law])
