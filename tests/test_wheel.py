@@ -81,6 +81,24 @@ def test_ten_names_are_public(python, tmp_path):
         bulkwear.read_legder  # noqa: B018
 
 
+def test_an_editable_install_is_the_repository(tmp_path):
+    """What it puts on the path is the folder from which `bulkwear.postproc` is `postproc` here."""
+    build = f"from hatchling.build import build_editable; print(build_editable({str(tmp_path)!r}))"
+    done = subprocess.run([sys.executable, "-c", build], cwd=REPOSITORY, capture_output=True, text=True, check=True)
+    with zipfile.ZipFile(tmp_path / done.stdout.split()[-1]) as opened:
+        (name,) = (name for name in opened.namelist() if name.endswith(".pth"))
+        path = opened.read(name).decode().strip()
+    said = subprocess.run(
+        [sys.executable, "-c", "import bulkwear.postproc as library; print(library.__file__)"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert said.stdout.strip() == str(REPOSITORY / "postproc/__init__.py")
+
+
 def test_importing_costs_nothing(python, tmp_path):
     """Nothing that is slow to import comes with it."""
     said = run(python, "import sys, bulkwear; print('numpy' in sys.modules, 'pandas' in sys.modules)", tmp_path)

@@ -83,8 +83,9 @@ def test_rules_on_top_take_results_on(finished):
     assert (results / "ranking.txt").read_text() == "A_plain\n"
     path = f"results/{STUDY}/summary.csv"
     assert (finished["other"] / path).read_bytes() == (finished["mine"] / path).read_bytes()
-    assert "rule bw_worn_run" in finished["said"]["module"] or "Wear cycles of A_plain" in finished["said"]["module"]
+    assert "Wear cycles of A_plain" in finished["said"]["module"]
     assert "Forecast of mine" in finished["said"]["module"]
+    assert "Nothing to be done" in finish(snakemake(finished["other"], *PROFILE, f"bw_{STUDY}", "--dry-run"))
 
 
 @pytest.mark.solver

@@ -120,6 +120,12 @@ def enter_project(folder: Path) -> Project:
     return _entered[-1]
 
 
+def work_here() -> None:
+    """Enter the project of the working directory, where it is one: for commands."""
+    if (Path.cwd() / CONFIG).is_dir():
+        enter_project(Path.cwd())
+
+
 def leave_project() -> None:
     """Work in the package itself again; laws that were registered stay so."""
     _entered.clear()

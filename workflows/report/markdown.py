@@ -21,6 +21,7 @@ from bulkwear.postproc.plots.style import save_small
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.report.page import cost_totals, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_of, page_parameters
 from bulkwear.workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Table, Text, shown
@@ -147,6 +148,8 @@ def main() -> None:
     parser.add_argument("docs", type=Path, nargs="?", default=Path("docs"), help="where the page is written")
     parser.add_argument("--fidelity", default="quick", help="at which it was run")
     given = parser.parse_args()
+    work_here()
+    given.docs.mkdir(parents=True, exist_ok=True)
     rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
     study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows})
     print(write_results(given.folder, given.docs, study))

@@ -23,6 +23,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.project import work_here
 
 CHECKED = "checked_pairs.csv"
 MARKS = ["pair", "test", "seed", "particle_scale", "width_mm"]  # tell one row from another, with the parameters
@@ -74,6 +75,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--workers", type=int, default=1, help="simulations at the same time")
     given = parser.parse_args()
+    work_here()
     asked = {"fidelity": given.fidelity, "calibration": {"tests": [given.test], "repeats": given.seeds}}
     run = load_study(given.study, overrides=asked).all_runs[0].parameters
     print(check_pair(run, given.pair, Path("results") / given.study, given.workers).to_string(index=False))
