@@ -13,6 +13,7 @@ import pytest
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.pieces import PIECES
+from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.solver import DECK
 from bulkwear.workflows.environment.doctor import MPI_PROBE_DECK
 from tests.support.slurm import Slurm, missing_programs
@@ -92,7 +93,7 @@ def of_rule(cluster: Slurm, rule: str) -> list[dict[str, str]]:
 def wear_without_slurm(folder: Path, elsewhere: Path) -> bytes:
     """Return wear.csv of the same run by the driver alone, from the same surface and bed."""
     (elsewhere / RUN).mkdir(parents=True)
-    chain = tiny_chain(load_study("tiny", folder), folder / "results/tiny", RUN)
+    chain = tiny_chain(load_study("tiny", Project(folder, package=folder)), folder / "results/tiny", RUN)
     cycles.run_chain(replace(chain, folder=elsewhere / RUN))
     return (elsewhere / RUN / "wear.csv").read_bytes()
 
