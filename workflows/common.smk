@@ -11,7 +11,14 @@ from snakemake.utils import min_version
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
 from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
 from bulkwear.workflows.engine.case import case_folders
-from bulkwear.workflows.engine.inputs import SimulatedFrom, bed_digest, run_digest, simulated_from, surface_from, why_again
+from bulkwear.workflows.engine.inputs import (
+    SimulatedFrom,
+    bed_digest,
+    run_digest,
+    simulated_from,
+    surface_from,
+    why_again,
+)
 from bulkwear.workflows.engine.job import let_jobs_import
 from bulkwear.workflows.engine.project import ProjectError, enter_project
 from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
@@ -55,7 +62,9 @@ def checked_studies():
     module may name them: config of the module, `studies`.
     """
     settings = dict(config)
-    named = settings.pop("studies", None)
+    named = settings.pop("studies", [])
+    if not isinstance(named, list):
+        raise WorkflowError(f"config of the module: studies is {named!r}, allowed is a list of names of studies.")
     if GIVEN.lint or GIVEN.list_rules or GIVEN.list_target_rules:
         return dict(filter(None, (sound_study(name, settings) for name in list_studies())))
     try:
@@ -142,7 +151,9 @@ def simulated_run(study, run):
     case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
     bed = STUDIES[study].beds.get(STUDIES[study].bed_of(run))
     digest = run_digest(case, parameters, bed)
-    if not GIVEN.target_jobs and (why := why_again(Path(f"results/{study}/{run}"), simulated_from(case, parameters, bed))):
+    if not GIVEN.target_jobs and (
+        why := why_again(Path(f"results/{study}/{run}"), simulated_from(case, parameters, bed))
+    ):
         logger.info(f"{run} of {study} differs from what was simulated: {why}.")
     return SimulatedFrom(parameters, digest), bed and SimulatedFrom(bed, digest)
 
