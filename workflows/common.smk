@@ -105,9 +105,9 @@ def jobs_by_study(jobs):
     """The jobs that call the solver, by study: the names they have in forecasts."""
     found = {}
     for job in jobs:
-        if (rule := NAMING.ours(job.rule.name)) in SOLVER_RULES:
+        if (kind := NAMING.ours(job.rule.name)) in SOLVER_RULES:
             words = dict(job.wildcards.items())
-            found.setdefault(words.pop("study"), set()).add("_".join([rule, *words.values()]))
+            found.setdefault(words.pop("study"), set()).add("_".join([kind, *words.values()]))
     return found
 
 
@@ -150,10 +150,9 @@ def simulated_run(study, run):
     """The parameters of a run, and of its bed, which run again when what is simulated from them changes."""
     case, parameters = STUDIES[study].case, STUDIES[study].run(run).parameters
     bed = STUDIES[study].beds.get(STUDIES[study].bed_of(run))
-    digest = run_digest(case, parameters, bed)
-    if not GIVEN.target_jobs and (
-        why := why_again(Path(f"results/{study}/{run}"), simulated_from(case, parameters, bed))
-    ):
+    found = simulated_from(case, parameters, bed)
+    digest = digest_of(found)
+    if not GIVEN.target_jobs and (why := why_again(Path(f"results/{study}/{run}"), found)):
         logger.info(f"{run} of {study} differs from what was simulated: {why}.")
     return SimulatedFrom(parameters, digest), bed and SimulatedFrom(bed, digest)
 

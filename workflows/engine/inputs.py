@@ -52,7 +52,11 @@ class SimulatedFrom(dict):
 
 def run_digest(case: Case, parameters: Parameters, bed: Parameters | None) -> str:
     """Return the hash of what a run is simulated from besides its surface and the restart file of its bed."""
-    found = simulated_from(case, parameters, bed)
+    return digest_of(simulated_from(case, parameters, bed))
+
+
+def digest_of(found: Mapping[str, Any]) -> str:
+    """Return the hash of what `simulated_from` returns."""
     return state.digest(found["settings"], *found["decks"])
 
 
