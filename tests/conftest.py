@@ -2,6 +2,7 @@
 
 LONGEST_FIRST = (  # measured on two cores: minutes each, most of it waiting where a cluster is asked
     "test_slurm.py",
+    "workflows/test_project.py",
     "test_extend.py",
     "engine/test_cycles.py",
     "workflows/test_snakemake.py",
