@@ -24,7 +24,7 @@ include: "workflows/submissions.smk"
 rule default_studies:
     default_target: MADE_BY_DEFAULT
     input:
-        [f"results/{name}/report.html" for name in default_studies(PROJECT)],
+        [f"results/{name}/report.html" for name in default_studies(PROJECT) if name in STUDIES],
     localrule: True
     message:
         "Reports of {input}"

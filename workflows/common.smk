@@ -14,7 +14,7 @@ from bulkwear.workflows.engine.case import case_folders
 from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,
     bed_digest,
-    run_digest,
+    digest_of,
     simulated_from,
     surface_from,
     why_again,
@@ -22,9 +22,9 @@ from bulkwear.workflows.engine.inputs import (
 from bulkwear.workflows.engine.job import let_jobs_import
 from bulkwear.workflows.engine.project import ProjectError, enter_project
 from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
-from bulkwear.workflows.engine.templates import templates_digest
+from bulkwear.workflows.engine.templates import DeckError, templates_digest
 from bulkwear.workflows.forecast.rates import rates_file
-from bulkwear.workflows.report.products import paths_of, told_to
+from bulkwear.workflows.report.products import looked_up, paths_of, told_to
 
 min_version("9.0")
 
@@ -35,12 +35,6 @@ MADE_BY_DEFAULT = not workflow.default_target  # unless that Snakefile has said 
 # The command line is read as Snakemake does it: the workflow has its targets only when this file has been read.
 GIVEN, _ = get_argument_parser().parse_known_args(sys.argv[1:])
 let_jobs_import()
-
-
-wildcard_constraints:
-    study=r"[a-z][a-z0-9_]*",
-    run=r"[A-Za-z0-9][A-Za-z0-9_-]*",
-    bed=r"bed_\d+",
 
 
 def entered_project():
@@ -63,14 +57,14 @@ def checked_studies():
     """
     settings = dict(config)
     named = settings.pop("studies", [])
-    if not isinstance(named, list):
+    if not (isinstance(named, list) and all(isinstance(name, str) for name in named)):
         raise WorkflowError(f"config of the module: studies is {named!r}, allowed is a list of names of studies.")
     if GIVEN.lint or GIVEN.list_rules or GIVEN.list_target_rules:
         return dict(filter(None, (sound_study(name, settings) for name in list_studies())))
     try:
         names = named or requested_studies(GIVEN.targets, GIVEN.target_jobs, names=NAMING)
         return {name: load_study(name, overrides=settings) for name in names}
-    except (ConfigError, ProjectError) as fault:
+    except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None
 
 
@@ -78,12 +72,20 @@ def sound_study(name, settings):
     """A study's name and the study; None where it has a fault."""
     try:
         return name, load_study(name, overrides=settings)
-    except (ConfigError, ProjectError) as fault:
+    except (ConfigError, DeckError, ProjectError) as fault:
         logger.warning(f"Study {name} is left out: {fault}")
 
 
 PROJECT = entered_project()
 STUDIES = checked_studies()
+
+
+wildcard_constraints:
+    study="|".join(STUDIES) or "no_study",
+    run=r"[A-Za-z0-9][A-Za-z0-9_-]*",
+    bed=r"bed_\d+",
+
+
 CASES = {study.case.name: study.case for study in STUDIES.values()}
 SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
 # What comes before the tables of a study: on a cluster all that is not named here is one submission.
@@ -201,7 +203,7 @@ def study_decks(study):
 
 def input_of(source):
     """An input of a rule: a path, or an input function."""
-    return source if isinstance(source, str) else lambda wildcards: paths_of(source, study_of(wildcards))
+    return looked_up(source) if isinstance(source, str) else lambda wildcards: paths_of(source, study_of(wildcards))
 
 
 def in_report(product, paths):

@@ -60,17 +60,24 @@ def requested_studies(
     """
     project = project or current_project()
     written = list_studies(project)
-    words = [*targets, *(_word_of(rule, wildcards, names) for rule, wildcards in jobs)]
-    wanted: list[str] = []
-    for word in words:
-        studies = _studies_of(word, written, names)
-        wanted += default_studies(project) if studies is None else studies
-    return list(dict.fromkeys(wanted if words else default_studies(project)))
+    asked = [
+        *(_studies_of(word, written, names) for word in targets),
+        *(_studies_of_job(rule, wildcards, written, names) for rule, wildcards in jobs),
+    ]
+    default = default_studies(project)
+    wanted = [name for studies in asked for name in (default if studies is None else studies)]
+    return list(dict.fromkeys(wanted if asked else default))
 
 
-def _word_of(rule: str, wildcards: Mapping[str, str], names: Naming) -> str:
-    """Return what stands for a job as a target does; a rule without the wildcard is that of a target or of no study."""
-    return f"results/{wildcards['study']}/" if "study" in wildcards and names.ours(rule) in RULE_NAMES else rule
+def _studies_of_job(rule: str, wildcards: Mapping[str, str], written: list[str], names: Naming) -> list[str] | None:
+    """Return the studies that a job needs as `_studies_of` does; its rule may be one that a case has of its own."""
+    name = wildcards.get("study", "")
+    if name.removesuffix(CONFIRMATION) in written or name in written:
+        return _studies_of(f"results/{name}/", written, names)
+    try:
+        return _studies_of(rule, written, names)
+    except ConfigError:
+        return []
 
 
 def _studies_of(word: str, written: list[str], names: Naming) -> list[str] | None:

@@ -122,10 +122,11 @@ def every_run(file: str) -> OfStudy:
 def paths_of(source: Source, study: Study) -> str | list[str]:
     """Return the path, or the paths, of a source for a study; the package's file where its project has none."""
     paths = source.format(study=study.name) if isinstance(source, str) else source(study)
-    return _looked_up(paths) if isinstance(paths, str) else [_looked_up(path) for path in paths]
+    return looked_up(paths) if isinstance(paths, str) else [looked_up(path) for path in paths]
 
 
-def _looked_up(path: str) -> str:
+def looked_up(path: str) -> str:
+    """Return the path of a file of the configuration in the project, or the package's where that has none."""
     return current_project().path(path) if path.startswith(f"{CONFIG}/") else path
 
 
