@@ -111,7 +111,7 @@ def test_a_changed_line_is_told_before_a_run_is_done_again(finished, tmp_path):
     study.write_text(study.read_text().replace("something else", WORD))
     law = mine / "laws/hardened.py"
     law.write_text(law.read_text().replace("/ parameters", "/ 2.0 / parameters"))
-    assert "A_plain of mine differs from what was simulated: law is " in finish(snakemake(mine, *arguments))
+    assert "A_plain of mine differs from what was simulated: law.hardened.py is " in finish(snakemake(mine, *arguments))
 
 
 def test_a_project_is_planned_on_a_cluster(tmp_path):
@@ -152,7 +152,6 @@ def test_names_with_words_round_them_are_ours():
 
 
 LAW, CASE, MINE = "laws/hardened.py", "cases/dimpled/case.py", "config/studies/mine.yaml"
-MODULE = "; allowed is a module that can be imported."
 
 
 @pytest.mark.parametrize(

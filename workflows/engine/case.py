@@ -26,9 +26,9 @@ from bulkwear.workflows.engine.project import (
     cases_folders,
     current_project,
     import_fault,
+    open_package,
 )
 from bulkwear.workflows.engine.schedule import Span, first_span
-from bulkwear.workflows.engine.state import file_digest
 from bulkwear.workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
@@ -304,7 +304,9 @@ _REGISTERED: dict[str, Case] = {}
 
 
 def register(case: Case) -> Case:
-    """Make a case known under its name; the module `case` of its folder does it."""
+    """Make a case known under its name; the module `case` of its folder does it. Raises TypeError for what is none."""
+    if not isinstance(case, Case):
+        raise TypeError(f"register takes an object of a class of cases, found {case!r}")
     _REGISTERED[case.name] = case
     return case
 
@@ -324,12 +326,15 @@ def find_case(name: str) -> Case:
     package = importlib.import_module(CASES_PACKAGE)
     package.__path__[:] = map(str, cases_folders())
     path = next(file for folder in cases_folders() if (file := folder / name / "case.py").is_file())
+    known = sys.modules.get(f"{CASES_PACKAGE}.{name}.case")
+    if known is not None and Path(known.__file__) != path:
+        raise ProjectError(f"{_shown(path)}: {known.__file__} is in use here, allowed is one case of a name.")
+    if known is None and CASES_OF_PACKAGE not in path.parents and not path.with_name("__init__.py").exists():
+        open_package(f"{CASES_PACKAGE}.{name}", path.parent)  # before the package's, which may have one of that name
     try:
-        module = importlib.import_module(f"{CASES_PACKAGE}.{name}.case")
+        importlib.import_module(f"{CASES_PACKAGE}.{name}.case")
     except Exception as fault:
-        raise ProjectError(import_fault(fault, path, _shown(path))) from fault
-    if Path(module.__file__) != path:
-        raise ProjectError(f"{_shown(path)}: {module.__file__} is in use here, allowed is one case of a name.")
+        raise ProjectError(import_fault(fault, path, current_project().folder)) from fault
     if name not in _REGISTERED:
         raise ProjectError(
             f"{_shown(path)}: it registers no case {name}, allowed is register(...) of a Case of that name."
@@ -359,18 +364,3 @@ def case_module(case: Case, name: str) -> ModuleType:
     there = zip(case_packages(case), case_folders(case), strict=True)
     package = next((package for package, folder in there if (folder / file).is_file()), case_packages(case)[0])
     return importlib.import_module(f"{package}.{name}")
-
-
-def code_of_project(case: Case) -> dict[str, str]:
-    """Return {file: its hash} of a project's own case, figures and page aside: what cycles of its runs depend on.
-
-    Empty for the package's cases, whose results have a version (`bulkwear.postproc.wear.WEAR_VERSION`).
-    """
-    folders = [folder for folder in case_folders(case) if CASES_OF_PACKAGE not in folder.parents]
-    shown = {f"{name}.py" for name in ("page", *case.figure_modules)}
-    return {
-        path.relative_to(folder.parent).as_posix(): file_digest(path)
-        for folder in folders
-        for path in sorted(folder.rglob("*.py"))
-        if path.relative_to(folder).as_posix() not in shown and "plots" not in path.parts
-    }

@@ -17,9 +17,9 @@ from typing import Any
 
 from bulkwear.postproc.wear import WEAR_VERSION
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.case import Case, Parameters, code_of_project
+from bulkwear.workflows.engine.case import Case, Parameters
 from bulkwear.workflows.engine.chain import Chain, write_bed
-from bulkwear.workflows.engine.project import current_project
+from bulkwear.workflows.engine.own_code import code_of_case, code_of_law
 from bulkwear.workflows.engine.schedule import first_span
 
 DERIVED = (
@@ -63,8 +63,8 @@ def digest_of(found: Mapping[str, Any]) -> str:
 def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -> dict[str, Any]:
     """Return what a run is simulated from besides its surface and the restart file of its bed, JSON-able.
 
-    settings: what the driver reads; decks: texts of one of each kind. How many cycles there are is left out where the
-    case says that it changes none of them.
+    settings: what the driver reads; decks: texts of one of each kind; surface, bed: what these are made from. How many
+    cycles there are is left out where the case says that it changes none of them.
     """
     spans = (None, first_span(parameters))
     sections = {name: parameters[name] for name in case.consumed} | {
@@ -80,7 +80,12 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
         },
         **_code_of_project(case, parameters),
     }
-    return {"settings": settings, "decks": list(case.sample_decks(parameters, bed))}
+    return {
+        "settings": settings,
+        "decks": list(case.sample_decks(parameters, bed)),
+        "surface": surface_from(case, parameters),
+        "bed": bed or {},
+    }
 
 
 def why_again(run_folder: Path, found: Mapping[str, Any]) -> str | None:
@@ -98,7 +103,10 @@ def why_again(run_folder: Path, found: Mapping[str, Any]) -> str | None:
     for number, (old, new) in enumerate(zip_longest(before["decks"], now["decks"], fillvalue="")):
         if old != new:
             return f"its deck of {'a wear cycle' if number else 'cycle 0'} changed, {_first_change(old, new)}"
-    return _changed_setting(before["settings"], now["settings"])
+    for name in ("settings", "surface", "bed"):
+        if name in before and before[name] != now[name]:
+            return _changed_setting(before[name], now[name], "" if name == "settings" else name)
+    return None
 
 
 def _first_change(old: str, new: str) -> str:
@@ -121,16 +129,15 @@ def _changed_setting(old: Any, new: Any, name: str = "") -> str:
 
 
 def _code_of_project(case: Case, parameters: Parameters) -> dict[str, Any]:
-    """Return the hashes of Python files of the project that a run depends on; nothing where all is the package's."""
-    law = dict(current_project().own_laws).get(parameters["wear"]["law"]) if "wear" in parameters else None
-    found = {"law": state.file_digest(law) if law else "", "case": code_of_project(case)}
-    return {name: value for name, value in found.items() if value}
+    """Return the hashes of a project's own files that a run depends on; nothing where all is the package's."""
+    law = code_of_law(parameters["wear"]["law"]) if "wear" in parameters else {}
+    return {name: value for name, value in {"law": law, "case": code_of_case(case)}.items() if value}
 
 
 def surface_from(case: Case, parameters: Parameters) -> dict[str, Any]:
     """Return the sections of a run's parameters that its surface is made from; of a project's case with its code."""
     sections = {name: parameters[name] for name in case.geometry}
-    code = code_of_project(case)
+    code = code_of_case(case)
     return SimulatedFrom(sections, state.digest(sections, code)) if code else sections
 
 

@@ -6,7 +6,7 @@ A project is any folder with `config/`; it may hold `templates/`, `cases/`, `law
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import sys
 import traceback
 from dataclasses import dataclass
@@ -18,9 +18,10 @@ from bulkwear.postproc.wear.laws import LAWS as REGISTERED_LAWS
 from bulkwear.postproc.wear.laws import register_law
 
 PACKAGE = Path(__file__).resolve().parents[2]
-CONFIG, TEMPLATES, CASES, LAWS = "config", "templates", "cases", "laws"  # folders of a project
+CONFIG, TEMPLATES, CASES, LAWS, MESHES = "config", "templates", "cases", "laws", "meshes"  # folders of a project
 CASES_OF_PACKAGE = PACKAGE / "workflows" / CASES
 LAWS_OF_PACKAGE = frozenset(REGISTERED_LAWS)
+LAWS_PACKAGE = "bulkwear_laws"  # by which a project's laws and their helpers are imported
 LAW, KERNELS = "LAW", "KERNELS"  # what a module of laws/ has
 
 
@@ -32,7 +33,7 @@ class ProjectError(ValueError):
 class Project:
     """A project and the package that it is worked in with.
 
-    own_laws: (name, file) of the wear laws that are the project's
+    own_laws: (name, file) of the wear laws that are the project's; a file that begins with _ is a helper of theirs
     """
 
     folder: Path
@@ -70,25 +71,36 @@ class Project:
         """Return a sentence for each file of the project that stands before one of the package."""
         if self.is_package:
             return []
-        theirs = {path.name for path in (self.package / TEMPLATES).rglob("*.in.j2")}
+        theirs = template_files(self.package)
         cases = {path.parent.name for path in CASES_OF_PACKAGE.glob("*/case.py")}
-        settings = (path for path in self._own(CONFIG, "*.*") if path.name != "README.md")
+        settings = (path for path in self._own(CONFIG, "**/*.*") if path.parent.name != "studies")
         found = [
-            *(path for path in settings if (self.package / path).is_file()),
-            *(path for path in self._own(TEMPLATES, "*.in.j2") if path.name in theirs),
-            *(path.parent for path in self._own(CASES, "case.py") if path.parent.name in cases),
+            *(path for path in settings if (self.package / path).is_file() and path.name != "README.md"),
+            *sorted(path for name, path in template_files(self.folder).items() if name in theirs),
+            *(path.parent for path in self._own(CASES, "*/case.py") if path.parent.name in cases),
             *(path for path in self._own(LAWS, "*.py") if path.stem in LAWS_OF_PACKAGE),
         ]
         return [f"{path.as_posix()}: this project's, {_before(path)} the package's" for path in found]
 
     def _own(self, folder: str, pattern: str) -> list[Path]:
         """Return the project's files of a folder, from the project's folder."""
-        return sorted(path.relative_to(self.folder) for path in (self.folder / folder).rglob(pattern))
+        return sorted(path.relative_to(self.folder) for path in (self.folder / folder).glob(pattern))
 
 
 def _before(path: Path) -> str:
     """Return how a file of the project stands to the package's; of YAML, what it does not name is the package's."""
     return "over" if path.parts[0] == CONFIG and path.suffix == ".yaml" else "not"
+
+
+def template_files(root: Path) -> dict[str, Path]:
+    """Return the templates of a project or the package by the names that they are found by, as paths from there.
+
+    A folder in templates/ is looked through for any template, one that begins with _ is part of the name of partials.
+    """
+    folder = root / TEMPLATES
+    files = [path.relative_to(folder) for pattern in ("*.in.j2", "*/*.in.j2") for path in sorted(folder.glob(pattern))]
+    named = [(path.as_posix() if path.parts[0].startswith("_") else path.name, path) for path in files]
+    return {name: Path(TEMPLATES) / path for name, path in reversed(named)}
 
 
 _entered: list[Project] = []
@@ -114,6 +126,7 @@ def enter_project(folder: Path) -> Project:
         _entered[:] = [project]
         return project
     laws = sorted((folder / LAWS).glob("[!_]*.py"))
+    open_package(LAWS_PACKAGE, folder / LAWS)
     for path in laws:
         _register_law(path, folder)
     _entered[:] = [Project(folder, own_laws=tuple((path.stem, path) for path in laws))]
@@ -141,35 +154,43 @@ def cases_folders() -> list[Path]:
 def _register_law(path: Path, folder: Path) -> None:
     """Register the law of a module of laws/ under the name of its file, and the contact kernels it brings."""
     name = path.relative_to(folder).as_posix()
-    module = _imported(path, f"bulkwear_{LAWS}_{path.stem}", name)
+    try:
+        module = importlib.import_module(f"{LAWS_PACKAGE}.{path.stem}")
+    except Exception as fault:
+        raise ProjectError(import_fault(fault, path, folder)) from fault
     if not hasattr(module, LAW):
         raise ProjectError(f"{name}: there is no {LAW} in it, allowed is a module with {LAW} = Law(...).")
+    kernels = getattr(module, KERNELS, {})
+    if not isinstance(kernels, dict):
+        raise ProjectError(f"{name}: {KERNELS} is {kernels!r}, allowed are names with a Kernel(...) each, in braces.")
     try:
-        for kernel, declared in getattr(module, KERNELS, {}).items():
+        for kernel, declared in kernels.items():
             register_kernel(kernel, declared)
         register_law(path.stem, getattr(module, LAW))
     except ValueError as fault:
         raise ProjectError(f"{name}: {fault}.") from None
 
 
-def _imported(path: Path, name: str, shown: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as fault:
-        raise ProjectError(import_fault(fault, path, shown)) from fault
-    return module
+def open_package(name: str, folder: Path) -> None:
+    """Let the modules of a folder be imported as those of a package of that name, as they are now."""
+    for known in [module for module in sys.modules if module == name or module.startswith(f"{name}.")]:
+        del sys.modules[known]
+    package = sys.modules[name] = ModuleType(name)
+    package.__path__ = [str(folder)]
+    importlib.invalidate_caches()
 
 
-def import_fault(fault: Exception, path: Path, shown: str) -> str:
-    """Return the sentence for a Python file of a project that cannot be imported.
+def import_fault(fault: Exception, path: Path, folder: Path) -> str:
+    """Return the sentence for a Python file of a project that cannot be imported, or that fails.
 
-    shown: its path as the message shows it
+    path: of the file, where the fault tells of none in the project's folder
     """
-    steps = [step for step in traceback.extract_tb(fault.__traceback__) if Path(step.filename) == path]
-    line = fault.lineno if isinstance(fault, SyntaxError) else steps[-1].lineno if steps else None
-    where = f"{shown}, line {line}" if line else shown
+    places = [(step.filename, step.lineno) for step in traceback.extract_tb(fault.__traceback__)]
+    if isinstance(fault, SyntaxError) and fault.filename:
+        places.append((fault.filename, fault.lineno))
+    ours = [(Path(name), line) for name, line in places if Path(name).is_relative_to(folder)]
+    file, line = ours[-1] if ours else (path, None)
+    shown = file.relative_to(folder).as_posix() if file.is_relative_to(folder) else str(file)
     words = fault.msg if isinstance(fault, SyntaxError) else str(fault)
-    return f"{where}: {type(fault).__name__}: {words}; allowed is a module that can be imported."
+    where = f"{shown}, line {line}" if line else shown
+    return f"{where}: {type(fault).__name__}: {words}; allowed is Python that runs."

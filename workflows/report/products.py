@@ -15,6 +15,7 @@ slow to import are imported inside the function: Snakemake reads all declaration
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +23,7 @@ from types import ModuleType, SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.engine.case import Case, case_module
+from bulkwear.workflows.engine.own_code import code_of_pages
 from bulkwear.workflows.engine.project import CONFIG, current_project
 
 if TYPE_CHECKING:
@@ -178,8 +180,9 @@ def outputs_of(product: Product, study: str = "{study}") -> dict[str, str]:
 
 
 def told_to(product: Product, study: Study) -> dict[str, Any]:
-    """Return what of a study's configuration a product's job is told."""
-    return {name: ask(study) for name, ask in product.told.items()}
+    """Return what of a study's configuration a product's job is told; of a project's own product its code as well."""
+    code = code_of_pages(sys.modules[product.make.__module__])
+    return {name: ask(study) for name, ask in product.told.items()} | ({"code": code} if code else {})
 
 
 def write_product(product: Product, job: Job, outputs: Mapping[str, str]) -> None:

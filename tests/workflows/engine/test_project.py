@@ -14,10 +14,10 @@ from bulkwear.workflows.engine.case import (
     case_folders,
     case_module,
     case_names,
-    code_of_project,
     find_case,
 )
 from bulkwear.workflows.engine.inputs import SIMULATED_FROM, run_digest, simulated_from, surface_from, why_again
+from bulkwear.workflows.engine.own_code import code_of_case
 from bulkwear.workflows.engine.project import (
     PACKAGE,
     Project,
@@ -137,13 +137,14 @@ def test_runs_hang_on_the_project_s_python(mine):
     case, (run,) = study.case, study.runs
     bed = study.beds["bed_1"]
     first = run_digest(case, run.parameters, bed)
-    assert code_of_project(find_case("sliding_sample")) == {} and set(code_of_project(case)) == {"dimpled/case.py"}
+    assert code_of_case(find_case("sliding_sample")) == {} and set(code_of_case(case)) == {"cases/dimpled/case.py"}
     for name in ("page.py", "figures.py", "plots/map.py"):
         (mine.folder / "cases/dimpled" / name).parent.mkdir(exist_ok=True)
         (mine.folder / "cases/dimpled" / name).write_text("")
     assert run_digest(case, run.parameters, bed) == first
     surface = repr(surface_from(case, run.parameters))
-    for name in ("laws/hardened.py", "cases/dimpled/case.py"):
+    for name in ("laws/hardened.py", "laws/_helper.py", "cases/dimpled/case.py", "cases/shared.py", "meshes/chute.stl"):
+        (mine.folder / name).parent.mkdir(exist_ok=True)
         with open(mine.folder / name, "a") as stream:
             stream.write("# changed\n")
         assert run_digest(case, run.parameters, bed) != first

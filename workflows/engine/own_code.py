@@ -1,0 +1,60 @@
+"""Hashes of what results depend on in a project beside its configuration: Python of its cases and laws, and its meshes.
+
+The package's own code has a version instead (`postproc.wear.WEAR_VERSION`): raised where a change gives other numbers.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+from bulkwear.workflows.engine.case import Case, case_folders
+from bulkwear.workflows.engine.project import CASES_OF_PACKAGE, MESHES, current_project
+from bulkwear.workflows.engine.state import digest, file_digest
+
+PLOTS = "plots"  # folder of what draws
+
+
+def code_of_case(case: Case) -> dict[str, str]:
+    """Return {file: its hash} of what runs of a project's own case depend on: all Python of its cases, figures and pages
+    aside, and its meshes. Empty for the package's cases.
+    """
+    own = [folder for folder in case_folders(case) if CASES_OF_PACKAGE not in folder.parents]
+    if not own:
+        return {}
+    cases, shown = own[0].parent, {"page.py", *(f"{name.replace('.', '/')}.py" for name in case.figure_modules)}
+    files = [path for path in cases.rglob("*.py") if PLOTS not in path.parts and _within_case(path, cases) not in shown]
+    files += [path for path in (cases.parent / MESHES).rglob("*") if path.is_file()]
+    return {path.relative_to(cases.parent).as_posix(): _hash(path) for path in sorted(files)}
+
+
+def _within_case(path: Path, cases: Path) -> str:
+    return "/".join(path.relative_to(cases).parts[1:])
+
+
+def code_of_law(name: str) -> dict[str, str]:
+    """Return {file: its hash} of a project's own law and the helpers beside it; empty for the package's laws."""
+    law = dict(current_project().own_laws).get(name)
+    files = [law, *sorted(law.parent.glob("_*.py"))] if law else []
+    return {path.name: _hash(path) for path in files}
+
+
+def code_of_pages(module: ModuleType) -> str:
+    """Return the hash of a project's own module of figures or of its page, and of what draws in plots/ beside it; "" for
+    one of the package.
+    """
+    path = Path(module.__file__)
+    if CASES_OF_PACKAGE in path.parents or current_project().folder not in path.parents:
+        return ""
+    return digest(*map(_hash, [path, *sorted((path.parent / PLOTS).rglob("*.py"))]))
+
+
+def _hash(path: Path) -> str:
+    found = path.stat()
+    return _kept_hash(path, found.st_mtime_ns, found.st_size)
+
+
+@cache  # a study asks once per run, and meshes may be large
+def _kept_hash(path: Path, changed_ns: int, size: int) -> str:
+    return file_digest(path)
