@@ -20,7 +20,7 @@ def main(words: list[str] | None = None) -> int:
     given = parser.parse_args(words)
     try:
         print(make_project(given.folder))
-    except FileExistsError as fault:
+    except ValueError as fault:
         print(fault, file=sys.stderr)
         return 1
     return 0

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from string import Formatter
 
 import numpy as np
 
@@ -130,22 +131,41 @@ def register_law(name: str, law: Law) -> None:
     """
     if not isinstance(law, Law):
         raise ValueError(f"law {name} is {type(law).__name__}, allowed is a Law(...)")
+    if not callable(law.volume):
+        raise ValueError(f"volume of the law {name} is {law.volume!r}, allowed is a function")
+    if not (isinstance(law.parameters, tuple) and all(isinstance(each, Parameter) for each in law.parameters)):
+        raise ValueError(f"parameters of the law {name} are {law.parameters!r}, allowed is a tuple of Parameter(...)")
     for parameter in law.parameters:
-        if not parameter.unit:
-            raise ValueError(
-                f"parameter {parameter.name} of the law {name} has no unit, allowed is the one that its name ends in "
-                "(N of force_n), or - of a pure number"
-            )
+        _check_parameter(name, parameter)
     for kernel in law.kernels:
         kernel_column(kernel)
     given = {"wear_coefficient_per_pa", *(parameter.name for parameter in law.parameters)}
     try:
-        law.words.format(**dict.fromkeys(given, ""))
-    except (KeyError, IndexError, ValueError) as fault:
+        asked = {field for _, field, _, _ in Formatter().parse(law.words) if field is not None}
+    except ValueError as fault:
         raise ValueError(
-            f"words of the law {name} have {{{fault.args[0]}}}, allowed in braces are: {', '.join(sorted(given))}"
+            f"words of the law {name}: {fault}, allowed in braces are: {', '.join(sorted(given))}"
         ) from None
+    if asked - given:
+        names = ", ".join(f"{{{field}}}" for field in sorted(asked - given))
+        raise ValueError(f"words of the law {name} have {names}, allowed in braces are: {', '.join(sorted(given))}")
     LAWS[name] = law
+
+
+def _check_parameter(law: str, parameter: Parameter) -> None:
+    """Raise ValueError for a parameter without a unit, or whose range and default are no numbers that go together."""
+    if not parameter.unit:
+        raise ValueError(
+            f"parameter {parameter.name} of the law {law} has no unit, allowed is the one that its name ends in "
+            "(N of force_n), or - of a pure number"
+        )
+    limits = [parameter.lowest, parameter.default, parameter.highest]
+    numbers = [limit for limit in limits if limit is not None]
+    if not all(isinstance(limit, int | float) for limit in numbers) or numbers != sorted(numbers):
+        raise ValueError(
+            f"lowest, default and highest of the parameter {parameter.name} of the law {law} are "
+            f"{', '.join(map(repr, limits))}, allowed are numbers in this order, the default or None"
+        )
 
 
 def law_kernels(name: str, parameters: Mapping[str, float]) -> dict[str, dict[str, float]]:

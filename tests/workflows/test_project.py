@@ -165,7 +165,7 @@ LAW, CASE, MINE = "laws/hardened.py", "cases/dimpled/case.py", "config/studies/m
             LAW,
             "{hardening}",
             "{hardness}",
-            f"{LAW}: words of the law hardened have {{hardness}}, allowed in braces",
+            f"{LAW}: words of the law hardened have {{hardness}}, allowed",
         ),
         (
             CASE,

@@ -15,7 +15,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
-from bulkwear.workflows.config.law_settings import check_law
+from bulkwear.workflows.config.law_settings import check_law, check_volume
 from bulkwear.workflows.config.layers import (
     ConfigError,
     Layer,
@@ -44,6 +44,7 @@ from bulkwear.workflows.config.validation import (
 )
 from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
+from bulkwear.workflows.engine.derived import law_parameters
 from bulkwear.workflows.engine.project import Project, current_project
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
@@ -188,6 +189,8 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         confirms=confirms,
     )
     first = study.runs[0]
+    if settings["wear"]["law"] in dict(current_project().own_laws):
+        check_volume(settings["wear"]["law"], law_parameters(first.parameters))
     decks = partial(sample_decks, study.case, first.parameters, study.beds.get(study.bed_of(first.name)))
     check_own_words(layers, study.case, settings.get("deck", {}), decks)
     return study

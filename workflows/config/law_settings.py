@@ -7,7 +7,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from bulkwear.postproc.wear.laws import LAWS
+import numpy as np
+
+from bulkwear.postproc.wear.kernels import kernel_column
+from bulkwear.postproc.wear.laws import LAWS, law_kernels, worn_volume
+from bulkwear.postproc.wear.ledger import LEDGER_FIELDS
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, dotted
 from bulkwear.workflows.config.schema import without_required
 from bulkwear.workflows.config.validation import UNIT_OF_SUFFIX, allowed_text, check_layer, locate, show, unknown_key
@@ -66,6 +70,26 @@ def check_law(layers: Sequence[Layer]) -> None:
             allowed = allowed_text(schema["properties"][key])
             where = locate(tuple(layers), (WEAR, LAW))
             raise ConfigError(f"{where}: {WEAR}.{PARAMETERS}.{key} is missing for the law {law}, allowed is {allowed}.")
+
+
+def check_volume(law: str, parameters: Mapping[str, float]) -> None:
+    """Raise ConfigError where a law's function fails on a ledger without load, or does not return what it should.
+
+    parameters: of the law, SI, the coefficient included
+    """
+    try:
+        kernels = law_kernels(law, parameters)
+        names = (*LEDGER_FIELDS, *map(kernel_column, kernels))
+        volume = np.asarray(worn_volume(law, {name: np.zeros(2) for name in names}, parameters), float)
+    except Exception as fault:  # a law of a project's own may fail in any way
+        words = f"{type(fault).__name__}: {fault}"
+        raise ConfigError(
+            f"law {law}: on a ledger without load it ends in {words}; allowed is a volume of 0."
+        ) from None
+    if volume.shape != (2,) or volume.any():
+        raise ConfigError(
+            f"law {law}: on a ledger of two triangles without load it returns {volume.tolist()}, allowed is 0 for each."
+        )
 
 
 def _unknown(path: KeyPath, value: str, law: str, schema: dict[str, Any]) -> str:

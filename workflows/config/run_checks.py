@@ -112,16 +112,18 @@ def check_own_words(layers: tuple[Layer, ...], case: Case, words: Mapping[str, A
     templates = (*case.run_templates, *bed, *case.more_templates)
     if not words and not own_templates():
         return
-    for word in sorted(set(words).difference(*map(template_variables, templates))):
+    where = f"{locate(layers, ('deck',))}: " if words else ""
+    try:
+        unused = sorted(set(words).difference(*map(template_variables, templates)))
+        if not unused:
+            decks()
+    except DeckError as fault:
+        raise ConfigError(f"{where}{fault}") from None
+    for word in unused:
         raise ConfigError(
             f"{locate(layers, ('deck', word))}: deck.{word} stands in no template, allowed is a word that one of"
             f" {', '.join(templates)} uses."
         )
-    try:
-        decks()
-    except DeckError as fault:
-        where = f"{locate(layers, ('deck',))}: " if words else ""
-        raise ConfigError(f"{where}{fault}") from None
 
 
 def element_resolves_pattern(run: CheckedRun) -> Fault | None:

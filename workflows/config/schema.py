@@ -11,9 +11,10 @@ from typing import Any
 import jsonschema
 
 from bulkwear.postproc.wear.laws import LAWS
-from bulkwear.workflows.config.layers import KeyPath, read_yaml
+from bulkwear.workflows.config.layers import ConfigError, KeyPath, display_name, read_yaml
 from bulkwear.workflows.config.patterns import with_patterns
 from bulkwear.workflows.engine.case import case_folders, case_names, find_case
+from bulkwear.workflows.engine.project import current_project
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
 OF_CASES = "cases/"  # names of schemas that are a case's: cases/<case>/<kind>
@@ -45,13 +46,29 @@ def schema_files(name: str) -> list[Path]:
 @cache
 def load_schema(name: str) -> dict[str, Any]:
     """Return the schema of that name, empty without a file. Raises jsonschema.SchemaError if it is no schema."""
-    parts = (with_patterns(read_yaml(path, SCHEMA_FOLDER).values) for path in schema_files(name))
+    parts = map(_read_schema, schema_files(name))
     schema = reduce(joined, parts, {}) or {"type": "object", "additionalProperties": False, "properties": {}}
     if name == "settings":
         schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
     if name == "study":
         schema["properties"]["case"]["enum"] = case_names()
     Validator.check_schema(schema)
+    return schema
+
+
+def _read_schema(path: Path) -> dict[str, Any]:
+    """Return one file of a schema. Raises ConfigError for one that is none: a project may bring it."""
+    schema = with_patterns(read_yaml(path, current_project().folder).values)
+    shown = display_name(path, current_project().folder)
+    if not isinstance(schema.get("properties"), dict):
+        raise ConfigError(
+            f"{shown}: there are no properties in it, allowed is a JSON schema of a block with properties."
+        )
+    try:
+        Validator.check_schema(schema)
+    except jsonschema.SchemaError as fault:
+        place = ".".join(map(str, fault.absolute_path)) or "the schema"
+        raise ConfigError(f"{shown}: {place} is {fault.instance!r}, allowed is a JSON schema.") from None
     return schema
 
 

@@ -10,10 +10,10 @@ from functools import reduce
 from typing import Any
 
 from bulkwear.workflows.config.law_settings import law_settings
-from bulkwear.workflows.config.layers import ConfigError, Layer, command_line_layer, merge, read_yaml
+from bulkwear.workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
 from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, load_schema, without_required
-from bulkwear.workflows.config.validation import check_alternatives, check_layer
-from bulkwear.workflows.engine.case import DEFAULT_CASE, Case, case_folders, find_case
+from bulkwear.workflows.config.validation import check_alternatives, check_layer, unknown_name
+from bulkwear.workflows.engine.case import DEFAULT_CASE, Case, case_folders, case_names, find_case
 from bulkwear.workflows.engine.project import Project, current_project
 
 DESIGN = "design"  # key of a study, and of its fidelity blocks
@@ -97,6 +97,8 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
     check_layer(named, without_required(load_schema("study")))
     case = find_case(named.values.get("case", DEFAULT_CASE))
     shared, own = load_schema("settings"), load_schema(f"cases/{case.name}/settings")
+    for stray in set(project.names("config/cases", ".yaml")) - {f"{name}.yaml" for name in case_names()}:
+        raise ConfigError(unknown_name(f"config/cases/{stray}", "case", stray.removesuffix(".yaml"), case_names()))
     default = _read_defaults(["config/default.yaml"], project, shared)
     files = [f"config/cases/{folder.name}.yaml" for folder in reversed(case_folders(case))]
     of_case = _read_defaults(files, project, joined(without_required(shared), own))
@@ -137,8 +139,8 @@ def _read_defaults(names: list[str], project: Project, schema: dict[str, Any]) -
         for layer in layers:
             check_layer(layer, without_required(schema))
     whole = reduce(merge, (layer.values for layer in layers), {})
-    last = layers[-1]
-    check_layer(Layer(last.source, whole, last.lines if len(layers) == 1 else {}), schema)
+    lines = layers[0].lines if len(layers) == 1 else {}
+    check_layer(Layer(display_name(project.file(names[-1]), project.folder), whole, lines), schema)
     return layers
 
 

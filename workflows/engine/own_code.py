@@ -17,8 +17,9 @@ PLOTS = "plots"  # folder of what draws
 
 
 def code_of_case(case: Case) -> dict[str, str]:
-    """Return {file: its hash} of what runs of a project's own case depend on: all Python of its cases, figures and pages
-    aside, and its meshes. Empty for the package's cases.
+    """Return {file: its hash} of what runs of a project's own case depend on; empty for the package's cases.
+
+    That is all Python of the project's cases, figures and pages aside, and its meshes.
     """
     own = [folder for folder in case_folders(case) if CASES_OF_PACKAGE not in folder.parents]
     if not own:
@@ -41,8 +42,9 @@ def code_of_law(name: str) -> dict[str, str]:
 
 
 def code_of_pages(module: ModuleType) -> str:
-    """Return the hash of a project's own module of figures or of its page, and of what draws in plots/ beside it; "" for
-    one of the package.
+    """Return the hash of a project's own module of figures or of its page, and of what draws in plots/ beside it.
+
+    "" for a module of the package.
     """
     path = Path(module.__file__)
     if CASES_OF_PACKAGE in path.parents or current_project().folder not in path.parents:

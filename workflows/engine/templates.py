@@ -52,15 +52,18 @@ def _is_own(template: str) -> bool:
 
 def template_file(name: str) -> Path:
     """Return the file that a template of that name is read from. Raises DeckError where there is none."""
-    try:
-        return Path(_environment(template_folders()).loader.get_source(None, name)[1])
-    except jinja2.TemplateNotFound as missing:
-        raise DeckError(f"{TEMPLATES}/{missing.name}: no such template.") from missing
+    for folder in template_folders():
+        if (folder / name).is_file():
+            return folder / name
+    raise DeckError(f"{TEMPLATES}/{name}: no such template.")
 
 
-def shown_template(template: str) -> str:
-    """Return the path of a template as messages show it: from the project's folder where it is the project's own."""
-    path, folder = template_file(f"{template}.in.j2"), current_project().folder
+def shown_template(name: str) -> str:
+    """Return the path of a template as messages show it: from the project's folder where it is the project's own.
+
+    name: of its file, without .in.j2
+    """
+    path, folder = template_file(f"{name}.in.j2"), current_project().folder
     return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else str(path)
 
 
@@ -112,11 +115,13 @@ def _pruned_trees(
     trees: dict[str, jinja2.nodes.Template] = {}
     names = [f"{template}.in.j2"]
     for name in names:
+        shown = shown_template(name.removesuffix(".in.j2"))
         try:
-            source = environment.loader.get_source(environment, name)[0]
-        except jinja2.TemplateNotFound as missing:
-            raise DeckError(f"{TEMPLATES}/{missing.name}: no such template.") from missing
-        trees[name] = environment.parse(source)
+            trees[name] = environment.parse(template_file(name).read_text(encoding="utf-8-sig"))
+        except jinja2.TemplateSyntaxError as fault:
+            raise DeckError(f"{shown}, line {fault.lineno}: {fault.message}.") from fault
+        except UnicodeDecodeError as fault:
+            raise DeckError(f"{shown}: byte {fault.start} is not UTF-8, allowed is UTF-8 text.") from fault
         for branch in trees[name].find_all(jinja2.nodes.If):
             _prune(branch, words)
         found = jinja2.meta.find_referenced_templates(trees[name])
@@ -171,6 +176,16 @@ def template_variables(template: str, words: Mapping[str, Any] = MappingProxyTyp
     return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, words).values()))
 
 
+def template_users(template: str, names: set[str], words: Mapping[str, Any]) -> list[str]:
+    """Return which of a template and its partials, without .in.j2, use one of these parameters."""
+    trees = _trees(template, words)
+    return [
+        part.removesuffix(".in.j2")
+        for part, tree in trees.items()
+        if names & jinja2.meta.find_undeclared_variables(tree)
+    ]
+
+
 def solver_settings(template: str, words: Mapping[str, Any] = MappingProxyType({})) -> dict[str, str]:
     """Return {setting of the solver's section that a template uses: the one whose value makes it do so}.
 
@@ -214,8 +229,12 @@ def render(template: str, parameters: Mapping[str, Any]) -> str:
     missing = {f"solver.{name}" for name in solver_settings(template, given)}
     missing -= {f"solver.{name}" for name in given.get(SOLVER, {})}
     unused = set() if _is_own(template) else set(given) - wanted - {SOLVER}
+    unknown = (wanted - {*given, *own}) | missing
+    using = next((part for part in template_users(template, unknown, given)), template)
+    if unknown:
+        words = f"is not given, allowed are its deck's words and those of `{OWN}`"
+        raise DeckError(f"{shown_template(using)}: parameter {', '.join(sorted(unknown))} {words}.")
     for names, fault in (
-        ((wanted - {*given, *own}) | missing, f"is not given, allowed are its deck's words and those of `{OWN}`"),
         (unused, "is never used"),
         (set(given) & set(own), "is one of ours, no word of deck may be called so"),
     ):
@@ -223,5 +242,5 @@ def render(template: str, parameters: Mapping[str, Any]) -> str:
             raise DeckError(f"{shown_template(template)}: parameter {', '.join(sorted(names))} {fault}.")
     try:
         return _environment(template_folders()).get_template(f"{template}.in.j2").render({**given, **own})
-    except jinja2.TemplateError as fault:
-        raise DeckError(f"{shown_template(template)}: {fault}.") from fault
+    except Exception as fault:  # what is computed in a template may fail in any way
+        raise DeckError(f"{shown_template(template)}: {type(fault).__name__}: {fault}.") from fault
