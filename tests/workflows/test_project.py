@@ -186,6 +186,88 @@ def test_a_bad_project_is_one_sentence(tmp_path, file, old, new, sentence):
     assert sentence in told_of(folder)
 
 
+@pytest.mark.parametrize(
+    ("file", "text", "sentence"),
+    [
+        (TEMPLATE, "{% if %}\n", f"{TEMPLATE}, line 1: "),
+        (TEMPLATE, "{{ remark / 3 }}\n", f"{TEMPLATE}: TypeError: "),
+        ("templates/_shared/domain.in.j2", "{{ colour }}\n", "templates/_shared/domain.in.j2: parameter colour is not"),
+        (
+            LAW,
+            "from bulkwear.postproc.wear.laws import Law\n\nLAW = Law(len, 'so.', 'nobody', parameters=3)\n",
+            f"{LAW}: ",
+        ),
+        (
+            LAW,
+            "from bulkwear.postproc.wear.laws import Law\n\n"
+            "LAW = Law(lambda columns, given: columns['work'], 'so.', 'nobody')\n",
+            "law hardened: on a ledger without load it ends in KeyError: 'work'; allowed is a volume of 0.",
+        ),
+        ("laws/_part.py", "1 / 0\n", "laws/_part.py, line 1: ZeroDivisionError: division by zero; allowed is Python"),
+        (
+            "cases/dimpled/settings.schema.yaml",
+            "type: object\n",
+            "cases/dimpled/settings.schema.yaml: there are no prop",
+        ),
+        (
+            "cases/dimpled/settings.schema.yaml",
+            "properties: {dimples: {type: numbr}}\n",
+            "cases/dimpled/settings.schema.yaml: properties.dimples.type is 'numbr', allowed is a JSON schema.",
+        ),
+        (
+            "config/cases/dimpled.yaml",
+            "{}\n",
+            "config/cases/dimpled.yaml: dimples is missing, allowed is a block of keys.",
+        ),
+        ("config/cases/dimpeld.yaml", "{}\n", "config/cases/dimpeld.yaml: case is 'dimpeld', allowed is one of"),
+    ],
+)
+def test_a_bad_file_of_a_project_is_one_sentence(tmp_path, file, text, sentence):
+    """Whatever stands in it."""
+    folder = own_project(tmp_path / "my project")
+    (folder / file).parent.mkdir(exist_ok=True)
+    (folder / file).write_text(text)
+    if file == "laws/_part.py":
+        law = folder / LAW
+        law.write_text(law.read_text() + "from ._part import nothing\n")
+    if file == LAW:
+        study = folder / MINE
+        study.write_text(study.read_text().replace(", parameters: {hardening: 3}", ""))
+    assert sentence in told_of(folder)
+
+
+def test_studies_of_the_package_are_planned_in_a_project(tmp_path):
+    """With the published tables that they are compared with, and those of the project where it has some."""
+    folder = own_project(tmp_path / "my project")
+    shutil.rmtree(folder / "templates")
+    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(folder), "--dry-run")
+    planned = planned_jobs(finish(snakemake(tmp_path, *outside, "calibration", "particle_size")))
+    assert planned["calibrated_parameters"] == 1 and planned["report"] == 2
+
+
+def test_a_module_loads_the_studies_that_it_names(tmp_path):
+    """Two modules side by side, each with its own; what is not a list of names is refused."""
+    folder = own_project(tmp_path / "my project")
+    module = """
+module {name}:
+    snakefile: "{package}/Snakefile"
+    config: {{"studies": {studies}}}
+
+use rule * from {name} as {name}_*
+"""
+    texts = [
+        module.format(name=name, package=PACKAGE, studies=studies)
+        for name, studies in (("a", ["mine"]), ("b", ["second"]))
+    ]
+    (folder / "Snakefile").write_text("".join(texts))
+    planned = planned_jobs(finish(snakemake(folder, *PROFILE, "a_mine", "b_second_decks", "--dry-run")))
+    assert planned["a_worn_run"] == 1 and planned["b_run_decks"] == 1
+    (folder / "Snakefile").write_text(texts[0].replace("['mine']", "'mine'"))
+    output, _ = (process := snakemake(folder, *PROFILE, "--dry-run")).communicate()
+    assert process.returncode != 0
+    assert "config of the module: studies is 'mine', allowed is a list of names of studies." in output
+
+
 def test_a_study_of_the_package_s_name_is_refused(tmp_path):
     """It would be unclear whose it is."""
     folder = own_project(tmp_path / "my project")

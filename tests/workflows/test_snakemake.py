@@ -191,7 +191,13 @@ def test_targets_name_their_studies(targets, studies):
 
 
 def test_jobs_of_a_cluster_name_their_studies():
-    """A job by itself needs the study of its wildcards, or that of its target; one without any needs none."""
+    """A job by itself needs the study of its wildcards, whatever its rule, or that of its target; else none."""
+    drawn = [
+        ("figure_forces", {"study": "demo"}),
+        ("rule_of_a_case", {"study": "screening", "run": "R1"}),
+        ("other", {}),
+    ]
+    assert requested_studies([], drawn) == ["demo", "screening"]
     jobs = [("worn_run", {"study": "demo", "run": "R9_plain"}), ("screening_forecast", {}), ("cost_rates", {})]
     assert requested_studies([], jobs) == ["demo", "screening"]
     assert requested_studies([], jobs[2:]) == []
