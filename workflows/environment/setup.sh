@@ -65,7 +65,7 @@ find_python() {
 # What the environment was built from and where; an environment does not survive being moved.
 fingerprint() {
     printf '%s\n' "$PWD"
-    cat requirements.txt requirements-bootstrap.txt apt-packages.txt | sha256sum
+    cat requirements.txt requirements-bootstrap.txt apt-packages.txt pyproject.toml | sha256sum
 }
 
 fill_environment() {
@@ -74,6 +74,13 @@ fill_environment() {
     index=${PIP_INDEX_URL:-$(.venv/bin/pip config get global.index-url 2>/dev/null || true)}
     [ -z "$index" ] || export UV_DEFAULT_INDEX="${UV_DEFAULT_INDEX:-$index}"
     export UV_SYSTEM_CERTS="${UV_SYSTEM_CERTS:-1}" UV_HTTP_TIMEOUT="${UV_HTTP_TIMEOUT:-180}"
+    install_packages_of_lock
+    # The package itself, from this folder: what is edited here counts, in every folder that the environment is used in.
+    .venv/bin/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . ||
+        stop "the package itself could not be installed (see above)"
+}
+
+install_packages_of_lock() {
     .venv/bin/pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements-bootstrap.txt &&
         .venv/bin/uv pip sync --quiet --link-mode copy --python .venv/bin/python --require-hashes requirements.txt && return
     say "uv did not succeed; trying with pip, which is slower"
