@@ -1,0 +1,311 @@
+"""How a part moves: its pose at any time in closed form, and the solver's lines that go on with the motion from then.
+
+Wear lives in the part's own (body) frame, the one its surface was drawn in. The solver gets the surface where the part
+stands when a wear cycle begins (`Motion.placed`), and lines that move it from there (`Motion.deck_lines`).
+
+LIGGGHTS (3.8.0) adds up what its movers tell it step by step. Its `wiggle` and `riggle` begin at phase 0 wherever they
+are defined: a restarted part would swing about another place. They also take the speed at the end of a step for that of
+the whole step. Here a speed that changes is a variable: what the closed form goes in the step, over the step. What the
+solver adds up is then the closed form itself, in phase after a restart.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+
+PARALLEL = 1e-12  # -, sine of the angle between two directions that count as parallel: rounding of unit vectors
+
+Vector: TypeAlias = tuple[float, float, float]
+Pose: TypeAlias = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Steady:
+    """A course at a pace of 1 (per s) that is reached `ramp_s` after `start_s` and kept from then on."""
+
+    start_s: float = 0.0
+    ramp_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.start_s) and 0.0 <= self.ramp_s < math.inf):
+            raise ValueError(f"a motion starts at {self.start_s} s with a ramp of {self.ramp_s} s, allowed is >= 0 s")
+
+    def gone(self, time_s: float) -> float:
+        """Return how far the course is at that time, s at full pace: half of the ramp is lost."""
+        since, over = max(time_s - self.start_s, 0.0), max(time_s - self.start_s - self.ramp_s, 0.0)
+        return since if self.ramp_s == 0.0 else (since - over) * (since + over) / (2.0 * self.ramp_s)
+
+    def is_constant(self, time_s: float) -> bool:
+        """Return whether the pace is 1 from that time on."""
+        return time_s >= self.start_s + self.ramp_s
+
+    def mean_pace(self, end: str) -> str:
+        """Return the solver's formula of the mean pace in the step that ends at the time in the variable `end`."""
+        return f"({self._gone(end)}-{self._gone(f'{end}-dt')})/dt"
+
+    def _gone(self, time: str) -> str:
+        since = _positive_part(f"{time}-{_number(self.start_s)}")
+        if self.ramp_s == 0.0:
+            return since
+        over = _positive_part(f"{time}-{_number(self.start_s + self.ramp_s)}")
+        return f"({since}-{over})*({since}+{over})/{_number(2.0 * self.ramp_s)}"
+
+
+@dataclass(frozen=True)
+class Swinging:
+    """A course that swings between -1 and 1, sin(2 pi time / period + phase)."""
+
+    period_s: float
+    phase_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (0.0 < self.period_s < math.inf and math.isfinite(self.phase_rad)):
+            raise ValueError(f"a motion swings with a period of {self.period_s} s, allowed is a number above 0 s")
+
+    def gone(self, time_s: float) -> float:
+        """Return where the course is at that time."""
+        return math.sin(2.0 * math.pi * math.fmod(time_s, self.period_s) / self.period_s + self.phase_rad)
+
+    def is_constant(self, time_s: float) -> bool:
+        """Return False: the pace always changes."""
+        return False
+
+    def mean_pace(self, end: str) -> str:
+        """Return the solver's formula of the mean pace in the step that ends at the time in the variable `end`.
+
+        sin a - sin b = 2 sin((a - b)/2) cos((a + b)/2): no digits are lost in a short step.
+        """
+        rate = _number(2.0 * math.pi / self.period_s)
+        return f"2.0*sin(0.5*{rate}*dt)*cos({rate}*({end}-0.5*dt)+{_number(self.phase_rad)})/dt"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How a part moves; this one stays where it was drawn."""
+
+    def pose(self, time_s: float) -> Pose:
+        """Return rotation (3, 3) and translation (3,) m at that time: x_space = rotation @ x_body + translation."""
+        return np.eye(3), np.zeros(3)
+
+    def placed(self, points: np.ndarray, time_s: float) -> np.ndarray:
+        """Return where points (n, 3) m of the body are at that time (s), (n, 3) m."""
+        rotation, translation = self.pose(time_s)
+        return np.asarray(points, dtype=np.float64) @ rotation.T + translation
+
+    def mesh_words(self) -> str:
+        """Return the words that end the solver's line of the mesh (`fix mesh/surface`); most motions have none."""
+        return ""
+
+    def deck_lines(self, mesh_id: str, time_s: float) -> tuple[str, ...]:
+        """Return the solver's lines that move a mesh on from where the part stands at that time (s).
+
+        They go on from the step where they stand, so they stand behind the mesh and `reset_timestep`, before the `run`
+        that moves. Fixes and variables begin with `move_<mesh_id>`.
+        """
+        return self._lines(f"move_{mesh_id}", mesh_id, time_s)
+
+    def _lines(self, name: str, mesh_id: str, time_s: float) -> tuple[str, ...]:
+        return ()
+
+
+@dataclass(frozen=True)
+class Straight(Motion):
+    """Moves along `vector` (m; m/s on a steady course) times how far the course is."""
+
+    vector: Vector
+    course: Steady | Swinging
+
+    def __post_init__(self) -> None:
+        _check_vector("direction", self.vector)
+
+    def pose(self, time_s: float) -> Pose:
+        """Return rotation (3, 3) and translation (3,) m, see `Motion.pose`."""
+        return np.eye(3), np.asarray(self.vector, dtype=np.float64) * self.course.gone(time_s)
+
+    def _lines(self, name: str, mesh_id: str, time_s: float) -> tuple[str, ...]:
+        fix = f"fix {name} all move/mesh mesh {mesh_id}"
+        if self.course.is_constant(time_s):
+            return (f"{fix} linear {_numbers(self.vector)}",)
+        speeds = [
+            f"variable {name}_{axis} equal {_number(value)}*v_{name}_pace"
+            for axis, value in zip("xyz", self.vector, strict=True)
+        ]
+        return (
+            *_pace_lines(name, self.course, time_s),
+            *speeds,
+            f"{fix} linear/variable v_{name}_x v_{name}_y v_{name}_z",
+        )
+
+
+@dataclass(frozen=True)
+class Turning(Motion):
+    """Turns about `vector` through `point_m` by `angle` (rad; rad/s on a steady course) times how far the course is."""
+
+    point_m: Vector
+    vector: Vector
+    angle: float
+    course: Steady | Swinging
+
+    def __post_init__(self) -> None:
+        _check_vector("axis", self.vector)
+        if not (np.all(np.isfinite(self.point_m)) and math.isfinite(self.angle) and self.angle != 0.0):
+            raise ValueError(f"a part turns about {self.point_m} by {self.angle}, allowed are finite numbers, not 0")
+
+    def pose(self, time_s: float) -> Pose:
+        """Return rotation (3, 3) and translation (3,) m, see `Motion.pose`."""
+        rotation = _rotation(self.vector, self.angle * self.course.gone(time_s))
+        point = np.asarray(self.point_m, dtype=np.float64)
+        return rotation, point - rotation @ point
+
+    def _lines(self, name: str, mesh_id: str, time_s: float) -> tuple[str, ...]:
+        fix = f"fix {name} all move/mesh mesh {mesh_id}"
+        about = f"origin {_numbers(self.point_m)} axis {_numbers(self.vector)}"
+        if self.course.is_constant(time_s):
+            return (f"{fix} rotate {about} period {2.0 * math.pi / self.angle:.17g}",)
+        return (
+            *_pace_lines(name, self.course, time_s),
+            f"variable {name}_omega equal {_number(self.angle)}*v_{name}_pace",
+            f"{fix} rotate/variable {about} omega v_{name}_omega",
+        )
+
+
+@dataclass(frozen=True)
+class Belt(Motion):
+    """A surface that moves within itself while the mesh rests; `words` tell the solver its velocity."""
+
+    words: str
+
+    def mesh_words(self) -> str:
+        """Return the velocity of the surface in the solver's words."""
+        return self.words
+
+
+@dataclass(frozen=True)
+class Combined(Motion):
+    """Motions carried by one another: the first carries the second, and so on; the last one moves the body itself."""
+
+    motions: tuple[Straight | Turning, ...]
+
+    def __post_init__(self) -> None:
+        for k, motion in enumerate(self.motions):
+            if not isinstance(motion, Straight | Turning):
+                raise ValueError(f"motion {k} of a combination is a {type(motion).__name__}, allowed are moving ones")
+            for earlier in self.motions[:k]:
+                if isinstance(earlier, Turning) and not _are_parallel(earlier.vector, motion.vector):
+                    raise ValueError(
+                        f"motion {k} of a combination is along {motion.vector} and carried round {earlier.vector}; "
+                        "the solver keeps directions in space, allowed are parallel ones"
+                    )
+
+    def pose(self, time_s: float) -> Pose:
+        """Return rotation (3, 3) and translation (3,) m, see `Motion.pose`."""
+        rotation, translation = np.eye(3), np.zeros(3)
+        for motion in self.motions:
+            own, shift = motion.pose(time_s)
+            rotation, translation = rotation @ own, rotation @ shift + translation
+        return rotation, translation
+
+    def _lines(self, name: str, mesh_id: str, time_s: float) -> tuple[str, ...]:
+        lines: list[str] = []
+        for k, motion in enumerate(self.motions):
+            if isinstance(motion, Turning):  # its axis stands where the earlier ones have carried it
+                point = Combined(self.motions[:k]).placed([motion.point_m], time_s)[0]
+                motion = replace(motion, point_m=tuple(point))
+            lines += motion._lines(f"{name}_{k + 1}", mesh_id, time_s)
+        return tuple(lines)
+
+
+def at_rest() -> Motion:
+    """Return the motion of a part that rests."""
+    return Motion()
+
+
+def translation(velocity_m_per_s: Vector, start_s: float = 0.0, ramp_s: float = 0.0) -> Motion:
+    """Return a motion with a velocity (3,) m/s that grows linearly from 0 within `ramp_s` after `start_s`."""
+    return Straight(velocity_m_per_s, Steady(start_s, ramp_s))
+
+
+def rotation(
+    point_m: Vector, axis: Vector, angular_velocity_rad_per_s: float, start_s: float = 0.0, ramp_s: float = 0.0
+) -> Motion:
+    """Return a right-handed rotation about an axis (3,) through a point (3,) m, started as `translation` is."""
+    return Turning(point_m, axis, angular_velocity_rad_per_s, Steady(start_s, ramp_s))
+
+
+def oscillation(amplitude_m: Vector, period_s: float, phase_rad: float = 0.0) -> Motion:
+    """Return a swing of amplitude (3,) m about where the part was drawn: amplitude sin(2 pi t / period + phase)."""
+    return Straight(amplitude_m, Swinging(period_s, phase_rad))
+
+
+def angular_oscillation(
+    point_m: Vector, axis: Vector, amplitude_rad: float, period_s: float, phase_rad: float = 0.0
+) -> Motion:
+    """Return a swing about an axis (3,) through a point (3,) m, by amplitude sin(2 pi t / period + phase)."""
+    return Turning(point_m, axis, amplitude_rad, Swinging(period_s, phase_rad))
+
+
+def belt(velocity_m_per_s: Vector) -> Motion:
+    """Return a conveyor: the surface has this velocity (3,) m/s, the mesh rests."""
+    _check_vector("velocity of a belt", velocity_m_per_s)
+    return Belt(f"surface_vel {_numbers(velocity_m_per_s)}")
+
+
+def turning_surface(point_m: Vector, axis: Vector, angular_velocity_rad_per_s: float) -> Motion:
+    """Return a body of revolution that turns within its surface about an axis (3,) through a point (3,) m."""
+    _check_vector("axis", axis)
+    words = f"origin {_numbers(point_m)} axis {_numbers(axis)} omega {angular_velocity_rad_per_s:.17g}"
+    return Belt(f"surface_ang_vel {words}")
+
+
+def combined(*motions: Motion) -> Motion:
+    """Return motions that carry one another, the first one outermost, as on a slide that carries a turning shaft.
+
+    Raises ValueError for belts, and where a turning motion carries one that is not parallel to its axis.
+    """
+    return Combined(motions)
+
+
+def _pace_lines(name: str, course: Steady | Swinging, time_s: float) -> tuple[str, ...]:
+    """Variables of the time at the end of a step and of the mean pace in it; the solver asks for them in each step."""
+    return (
+        f"variable {name}_first equal $(step)",
+        f"variable {name}_time equal {_number(time_s)}+(step-v_{name}_first)*dt",
+        f"variable {name}_pace equal {course.mean_pace(f'v_{name}_time')}",
+    )
+
+
+def _positive_part(text: str) -> str:
+    """Formula of max(text, 0); the solver has neither a maximum nor comparisons."""
+    return f"(0.5*({text}+abs({text})))"
+
+
+def _number(value: float) -> str:
+    """A number for the solver's formulas, exact; negative ones in brackets, which an operator may stand before."""
+    return f"{value:.17g}" if value >= 0.0 else f"({value:.17g})"
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(f"{value:.17g}" for value in values)
+
+
+def _check_vector(what: str, vector: Vector) -> None:
+    values = np.asarray(vector, dtype=np.float64)
+    if values.shape != (3,) or not np.all(np.isfinite(values)) or not values.any():
+        raise ValueError(f"the {what} of a motion is {vector}, allowed are three finite numbers that are not all 0")
+
+
+def _are_parallel(first: Vector, second: Vector) -> bool:
+    a, b = (np.asarray(v, dtype=np.float64) / np.linalg.norm(v) for v in (first, second))
+    return bool(np.linalg.norm(np.cross(a, b)) <= PARALLEL)
+
+
+def _rotation(axis: Vector, angle: float) -> np.ndarray:
+    """Matrix (3, 3) of a turn by `angle` (rad) about an axis, by Rodrigues' formula."""
+    x, y, z = np.asarray(axis, dtype=np.float64) / np.linalg.norm(axis)
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + math.sin(angle) * across + 2.0 * math.sin(0.5 * angle) ** 2 * (across @ across)
