@@ -18,6 +18,7 @@ from bulkwear.postproc.wear.update import wear_update, with_depths
 SEED = 20220317
 CELLS, QUICK_CELLS = 224, 40  # per side; two triangles each: 100,352
 REPEATS, QUICK_REPEATS = 5, 2
+DOWN = (0.0, 0.0, -1.0)  # where the rim slides
 SPACING = 1.0e-3  # m
 LOADED = 0.2  # -, share of the triangles with contacts
 STEP = 1e-2  # -, mean step of the nodes over the edge
@@ -41,11 +42,11 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
     rim, limit = rim_directions(points, triangles), step_limit(points, triangles, 0.1, 0.01, 1.0)
     volume = random.random(count) * STEP * SPACING**3
     mesh = SurfaceMesh(points, triangles)
-    worn, _ = wear_update(mesh, volume, limit)
+    worn, _ = wear_update(mesh, volume, limit, DOWN)
     tasks: dict[str, Callable[[], object]] = {
         "displace": lambda: displace(points, triangles, volume, None, limit, rim),
         **patch_tasks(points, triangles, rim, limit, random),
-        "wear update": lambda: wear_update(mesh, volume, limit),
+        "wear update": lambda: wear_update(mesh, volume, limit, DOWN),
         "depths": lambda: with_depths(worn, mesh),
     }
     told = []

@@ -13,12 +13,11 @@ import numpy as np
 
 from bulkwear.meshes.lattice import Pattern, millimetres, pattern_centres, pattern_faults, pattern_rows
 from bulkwear.meshes.plane import PlaneMesh, mesh_plane, rectangle_rim
-from bulkwear.postproc.mesh import SurfaceMesh, nonmanifold_edges, smallest_angles
+from bulkwear.postproc.mesh import HOLDER_PART, SurfaceMesh, nonmanifold_edges, smallest_angles, worn_faces
 
 SKIRT_DEPTH = 0.2  # of the height above the floor: how far the skirt reaches below the floor, so that no slit opens
 LARGEST_SKIRT_SLOPE = math.pi / 4  # a steeper ramp is a wall and would plough the bed
 SMALLEST_ANGLE = 10.0  # degrees, promised for every triangle
-HOLDER = -1  # label `part` of the skirt
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +57,18 @@ def skirt_fall(
     between = curved / skirt_radius * (np.clip(beyond_rim, curved, width - curved) - curved)
     foot = (curved**2 - np.clip(width - beyond_rim, 0.0, curved) ** 2) / (2.0 * skirt_radius)
     return np.minimum(top + between + foot, drop)
+
+
+def floor_fault(mesh: SurfaceMesh, floor_z: float = 0.0, clearance: float = 0.0) -> str | None:
+    """Phrase if a node of the worn faces came down to the floor (z <= floor_z + clearance, m), else None."""
+    nodes = np.unique(mesh.triangles[worn_faces(mesh)])
+    lowest = nodes[np.argmin(mesh.points[nodes, 2])] if len(nodes) else None
+    if lowest is None or mesh.points[lowest, 2] > floor_z + clearance:
+        return None
+    return (
+        f"the sample is worn down to the floor: node {lowest} is at z = {mesh.points[lowest, 2]:.4g} m, "
+        f"allowed is above {floor_z + clearance:.4g} m"
+    )
 
 
 def sample_top(width: float, length: float, element_size: float, pattern: Pattern | None) -> SurfaceMesh:
@@ -183,5 +194,5 @@ def _labels(plane: PlaneMesh, shapes: _Shapes) -> dict[str, np.ndarray]:
         on_shapes = np.repeat(per_shape, len(shapes.triangles))
         return np.concatenate([np.zeros(len(plane.base)), on_shapes, np.full(len(plane.frame), frame)]).astype(np.int64)
 
-    part = label(np.arange(1, len(shapes.centres) + 1), HOLDER)
+    part = label(np.arange(1, len(shapes.centres) + 1), HOLDER_PART)
     return {"part": part, "column": label(shapes.column, 0), "row": label(shapes.row, 0)}

@@ -14,8 +14,8 @@ import numpy as np
 
 from bulkwear.meshes.lattice import Pattern
 from bulkwear.meshes.plane import mesh_plane
-from bulkwear.meshes.sample import HOLDER, check_depth, sample_top
-from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges
+from bulkwear.meshes.sample import check_depth, sample_top
+from bulkwear.postproc.mesh import HOLDER_PART, SurfaceMesh, boundary_edges
 
 WHOLE_TURN = 2.0 * math.pi
 NO_HOLES = np.empty((0, 1, 2))
@@ -69,7 +69,7 @@ def _grid(x: np.ndarray, y: np.ndarray, z: np.ndarray, closed: bool) -> tuple[np
 
 def _unworn(points: np.ndarray, triangles: np.ndarray) -> SurfaceMesh:
     count = len(triangles)
-    labels = {"part": np.full(count, HOLDER), "column": np.zeros(count, int), "row": np.zeros(count, int)}
+    labels = {"part": np.full(count, HOLDER_PART), "column": np.zeros(count, int), "row": np.zeros(count, int)}
     return SurfaceMesh(points, triangles, {name: label.astype(np.int64) for name, label in labels.items()})
 
 
@@ -196,7 +196,7 @@ def sample_block(
     mesh = np.concatenate([top.triangles, *count])
     holder = len(mesh) - len(top.triangles)
     labels = {
-        name: np.concatenate([label, np.full(holder, HOLDER if name == "part" else 0)])
+        name: np.concatenate([label, np.full(holder, HOLDER_PART if name == "part" else 0)])
         for name, label in top.cell_data.items()
     }
     return SurfaceMesh(np.concatenate([top.points, sides, points]), mesh, labels)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+HOLDER_PART = -1  # label `part` of the faces that do not wear
 PLAIN = "plain"  # name of a sample's surface without a pattern; one with a pattern has the pattern's name
 RIGHT_ANGLE = 1e-9  # -, cosine of an angle that counts as right
 STL_FACETS_PER_BLOCK = 20_000  # facets formatted at once: bounds the memory of a write
@@ -52,6 +53,12 @@ class SurfaceMesh:
             for name, array in data.items():
                 if len(array) != count:
                     raise ValueError(f"data '{name}' must have {count} entries, found {len(array)}")
+
+
+def worn_faces(mesh: SurfaceMesh) -> np.ndarray:
+    """Mask (m,) of the faces that wear: `part` >= 0; all faces where the mesh has no `part`."""
+    part = mesh.cell_data.get("part", np.zeros(len(mesh.triangles), dtype=np.int64))
+    return np.asarray(part) > HOLDER_PART
 
 
 def area_vectors(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from PIL import Image
 
-from bulkwear.postproc.mesh import SurfaceMesh, areas
+from bulkwear.postproc.mesh import SurfaceMesh, areas, worn_faces
 from bulkwear.postproc.plots.pictures import TOP_SHARE
 from bulkwear.postproc.plots.scene import WHITE, common_bounds, surface_oblique, trimmed
 from bulkwear.postproc.plots.style import (
@@ -33,7 +33,6 @@ from bulkwear.postproc.plots.style import (
 from bulkwear.postproc.tables.depths import area_quantile, face_depth
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
 from bulkwear.postproc.tables.film import section, section_place
-from bulkwear.postproc.wear.update import worn_faces
 
 FRAME_RESOLUTION = 100  # dots per inch: 800 pixels wide
 VIEW = (1000, 560)  # pixels of a rendered view

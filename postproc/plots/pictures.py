@@ -11,12 +11,11 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from bulkwear.postproc.mesh import SurfaceMesh, areas
+from bulkwear.postproc.mesh import SurfaceMesh, areas, worn_faces
 from bulkwear.postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface_oblique, surface_plan, trimmed
 from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
 from bulkwear.postproc.tables.depths import area_quantile, depth_quantity, face_depth
 from bulkwear.postproc.tables.display import MICROMETRES, SQUARE_MILLIMETRES, in_display_units
-from bulkwear.postproc.wear.update import worn_faces
 
 ROWS_PER_LINE = 7  # design rows side by side in small multiples
 SINGLES_PER_LINE = 3  # of them where each has one run

@@ -9,11 +9,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges
+from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges, worn_faces
 from bulkwear.postproc.plots.style import MAP, SKIRT_COLOUR
 from bulkwear.postproc.tables.depths import face_depth
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
-from bulkwear.postproc.wear.update import worn_faces
 
 OBLIQUE = (0.55, -1.0, 0.75)  # from upstream, above: the bed comes towards the back
 FROM_THE_CUT = (1.0, -0.25, 0.32)  # from the side on which the bed is cut away

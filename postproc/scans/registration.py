@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh, unit_normals
+from bulkwear.postproc.mesh import SurfaceMesh, unit_normals, worn_faces
 from bulkwear.postproc.scans.start import (
     IDENTITY,
     RigidMotion,
@@ -25,7 +25,6 @@ from bulkwear.postproc.scans.start import (
     turned_about,
 )
 from bulkwear.postproc.wear.remesh_patch import OldSurface
-from bulkwear.postproc.wear.update import worn_faces
 
 HOLDER, EVERYTHING = "holder", "all"  # what may decide
 RIM_MARGIN = 0.5e-3  # m, of the holder's surface beside what wears that does not count: there scans are round

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, read_surface
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, read_surface, worn_faces
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.summary import rows_to_show, runs_of_rows
 from bulkwear.postproc.wear.pattern_left import pattern_volume
-from bulkwear.postproc.wear.update import REMOVED_THICKNESS, worn_faces
+from bulkwear.postproc.wear.update import REMOVED_THICKNESS
 
 MOST_FRAMES = 60  # of a film: more would make its file large, and not easier to see
 ON_PLANE = 1e-9  # -, of the mesh's size: a node so near to the plane of a section counts as beside it

@@ -1,4 +1,4 @@
-"""Three depth fields of a worn surface against its pristine one; all are >= 0 m, 0 where nothing was removed.
+"""Depth fields of a worn surface against its pristine one; all are >= 0 m, 0 where nothing was removed.
 
 * removed thickness: length of the path of a node, summed over the updates. Follows the node; always defined.
 * height loss: vertical distance from the present node up to the pristine surface right above it, that is the
@@ -7,6 +7,7 @@
   exactly.
 * ray depth: distance from the present node along its outward normal to the pristine surface. The thickness
   that a gauge held square to the worn surface would read.
+* normal depth: distance from the present node along the normal of the pristine surface to that surface.
 
 NaN says undefined: no pristine surface above, or none within `LARGEST_RAY_OVER_THICKNESS` removed
 thicknesses.
@@ -18,6 +19,8 @@ from itertools import chain, pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
+
+from bulkwear.postproc.mesh import unit_normals
 
 LARGEST_RAY_OVER_THICKNESS = 2.0  # -, present and pristine normals then differ by 60 degrees
 OUTSIDE_TOLERANCE = 0.01  # -, of a triangle's edge: a remeshed node may lie that far outside, depth 0
@@ -38,7 +41,8 @@ def height_loss(points: np.ndarray, pristine_points: np.ndarray, pristine_triang
     """
     flat = pristine_points * (1.0, 1.0, 0.0)
     up = np.broadcast_to((0.0, 0.0, 1.0), points.shape)
-    return _along_rays(points, up, pristine_points, pristine_triangles, points * (1.0, 1.0, 0.0), flat, 0.0, np.inf)
+    at = points * (1.0, 1.0, 0.0)
+    return _along_rays(points, up, pristine_points, pristine_triangles, at, flat, 0.0, np.inf)[0]
 
 
 def ray_depth(
@@ -53,31 +57,58 @@ def ray_depth(
     Parameters: points (k, 3) m; outward (k, 3) unit vectors; removed_thickness (k,) m, bounds the length of
     the ray by `LARGEST_RAY_OVER_THICKNESS` times it; pristine_points (n, 3) m; pristine_triangles (m, 3).
     """
+    return _to_pristine(points, outward, removed_thickness, pristine_points, pristine_triangles)[0]
+
+
+def pristine_normal_depth(
+    points: np.ndarray,
+    outward: np.ndarray,
+    removed_thickness: np.ndarray,
+    pristine_points: np.ndarray,
+    pristine_triangles: np.ndarray,
+) -> np.ndarray:
+    """Distance (k,) m from each point along the pristine surface's normal to that surface, NaN where undefined.
+
+    Parameters as in `ray_depth`. The normal is that of the pristine face which the ray of `ray_depth` meets.
+    """
+    old = pristine_points, pristine_triangles
+    _, face = _to_pristine(points, outward, removed_thickness, *old)
+    found = np.flatnonzero(face >= 0)
+    normal = unit_normals(pristine_points, pristine_triangles[face[found]])
+    result = np.full(len(points), np.nan)
+    result[found] = _to_pristine(points[found], normal, removed_thickness[found], *old)[0]
+    return result
+
+
+def _to_pristine(points, directions, removed_thickness, pristine_points, pristine_triangles):
+    """Distance (k,) m along each direction to the pristine surface, and the face (k,) there; NaN and -1 where none."""
     reach = LARGEST_RAY_OVER_THICKNESS * removed_thickness
-    middle = points + 0.5 * reach[:, None] * outward
+    middle = points + 0.5 * reach[:, None] * directions
     return _along_rays(
-        points, outward, pristine_points, pristine_triangles, middle, pristine_points, 0.5 * reach, reach
+        points, directions, pristine_points, pristine_triangles, middle, pristine_points, 0.5 * reach, reach
     )
 
 
-def _along_rays(origins, directions, points, triangles, search_at, search_points, radius, reach) -> np.ndarray:
-    """Nearest hit (k,) m of each ray, 0 <= t <= reach, NaN where none.
+def _along_rays(origins, directions, points, triangles, search_at, search_points, radius, reach):
+    """Distance (k,) m to the nearest hit of each ray, 0 <= t <= reach, and its triangle (k,); NaN and -1 where none.
 
     Candidates are the triangles that may come within `radius` of `search_at`, both in the space of
     `search_points` (projected on the ground for vertical rays, so that any height difference is found).
     """
     radius, reach = np.broadcast_to(radius, len(origins)), np.broadcast_to(reach, len(origins))
-    nearest = np.full(len(origins), np.inf)
+    nearest, nearest_face = np.full(len(origins), np.inf), np.full(len(origins), -1)
     for members, tree, size in _size_classes(search_points, triangles):
         counts = tree.query_ball_point(search_at, radius + size, return_length=True)
         for block in _blocks(counts):
             found = tree.query_ball_point(search_at[block], radius[block] + size)
             ray = np.repeat(np.arange(block.start, block.stop), counts[block])
-            face = triangles[members[np.fromiter(chain.from_iterable(found), dtype=np.int64, count=len(ray))]]
-            distance = _ray_triangle(origins[ray], directions[ray], points[face])
+            face = members[np.fromiter(chain.from_iterable(found), dtype=np.int64, count=len(ray))]
+            distance = _ray_triangle(origins[ray], directions[ray], points[triangles[face]])
             distance[distance > reach[ray]] = np.inf
             np.minimum.at(nearest, ray, distance)
-    return np.where(np.isfinite(nearest), nearest, np.nan)
+            best = np.isfinite(distance) & (distance == nearest[ray])
+            nearest_face[ray[best]] = face[best]
+    return np.where(nearest_face >= 0, nearest, np.nan), nearest_face
 
 
 def _blocks(counts: np.ndarray) -> list[slice]:

@@ -22,9 +22,9 @@ from bulkwear.postproc.mesh import (
     edge_lengths_per_triangle,
     smallest_angles,
     sum_over_nodes,
+    worn_faces,
 )
 from bulkwear.postproc.wear.remesh_patch import border_nodes, neighbours
-from bulkwear.postproc.wear.update import worn_faces
 
 TARGET_EDGE = "target_edge_m"  # point data: edge length that the mesh should have at a node
 SIZE_CLASS_RATIO = 2.0  # -, faces are searched in classes of alike size, so few candidates are far away

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.mesh import SurfaceMesh, worn_faces
 from bulkwear.postproc.wear.mesh_faults import (
     DEFAULT_BOUNDS,
     TARGET_EDGE,
@@ -28,7 +28,6 @@ from bulkwear.postproc.wear.remesh_piece import piece_round
 from bulkwear.postproc.wear.remesh_repair import RemeshError, badness, faults_after, untangled
 from bulkwear.postproc.wear.remesh_transfer import cut_out, transferred
 from bulkwear.postproc.wear.remesh_volume import lower, restore_volume, volume_gained
-from bulkwear.postproc.wear.update import worn_faces
 
 __all__ = ["RemeshError", "Remeshed", "remesh"]
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles
+from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, worn_faces
 from bulkwear.postproc.wear.mesh_faults import (
     TARGET_EDGE,
     Bounds,
@@ -38,7 +38,6 @@ from bulkwear.postproc.wear.remesh_patch import (
 )
 from bulkwear.postproc.wear.remesh_transfer import cut_out, transferred
 from bulkwear.postproc.wear.remesh_volume import charge, restore_volume, volume_gained
-from bulkwear.postproc.wear.update import worn_faces
 
 MERGE_RINGS = 2  # of faces round the tangled ones that are looked at when edges are merged
 MOST_MERGES = 12  # in one repair

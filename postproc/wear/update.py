@@ -1,42 +1,51 @@
-"""One wear update of a surface mesh, called after every cycle, and the checks that go with it."""
+"""One wear update of a surface mesh, called after every cycle, and its depths."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, volume_above_plane
-from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, ray_depth
+from bulkwear.postproc.mesh import SurfaceMesh, boundary_nodes, smallest_angles, unit_normals, worn_faces
+from bulkwear.postproc.wear.balance import check_growth, with_swept_rim
+from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, pristine_normal_depth, ray_depth
 from bulkwear.postproc.wear.directions import inward_directions, rim_directions
+from bulkwear.postproc.wear.displacement import Displacement, volume_at_corners
 from bulkwear.postproc.wear.patch import ContactPatch, spread
 from bulkwear.postproc.wear.schemes import scheme_of
+from bulkwear.postproc.wear.side import turned_to_flow
+from bulkwear.postproc.wear.thickness import (
+    LOCAL_THICKNESS,
+    REMAINING_THICKNESS,
+    REMOVED_THICKNESS,
+    remaining_thickness,
+    worn_through,
+)
 
-BALANCE_TOLERANCE = 1e-9  # -, of alpha * work: rounding in sums over 1e6 triangles stays far below, a loss not
-GEOMETRY_ROUNDING = 1e-13  # -, of the volume under a sample: its sum over 1e5 triangles is good to about 1e-14
-HOLDER_PART = -1  # label of the faces that do not wear
-
-REMOVED_THICKNESS = "removed_thickness_m"
 HEIGHT_LOSS = "height_loss_m"
 RAY_DEPTH = "ray_depth_m"
+NORMAL_DEPTH = "normal_depth_m"
+FREE_RIM = "free_rim"  # point data: 1 at the nodes of `free_rim`
 CARRIED_VOLUME = "carried_volume_m3"
+UPRIGHT = 1e-6  # -, sine: a face that leans over by less counts as upright, as at the foot of a half sphere
+BACKS = ("go_on", "cap")  # what a node does whose local thickness is worn away
 
 
-class BalanceError(RuntimeError):
-    """Worn volume was lost or invented: applied + carried differs from the volume of the wear law."""
-
-
-def worn_faces(mesh: SurfaceMesh) -> np.ndarray:
-    """Mask (m,) of the faces that wear: `part` >= 0; all faces where the mesh has no `part`."""
-    part = mesh.cell_data.get("part", np.zeros(len(mesh.triangles), dtype=np.int64))
-    return np.asarray(part) > HOLDER_PART
+def free_rim(mesh: SurfaceMesh) -> np.ndarray:
+    """Mask (n,) of the nodes on an open edge of the worn faces: there a plate ends and its edge wears."""
+    mask, worn = np.zeros(len(mesh.points), dtype=bool), np.zeros(len(mesh.points), dtype=bool)
+    mask[boundary_nodes(mesh.triangles)] = True
+    worn[mesh.triangles[worn_faces(mesh)]] = True
+    return mask & worn
 
 
 def wear_update(
     mesh: SurfaceMesh,
     worn_volume: np.ndarray,
     step_limit: np.ndarray | None = None,
-    wall: tuple[float, float, float] | None = (0.0, 0.0, -1.0),
+    wall: tuple[float, float, float] | None = None,
     patch: ContactPatch | None = None,
     scheme: str = "conserving",
+    pressed: tuple[np.ndarray, np.ndarray] | None = None,
+    back: str = "go_on",
 ) -> tuple[SurfaceMesh, dict[str, float]]:
     """Wear the mesh by one cycle.
 
@@ -49,97 +58,122 @@ def wear_update(
     patch : contact positions, in the frame of the mesh, and radii over which the wear is spread, see
         `postproc.wear.patch`; None: a third of each triangle's wear goes to each of its corners
     scheme : name in `postproc.wear.schemes.SCHEMES`
+    pressed : (m,) N s each, impulse on front and back of the faces (`postproc.wear.ledger.pressed_sides`): pieces whose
+        normals look away from the particles are turned first, see `postproc.wear.side`; None: the normals are trusted
+    back : where the mesh has its local thickness (`postproc.wear.thickness`): "cap" stops nodes at the back, "go_on"
+        does not
 
     Returns
     -------
     mesh : new points; point data `removed_thickness_m`, `carried_volume_m3`
     record : worn_volume_m3 (this cycle, worn faces only), applied_volume_m3 (this cycle), carried_volume_m3
-        (now), excess_volume_m3 (applied this cycle beyond what was due and is not carried: rounding for
+        (now), beyond_back_volume_m3 (this cycle, of the law at nodes that stopped at the back: no part is there to lose
+        it), excess_volume_m3 (applied this cycle beyond what was due and is not carried: rounding for
         `conserving`, several times the wear for `per_triangle`), largest_step_m, smallest_angle_deg (worn
-        faces), largest_depth_m (of the removed thickness)
+        faces), largest_depth_m and rim_recession_m (of the removed thickness, off and on the free rim),
+        turned_faces, through_nodes
 
     Raises
     ------
     ValueError, StepTooLargeError : see `displace`, `spread` and `scheme_of`.
+    TouchedSideError : see `turned_to_flow`.
+    GrowthError : a touched face would leave the body.
     """
-    worn = worn_faces(mesh)
-    carried = _point_data(mesh, CARRIED_VOLUME)
-    rim = None if wall is None else rim_directions(mesh.points, mesh.triangles, worn, wall)
-    volume = worn_volume if patch is None else spread(mesh.points, mesh.triangles, worn_volume, patch, worn)
-    part = mesh.cell_data.get("part")
-    moved = scheme_of(scheme)(mesh.points, mesh.triangles, volume, carried, step_limit, rim, worn, part)
+    if back not in BACKS:
+        raise ValueError(f"back is '{back}', allowed are: {', '.join(BACKS)}")
+    worn, turned = worn_faces(mesh), []
+    if pressed is not None:
+        mesh, turned = turned_to_flow(mesh, *pressed, worn)
+    if back == "cap":
+        left = np.nan_to_num(remaining_thickness(mesh), nan=np.inf)
+        step_limit = left if step_limit is None else np.fmin(step_limit, left)
+    moved = _moved(mesh, worn_volume, step_limit, wall, patch, scheme)
     thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
     fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
-    law, applied, left = (
-        float(v) for v in (np.sum(worn_volume, where=worn), moved.applied_volume.sum(), moved.carried_volume.sum())
-    )
-    record = {
+    result = SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields)
+    through, beyond = worn_through(result), 0.0
+    if back == "cap":
+        beyond = float(moved.carried_volume[through].sum())
+        result.point_data[CARRIED_VOLUME] = np.where(through, 0.0, moved.carried_volume)
+    record = _record(mesh, result, moved, float(np.sum(worn_volume, where=worn)), beyond)
+    return with_swept_rim(mesh, result), record | {
+        "turned_faces": sum(piece.faces for piece in turned),
+        "through_nodes": int(through.sum()),
+    }
+
+
+def _moved(mesh, worn_volume, step_limit, wall, patch, scheme) -> Displacement:
+    """Nodes moved by the scheme, every touched face into the body; arguments as in `wear_update`."""
+    worn = worn_faces(mesh)
+    rim = None if wall is None else rim_directions(mesh.points, mesh.triangles, worn, wall)
+    volume = worn_volume if patch is None else spread(mesh.points, mesh.triangles, worn_volume, patch, worn)
+    carried, part = _point_data(mesh, CARRIED_VOLUME), mesh.cell_data.get("part")
+    moved = scheme_of(scheme)(mesh.points, mesh.triangles, volume, carried, step_limit, rim, worn, part)
+    touched = worn & (volume_at_corners(volume) > 0.0).any(axis=1)
+    check_growth(mesh.points, moved.points - mesh.points, mesh.triangles, touched)
+    return moved
+
+
+def _record(mesh: SurfaceMesh, result: SurfaceMesh, moved: Displacement, law: float, beyond: float) -> dict[str, float]:
+    """Volumes (m3) and lengths (m) of an update; law: of the wear law, beyond: what it took where no part is left."""
+    applied, kept = float(moved.applied_volume.sum()), float(result.point_data[CARRIED_VOLUME].sum())
+    before = float(_point_data(mesh, CARRIED_VOLUME).sum())
+    thickness, at_rim = result.point_data[REMOVED_THICKNESS], free_rim(result)
+    angles = smallest_angles(result.points, result.triangles[worn_faces(result)])
+    return {
         "worn_volume_m3": law,
         "applied_volume_m3": applied,
-        "carried_volume_m3": left,
-        "excess_volume_m3": applied + left - float(carried.sum()) - law,
+        "carried_volume_m3": kept,
+        "beyond_back_volume_m3": beyond,
+        "excess_volume_m3": applied + kept + beyond - before - law,
         "largest_step_m": float(moved.step.max(initial=0.0)),
-        "smallest_angle_deg": float(smallest_angles(moved.points, mesh.triangles[worn]).min(initial=60.0)),
-        "largest_depth_m": float(thickness.max(initial=0.0)),
+        "smallest_angle_deg": float(angles.min(initial=60.0)),
+        "largest_depth_m": float(thickness.max(initial=0.0, where=~at_rim)),
+        "rim_recession_m": float(thickness.max(initial=0.0, where=at_rim)),
     }
-    return SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields), record
 
 
 def with_depths(worn: SurfaceMesh, pristine: SurfaceMesh) -> SurfaceMesh:
-    """The worn surface with `height_loss_m` and `ray_depth_m` as point data (see `postproc.wear.depth`).
+    """The worn surface with its depth fields as point data, see `postproc.wear.depth`.
 
-    Both are sought where the surface's removed thickness is above 0, and are 0 elsewhere. `pristine` is the surface
-    before any wear, in the same frame, m; its triangulation may differ (after remeshing).
+    `ray_depth_m`, `normal_depth_m`, `free_rim`; `height_loss_m` where the vertical makes sense (`stands_over_plan`);
+    `remaining_thickness_m` where the surface has its local thickness. Depths are sought where the removed thickness is
+    above 0, and are 0 elsewhere. `pristine` is the surface before any wear, in the same frame, m; its triangulation may
+    differ (after remeshing).
     """
     thickness = _point_data(worn, REMOVED_THICKNESS)
     touched = np.flatnonzero(thickness > 0.0)
     outward = -inward_directions(worn.points, worn.triangles, worn_faces(worn))
-    fields = {HEIGHT_LOSS: np.zeros(len(thickness)), RAY_DEPTH: np.zeros(len(thickness))}
     at, old = worn.points[touched], (pristine.points, pristine.triangles)
-    fields[HEIGHT_LOSS][touched] = height_loss(at, *old)
-    fields[RAY_DEPTH][touched] = ray_depth(at, outward[touched], thickness[touched], *old)
+    found = {
+        RAY_DEPTH: ray_depth(at, outward[touched], thickness[touched], *old),
+        NORMAL_DEPTH: pristine_normal_depth(at, outward[touched], thickness[touched], *old),
+    }
+    if stands_over_plan(worn, pristine):
+        found[HEIGHT_LOSS] = height_loss(at, *old)
+    fields = {name: np.zeros(len(thickness)) for name in found}
+    for name, values in found.items():
+        fields[name][touched] = values
+    if LOCAL_THICKNESS in worn.point_data:
+        fields[REMAINING_THICKNESS] = remaining_thickness(worn)
+    fields[FREE_RIM] = free_rim(worn).astype(np.int64)
     return SurfaceMesh(worn.points, worn.triangles, worn.cell_data, worn.point_data | fields)
 
 
-def lost_volume(pristine: SurfaceMesh, present: SurfaceMesh) -> tuple[float, float]:
-    """Volume (m3) that the worn faces lost since they were pristine, and its rounding error (m3).
+def stands_over_plan(worn: SurfaceMesh, pristine: SurfaceMesh) -> bool:
+    """Whether height losses make sense: all worn faces of the pristine surface look up, and its plan is still the same.
 
-    Measured on the geometry alone: the volumes under both surfaces differ. Exact because the rim slides straight down,
-    which keeps the footprint; the rounding is that of the volume between the sample and z = 0.
+    The rim of the worn faces must lie over the rim of before: then every place of either surface is above or below one
+    of the other.
     """
-    before, after = (volume_above_plane(mesh.points, mesh.triangles[worn_faces(mesh)]) for mesh in (pristine, present))
-    return before - after, GEOMETRY_ROUNDING * abs(before)
-
-
-def volume_balance(applied_total: float, carried: float, law_total: float, rounding: float = 0.0) -> float:
-    """Relative error |applied + carried - law| / law of the volumes (m3), law = alpha * work over all cycles.
-
-    `rounding` (m3) is what the applied volume may be off because of the way it was measured.
-
-    Raises
-    ------
-    BalanceError : the error is above `BALANCE_TOLERANCE`, or is not a number.
-    """
-    error = abs(applied_total + carried - law_total)
-    relative = error / abs(law_total) if law_total else (np.inf if error else 0.0)
-    if not error <= BALANCE_TOLERANCE * abs(law_total) + rounding:
-        raise BalanceError(
-            f"applied {applied_total:.12g} m3 + carried {carried:.12g} m3 differ from the worn volume "
-            f"{law_total:.12g} m3 by {relative:.3g} of it, allowed is {BALANCE_TOLERANCE}"
-        )
-    return float(relative)
-
-
-def recession_fault(mesh: SurfaceMesh, floor_z: float = 0.0, clearance: float = 0.0) -> str | None:
-    """Phrase if a node of the worn faces came down to the floor (z <= floor_z + clearance, m), else None."""
-    nodes = np.unique(mesh.triangles[worn_faces(mesh)])
-    lowest = nodes[np.argmin(mesh.points[nodes, 2])] if len(nodes) else None
-    if lowest is None or mesh.points[lowest, 2] > floor_z + clearance:
-        return None
-    return (
-        f"the sample is worn down to the floor: node {lowest} is at z = {mesh.points[lowest, 2]:.4g} m, "
-        f"allowed is above {floor_z + clearance:.4g} m"
-    )
+    faces = pristine.triangles[worn_faces(pristine)]
+    if (unit_normals(pristine.points, faces)[:, 2] < -UPRIGHT).any():
+        return False
+    rims = [
+        np.unique(mesh.points[boundary_nodes(mesh.triangles[worn_faces(mesh)])][:, :2], axis=0)
+        for mesh in (pristine, worn)
+    ]
+    return np.array_equal(*rims)
 
 
 def _point_data(mesh: SurfaceMesh, name: str) -> np.ndarray:

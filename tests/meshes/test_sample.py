@@ -9,7 +9,7 @@ import pytest
 
 from bulkwear.meshes.lattice import pattern_centres
 from bulkwear.meshes.pattern import ConvexPattern
-from bulkwear.meshes.sample import SKIRT_DEPTH, sample_top, skirt_fall, skirt_width, sliding_sample
+from bulkwear.meshes.sample import SKIRT_DEPTH, floor_fault, sample_top, skirt_fall, skirt_width, sliding_sample
 from bulkwear.meshes.shell import foot_nodes
 from bulkwear.postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
 
@@ -234,3 +234,13 @@ def test_senseless_samples_are_refused(arguments, message):
     """Faulty sizes, patterns and gaps too narrow for the elements are refused with one sentence."""
     with pytest.raises(ValueError, match=message):
         sliding_sample(*arguments)
+
+
+def test_recession_to_the_floor_is_told():
+    """A worn node at or under the floor is a fault; the skirt, which always reaches below it, is none."""
+    sample = sliding_sample(60 * MM, 60 * MM, 4 * MM, None, 0.3 * MM, math.radians(3.0))
+    assert sample.points[:, 2].min() < 0.0
+    assert floor_fault(sample) is None
+    assert "worn down to the floor" in floor_fault(sample, floor_z=0.3e-3)
+    assert floor_fault(sample, clearance=0.29e-3) is None
+    assert "allowed is above 0.00031 m" in floor_fault(sample, clearance=0.31e-3)

@@ -19,7 +19,8 @@ from bulkwear.postproc.wear.caps import step_limit
 from bulkwear.postproc.wear.displacement import StepTooLargeError
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.patch import ContactPatch, hertz_disc
-from bulkwear.postproc.wear.update import CARRIED_VOLUME, lost_volume, wear_update
+from bulkwear.postproc.wear.balance import lost_volume
+from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
 from bulkwear.workflows.cases.pin_on_disc.contours import AREA_SHARE
 from tests.verification.ledger_cases import LOAD, PIN_MOTION, RADIUS, hertz_overlap, pin, run_case
 
@@ -167,7 +168,7 @@ def worn_once(groove: Groove, columns, coefficient: float, scheme: str) -> Groov
     present = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, fields)
     displacement = "per_triangle" if scheme == "per_triangle" else "conserving"
     with spread_once() if scheme == "spread_once" else nullcontext():
-        worn, record = wear_update(present, volume, limit, patch=patch, scheme=displacement)
+        worn, record = wear_update(present, volume, limit, (0.0, 0.0, -1.0), patch, displacement)
     section = mean_section(worn, SECTIONS)
     row = {
         "coefficient_per_pa": coefficient,

@@ -49,7 +49,7 @@ def test_worn_volume_is_alpha_times_load_times_distance(tmp_path, element_size):
     distance = SPEED * STEPS * TIME_STEP
     assert volume.sum() == pytest.approx(WEAR_COEFFICIENT * LOAD * distance, rel=ARCHARD_TOLERANCE)
 
-    worn, record = wear_update(mesh, volume)
+    worn, record = wear_update(mesh, volume, wall=(0.0, 0.0, -1.0))
     lost = -volume_above_plane(worn.points, worn.triangles)  # the plate was flat at z = 0
     assert lost == pytest.approx(volume.sum(), rel=SWEPT_TOLERANCE)
     assert record["applied_volume_m3"] == pytest.approx(volume.sum(), rel=SWEPT_TOLERANCE)

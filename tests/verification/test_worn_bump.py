@@ -69,7 +69,7 @@ def wear(pristine, speed, updates, stop, rate=over_all):
     for _ in range(updates):
         volume = speed * rate(mesh) * areas(mesh.points, mesh.triangles)
         limit = step_limit(mesh.points, mesh.triangles, EDGE_FRACTION, 1.0, 1.0)
-        mesh, _ = wear_update(mesh, volume, limit)
+        mesh, _ = wear_update(mesh, volume, limit, wall=(0.0, 0.0, -1.0))
         outcome = remesh(mesh)
         mesh, total = outcome.mesh, total + volume.sum()
         yield mesh, outcome, total

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.mesh import SurfaceMesh, worn_faces
 from bulkwear.postproc.readers.mesh_loads import read_mesh_loads
 from bulkwear.workflows.engine.case import CycleError
 from bulkwear.workflows.engine.chain import Chain
@@ -56,23 +56,33 @@ def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.
 def wear_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh, ledger: pd.DataFrame) -> pd.DataFrame:
     """Return the wear of a cycle from look to look, without reading anything between two steps twice.
 
-    A row per stretch of travel: cycle, time_s and travel_m at its end, and of the stretch sliding_work_J,
-    worn_volume_m3, base_ and pattern_worn_volume_m3 and mean_normal_force_N, as in wear.csv, whose row they add up
-    to. Raises the producer's errors.
+    A row per stretch: cycle, time_s and the case's travel at its end, and of the stretch sliding_work_J,
+    worn_volume_m3, the case's columns by label and mean_normal_force_N, as in wear.csv, whose row they add up to.
+    Raises the producer's errors.
     """
     parameters, piece = chain.parameters, chain.case.piece(chain.parameters, span, surface)
     steps, sums = [0], []
     for until, columns in producer(parameters).history(chain, span, folder, piece.mesh):
         look = on_whole_surface(pd.DataFrame({"triangle": piece.triangles, **columns}), len(surface.triangles))
         steps.append(until)
-        sums.append(load_sums(surface, look, law_volume(parameters, look)))
+        sums.append(_sums_of_look(chain, surface, look))
     whole = on_whole_surface(ledger, len(surface.triangles))
     steps.append(span.solver_steps)
-    sums.append(load_sums(surface, whole, law_volume(parameters, whole)))
+    sums.append(_sums_of_look(chain, surface, whole))
     duration = np.array(steps) * parameters["derived"]["time_step_s"] / span.substeps
     end = span.first_step * parameters["derived"]["time_step_s"] + duration[1:]
     table = pd.DataFrame(sums)
     table = table.diff().fillna(table)
     force = table.pop("normal_impulse_N_s") / np.diff(duration)
-    place = {"cycle": span.cycle, "time_s": end, "travel_m": end * parameters["sliding"]["velocity_m_per_s"]}
+    place = {"cycle": span.cycle, "time_s": end, **chain.case.travel_columns(parameters, end)}
     return pd.DataFrame(place).join(table).assign(mean_normal_force_N=force)
+
+
+def _sums_of_look(chain: Chain, surface: SurfaceMesh, ledger: pd.DataFrame) -> dict[str, float]:
+    """Loads and the wear law's volume summed over the faces that wear, of all and by the case's labels."""
+    volume = law_volume(chain.parameters, ledger) * worn_faces(surface)
+    return {
+        **load_sums(surface, ledger),
+        "worn_volume_m3": float(volume.sum()),
+        **chain.case.label_columns(surface, volume),
+    }

@@ -89,6 +89,7 @@ class Case:
     shared_figures: names of those of `workflows.report.surfaces` that it shows, after its own
     run_rules: rules that make a job of every run
     solver_rules: those whose jobs call the solver
+    rim_direction: in which nodes at the rim of what wears slide, None: along their normal, like others
     wears: whether its runs are wear cycles; else a study has no table of them, and what it says of its results and
         cost is its case's alone
     """
@@ -111,6 +112,7 @@ class Case:
     run_rules: tuple[str, ...] = ("surface_mesh", "worn_run")
     solver_rules: tuple[str, ...] = ("settled_bed", "worn_run")
     wears: bool = True
+    rim_direction: tuple[float, float, float] | None = None
 
     # ---------------------------------------------------------------- from settings to runs
 
@@ -277,7 +279,19 @@ class Case:
         """Return the files of a cycle that go when its successor is finished; here all are kept."""
         return ()
 
+    def travel_columns(self, parameters: Parameters, time_s: np.ndarray | float) -> dict[str, np.ndarray | float]:
+        """Return columns of the tables of wear that go on with time (s), in whose place a case counts; here none."""
+        return {}
+
+    def label_columns(self, surface: SurfaceMesh, volume: np.ndarray) -> dict[str, float]:
+        """Return columns of the tables of wear by labels; volume: (m,) m3, 0 on faces that do not wear."""
+        return {}
+
     # ---------------------------------------------------------------- bounds of a wear update
+
+    def local_thickness(self, parameters: Parameters, surface: SurfaceMesh) -> Mapping[int, float] | float | None:
+        """Return the thickness (m) of what wears, of all parts or by label, None where it is not known."""
+        return parameters["wear"].get("local_thickness_m")
 
     def lasting_limit(self, parameters: Parameters, surface: SurfaceMesh) -> np.ndarray:
         """Return how far (n,) m each node may move in one update, however long the cycle."""
@@ -349,7 +363,7 @@ def _shown(path: Path) -> str:
 
 def case_packages(case: Case) -> list[str]:
     """Return the packages of a case and of those that its class extends, its own first."""
-    classes = [each for each in type(case).__mro__ if issubclass(each, Case) and each is not Case]
+    classes = [each for each in type(case).__mro__ if each.__module__.startswith(f"{CASES_PACKAGE}.")]
     return list(dict.fromkeys(each.__module__.rpartition(".")[0] for each in classes))
 
 

@@ -11,20 +11,25 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, areas, node_area_vectors, read_surface, smallest_angles, write_surface
+from bulkwear.postproc.mesh import (
+    SurfaceMesh,
+    areas,
+    node_area_vectors,
+    read_surface,
+    smallest_angles,
+    unit_normals,
+    worn_faces,
+    write_surface,
+)
+from bulkwear.postproc.wear.balance import GrowthError, lost_volume, volume_balance
 from bulkwear.postproc.wear.caps import next_cycle_factor, wanted_step
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
 from bulkwear.postproc.wear.patch import ContactPatch, chosen_radius
 from bulkwear.postproc.wear.remesh import RemeshError, remesh
-from bulkwear.postproc.wear.update import (
-    CARRIED_VOLUME,
-    lost_volume,
-    volume_balance,
-    wear_update,
-    with_depths,
-    worn_faces,
-)
+from bulkwear.postproc.wear.side import TouchedSideError, with_sides
+from bulkwear.postproc.wear.thickness import with_thickness
+from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update, with_depths
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.chain import SURFACE, Chain
@@ -40,7 +45,9 @@ TOTALS = {  # columns of wear.csv that are sums over all cycles -> what each cyc
     "total_worn_volume_m3": "worn_volume_m3",
     "total_applied_volume_m3": "applied_volume_m3",
     "total_excess_volume_m3": "excess_volume_m3",
+    "total_beyond_back_volume_m3": "beyond_back_volume_m3",
 }
+IMPULSE = "impulse_x_N_s"  # a column of ledgers that know from which side a face was pressed
 
 
 class WearError(RuntimeError):
@@ -58,8 +65,7 @@ def wear(
     parameters, case = chain.parameters, chain.case
     pristine = read_surface(chain.surface)
     ledger = on_whole_surface(ledger, len(surface.triangles))
-    if TARGET_EDGE not in surface.point_data:  # the first cycle: the elements as built are what remeshing aims at
-        surface = with_target_edges(surface)
+    surface = prepared(case, parameters, surface)
     volume = law_volume(parameters, ledger)
     worn, update, asked = moved(chain, span, surface, ledger, volume)
     if fault := case.worn_through(worn):
@@ -69,9 +75,21 @@ def wear(
     write_surface(folder / SURFACE, worn)
     row = wear_row(chain, span, surface, ledger, volume) | update_row(chain, span, update) | asked
     lost, rounding = lost_volume(pristine, worn)
-    due = lost - row["total_excess_volume_m3"]
+    due = lost - row["total_excess_volume_m3"] + row["total_beyond_back_volume_m3"]
     error = volume_balance(due, row["carried_volume_m3"], row["total_worn_volume_m3"], rounding)
     return {**row, "balance_error": error}
+
+
+def prepared(case: Case, parameters: Mapping[str, Any], surface: SurfaceMesh) -> SurfaceMesh:
+    """Return the surface with what its updates need: pieces, and in the first cycle target edges, for the elements as
+    built are what remeshing aims at, and the local thickness where the case knows it.
+    """
+    surface = with_sides(surface)
+    if TARGET_EDGE not in surface.point_data:
+        surface = with_target_edges(surface)
+        if (thickness := case.local_thickness(parameters, surface)) is not None:
+            surface = with_thickness(surface, thickness)
+    return surface
 
 
 def moved(
@@ -83,10 +101,17 @@ def moved(
     WearError when the smallest one does not help.
     """
     parameters, case = chain.parameters, chain.case
-    limit, patch = node_limits(case, parameters, surface, span), contact_patch(parameters, ledger)
+    limit = node_limits(case, parameters, surface, span)
+    options = {
+        "wall": case.rim_direction,
+        "patch": contact_patch(parameters, ledger),
+        "scheme": parameters["wear"]["scheme"],
+        "pressed": pressed(surface, ledger),
+        "back": "cap" if parameters["wear"].get("worn_through") == "cap" else "go_on",
+    }
     for share in CAP_SHARES:
         cap = share * limit
-        worn, update = wear_update(surface, volume, cap, patch=patch, scheme=parameters["wear"]["scheme"])
+        worn, update = update_of_cycle(chain, span, surface, volume, cap, options)
         asked = {"step_limit_m": float(cap.max()), **planned(case, parameters, span, surface, worn)}
         asked |= case.geometry_columns(surface, worn, volume > 0.0)
         try:
@@ -96,6 +121,28 @@ def moved(
             if share == CAP_SHARES[-1]:
                 raise
     return worn, update, asked | remeshing
+
+
+def update_of_cycle(
+    chain: Chain, span: Span, surface: SurfaceMesh, volume: np.ndarray, cap: np.ndarray, options: Mapping[str, Any]
+) -> tuple[SurfaceMesh, dict[str, float]]:
+    """Return what `wear_update` does. Raises WearError with run and cycle where a face would grow, or is touched from
+    within the body.
+    """
+    try:
+        return wear_update(surface, volume, cap, **options)
+    except (TouchedSideError, GrowthError) as fault:
+        raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}") from fault
+
+
+def pressed(surface: SurfaceMesh, ledger: pd.DataFrame) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the impulse (N s) on front and back of each face (m,), None where the ledger does not know it."""
+    if IMPULSE not in ledger:
+        return None
+    from bulkwear.postproc.wear.ledger import pressed_sides
+
+    normals = unit_normals(surface.points, surface.triangles)
+    return pressed_sides({name: ledger[name].to_numpy() for name in ledger}, normals)
 
 
 def remeshed(
@@ -231,36 +278,27 @@ def planned(
 def wear_row(
     chain: Chain, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray
 ) -> dict[str, float | int]:
-    """Return what a cycle's row of wear.csv tells of its loads and of the wear law's volume, by part of the sample."""
+    """Return what a cycle's row of wear.csv tells of its loads and of the wear law's volume."""
     worn = worn_faces(surface)
     time_step = chain.parameters["derived"]["time_step_s"]
     time_s = span.end * time_step
     finnie = ledger["finnie_wear"].to_numpy() * areas(surface.points, surface.triangles)
-    sums = load_sums(surface, ledger, volume)
+    sums = load_sums(surface, ledger)
     return {
         "cycle": span.cycle,
         "time_s": time_s,
-        "travel_m": time_s * chain.parameters["sliding"]["velocity_m_per_s"],
-        **{name: sums[name] for name in ("sliding_work_J", "base_worn_volume_m3", "pattern_worn_volume_m3")},
+        **chain.case.travel_columns(chain.parameters, time_s),
+        "sliding_work_J": sums["sliding_work_J"],
+        **chain.case.label_columns(surface, volume * worn),
         "finnie_volume_m3": float(finnie[worn].sum()),
         "mean_normal_force_N": sums["normal_impulse_N_s"] / (span.steps * time_step),
     }
 
 
-def load_sums(surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray) -> dict[str, float]:
-    """Return the loads and the wear law's volume, summed over the faces that wear: all, base and pattern.
-
-    ledger: a row per triangle of the surface; volume: (m,) m3 per triangle
-    """
-    part, worn = surface.cell_data["part"], worn_faces(surface)
-    faces = volume * worn
-    return {
-        "sliding_work_J": float(ledger["sliding_work_J"].to_numpy()[worn].sum()),
-        "normal_impulse_N_s": float(ledger["normal_impulse_N_s"].to_numpy()[worn].sum()),
-        "worn_volume_m3": float(faces.sum()),
-        "base_worn_volume_m3": float(faces[part == 0].sum()),
-        "pattern_worn_volume_m3": float(faces[part > 0].sum()),
-    }
+def load_sums(surface: SurfaceMesh, ledger: pd.DataFrame) -> dict[str, float]:
+    """Return the loads summed over the faces that wear; ledger: a row per triangle of the surface."""
+    worn = worn_faces(surface)
+    return {name: float(ledger[name].to_numpy()[worn].sum()) for name in ("sliding_work_J", "normal_impulse_N_s")}
 
 
 def update_row(chain: Chain, span: Span, update: Mapping[str, float]) -> dict[str, float]:

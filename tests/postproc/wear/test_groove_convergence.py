@@ -125,6 +125,7 @@ def groove(contact, edge, radius, area, scheme="conserving"):
             SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, fields),
             volume,
             limit,
+            wall=(0.0, 0.0, -1.0),
             patch=patch,
             scheme=scheme,
         )

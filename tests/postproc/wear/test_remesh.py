@@ -18,12 +18,13 @@ from bulkwear.postproc.mesh import (
     smallest_angles,
     unit_normals,
     volume_above_plane,
+    worn_faces,
 )
 from bulkwear.postproc.wear.depth import height_loss
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, mesh_faults, with_target_edges
 from bulkwear.postproc.wear.remesh import RemeshError, remesh
 from bulkwear.postproc.wear.remesh_transfer import labels_at_nodes
-from bulkwear.postproc.wear.update import wear_update, worn_faces
+from bulkwear.postproc.wear.update import wear_update
 
 SEED = 20220317
 VOLUME = 1e-12  # relative to the volume removed: sums over a few thousand faces
@@ -49,7 +50,8 @@ def sample():
 def distorted(sample):
     """The sample worn by 0.1 mm, then nodes off curves and rim shifted in the plane of a face: slivers; carried set."""
     random = np.random.default_rng(SEED)
-    worn, _ = wear_update(sample, 1e-4 * worn_faces(sample) * areas(sample.points, sample.triangles))
+    volume = 1e-4 * worn_faces(sample) * areas(sample.points, sample.triangles)
+    worn, _ = wear_update(sample, volume, wall=(0.0, 0.0, -1.0))
     points, free = worn.points.copy(), labels_at_nodes(worn) >= 0
     free[worn.triangles[~worn_faces(worn)]] = False
     free[boundary_edges(worn.triangles)] = False

@@ -6,24 +6,17 @@ import pytest
 from bulkwear.meshes.pattern import ConvexPattern
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.meshes.sample import sliding_sample
-from bulkwear.postproc.mesh import SurfaceMesh, areas, smallest_angles
+from bulkwear.postproc.mesh import SurfaceMesh, areas, smallest_angles, worn_faces
 from bulkwear.postproc.wear.caps import step_limit
 from bulkwear.postproc.wear.displacement import StepTooLargeError, swept_volume
 from bulkwear.postproc.wear.patch import ContactPatch
-from bulkwear.postproc.wear.update import (
-    BALANCE_TOLERANCE,
-    BalanceError,
-    lost_volume,
-    recession_fault,
-    volume_balance,
-    wear_update,
-    with_depths,
-    worn_faces,
-)
+from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE, BalanceError, lost_volume, volume_balance
+from bulkwear.postproc.wear.update import wear_update, with_depths
 
 SEED = 20220317
 ROUNDING = 1e-12  # relative: sums over a few thousand numbers
 DEPTH = 1e-9  # relative: depths are differences of coordinates some 1e4 times larger
+DOWN = (0.0, 0.0, -1.0)  # where the rim of a sample slides
 FIELDS = ("removed_thickness_m", "height_loss_m", "ray_depth_m", "carried_volume_m3")
 
 
@@ -42,7 +35,7 @@ def random_volume(mesh, depth, seed=SEED):
 
 def test_zero_load_leaves_every_bit(sample):
     """No wear: coordinates bit-identical, all fields zero, labels and triangles kept."""
-    worn, record = wear_update(sample, np.zeros(len(sample.triangles)))
+    worn, record = wear_update(sample, np.zeros(len(sample.triangles)), wall=DOWN)
     worn = with_depths(worn, sample)
     assert worn.points.tobytes() == sample.points.tobytes()
     assert all(not worn.point_data[name].any() for name in FIELDS)
@@ -55,7 +48,7 @@ def test_uniform_wear_of_a_plate_gives_one_depth():
     plate, down = flat_plate(0.06, 0.039, 0.003), 1e-5
     mesh = plate
     for _ in range(3):
-        mesh, record = wear_update(mesh, down * areas(mesh.points, mesh.triangles))
+        mesh, record = wear_update(mesh, down * areas(mesh.points, mesh.triangles), wall=DOWN)
     worn = with_depths(mesh, plate)
     for name in FIELDS[:3]:
         np.testing.assert_allclose(worn.point_data[name], 3.0 * down, rtol=DEPTH)
@@ -70,7 +63,7 @@ def test_balance_closes_over_capped_cycles(sample):
     for cycle in range(5):
         volume = random_volume(mesh, 2e-5, seed=cycle)
         limit = step_limit(mesh.points, mesh.triangles, 0.1, 0.01, 0.2)
-        new, record = wear_update(mesh, volume, limit)
+        new, record = wear_update(mesh, volume, limit, wall=DOWN)
         swept = swept_volume(mesh.points, new.points - mesh.points, mesh.triangles)[worn_faces(mesh)]
         assert record["applied_volume_m3"] == pytest.approx(swept.sum(), rel=ROUNDING)
         assert record["worn_volume_m3"] == pytest.approx(volume.sum(), rel=ROUNDING)
@@ -86,7 +79,7 @@ def test_balance_closes_over_capped_cycles(sample):
 def test_wear_of_the_holder_is_not_counted(sample):
     """Volumes on the skirt move nothing and stand in no sum."""
     volume = np.where(worn_faces(sample), 0.0, 1e-9)
-    worn, record = wear_update(sample, volume)
+    worn, record = wear_update(sample, volume, wall=DOWN)
     assert worn.points.tobytes() == sample.points.tobytes()
     assert record["worn_volume_m3"] == record["carried_volume_m3"] == 0.0
 
@@ -95,7 +88,7 @@ def test_rim_goes_straight_down_and_never_out(sample):
     """Rim nodes keep x and y; no node of the skirt below the rim moves."""
     worn = sample
     for cycle in range(3):  # after uneven wear the normals at the rim lean, its path must not
-        worn, _ = wear_update(worn, random_volume(sample, 1e-5, seed=cycle))
+        worn, _ = wear_update(worn, random_volume(sample, 1e-5, seed=cycle), wall=DOWN)
     faces = worn_faces(sample)
     rim = np.intersect1d(sample.triangles[faces], sample.triangles[~faces])
     assert np.array_equal(worn.points[rim, :2], sample.points[rim, :2])
@@ -107,7 +100,7 @@ def test_rim_goes_straight_down_and_never_out(sample):
 def test_fields_are_zero_where_nothing_was_removed(sample):
     """Wear on one bump leaves all depths of nodes off that bump at zero; on it all are positive."""
     volume = np.where(sample.cell_data["part"] == 1, random_volume(sample, 1e-5), 0.0)
-    worn, _ = wear_update(sample, volume)
+    worn, _ = wear_update(sample, volume, wall=DOWN)
     worn = with_depths(worn, sample)
     on_bump = np.zeros(len(sample.points), dtype=bool)
     on_bump[sample.triangles[sample.cell_data["part"] == 1]] = True
@@ -120,14 +113,14 @@ def test_smallest_angle_is_that_of_the_worn_faces():
     """An acute triangle of the holder is not reported: 45 degrees, not its 5.7."""
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, -0.05, 0.0]])
     mesh = SurfaceMesh(points, np.array([[0, 1, 2], [0, 3, 1]]), {"part": np.array([0, -1])})
-    _, record = wear_update(mesh, np.zeros(2))
+    _, record = wear_update(mesh, np.zeros(2), wall=DOWN)
     assert record["smallest_angle_deg"] == pytest.approx(45.0, rel=DEPTH)
 
 
 def test_other_point_data_survive(sample):
     """Data that the update does not know are handed on."""
     marked = SurfaceMesh(sample.points, sample.triangles, sample.cell_data, {"mark": np.arange(len(sample.points))})
-    worn, _ = wear_update(marked, random_volume(sample, 1e-5))
+    worn, _ = wear_update(marked, random_volume(sample, 1e-5), wall=DOWN)
     assert np.array_equal(worn.point_data["mark"], marked.point_data["mark"])
 
 
@@ -137,8 +130,8 @@ def test_patch_spreads_and_the_balance_still_closes(sample):
     centres = sample.points[sample.triangles].mean(axis=1)
     patch = ContactPatch(centres, np.full(len(centres), 6e-3))
     limit = step_limit(sample.points, sample.triangles, 0.1, 0.01, 0.2)
-    spread_mesh, spread_record = wear_update(sample, volume, limit, patch=patch)
-    mesh, record = wear_update(sample, volume, limit)
+    spread_mesh, spread_record = wear_update(sample, volume, limit, patch=patch, wall=DOWN)
+    mesh, record = wear_update(sample, volume, limit, wall=DOWN)
     assert spread_record["worn_volume_m3"] == record["worn_volume_m3"] == pytest.approx(volume.sum(), rel=ROUNDING)
     moved, spread_moved = ((each.point_data["removed_thickness_m"] > 0.0).sum() for each in (mesh, spread_mesh))
     assert spread_moved > moved
@@ -150,13 +143,13 @@ def test_patch_spreads_and_the_balance_still_closes(sample):
 def test_unknown_scheme_is_refused(sample):
     """The message names the allowed ones."""
     with pytest.raises(ValueError, match="scheme 'other' is unknown, allowed are: conserving, per_triangle"):
-        wear_update(sample, np.zeros(len(sample.triangles)), scheme="other")
+        wear_update(sample, np.zeros(len(sample.triangles)), scheme="other", wall=DOWN)
 
 
 def test_too_large_a_step_is_refused(sample):
     """Without caps wear of a centimetre on millimetre triangles is refused."""
     with pytest.raises(StepTooLargeError, match="of the shortest altitude"):
-        wear_update(sample, random_volume(sample, 1e-2))
+        wear_update(sample, random_volume(sample, 1e-2), wall=DOWN)
 
 
 def test_balance_raises_above_its_tolerance():
@@ -171,12 +164,3 @@ def test_balance_raises_above_its_tolerance():
     ):
         with pytest.raises(BalanceError, match="differ from the worn volume"):
             volume_balance(applied, carried, law)
-
-
-def test_recession_to_the_floor_is_told(sample):
-    """A worn node at or under the floor is a fault; the skirt, which always reaches below it, is none."""
-    assert sample.points[:, 2].min() < 0.0
-    assert recession_fault(sample) is None
-    assert "worn down to the floor" in recession_fault(sample, floor_z=0.3e-3)
-    assert recession_fault(sample, clearance=0.29e-3) is None
-    assert "allowed is above 0.00031 m" in recession_fault(sample, clearance=0.31e-3)

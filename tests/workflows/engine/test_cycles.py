@@ -18,7 +18,7 @@ import pytest
 
 from bulkwear.postproc.mesh import areas, read_stl, read_surface, stl_corners
 from bulkwear.postproc.tables.summary import run_summary
-from bulkwear.postproc.wear.update import BALANCE_TOLERANCE
+from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
 from bulkwear.workflows.engine.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
 from bulkwear.workflows.engine.chain import write_cycle, write_shared_files

@@ -18,8 +18,9 @@ from bulkwear.workflows.cases.circular_tester import work as tester_work
 from bulkwear.workflows.cases.circular_tester.checks import TESTER_CHECKS
 from bulkwear.workflows.cases.circular_tester.parameters import bed_parameters, run_parameters
 from bulkwear.workflows.config.patterns import dimension_columns, option_keys, pattern_of, surface_name
-from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Piece, Run, register
+from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Parameters, Piece, Run, register
 from bulkwear.workflows.engine.pieces import piece_ends
+from bulkwear.workflows.engine.sample_case import SampleCase
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.engine.templates import render
@@ -30,10 +31,9 @@ if TYPE_CHECKING:
 
 
 VOLUME = "volume"  # series of the design
-POSITION = [f"contact_position_{axis}_m" for axis in "xyz"]
 
 
-class CircularTester(Case):
+class CircularTester(SampleCase):
     """The sample rests in the bed, the trough turns; cycle 0 puts the sample into a bed that is steady already.
 
     The master surface is in the sample's own frame; the solver gets it inclined.
@@ -150,9 +150,12 @@ class CircularTester(Case):
         )
 
     def on_surface(self, parameters: Parameters, ledger: pd.DataFrame) -> pd.DataFrame:
-        """Return a ledger with its contact positions in the sample's own frame."""
-        turned = ledger[POSITION].to_numpy() @ tester_deck.pose(parameters["tester"])
-        return ledger.assign(**dict(zip(POSITION, turned.T, strict=True)))
+        """Return a ledger with its vectors in the sample's own frame."""
+        pose = tester_deck.pose(parameters["tester"])
+        turned = {}
+        for columns in vector_columns(ledger):
+            turned |= dict(zip(columns, (ledger[columns].to_numpy() @ pose).T, strict=True))
+        return ledger.assign(**turned)
 
     def record(self, parameters: Parameters, bed: Parameters | None, span: Span | None) -> dict[str, Any]:
         """Return the sample's pose, how often the trough has gone round since wear counts, and the packing's seed."""
@@ -244,6 +247,12 @@ class CircularTester(Case):
 
 
 register(CircularTester())
+
+
+def vector_columns(ledger: pd.DataFrame) -> list[list[str]]:
+    """Return the columns of a ledger that are x, y and z of a vector, three by three."""
+    first = [name.split("_x_") for name in ledger if "_x_" in name]
+    return [[f"{name}_{axis}_{unit}" for axis in "xyz"] for name, unit in first]
 
 
 def revolution(parameters: Parameters, steps: Any) -> Any:

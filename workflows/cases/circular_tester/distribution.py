@@ -11,12 +11,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, centroids, read_surface
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, centroids, read_surface, worn_faces
 from bulkwear.postproc.readers.cycle_folders import cycle_folders
 from bulkwear.postproc.scans.comparison import bump_names, bump_sections, largest_losses
 from bulkwear.postproc.tables.depths import WORN_VOLUME
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
-from bulkwear.postproc.wear.update import worn_faces
 from bulkwear.workflows.cases.circular_tester.runs import MESH, SIZE, SURFACE, VOLUME, TesterRun
 from bulkwear.workflows.cases.circular_tester.volume import chosen
 

@@ -13,12 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import PLAIN, read_surface
+from bulkwear.postproc.mesh import PLAIN, read_surface, worn_faces
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
 from bulkwear.postproc.wear.coefficient import coefficient_of_volume, laboratory_coefficient
 from bulkwear.postproc.wear.pattern_left import pattern_volume
-from bulkwear.postproc.wear.update import worn_faces
 from bulkwear.workflows.cases.circular_tester.runs import SURFACE, TesterRun
 
 CONVEX = "convex"  # the source's pattern

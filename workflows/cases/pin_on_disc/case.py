@@ -14,7 +14,8 @@ from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.reference.sphere_contact import safe_time_step, stable_time_step, touching_reach
 from bulkwear.workflows.cases.pin_on_disc import decks as pin_deck
 from bulkwear.workflows.cases.pin_on_disc.parameters import PIN_CHECKS, ROUNDING, run_parameters
-from bulkwear.workflows.engine.case import SETUP_LOADS, Case, Parameters, Piece, register
+from bulkwear.workflows.engine.case import SETUP_LOADS, Parameters, Piece, register
+from bulkwear.workflows.engine.sample_case import SampleCase
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.engine.templates import render
@@ -34,7 +35,7 @@ HEADROOM_OVERLAPS = 2.0  # -, of the pin over the deepest point, for what it can
 SET_DOWN_ARC = 1e-3  # rad, on either side of the place where the pin is set down
 
 
-class PinOnDisc(Case):
+class PinOnDisc(SampleCase):
     """The disc rests, the pin is taken round and is free to rise and sink; cycle 0 sets it down on the flat disc.
 
     The solver gets the stretch of the track that the cycle's arc needs.

@@ -11,7 +11,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import read_surface
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value, totals_of_runs
-from bulkwear.postproc.wear.update import lost_volume
+from bulkwear.postproc.wear.balance import lost_volume
 from bulkwear.workflows.cases.pin_on_disc.runs import (
     COEFFICIENT_TOLERANCE,
     SCHEMES,

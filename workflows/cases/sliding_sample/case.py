@@ -26,7 +26,7 @@ from bulkwear.workflows.cases.sliding_sample.study import varies_scale
 from bulkwear.workflows.config.patterns import dimension_columns, option_keys, pattern_section, sample_surface
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Case, Parameters, Run, register
+from bulkwear.workflows.engine.case import SETUP_BED, SETUP_LOADS, Parameters, Run, register
 from bulkwear.workflows.engine.derived import (
     ADAPTIVE,
     PERIODIC,
@@ -39,6 +39,7 @@ from bulkwear.workflows.engine.derived import (
     window_lengths,
 )
 from bulkwear.workflows.engine.pieces import piece_ends
+from bulkwear.workflows.engine.sample_case import SampleCase
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.engine.templates import render, used_sections
@@ -51,7 +52,7 @@ if TYPE_CHECKING:
 END_WALL = "end_wall.stl"
 
 
-class SlidingSample(Case):
+class SlidingSample(SampleCase):
     """The sample rests, the bed travels past it; cycle 0 lowers the bed on to the sample and runs it in."""
 
     name = "sliding_sample"
@@ -66,7 +67,7 @@ class SlidingSample(Case):
     more_templates = ("packed_container", "bed_contacts", "collision")
     figure_modules = ("particle_size.figures", "screening.figures", "screening.regression_figures", "figures")
     shared_figures = ("worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
-    solver_rules = (*Case.solver_rules, "packing_profiles")
+    solver_rules = (*SampleCase.solver_rules, "packing_profiles")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")
     first_title = "lowering and run-in"
@@ -235,9 +236,9 @@ class SlidingSample(Case):
 
     def worn_through(self, worn: SurfaceMesh) -> str | None:
         """Return a phrase if the sample is worn down to the floor."""
-        from bulkwear.postproc.wear.update import recession_fault
+        from bulkwear.meshes.sample import floor_fault
 
-        return recession_fault(worn)
+        return floor_fault(worn)
 
     def summary(
         self, design: Path, wear: Sequence[Path], pristine: Sequence[Path], worn: Sequence[Path]

@@ -9,9 +9,8 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
-from bulkwear.postproc.mesh import read_surface
+from bulkwear.postproc.mesh import read_surface, worn_faces
 from bulkwear.postproc.readers.solver_log import thermo_table
-from bulkwear.postproc.wear.update import worn_faces
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import distribution as tester_distribution
 from bulkwear.workflows.cases.circular_tester.key_numbers import result_table

@@ -12,11 +12,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges
+from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges, worn_faces
 from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, draw_circles, new_figure
 from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
 from bulkwear.postproc.tables.film import section
-from bulkwear.postproc.wear.update import worn_faces
 
 SIDE, BOTTOM, ACROSS = "side view", "bottom view", "cross-section"
 AXES = {SIDE: ("y", "z", "x"), BOTTOM: ("y", "x", "z"), ACROSS: ("x", "z", "y")}  # horizontal, vertical, looked along
