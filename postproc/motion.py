@@ -18,70 +18,12 @@ from typing import TypeAlias
 
 import numpy as np
 
+from bulkwear.postproc.courses import Steady, Swinging, number, pace_lines
+
 PARALLEL = 1e-12  # -, sine of the angle between two directions that count as parallel: rounding of unit vectors
 
 Vector: TypeAlias = tuple[float, float, float]
 Pose: TypeAlias = tuple[np.ndarray, np.ndarray]
-
-
-@dataclass(frozen=True)
-class Steady:
-    """A course at a pace of 1 (per s) that is reached `ramp_s` after `start_s` and kept from then on."""
-
-    start_s: float = 0.0
-    ramp_s: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.start_s) and 0.0 <= self.ramp_s < math.inf):
-            raise ValueError(f"a motion starts at {self.start_s} s with a ramp of {self.ramp_s} s, allowed is >= 0 s")
-
-    def gone(self, time_s: float) -> float:
-        """Return how far the course is at that time, s at full pace: half of the ramp is lost."""
-        since, over = max(time_s - self.start_s, 0.0), max(time_s - self.start_s - self.ramp_s, 0.0)
-        return since if self.ramp_s == 0.0 else (since - over) * (since + over) / (2.0 * self.ramp_s)
-
-    def is_constant(self, time_s: float) -> bool:
-        """Return whether the pace is 1 from that time on."""
-        return time_s >= self.start_s + self.ramp_s
-
-    def mean_pace(self, end: str) -> str:
-        """Return the solver's formula of the mean pace in the step that ends at the time in the variable `end`."""
-        return f"({self._gone(end)}-{self._gone(f'{end}-dt')})/dt"
-
-    def _gone(self, time: str) -> str:
-        since = _positive_part(f"{time}-{_number(self.start_s)}")
-        if self.ramp_s == 0.0:
-            return since
-        over = _positive_part(f"{time}-{_number(self.start_s + self.ramp_s)}")
-        return f"({since}-{over})*({since}+{over})/{_number(2.0 * self.ramp_s)}"
-
-
-@dataclass(frozen=True)
-class Swinging:
-    """A course that swings between -1 and 1, sin(2 pi time / period + phase)."""
-
-    period_s: float
-    phase_rad: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not (0.0 < self.period_s < math.inf and math.isfinite(self.phase_rad)):
-            raise ValueError(f"a motion swings with a period of {self.period_s} s, allowed is a number above 0 s")
-
-    def gone(self, time_s: float) -> float:
-        """Return where the course is at that time."""
-        return math.sin(2.0 * math.pi * math.fmod(time_s, self.period_s) / self.period_s + self.phase_rad)
-
-    def is_constant(self, time_s: float) -> bool:
-        """Return False: the pace always changes."""
-        return False
-
-    def mean_pace(self, end: str) -> str:
-        """Return the solver's formula of the mean pace in the step that ends at the time in the variable `end`.
-
-        sin a - sin b = 2 sin((a - b)/2) cos((a + b)/2): no digits are lost in a short step.
-        """
-        rate = _number(2.0 * math.pi / self.period_s)
-        return f"2.0*sin(0.5*{rate}*dt)*cos({rate}*({end}-0.5*dt)+{_number(self.phase_rad)})/dt"
 
 
 @dataclass(frozen=True)
@@ -129,14 +71,15 @@ class Straight(Motion):
 
     def _lines(self, name: str, mesh_id: str, time_s: float) -> tuple[str, ...]:
         fix = f"fix {name} all move/mesh mesh {mesh_id}"
-        if self.course.is_constant(time_s):
-            return (f"{fix} linear {_numbers(self.vector)}",)
+        pace = self.course.pace(time_s)
+        if pace is not None:
+            return (f"{fix} linear {_numbers(self.vector)}",) if pace else ()
         speeds = [
-            f"variable {name}_{axis} equal {_number(value)}*v_{name}_pace"
+            f"variable {name}_{axis} equal {number(value)}*v_{name}_pace"
             for axis, value in zip("xyz", self.vector, strict=True)
         ]
         return (
-            *_pace_lines(name, self.course, time_s),
+            *pace_lines(name, self.course, time_s),
             *speeds,
             f"{fix} linear/variable v_{name}_x v_{name}_y v_{name}_z",
         )
@@ -165,11 +108,12 @@ class Turning(Motion):
     def _lines(self, name: str, mesh_id: str, time_s: float) -> tuple[str, ...]:
         fix = f"fix {name} all move/mesh mesh {mesh_id}"
         about = f"origin {_numbers(self.point_m)} axis {_numbers(self.vector)}"
-        if self.course.is_constant(time_s):
-            return (f"{fix} rotate {about} period {2.0 * math.pi / self.angle:.17g}",)
+        pace = self.course.pace(time_s)
+        if pace is not None:
+            return (f"{fix} rotate {about} period {2.0 * math.pi / self.angle:.17g}",) if pace else ()
         return (
-            *_pace_lines(name, self.course, time_s),
-            f"variable {name}_omega equal {_number(self.angle)}*v_{name}_pace",
+            *pace_lines(name, self.course, time_s),
+            f"variable {name}_omega equal {number(self.angle)}*v_{name}_pace",
             f"{fix} rotate/variable {about} omega v_{name}_omega",
         )
 
@@ -196,10 +140,10 @@ class Combined(Motion):
             if not isinstance(motion, Straight | Turning):
                 raise ValueError(f"motion {k} of a combination is a {type(motion).__name__}, allowed are moving ones")
             for earlier in self.motions[:k]:
-                if isinstance(earlier, Turning) and not _are_parallel(earlier.vector, motion.vector):
+                if not _may_carry(earlier, motion):
                     raise ValueError(
-                        f"motion {k} of a combination is along {motion.vector} and carried round {earlier.vector}; "
-                        "the solver keeps directions in space, allowed are parallel ones"
+                        f"motion {k} of a combination is along {motion.vector} and carried round {earlier.vector}; the "
+                        "solver keeps directions in space, allowed are parallel ones, or one that is over before"
                     )
 
     def pose(self, time_s: float) -> Pose:
@@ -225,16 +169,26 @@ def at_rest() -> Motion:
     return Motion()
 
 
-def translation(velocity_m_per_s: Vector, start_s: float = 0.0, ramp_s: float = 0.0) -> Motion:
-    """Return a motion with a velocity (3,) m/s that grows linearly from 0 within `ramp_s` after `start_s`."""
-    return Straight(velocity_m_per_s, Steady(start_s, ramp_s))
+def translation(
+    velocity_m_per_s: Vector, start_s: float = 0.0, ramp_s: float = 0.0, stop_s: float = math.inf
+) -> Motion:
+    """Return a motion with a velocity (3,) m/s, which grows linearly within `ramp_s` after the start.
+
+    It goes down to 0 within as long after the stop. Times in s.
+    """
+    return Straight(velocity_m_per_s, Steady(start_s, ramp_s, stop_s))
 
 
 def rotation(
-    point_m: Vector, axis: Vector, angular_velocity_rad_per_s: float, start_s: float = 0.0, ramp_s: float = 0.0
+    point_m: Vector,
+    axis: Vector,
+    angular_velocity_rad_per_s: float,
+    start_s: float = 0.0,
+    ramp_s: float = 0.0,
+    stop_s: float = math.inf,
 ) -> Motion:
-    """Return a right-handed rotation about an axis (3,) through a point (3,) m, started as `translation` is."""
-    return Turning(point_m, axis, angular_velocity_rad_per_s, Steady(start_s, ramp_s))
+    """Return a right-handed rotation about an axis (3,) through a point (3,) m; starts and stops as `translation`."""
+    return Turning(point_m, axis, angular_velocity_rad_per_s, Steady(start_s, ramp_s, stop_s))
 
 
 def oscillation(amplitude_m: Vector, period_s: float, phase_rad: float = 0.0) -> Motion:
@@ -265,28 +219,10 @@ def turning_surface(point_m: Vector, axis: Vector, angular_velocity_rad_per_s: f
 def combined(*motions: Motion) -> Motion:
     """Return motions that carry one another, the first one outermost, as on a slide that carries a turning shaft.
 
-    Raises ValueError for belts, and where a turning motion carries one that is not parallel to its axis.
+    Raises ValueError for belts, and where a turning motion carries one that is not parallel to its axis and not over
+    when the turn starts: the solver would keep its direction in space.
     """
     return Combined(motions)
-
-
-def _pace_lines(name: str, course: Steady | Swinging, time_s: float) -> tuple[str, ...]:
-    """Variables of the time at the end of a step and of the mean pace in it; the solver asks for them in each step."""
-    return (
-        f"variable {name}_first equal $(step)",
-        f"variable {name}_time equal {_number(time_s)}+(step-v_{name}_first)*dt",
-        f"variable {name}_pace equal {course.mean_pace(f'v_{name}_time')}",
-    )
-
-
-def _positive_part(text: str) -> str:
-    """Formula of max(text, 0); the solver has neither a maximum nor comparisons."""
-    return f"(0.5*({text}+abs({text})))"
-
-
-def _number(value: float) -> str:
-    """A number for the solver's formulas, exact; negative ones in brackets, which an operator may stand before."""
-    return f"{value:.17g}" if value >= 0.0 else f"({value:.17g})"
 
 
 def _numbers(values: Iterable[float]) -> str:
@@ -297,6 +233,14 @@ def _check_vector(what: str, vector: Vector) -> None:
     values = np.asarray(vector, dtype=np.float64)
     if values.shape != (3,) or not np.all(np.isfinite(values)) or not values.any():
         raise ValueError(f"the {what} of a motion is {vector}, allowed are three finite numbers that are not all 0")
+
+
+def _may_carry(outer: Straight | Turning, inner: Straight | Turning) -> bool:
+    """Whether the solver does what is meant when `outer` carries `inner`: it never turns a direction."""
+    if not isinstance(outer, Turning) or _are_parallel(outer.vector, inner.vector):
+        return True
+    courses = (outer.course, inner.course)
+    return all(isinstance(course, Steady) for course in courses) and inner.course.end_s <= outer.course.start_s
 
 
 def _are_parallel(first: Vector, second: Vector) -> bool:

@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from bulkwear.postproc.courses import Steady, Swinging
 from bulkwear.postproc.motion import (
     Motion,
-    Steady,
-    Swinging,
     angular_oscillation,
     at_rest,
     belt,
@@ -78,7 +77,16 @@ def test_ramp_loses_half_of_its_time():
     course = Steady(start_s=2.0, ramp_s=0.5)
     times = [1.0, 2.0, 2.25, 2.5, 4.0]
     assert [course.gone(time) for time in times] == pytest.approx([0.0, 0.0, 0.0625, 0.25, 1.75], abs=ROUND_OFF)
-    assert [course.is_constant(time) for time in times] == [False, False, False, True, True]
+    assert [course.pace(time) for time in times] == [None, None, None, 1.0, 1.0]
+
+
+def test_stop_is_a_ramp_down():
+    """From the stop on the pace falls as it grew: the whole course is as long as from start to stop at full pace."""
+    course = Steady(start_s=2.0, ramp_s=0.5, stop_s=4.0)
+    times = [4.0, 4.25, 4.5, 100.0]
+    assert [course.gone(time) for time in times] == pytest.approx([1.75, 1.9375, 2.0, 2.0], abs=ROUND_OFF)
+    assert [course.pace(time) for time in times] == [None, None, 0.0, 0.0]
+    assert translation(AXIS, start_s=1.0, stop_s=2.0).deck_lines("slide", 2.0) == ()
 
 
 def test_oscillation_swings_about_the_drawn_place():
@@ -111,6 +119,14 @@ def test_carried_axis_stands_where_it_was_carried():
     assert origin == pytest.approx([3.1, -0.2, 0.3], abs=ROUND_OFF)
 
 
+def test_motion_that_is_over_may_be_turned():
+    """A bucket that was pushed and is then tipped: the push has come to its end before the turn begins."""
+    push, tip = translation((1.0, 0.0, 0.0), stop_s=2.0), rotation((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.5, start_s=2.0)
+    tipped = combined(tip, push).placed([[0.0, 1.0, 0.0]], 2.0 + math.pi)
+    assert tipped == pytest.approx(np.array([[-1.0, 2.0, 0.0]]), abs=ROUND_OFF)
+    assert len(combined(tip, push).deck_lines("bucket", 3.0)) == 1
+
+
 def test_constant_motions_need_no_variables():
     """A constant velocity is the solver's `linear`, a constant angular velocity its `rotate`."""
     assert translation((1.0, -2.0, 0.5)).deck_lines("chute_3", 8.0) == (
@@ -134,6 +150,8 @@ def solver_sum(course, begin, step, steps):
         Steady(start_s=10.0041),
         Steady(start_s=9.99, ramp_s=0.1),
         Steady(start_s=11.0),
+        Steady(start_s=9.0, ramp_s=0.001, stop_s=10.0033),
+        Steady(start_s=9.0, stop_s=10.00515),
         Swinging(0.0173, 0.4),
         Swinging(0.5, -2.0),
     ],
@@ -174,7 +192,8 @@ def test_belt_rests_and_tells_its_velocity():
     [
         (lambda: translation((0.0, 0.0, 0.0)), "three finite numbers that are not all 0"),
         (lambda: translation((1.0, math.nan, 0.0)), "three finite numbers"),
-        (lambda: translation((1.0, 0.0, 0.0), ramp_s=-1.0), "allowed is >= 0 s"),
+        (lambda: translation((1.0, 0.0, 0.0), ramp_s=-1.0), "allowed are a ramp >= 0 s"),
+        (lambda: translation((1.0, 0.0, 0.0), start_s=1.0, ramp_s=0.5, stop_s=1.4), "a stop after the ramp"),
         (lambda: rotation(POINT, (0.0, 0.0, 0.0), 1.0), "axis of a motion"),
         (lambda: rotation(POINT, AXIS, 0.0), "allowed are finite numbers, not 0"),
         (lambda: oscillation((1.0, 0.0, 0.0), 0.0), "period of 0.0 s"),
