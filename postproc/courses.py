@@ -90,7 +90,7 @@ class Swinging:
 
 
 def pace_lines(name: str, course: Steady | Swinging, time_s: float) -> tuple[str, ...]:
-    """Return the solver's variables of the time at the end of a step and of the mean pace in it, which its fix asks for."""
+    """Return the solver's variables of the time at the end of a step and of the mean pace in it."""
     return (
         f"variable {name}_first equal $(step)",
         f"variable {name}_time equal {number(time_s)}+(step-v_{name}_first)*dt",
@@ -104,5 +104,5 @@ def _positive_part(text: str) -> str:
 
 
 def number(value: float) -> str:
-    """Return a number for the solver's formulas, exact, in brackets where it is negative: operators may stand before."""
+    """Return a number for the solver's formulas, exact; in brackets where it is negative."""
     return f"{value:.17g}" if value >= 0.0 else f"({value:.17g})"
