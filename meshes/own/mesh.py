@@ -1,0 +1,171 @@
+"""A plant's own surface, from CAD and mesh files to what the solver takes: read, weld, turn, check, refine."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from bulkwear.meshes.own.check import check_cuts, check_for_solver, check_gaps, check_manifold
+from bulkwear.meshes.own.orient import oriented, touched_sides
+from bulkwear.meshes.own.read import read_solids
+from bulkwear.meshes.own.refine import WANTED_ANGLE, Region, refined
+from bulkwear.meshes.own.repairs import Repair, Repairs, repairs_text, table
+from bulkwear.meshes.own.solids import Solids, check_sizes, joined, target_edges
+from bulkwear.meshes.own.weld import stitched, weld_tolerance, welded
+from bulkwear.postproc.mesh import (
+    SurfaceMesh,
+    areas,
+    boundary_edges,
+    edge_lengths_per_triangle,
+    enclosed_volume,
+    obtuse_last,
+    smallest_angles,
+)
+
+COARSEST_WELD = 0.1  # -, of the smallest target edge: a larger weld tolerance would eat what is wanted
+
+
+@dataclass(frozen=True)
+class Part:
+    """What a part of a surface is.
+
+    triangles: how many; closed: whether it has no open edge; area_m2; volume_m3: nan where open; low_m, high_m: corners
+    of its bounding box; shortest_edge_m, longest_edge_m; smallest_angle_deg, percentile_1_deg: of smallest angles
+    """
+
+    name: str
+    triangles: int
+    closed: bool
+    area_m2: float
+    volume_m3: float
+    low_m: tuple[float, float, float]
+    high_m: tuple[float, float, float]
+    shortest_edge_m: float
+    longest_edge_m: float
+    smallest_angle_deg: float
+    percentile_1_deg: float
+
+
+@dataclass(frozen=True, eq=False)
+class OwnMesh:
+    """A surface of files, ready for the solver.
+
+    surface: m, with cell data `part` (number in `parts`) and `side` (1: outward winding, 0: the touched side is not
+    known yet); parts: in order; repairs: rows of what was mended and of warnings; weld_m: tolerance that was used
+    """
+
+    surface: SurfaceMesh
+    parts: tuple[Part, ...]
+    repairs: tuple[Repair, ...]
+    weld_m: float
+
+    def text(self) -> str:
+        """Parts and repairs as two tables of text."""
+        welds = f"points within {1e3 * self.weld_m:.3g} mm are one"
+        return f"{parts_text(self.parts)}\n\n{repairs_text(self.repairs)}\n{welds}"
+
+
+def own_mesh(
+    files: str | os.PathLike | Sequence[str | os.PathLike],
+    unit: str,
+    edges: Mapping[str, float] | float | None = None,
+    fine: Sequence[Region] = (),
+    weld_m: float | None = None,
+    smallest_angle_deg: float = WANTED_ANGLE,
+) -> OwnMesh:
+    """Read one or more files of solids and make one surface of them that LIGGGHTS takes as it is.
+
+    Parameters
+    ----------
+    files : STL (ASCII, binary), STEP, IGES, BREP, OBJ, PLY, VTK, VTU or MSH
+    unit : of the files' lengths: m, cm, mm, um, in, ft
+    edges : m, target edge of all triangles, or by name of a part, `*` for those that are not named; None: as they are
+    fine : regions with smaller targets (`meshes.own.refine`: Ball, Box, NearPlaces, or a function of centroids)
+    weld_m : m, points closer than that are one; None: 1e-6 of the largest extent or coordinate
+    smallest_angle_deg : degrees, wanted where edges are given; facets between two creases may keep less
+
+    The surface stays on the facets: it moves by no more than the weld tolerance. Raises FileNotFoundError, ValueError
+    where a file cannot be read, its unit or an edge makes no sense, and `RefusedMeshError` with place and faces where
+    the surface has a fault that cannot be mended.
+    """
+    paths = [Path(files)] if isinstance(files, (str, os.PathLike)) else [Path(each) for each in files]
+    if not paths:
+        raise ValueError("no file is named, allowed are one or more")
+    found = [read_solids(path, unit, edges) for path in paths]
+    solids = joined([replace(each, points=each.points * scale) for each, scale in found])
+    check_sizes(solids, unit)
+    targets = target_edges(solids.names, edges)
+    tolerance = weld_tolerance(solids.points) if weld_m is None else weld_m
+    _check_tolerance(tolerance, targets)
+    repairs = Repairs(solids.names)
+    solids = _mended(solids, tolerance, unit, repairs)
+    if np.isfinite(targets).any() or fine:
+        solids = refined(solids, targets, fine, tolerance, smallest_angle_deg, repairs)
+    check_for_solver(solids, tolerance, unit)
+    order = np.argsort(solids.part, kind="stable")
+    triangles = obtuse_last(solids.points, solids.triangles[order])
+    surface = SurfaceMesh(solids.points, triangles, {"part": solids.part[order], "side": touched_sides(triangles)})
+    parts = tuple(_part(surface, number, name) for number, name in enumerate(solids.names))
+    return OwnMesh(surface, parts, tuple(repairs.rows), tolerance)
+
+
+def _check_tolerance(tolerance: float, targets: np.ndarray) -> None:
+    """Raise ValueError for a weld tolerance that is no length or not well below the target edges."""
+    most = COARSEST_WELD * targets.min()
+    if not 0.0 < tolerance <= most:
+        raise ValueError(f"the weld tolerance is {tolerance:g} m, allowed is above 0 and up to {most:g} m")
+
+
+def _mended(solids: Solids, tolerance: float, unit: str, repairs: Repairs) -> Solids:
+    """Solids that are welded, joined, wound and sound."""
+    solids = welded(solids, tolerance, repairs)
+    for number, name in enumerate(solids.names):
+        if not (solids.part == number).any():
+            raise ValueError(f"part '{name}' has no triangle left that is wider than {tolerance:g} m, allowed is one")
+    check_gaps(solids, tolerance, unit)
+    solids = stitched(solids, tolerance, repairs)
+    check_manifold(solids, unit)
+    solids = oriented(solids, repairs)
+    check_cuts(solids, tolerance, unit, repairs)
+    return solids
+
+
+def _part(surface: SurfaceMesh, number: int, name: str) -> Part:
+    """The facts of a part of a surface."""
+    points, triangles = surface.points, surface.triangles[surface.cell_data["part"] == number]
+    closed = not len(boundary_edges(triangles))
+    corners = points[triangles].reshape(-1, 3)
+    lengths, angles = edge_lengths_per_triangle(points, triangles), smallest_angles(points, triangles)
+    return Part(
+        name,
+        len(triangles),
+        closed,
+        float(areas(points, triangles).sum()),
+        enclosed_volume(points, triangles) if closed else float("nan"),
+        tuple(corners.min(axis=0).tolist()),
+        tuple(corners.max(axis=0).tolist()),
+        float(lengths.min()),
+        float(lengths.max()),
+        float(angles.min()),
+        float(np.percentile(angles, 1)),
+    )
+
+
+def parts_text(parts: Sequence[Part]) -> str:
+    """The table of parts as text: counts, bounding box in m, edges in mm, angles in degrees."""
+    head = ["part", "triangles", "closed", "area (m2)", "volume (m3)", "from (m)", "to (m)", "edges (mm)"]
+    rows = [
+        [
+            *(part.name, str(part.triangles), "yes" if part.closed else "no", f"{part.area_m2:.6g}"),
+            f"{part.volume_m3:.6g}" if part.closed else "",
+            *(", ".join(f"{value:.6g}" for value in corner) for corner in (part.low_m, part.high_m)),
+            f"{1e3 * part.shortest_edge_m:.3g} to {1e3 * part.longest_edge_m:.3g}",
+            f"{part.smallest_angle_deg:.3g} / {part.percentile_1_deg:.3g}",
+        ]
+        for part in parts
+    ]
+    return table([*head, "smallest angle / 1 % (degrees)"], rows)

@@ -1,0 +1,118 @@
+"""Read solids from any of the formats that CAD and mesh programs write."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from bulkwear.meshes.own.cad import CAD_FORMATS, read_cad_solids
+from bulkwear.meshes.own.obj import read_obj_solids
+from bulkwear.meshes.own.solids import Solids, distinct, metres_per
+from bulkwear.meshes.own.stl import read_stl_solids
+
+PART_DATA = ("part", "gmsh:physical", "region", "solid", "group", "material")  # cell data that tell parts, best first
+FLAT_CELLS = {"triangle": 3, "quad": 4}  # cells that are a surface, and their corners
+SIGNATURES = {  # how a file begins: the formats that do
+    b"ISO-10303-21": (".step", ".stp"),
+    b"ply": (".ply",),
+    b"# vtk": (".vtk",),
+    b"$MeshFormat": (".msh",),
+    b"<?xml": (".vtu",),
+    b"<VTKFile": (".vtu",),
+    b"DBRep_DrawableShape": (".brep",),
+    b"CASCADE Topology": (".brep",),
+}
+
+
+def read_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None) -> tuple[Solids, float]:
+    """Solids of a file, and how many m its numbers are in: its unit's, or what a CAD file says itself.
+
+    edges: m, of CAD files: target edge of the triangles (`own_mesh`). Raises FileNotFoundError, or ValueError with the
+    file, what was found and what is allowed.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    suffix = path.suffix.lower()
+    if suffix not in CAD_FORMATS and suffix not in READERS:
+        raise ValueError(
+            f"{path}: the format '{path.suffix}' is unknown, allowed are {', '.join([*READERS, *CAD_FORMATS])}"
+        )
+    if not path.stat().st_size:
+        raise ValueError(f"{path}: the file is empty, allowed is a surface as {suffix}")
+    _check_signature(path, suffix)
+    if suffix in CAD_FORMATS:
+        solids, scale = read_cad_solids(path, unit, edges)
+    else:
+        solids, scale = READERS[suffix](path), metres_per(unit)
+    _check_numbers(path, solids)
+    return solids, scale
+
+
+def _check_signature(path: Path, suffix: str) -> None:
+    """Raise ValueError where a file begins as one of another format."""
+    with path.open("rb") as file:
+        begins = file.read(64).lstrip()
+    for signature, formats in SIGNATURES.items():
+        if begins.startswith(signature) and suffix not in formats:
+            raise ValueError(
+                f"{path}: begins with '{signature.decode()}' as {formats[0]} does, allowed is what its name says, "
+                f"{suffix}; rename it"
+            )
+
+
+def _check_numbers(path: Path, solids: Solids) -> None:
+    """Raise ValueError where there is no triangle, or a coordinate that is not finite."""
+    if not len(solids.triangles):
+        raise ValueError(f"{path}: no triangle found, allowed is a surface of one or more")
+    faulty = np.flatnonzero(~np.isfinite(solids.points[solids.triangles]).all(axis=(1, 2)))
+    if faulty.size:
+        name = solids.names[solids.part[faulty[0]]]
+        raise ValueError(
+            f"{path}: {faulty.size} triangles have a coordinate that is not finite, the first is number "
+            f"{faulty[0] + 1}, in part '{name}'; allowed are finite numbers"
+        )
+
+
+def _read_meshio(path: Path) -> Solids:
+    """Solids of a file that meshio knows: parts by a cell label (`PART_DATA`), names of physical groups."""
+    import meshio  # slow to import, and its faults are many
+
+    try:
+        content = meshio.read(path)
+    except (SystemExit, Exception) as error:  # meshio leaves by sys.exit on some broken files
+        raise ValueError(f"{path}: not a readable {path.suffix} file ({error or 'cut short'})") from error
+    wanted = [k for k, block in enumerate(content.cells) if block.type in FLAT_CELLS]
+    if not wanted:
+        found = ", ".join(sorted({block.type for block in content.cells})) or "none"
+        raise ValueError(f"{path}: cells must be triangles or quadrilaterals, found {found}")
+    label = next((name for name in PART_DATA if name in content.cell_data), None)
+    triangles, labels = [], []
+    for k in wanted:
+        cells = np.asarray(content.cells[k].data, dtype=np.int64)
+        fans = [cells[:, [0, j, j + 1]] for j in range(1, cells.shape[1] - 1)]
+        triangles.append(np.stack(fans, axis=1).reshape(-1, 3))
+        values = np.zeros(len(cells)) if label is None else np.asarray(content.cell_data[label][k]).reshape(-1)
+        labels.append(np.repeat(values, len(fans)))
+    values, part = np.unique(np.concatenate(labels), return_inverse=True)
+    said = {int(data[0]): name for name, data in content.field_data.items() if len(data) == 2 and int(data[1]) == 2}
+    names = (
+        [path.stem]
+        if label is None
+        else [said.get(int(value), f"{label.split(':')[-1]}_{value:g}") for value in values]
+    )
+    points = np.asarray(content.points, dtype=np.float64)
+    return Solids(_in_space(points), np.concatenate(triangles), part, distinct(names))
+
+
+def _in_space(points: np.ndarray) -> np.ndarray:
+    """Points (n, 2) or (n, 3) as (n, 3)."""
+    return np.pad(points, [(0, 0), (0, 3 - points.shape[1])])
+
+
+READERS: dict[str, Callable[[Path], Solids]] = {
+    ".stl": read_stl_solids,
+    ".obj": read_obj_solids,
+    **dict.fromkeys((".ply", ".vtk", ".vtu", ".msh"), _read_meshio),
+}

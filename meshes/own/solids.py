@@ -1,0 +1,105 @@
+"""What a file of solids holds once it is read, the units it may be in, and how a surface is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bulkwear.postproc.mesh import SurfaceMesh
+
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048}  # m
+OTHERS = "*"  # name that stands for all parts which are not named
+LARGEST_PART, SMALLEST_PART = 1e3, 1e-6  # m, diagonal of a part: beyond them its unit is wrong
+
+
+@dataclass(frozen=True, eq=False)
+class Solids:
+    """Triangles of one or more parts.
+
+    points: (n, 3) in any unit; triangles: (m, 3) node indices; part: (m,) index of the name; names: of the parts
+    """
+
+    points: np.ndarray
+    triangles: np.ndarray
+    part: np.ndarray
+    names: tuple[str, ...]
+
+
+class RefusedMeshError(ValueError):
+    """A surface that cannot be used, with what a picture of its fault needs.
+
+    surface: in m; faces: (k,) those at fault; place: (3,) m, of the first of them
+    """
+
+    def __init__(self, message: str, surface: SurfaceMesh, faces: np.ndarray, place: np.ndarray) -> None:
+        super().__init__(message)
+        self.surface, self.faces, self.place = surface, np.asarray(faces), np.asarray(place)
+
+
+def metres_per(unit: str) -> float:
+    """Length of a unit, m. Raises ValueError for a unit that is not in `UNITS`."""
+    if unit not in UNITS:
+        raise ValueError(f"the unit of lengths is {unit!r}, allowed is one of {', '.join(UNITS)}")
+    return UNITS[unit]
+
+
+def place_text(place: np.ndarray, unit: str) -> str:
+    """A place (3,) m as words, in m and, where that is another one, in the unit of its file."""
+
+    def numbers(scale: float) -> str:
+        return ", ".join(f"{value / scale + 0.0:.6g}" for value in place)
+
+    metres = f"({numbers(1.0)}) m"
+    return metres if unit == "m" else f"{metres}, ({numbers(UNITS[unit])}) {unit} in the file"
+
+
+def joined(files: Sequence[Solids]) -> Solids:
+    """The solids of several files together, in order; names that occur again get a number."""
+    nodes = np.cumsum([0, *(len(each.points) for each in files)])
+    parts = np.cumsum([0, *(len(each.names) for each in files)])
+    return Solids(
+        np.concatenate([each.points for each in files]),
+        np.concatenate([each.triangles + first for each, first in zip(files, nodes, strict=False)]),
+        np.concatenate([each.part + first for each, first in zip(files, parts, strict=False)]),
+        distinct([name for each in files for name in each.names]),
+    )
+
+
+def distinct(names: Sequence[str]) -> tuple[str, ...]:
+    """The names in order; one that occurs again is numbered from 2 on."""
+    result: list[str] = []
+    for name in names:
+        free, number = name, 2
+        while free in result:
+            free, number = f"{name}_{number}", number + 1
+        result.append(free)
+    return tuple(result)
+
+
+def target_edges(names: Sequence[str], edges: Mapping[str, float] | float | None) -> np.ndarray:
+    """Target edge of each part, (parts,) m, infinite where none is wanted.
+
+    edges: m, of all parts, or by name with `OTHERS` for those that are not named. Raises ValueError for a name that no
+    part has, and for an edge that is no length.
+    """
+    given = edges if isinstance(edges, Mapping) else {OTHERS: np.inf if edges is None else edges}
+    for name, edge in given.items():
+        if name != OTHERS and name not in names:
+            raise ValueError(f"edges name the part '{name}', allowed are {', '.join(names)} and '{OTHERS}'")
+        if not edge > 0.0:
+            raise ValueError(f"the target edge of '{name}' is {edge} m, allowed is a length above 0")
+    return np.array([given.get(name, given.get(OTHERS, np.inf)) for name in names], dtype=np.float64)
+
+
+def check_sizes(solids: Solids, unit: str) -> None:
+    """Raise ValueError where a part, its points in m, is larger or smaller than any that its unit can mean."""
+    for number, name in enumerate(solids.names):
+        points = solids.points[solids.triangles[solids.part == number]].reshape(-1, 3)
+        size = float(np.linalg.norm(np.ptp(points, axis=0)))
+        if not SMALLEST_PART <= size <= LARGEST_PART:
+            raise ValueError(
+                f"part '{name}' is {size:.3g} m large if its unit is {unit}, allowed are {SMALLEST_PART:g} to "
+                f"{LARGEST_PART:g} m; say the unit that it was drawn in ({', '.join(UNITS)})"
+            )

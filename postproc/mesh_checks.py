@@ -1,0 +1,209 @@
+"""Which faces of a surface cut one another, and which lie on one another in one plane.
+
+Candidates are pairs of faces whose boxes overlap, from a tree of boxes: slivers and faces of unlike size cost little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numba import njit
+
+from bulkwear.postproc.mesh import area_vectors
+
+LARGEST_PAIR_BLOCK = 500_000  # pairs of faces handled at once: bounds the memory at some 300 MB
+IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
+MORTON_BITS = 20  # per axis, of a place along the curve that orders boxes: three of them fit an int64
+LEAF = 4  # boxes in a leaf of the tree
+DEEPEST = 64  # levels of the tree: more than any int64 count needs
+
+
+def intersecting_faces(
+    points: np.ndarray, triangles: np.ndarray, among: np.ndarray | None = None, clearance_m: float = 0.0
+) -> np.ndarray:
+    """Pairs of faces that cut one another, (p, 2), lower index first.
+
+    among: (m,) bool, only pairs with at least one of these; None: all. clearance_m: m, faces cut where each stands out
+    of the other's plane by more, on both sides, along a line that is longer. Neighbours at an edge never count.
+    Coplanar overlap is not found (`overlapping_faces`).
+    """
+    return _searched(points, triangles, among, clearance_m, _cutting)
+
+
+def overlapping_faces(points: np.ndarray, triangles: np.ndarray, clearance_m: float) -> np.ndarray:
+    """Pairs of faces in one plane that cover one another, (p, 2), lower index first; folds at an edge count.
+
+    clearance_m: m, > 0: how far the planes may be apart, and how wide an overlap has to be to count.
+    """
+    return _searched(points, triangles, None, clearance_m, _covering)
+
+
+def _searched(points, triangles, among, clearance, narrow) -> np.ndarray:
+    """Sorted pairs of faces with overlapping boxes for which `narrow` says yes, (p, 2)."""
+    corners = points[triangles]
+    boxes = corners.min(axis=1) - clearance, corners.max(axis=1) + clearance
+    found = [np.empty((0, 2), dtype=np.int64)]
+    for pairs in overlapping_boxes(*boxes, among):
+        found.append(pairs[narrow(points, triangles, pairs, clearance)])
+    return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
+
+
+def _cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
+    """Mask (p,) of the pairs that pass through one another along a line; neighbours at an edge never do.
+
+    Both meet the line common to their planes in an interval; they cut where the intervals overlap. Source:
+    T. Moeller, J. Graphics Tools 2 (1997) 25.
+    """
+    first, second = triangles[pairs[:, 0]], triangles[pairs[:, 1]]
+    rows = np.flatnonzero((first[:, :, None] == second[:, None, :]).sum(axis=(1, 2)) < 2)
+    first, second = first[rows], second[rows]
+    normals = area_vectors(points, first), area_vectors(points, second)
+    reach = np.linalg.norm(points[first] - points[second[:, :1]], axis=2).max(axis=1)
+    least = np.maximum(IN_PLANE * reach, clearance)
+    heights = [
+        _heights(points, ours, theirs, normal)
+        for ours, theirs, normal in ((first, second, normals[1]), (second, first, normals[0]))
+    ]
+    crossing = np.all([(h.min(axis=1) < -least) & (h.max(axis=1) > least) for h in heights], axis=0)
+    rows, first, second, least = (array[crossing] for array in (rows, first, second, least))
+    line = np.cross(normals[0][crossing], normals[1][crossing])
+    line /= np.maximum(np.linalg.norm(line, axis=1, keepdims=True), np.finfo(float).tiny)
+    origin = points[first[:, 0]]
+    low, high = zip(
+        *(
+            _interval(points[ours] - origin[:, None], h[crossing], line)
+            for ours, h in zip((first, second), heights, strict=True)
+        ),
+        strict=True,
+    )
+    result = np.zeros(len(pairs), dtype=bool)
+    result[rows[np.minimum(*high) - np.maximum(*low) > least]] = True
+    return result
+
+
+def _heights(points: np.ndarray, ours: np.ndarray, theirs: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Height (k, 3) m of our corners over their planes; 0 at common nodes, so that rounding tells no side."""
+    length = np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
+    heights = np.einsum("kcj,kj->kc", points[ours] - points[theirs[:, :1]], normal) / length[:, None]
+    heights[(ours[:, :, None] == theirs[:, None, :]).any(axis=2)] = 0.0
+    return heights
+
+
+def _interval(corners: np.ndarray, heights: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where triangles (k, 3, 3) with corners on both sides of a plane cross it, along a line: from, to (k,) m."""
+    place = np.einsum("kcj,kj->kc", corners, line)
+    next_height, next_place = np.roll(heights, -1, axis=1), np.roll(place, -1, axis=1)
+    passes = (heights > 0.0) != (next_height > 0.0)  # two edges of each
+    step = np.divide(heights, heights - next_height, out=np.zeros_like(heights), where=passes)
+    crossed = place + step * (next_place - place)
+    return np.where(passes, crossed, np.inf).min(axis=1), np.where(passes, crossed, -np.inf).max(axis=1)
+
+
+def _covering(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
+    """Mask (p,) of the pairs in one plane that no edge of either separates (separating axes)."""
+    first, second = points[triangles[pairs[:, 0]]], points[triangles[pairs[:, 1]]]
+    result = np.ones(len(pairs), dtype=bool)
+    axes = []
+    for ours, theirs in ((first, second), (second, first)):
+        edges = np.roll(ours, -1, axis=1) - ours
+        normal = np.cross(edges[:, 0], edges[:, 1])
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
+        result &= (np.abs(np.einsum("kcj,kj->kc", theirs - ours[:, :1], normal)) <= clearance).all(axis=1)
+        axes.append(np.cross(edges, normal[:, None]))
+    rows = np.flatnonzero(result)
+    sideways = np.concatenate(axes, axis=1)[rows]
+    sideways /= np.maximum(np.linalg.norm(sideways, axis=2, keepdims=True), np.finfo(float).tiny)
+    ours, theirs = (np.einsum("kcj,kaj->kac", each[rows] - first[rows][:, :1], sideways) for each in (first, second))
+    overlap = np.minimum(ours.max(axis=2), theirs.max(axis=2)) - np.maximum(ours.min(axis=2), theirs.min(axis=2))
+    result[rows] = overlap.min(axis=1) > clearance
+    return result
+
+
+def overlapping_boxes(low: np.ndarray, high: np.ndarray, among: np.ndarray | None = None) -> Iterator[np.ndarray]:
+    """Yield pairs (p, 2) of boxes that overlap or touch, in blocks of at most `LARGEST_PAIR_BLOCK`.
+
+    low, high: (m, 3) m. among: (m,) bool, only pairs with at least one of these, those of two of them twice; None: all,
+    once.
+    """
+    if not len(low):
+        return
+    order = _along_a_curve(0.5 * (low + high))
+    low, high = low[order], high[order]
+    asked = np.arange(len(low)) if among is None else np.flatnonzero(among[order])
+    tree, position = _tree(low, high), 0
+    found = np.empty((LARGEST_PAIR_BLOCK, 2), dtype=np.int64)
+    while position < len(asked):
+        count, position_after = _pairs(*tree, low, high, asked, position, among is None, found)
+        if position_after == position:  # one box overlaps more boxes than a block takes
+            found = np.empty((2 * len(found), 2), dtype=np.int64)
+        elif count:
+            yield order[found[:count]]
+        position = position_after
+
+
+def _along_a_curve(places: np.ndarray) -> np.ndarray:
+    """Order (m,) of places (m, 3) along Morton's curve, so that neighbours in the order lie close together."""
+    low, size = places.min(axis=0), np.maximum(np.ptp(places, axis=0).max(), np.finfo(float).tiny)
+    cell = ((places - low) / size * (2**MORTON_BITS - 1)).astype(np.int64)
+    key = np.zeros(len(places), dtype=np.int64)
+    for bit in range(MORTON_BITS):
+        for axis in range(3):
+            key |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return np.argsort(key, kind="stable")
+
+
+def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Boxes (2 q, 3) of the nodes of a binary tree over boxes in order: node 1 is the root, 2 k and 2 k + 1 below k."""
+    leaves = 1
+    while leaves * LEAF < len(low):
+        leaves *= 2
+    lower, upper = np.full((2 * leaves, 3), np.inf), np.full((2 * leaves, 3), -np.inf)
+    starts = np.arange(0, len(low), LEAF)
+    lower[leaves : leaves + len(starts)] = np.minimum.reduceat(low, starts)
+    upper[leaves : leaves + len(starts)] = np.maximum.reduceat(high, starts)
+    while leaves > 1:
+        leaves //= 2
+        here, below = slice(leaves, 2 * leaves), slice(2 * leaves, 4 * leaves)
+        lower[here] = lower[below].reshape(-1, 2, 3).min(axis=1)
+        upper[here] = upper[below].reshape(-1, 2, 3).max(axis=1)
+    return lower, upper
+
+
+@njit(cache=True)
+def _overlap(low, high, i, others_low, others_high, j) -> bool:
+    apart = False
+    for axis in range(3):
+        apart |= low[i, axis] > others_high[j, axis] or others_low[j, axis] > high[i, axis]
+    return not apart
+
+
+@njit(cache=True)
+def _pairs(lower, upper, low, high, asked, position, once, found) -> tuple[int, int]:
+    """Fill `found` with overlapping pairs of the asked boxes from `position` on: how many, and where to go on.
+
+    A box whose pairs do not fit any more is left for the next call. Numba, because every walk down the tree differs.
+    """
+    leaves, count = len(lower) // 2, 0
+    stack = np.empty(DEEPEST, dtype=np.int64)
+    while position < len(asked):
+        i, before = asked[position], count
+        stack[0], depth = 1, 1
+        while depth > 0:
+            depth -= 1
+            node = stack[depth]
+            if not _overlap(low, high, i, lower, upper, node):
+                continue
+            if node < leaves:
+                stack[depth], stack[depth + 1] = 2 * node, 2 * node + 1
+                depth += 2
+                continue
+            start = (node - leaves) * LEAF
+            for j in range(start, min(start + LEAF, len(low))):
+                if (j > i if once else j != i) and _overlap(low, high, i, low, high, j):
+                    if count == len(found):
+                        return before, position
+                    found[count, 0], found[count, 1] = i, j
+                    count += 1
+        position += 1
+    return count, position
