@@ -85,6 +85,7 @@ def displace(
     directions: np.ndarray | None = None,
     worn: np.ndarray | None = None,
     label: np.ndarray | None = None,
+    pristine_rise: np.ndarray | None = None,
 ) -> Displacement:
     """Move nodes inward so that the worn faces sweep exactly the worn volume; what limits forbid is carried.
 
@@ -99,6 +100,7 @@ def displace(
     directions : (n, 3), inward directions that replace the normals where finite, see `rim_directions`
     worn : (m,) bool, faces that wear; None: all
     label : (m,) int; where two labels meet, each loses its own volume, see `LabelParting`; None: one label
+    pristine_rise : (n,) -, of hollows that are none of wear, see `postproc.wear.hollows`; None: 0
 
     Returns
     -------
@@ -115,19 +117,19 @@ def displace(
     carried = np.zeros(len(points)) if carried_volume is None else np.asarray(carried_volume, np.float64)
     _check(points, triangles, worn_volume, carried, step_limit, worn, label)
     faces = triangles[worn]
-    incidence = _incidence(faces, len(points))
+    at_nodes = incidence(faces, len(points))
     kept = _keep_their_wear(faces, len(points), directions, None if label is None else np.asarray(label)[worn])
-    corner_volume = handed_over(points, faces, volume_at_corners(worn_volume)[worn], incidence, kept)
+    corner_volume = handed_over(points, faces, volume_at_corners(worn_volume)[worn], at_nodes, kept, pristine_rise)
     target = np.bincount(faces.ravel(), corner_volume.ravel(), len(points)) + carried
     inward = loaded_directions(points, faces, corner_volume, carried, directions)
     parting = None
     if label is not None:
         parting = LabelParting(points, faces, corner_volume, np.asarray(label)[worn], carried, directions)
-    resistance = _Resistance(points, faces, incidence, inward, parting)
+    resistance = _Resistance(points, faces, at_nodes, inward, parting)
     if step_limit is None:
         _refuse_large_step(points, faces, resistance, target)
     step, moved = _move(points, triangles, faces, resistance, target, step_limit)
-    applied = _shares(points, moved - points, faces, incidence)
+    applied = _shares(points, moved - points, faces, at_nodes)
     return Displacement(moved, step, applied, target - applied)
 
 
@@ -195,11 +197,11 @@ class _Resistance:
     Where labels meet, every call turns `inward` (3, n) so that with those steps they part exactly.
     """
 
-    def __init__(self, points, faces, incidence, inward, parting=None):
-        self.faces, self.incidence, self.parting = faces, incidence, parting
+    def __init__(self, points, faces, at_nodes, inward, parting=None):
+        self.faces, self.at_nodes, self.parting = faces, at_nodes, parting
         self.inward = np.ascontiguousarray(inward.T)
         self.first, self.second = _edges(np.ascontiguousarray(points.T), faces)
-        self.gross = incidence @ np.sqrt((_cross(self.first, self.second) ** 2).sum(axis=0)) / 6.0
+        self.gross = at_nodes @ np.sqrt((_cross(self.first, self.second) ** 2).sum(axis=0)) / 6.0
 
     def __call__(self, step: np.ndarray) -> np.ndarray:
         motion = _edges(step * self.inward, self.faces)
@@ -207,7 +209,7 @@ class _Resistance:
         if self.parting is not None and self.parting.near.size:
             nodes, directions = self.parting(area[:, self.parting.near].T)
             self.inward[:, nodes] = directions.T
-        gathered = self.incidence @ np.ascontiguousarray(area.T)
+        gathered = self.at_nodes @ np.ascontiguousarray(area.T)
         return -np.einsum("ij,ji->j", self.inward, gathered) / 3.0
 
 
@@ -230,15 +232,15 @@ def _mean_area(first, second, first_motion, second_motion) -> np.ndarray:
     )
 
 
-def _incidence(faces: np.ndarray, n_points: int) -> sparse.csr_array:
+def incidence(faces: np.ndarray, n_points: int) -> sparse.csr_array:
     """Matrix (n, m) of ones where a node is a corner of a face: sums face values at the nodes."""
     column = np.repeat(np.arange(len(faces)), 3)
     return sparse.csr_array((np.ones(3 * len(faces)), (faces.ravel(), column)), shape=(n_points, len(faces)))
 
 
-def _shares(points, motion, faces, incidence) -> np.ndarray:
+def _shares(points, motion, faces, at_nodes) -> np.ndarray:
     """Volume (n,) m3 that each node removes by that motion; the sum is the swept volume of the faces."""
-    gathered = incidence @ mean_area_vectors(points, motion, faces)
+    gathered = at_nodes @ mean_area_vectors(points, motion, faces)
     return -np.einsum("ij,ij->i", motion, gathered) / 3.0
 
 

@@ -26,6 +26,7 @@ def handed_over(
     corner_volume: np.ndarray,
     incidence: sparse.csr_array,
     keeps_all: np.ndarray | None = None,
+    pristine_rise: np.ndarray | None = None,
 ) -> np.ndarray:
     """Volumes (m, 3) m3 at the corners after nodes in hollows have handed over; sums per face stay.
 
@@ -36,20 +37,35 @@ def handed_over(
     corner_volume : (m, 3) m3, >= 0
     incidence : (n, m) ones where a node is a corner of a face
     keeps_all : (n,) bool, nodes that hand nothing over, e.g. the rim, which slides along its wall; None: none
+    pristine_rise : (n,) -, `steepest_rise` of the pristine surface: a wall that was built hollow, as a hopper's, is no
+        pit of wear; None: 0
     """
-    part = handed_part(points, faces, incidence)
+    part = handed_part(points, faces, incidence, pristine_rise)
     if keeps_all is not None:
         part = np.where(keeps_all, 0.0, part)
     handed = part[faces] * corner_volume
     return corner_volume - handed + 0.5 * (np.roll(handed, 1, axis=1) + np.roll(handed, 2, axis=1))
 
 
-def handed_part(points: np.ndarray, faces: np.ndarray, incidence: sparse.csr_array) -> np.ndarray:
+def handed_part(
+    points: np.ndarray, faces: np.ndarray, incidence: sparse.csr_array, pristine_rise: np.ndarray | None = None
+) -> np.ndarray:
     """Part (n,) of its wear that each node hands over, -: `STRENGTH` * the sine of its steepest rise, at most 1.
+
+    Arguments as in `handed_over`. 0 on planes and where all edges fall.
+    """
+    sine = steepest_rise(points, faces, incidence)
+    if pristine_rise is not None:
+        sine = np.maximum(sine - pristine_rise, 0.0)
+    return np.minimum(STRENGTH * sine, 1.0)
+
+
+def steepest_rise(points: np.ndarray, faces: np.ndarray, incidence: sparse.csr_array) -> np.ndarray:
+    """Sine (n,) of the steepest rise at each node, -, 0 to 1.
 
     The rise is that of the edges at the node above the plane square to its normal, in the principal direction in
     which they rise most (tensor of G. Taubin, ICCV 1995, 902, of slopes instead of curvatures): a dip in a ridge is a
-    hollow too. 0 on planes and where all edges fall.
+    hollow too.
     """
     normal = incidence @ area_vectors(points, faces)
     length = np.sqrt((normal**2).sum(axis=1, keepdims=True))
@@ -69,8 +85,7 @@ def handed_part(points: np.ndarray, faces: np.ndarray, incidence: sparse.csr_arr
                 tensor[row] += np.bincount(at, value, len(points))
     xx, xy, yy = tensor[:3] / np.maximum(tensor[3], 1.0)
     mean, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
-    sine = np.clip(2.0 * mean + 4.0 * radius, 0.0, 1.0)  # 3 larger - smaller eigenvalue
-    return np.minimum(STRENGTH * sine, 1.0)
+    return np.clip(2.0 * mean + 4.0 * radius, 0.0, 1.0)  # 3 larger - smaller eigenvalue
 
 
 def _tangents(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

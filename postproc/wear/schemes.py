@@ -32,11 +32,12 @@ def per_triangle(
     directions: np.ndarray | None = None,
     worn: np.ndarray | None = None,
     label: np.ndarray | None = None,
+    pristine_rise: np.ndarray | None = None,
 ) -> Displacement:
     """Every triangle moves its three nodes by its own depth V_i / A_i against its own normal.
 
-    Parameters as in `displace`; `label` is not looked at. What a step limit forbids is carried by the node, as a
-    volume of the wear law; nodes with a given direction move along it only.
+    Parameters as in `displace`; `label` and `pristine_rise` are not looked at. What a step limit forbids is carried by
+    the node, as a volume of the wear law; nodes with a given direction move along it only.
 
     Returns
     -------

@@ -6,12 +6,13 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, boundary_nodes, smallest_angles, unit_normals, worn_faces
 from bulkwear.postproc.wear.balance import check_growth, with_swept_rim
+from bulkwear.postproc.wear.built_shape import PRISTINE_RISE, face_labels, with_turned_shape
 from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, pristine_normal_depth, ray_depth
 from bulkwear.postproc.wear.directions import inward_directions, rim_directions
 from bulkwear.postproc.wear.displacement import Displacement, volume_at_corners
 from bulkwear.postproc.wear.patch import ContactPatch, spread
 from bulkwear.postproc.wear.schemes import scheme_of
-from bulkwear.postproc.wear.side import turned_to_flow
+from bulkwear.postproc.wear.side import PIECE, turned_to_flow
 from bulkwear.postproc.wear.thickness import (
     LOCAL_THICKNESS,
     REMAINING_THICKNESS,
@@ -84,6 +85,7 @@ def wear_update(
     worn, turned = worn_faces(mesh), []
     if pressed is not None:
         mesh, turned = turned_to_flow(mesh, *pressed, worn)
+        mesh = with_turned_shape(mesh, np.isin(mesh.cell_data[PIECE], [piece.piece for piece in turned]))
     if back == "cap":
         left = np.nan_to_num(remaining_thickness(mesh), nan=np.inf)
         step_limit = left if step_limit is None else np.fmin(step_limit, left)
@@ -107,8 +109,9 @@ def _moved(mesh, worn_volume, step_limit, wall, patch, scheme) -> Displacement:
     worn = worn_faces(mesh)
     rim = None if wall is None else rim_directions(mesh.points, mesh.triangles, worn, wall)
     volume = worn_volume if patch is None else spread(mesh.points, mesh.triangles, worn_volume, patch, worn)
-    carried, part = _point_data(mesh, CARRIED_VOLUME), mesh.cell_data.get("part")
-    moved = scheme_of(scheme)(mesh.points, mesh.triangles, volume, carried, step_limit, rim, worn, part)
+    carried, label = _point_data(mesh, CARRIED_VOLUME), face_labels(mesh)
+    rise = mesh.point_data.get(PRISTINE_RISE)
+    moved = scheme_of(scheme)(mesh.points, mesh.triangles, volume, carried, step_limit, rim, worn, label, rise)
     touched = worn & (volume_at_corners(volume) > 0.0).any(axis=1)
     check_growth(mesh.points, moved.points - mesh.points, mesh.triangles, touched)
     return moved

@@ -7,10 +7,10 @@ from bulkwear.meshes.pattern import ConvexPattern
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.meshes.sample import sliding_sample
 from bulkwear.postproc.mesh import SurfaceMesh, areas, smallest_angles, worn_faces
+from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE, BalanceError, lost_volume, volume_balance
 from bulkwear.postproc.wear.caps import step_limit
 from bulkwear.postproc.wear.displacement import StepTooLargeError, swept_volume
 from bulkwear.postproc.wear.patch import ContactPatch
-from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE, BalanceError, lost_volume, volume_balance
 from bulkwear.postproc.wear.update import wear_update, with_depths
 
 SEED = 20220317

@@ -1,0 +1,119 @@
+"""Local thickness measured and given, what is left of it, and where a part is worn through."""
+
+import numpy as np
+import pytest
+
+from bulkwear.postproc.mesh import areas
+from bulkwear.postproc.wear.balance import lost_volume
+from bulkwear.postproc.wear.built_shape import with_built_shape
+from bulkwear.postproc.wear.thickness import remaining_thickness, through_phrase, with_thickness, worn_through
+from bulkwear.postproc.wear.update import wear_update, with_depths
+from tests.support.shapes import box, cone, flipped, moved_rigidly, plate, shifted, welded
+
+RAY = 1e-6  # relative: rays begin a thousandth of an element off the corner, on the flat face
+EXACT = 1e-9  # relative
+THICK = 0.02  # m
+
+
+def hollow_box():
+    """A box of 0.3 x 0.2 x 0.1 m inside with walls of THICK: outside and cavity, one part."""
+    outer = shifted(box((0.3 + 2 * THICK, 0.2 + 2 * THICK, 0.1 + 2 * THICK), 6), (-THICK, -THICK, -THICK))
+    return welded(box((0.3, 0.2, 0.1), 6, inward=True), outer)
+
+
+def on_cavity(mesh):
+    """Mask of the faces of the cavity of `hollow_box`."""
+    corners = mesh.points[mesh.triangles]
+    inside = (corners > -1e-9).all(axis=2) & (corners < np.array([0.3, 0.2, 0.1]) + 1e-9).all(axis=2)
+    return inside.all(axis=1)
+
+
+def test_a_wall_s_thickness_is_measured_to_its_back():
+    """From inside and outside, at flat places and edges, turned anyhow: the wall's thickness."""
+    for mesh in (hollow_box(), moved_rigidly(hollow_box(), (0.4, -1.0, 2.0), (3.0, 1.0, -2.0))):
+        thickness = with_thickness(mesh).point_data["local_thickness_m"]
+        inner = np.unique(mesh.triangles[on_cavity(hollow_box())])
+        assert thickness[inner] == pytest.approx(THICK, rel=RAY)
+
+
+def test_a_hopper_s_wall():
+    """Between two cones of one slope the thickness square to the wall is the same everywhere, polygons apart."""
+    slope, around = 0.4, 60
+    inner = cone(0.1, 0.3, slope, around, 6, inward=True)
+    outer = cone(0.1 + THICK / np.cos(slope), 0.3, slope, around, 6, inward=False)
+    shell = welded(inner, outer)
+    thickness = with_thickness(shell).point_data["local_thickness_m"]
+    height = shell.points[:, 2]
+    on_inner = np.isin(np.round(shell.points, 9), np.round(inner.points, 9)).all(axis=1)
+    # rays from the inner wall go down as they go out: those near the lower rim leave below the outer one
+    seen = on_inner & (height > 2.0 * THICK)
+    assert thickness[seen] == pytest.approx(THICK, rel=1.0 - np.cos(np.pi / around))
+    assert np.isnan(thickness[on_inner & (height == 0.0)]).all()
+
+
+def test_plates_without_a_back_have_a_given_thickness():
+    """Measured it is unknown; given by part, nodes between two parts have the thinner one."""
+    mesh = welded(plate(0.2, 0.2, 4), shifted(plate(0.2, 0.2, 4), (0.2, 0.0, 0.0)), labels=True)
+    assert np.isnan(with_thickness(mesh).point_data["local_thickness_m"]).all()
+    thickness = with_thickness(mesh, {0: 0.03, 1: 0.01}).point_data["local_thickness_m"]
+    assert np.array_equal(thickness, np.where(mesh.points[:, 0] < 0.199, 0.03, 0.01))
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({7: 0.1}, "for part 7, allowed are the parts that wear: 0"),
+        (0.0, "part 0 is 0.0 m"),
+        (np.nan, "part 0 is nan m"),
+    ],
+)
+def test_senseless_thickness_is_refused(given, message):
+    """Thickness of a part that is not there, of zero and of no number."""
+    with pytest.raises(ValueError, match=message):
+        with_thickness(plate(0.2, 0.2, 2), given)
+
+
+def test_remaining_thickness_of_an_eroded_box():
+    """One inner side worn by d: there the wall has t - d left, elsewhere t."""
+    mesh = with_thickness(with_built_shape(hollow_box()))
+    corners = mesh.points[mesh.triangles]
+    floor = on_cavity(mesh) & (corners[:, :, 2].max(axis=1) < 1e-9)
+    worn, _ = wear_update(mesh, floor * 5e-3 * areas(mesh.points, mesh.triangles))
+    left, nodes = remaining_thickness(worn), np.unique(mesh.triangles[floor])
+    assert left[nodes] == pytest.approx(THICK - 5e-3, rel=RAY)
+    others = np.setdiff1d(np.arange(len(left)), nodes)
+    assert left[others] == pytest.approx(mesh.point_data["local_thickness_m"][others])
+    assert lost_volume(mesh, worn)[0] == pytest.approx(0.06 * 5e-3, rel=EXACT)
+    assert with_depths(worn, mesh).point_data["remaining_thickness_m"][nodes] == pytest.approx(THICK - 5e-3, rel=RAY)
+
+
+def test_worn_through_is_found_with_its_place():
+    """A plate of 10 mm after 4, 8 and 12 mm: through in the third update, told with the place."""
+    mesh = with_thickness(plate(0.2, 0.2, 4), 0.01)
+    for number in range(3):
+        assert through_phrase(mesh) is None
+        mesh, record = wear_update(mesh, 4e-3 * areas(mesh.points, mesh.triangles))
+        assert (record["through_nodes"] > 0) == (number == 2)
+    assert worn_through(mesh).all()
+    assert (remaining_thickness(mesh) == 0.0).all()
+    assert "worn through at 25 nodes, first at (0, 0, -12) mm, where the part was 10 mm thick" in through_phrase(mesh)
+
+
+def test_wear_stops_at_the_back_where_asked():
+    """Capped, nodes end at the back exactly; the law's volume beyond it is told apart, and the balance closes."""
+    pristine = with_thickness(plate(0.2, 0.2, 4), 0.01)
+    mesh, law, beyond = pristine, 0.0, 0.0
+    for _ in range(4):
+        mesh, record = wear_update(mesh, 4e-3 * areas(mesh.points, mesh.triangles), back="cap")
+        law, beyond = law + record["worn_volume_m3"], beyond + record["beyond_back_volume_m3"]
+        lost = lost_volume(pristine, mesh)[0]
+        assert lost + record["carried_volume_m3"] + beyond == pytest.approx(law, rel=EXACT)
+    assert mesh.points[:, 2] == pytest.approx(-0.01, rel=EXACT)
+    assert beyond == pytest.approx(law * 6.0 / 16.0, rel=EXACT)
+    assert record["carried_volume_m3"] == 0.0
+
+
+def test_a_thin_part_is_not_reached_through_from_behind():
+    """Rays look along the inward normal: seen from its other side a plate over another one has its own back."""
+    mesh = welded(plate(0.2, 0.2, 4), flipped(shifted(plate(0.2, 0.2, 4), (0.0, 0.0, -0.05))))
+    assert with_thickness(mesh).point_data["local_thickness_m"] == pytest.approx(0.05, rel=RAY)
