@@ -4,13 +4,16 @@ The deck writes (spins BEFORE contacts, wall fix with `store_force yes`, compute
 
     compute wall_contact all wall/gran/local pos vel id force
     variable wall_force_squared atom f_force_wall[1]^2+f_force_wall[2]^2+f_force_wall[3]^2
-    dump spins all custom 20 spins.dump id radius omegax omegay omegaz
+    dump spins all custom 20 spins.dump id radius omegax omegay omegaz f_force_wall[1] f_force_wall[2] f_force_wall[3]
     dump_modify spins thresh v_wall_force_squared > 0.0
     dump contacts all local 20 contacts.dump c_wall_contact[1] ... c_wall_contact[18]
+
+The three forces are those that moved the particle; without them only what the dump evaluates once more is known.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +26,7 @@ __all__ = ["ContactBatch", "ContactDumpError", "Contacts", "read_contact_batches
 
 CONTACT_COLUMNS = 18
 SPIN_COLUMNS = ("id", "radius", "omegax", "omegay", "omegaz")
+WALL_FORCE = re.compile(r"f_force_\w+\[[123]\]")  # columns of the force that a wall fix has stored
 _CONTACT_ENDINGS = [f"{k}]" for k in range(1, CONTACT_COLUMNS + 1)]
 _MESH, _TRIANGLE, _PARTICLE = 12, 13, 14
 
@@ -34,7 +38,8 @@ class _ContactArrays:
     triangle, mesh, particle: (n,) int64 (triangle 0-based = facet order of the STL file)
     contact_point, centre: (n, 3) m; radius: (n,) m
     wall_velocity, particle_velocity: (n, 3) m/s; angular_velocity: (n, 3) rad/s
-    force: (n, 3) N, on the particle
+    force: (n, 3) N, on the particle, evaluated for the dump
+    wall_force: (n, 3) N, of all mesh contacts of the particle together as the step had it; NaN where the dump lacks it
     """
 
     triangle: np.ndarray
@@ -47,6 +52,7 @@ class _ContactArrays:
     angular_velocity: np.ndarray
     force: np.ndarray
     radius: np.ndarray
+    wall_force: np.ndarray
 
 
 CONTACT_FIELDS = tuple(_ContactArrays.__dataclass_fields__)
@@ -171,6 +177,9 @@ def _batch(contact: FrameBatch, spin: FrameBatch, spin_path: Path) -> ContactBat
     angular_velocity[known] = spin.table[rows[known]][:, spin_columns]
     radius = np.linalg.norm(table[:, 3:6] - table[:, 0:3], axis=1)
     radius[known] = spin.table[rows[known], radius_column]
+    wall_force = np.full((particle.size, 3), np.nan)
+    if force_columns := _wall_force_columns(spin.columns):
+        wall_force[known] = spin.table[rows[known]][:, force_columns]
     return ContactBatch(
         steps=contact.steps,
         starts=contact.starts,
@@ -184,7 +193,12 @@ def _batch(contact: FrameBatch, spin: FrameBatch, spin_path: Path) -> ContactBat
         angular_velocity=angular_velocity,
         force=table[:, 15:18],
         radius=radius,
+        wall_force=wall_force,
     )
+
+
+def _wall_force_columns(names: tuple[str, ...]) -> list[int]:
+    return [k for k, name in enumerate(names) if WALL_FORCE.fullmatch(name)]
 
 
 def _check_columns(contact_path: Path, spin_path: Path) -> None:
@@ -198,6 +212,12 @@ def _check_columns(contact_path: Path, spin_path: Path) -> None:
     if not set(SPIN_COLUMNS) <= set(names):
         raise ContactDumpError(
             f"{spin_path}, line 9: found {' '.join(names)}, allowed are at least {' '.join(SPIN_COLUMNS)}."
+        )
+    forces = [names[k] for k in _wall_force_columns(tuple(names))]
+    if [name[-3:] for name in forces] not in ([], ["[1]", "[2]", "[3]"]):
+        raise ContactDumpError(
+            f"{spin_path}, line 9: found {' '.join(forces)}, allowed are f_force_ID[1] f_force_ID[2] f_force_ID[3] of "
+            "one wall, or none of them."
         )
 
 

@@ -62,6 +62,7 @@ def test_every_number_of_a_real_dump_arrives_in_its_place(paths):
             "force": rows[:, 15:18],
             "radius": expected[:, 0],
             "angular_velocity": expected[:, 1:4],
+            "wall_force": np.full((len(rows), 3), np.nan),
         }
         assert set(columns) == set(CONTACT_FIELDS)
         for name, values in columns.items():
@@ -298,6 +299,29 @@ def test_spin_dumps_may_hold_further_columns(tmp_path):
     for one, other in zip(read_contacts(SLIDE[0], path), read_contacts(*SLIDE), strict=True):
         np.testing.assert_array_equal(one.radius, other.radius)
         np.testing.assert_array_equal(one.angular_velocity, other.angular_velocity)
+
+
+def with_wall_force(folder, names):
+    """The slide's spin dump with a wall force of 0.5, -1 and 5 N in columns of these names."""
+    path = folder / "forces.dump"
+    text = SLIDE[1].read_text().replace("ATOMS id radius", f"ATOMS {names} id radius")
+    path.write_text(text.replace("\n1 0.003", "\n0.5 -1 5 1 0.003"))
+    return path
+
+
+def test_the_force_of_the_step_comes_with_the_spins(tmp_path):
+    """f_force_ID[1] to [3], of whatever wall, are the force on the contact's particle."""
+    path = with_wall_force(tmp_path, "f_force_walls[1] f_force_walls[2] f_force_walls[3]")
+    for contacts in read_contacts(SLIDE[0], path):
+        np.testing.assert_array_equal(contacts.wall_force, [[0.5, -1.0, 5.0]] * contacts.triangle.size)
+
+
+@pytest.mark.parametrize("last", ["f_force_walls[2]", "f_other[1]"])
+def test_half_a_wall_force_is_refused(tmp_path, last):
+    """Three components in order, or none."""
+    path = with_wall_force(tmp_path, f"f_force_walls[1] f_force_walls[2] {last}")
+    with pytest.raises(ContactDumpError, match=r"line 9: found f_force_walls\[1\] .*, allowed are f_force_ID\[1\]"):
+        list(read_contacts(SLIDE[0], path))
 
 
 def run_deck(folder, *options, ranks=1):
