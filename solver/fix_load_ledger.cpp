@@ -10,6 +10,7 @@
 #include "comm.h"
 #include "contact_hook.h"
 #include "error.h"
+#include "facet.h"
 #include "fix_mesh_surface.h"
 #include "fix_multisphere.h"
 #include "memory.h"
@@ -22,23 +23,6 @@ using namespace LAMMPS_NS;
 namespace load_ledger {
 
 namespace {
-
-void subtract(const double* a, const double* b, double* result) {
-  for (int axis = 0; axis < 3; ++axis) result[axis] = a[axis] - b[axis];
-}
-
-// Weights of a triangle's corners at a point, which is projected on to the triangle's plane.
-void corner_weights(const double corner[3][3], const double* point, double* weights) {
-  double along[3], across[3], to_point[3];
-  subtract(corner[1], corner[0], along);
-  subtract(corner[2], corner[0], across);
-  subtract(point, corner[0], to_point);
-  const double aa = dot(along, along), ac = dot(along, across), cc = dot(across, across);
-  const double pa = dot(to_point, along), pc = dot(to_point, across), scale = aa * cc - ac * ac;
-  weights[1] = (cc * pa - ac * pc) / scale;
-  weights[2] = (aa * pc - ac * pa) / scale;
-  weights[0] = 1.0 - weights[1] - weights[2];
-}
 
 // Radius (m) of the contact circle of a sphere on a flat (Hertz 1882).
 double hertz_radius(double force, double radius, double effective_modulus) {
@@ -58,7 +42,7 @@ FixLoadLedger::FixLoadLedger(LAMMPS* lammps, int narg, char** arg) : Fix(lammps,
   restart_global = 1;
   create_attribute = 1;
   scalar_flag = vector_flag = 1;
-  size_vector = CONTACT_TIME + 1;
+  size_vector = DRIVE_WORK + 1;
   extscalar = extvector = 1;
   global_freq = 1;
   grow_arrays(atom->nmax);
@@ -100,20 +84,27 @@ void FixLoadLedger::observe(int particle, const double* force, const double* off
   if (distance == 0.0 || apart) return;
 
   TriMesh* mesh = mesh_->triMesh();
+  const Facet facet(mesh, triangle);
   Observed seen;
   Contact& contact = seen.contact;
-  double corner[3][3], point[3];
-  for (int k = 0; k < 3; ++k) mesh->node(triangle, k, corner[k]);
+  double point[3], on_mesh[3], arm[3], moment[3];
   for (int axis = 0; axis < 3; ++axis) {
     contact.normal[axis] = -offset[axis] / distance;
     contact.force[axis] = force[axis];
     contact.velocity_before[axis] = atom->v[particle][axis] - wall_velocity[axis];
     seen.wall_velocity[axis] = wall_velocity[axis];
     point[axis] = atom->x[particle][axis] + offset[axis];
+    on_mesh[axis] = -force[axis];
   }
   mesh->surfaceNorm(triangle, contact.triangle_normal);
-  corner_weights(corner, point, seen.weights);
-  wall_spin(triangle, seen.wall_spin);
+  facet.weights(point, seen.weights);
+  facet.spin(corner_velocities(triangle), seen.wall_spin);
+  facet.from_centroid(point, arm);
+  cross(arm, on_mesh, moment);
+  facet.components(on_mesh, seen.force_on_facet);
+  facet.components(moment, seen.moment_on_facet);
+  seen.on_back = facet.on_back(contact.normal);
+  seen.drive_power = dot(force, wall_velocity);
 
   contact.radius = atom->radius[particle];
   contact.mass = atom->rmass[particle];
@@ -144,30 +135,15 @@ void FixLoadLedger::add_motion(Observed& seen) const {
   for (int axis = 0; axis < 3; ++axis)
     sliding[axis] = contact.velocity[axis] - approach * contact.normal[axis] - seen.lever * across[axis];
   contact.sliding_speed = length(sliding);
+  seen.friction_power = -dot(contact.force, sliding);  // sliding lies in the surface: only the tangential part counts
   cross(relative_spin, contact.normal, rolling);
   contact.rolling_speed = contact.radius * length(rolling);
 }
 
-// Angular velocity of a triangle from the velocities of its corners (rigid motion: v_k - v_0 = spin x edge_k).
-void FixLoadLedger::wall_spin(int triangle, double* spin) const {
-  std::fill_n(spin, 3, 0.0);
-  TriMesh* mesh = mesh_->triMesh();
-  auto* velocities = mesh->prop().getElementProperty<MultiVectorContainer<double, 3, 3> >("v");
-  if (!velocities) return;
-  double** velocity = velocities->begin()[triangle];
-  double corner[3][3], along[3], across[3], normal[3], turn_along[3], turn_across[3], in_plane[3];
-  for (int k = 0; k < 3; ++k) mesh->node(triangle, k, corner[k]);
-  subtract(corner[1], corner[0], along);
-  subtract(corner[2], corner[0], across);
-  subtract(velocity[1], velocity[0], turn_along);
-  subtract(velocity[2], velocity[0], turn_across);
-  cross(along, across, normal);
-  cross(normal, along, in_plane);
-  const double squared = dot(normal, normal);
-  const double about_normal = dot(turn_along, in_plane) / (dot(along, along) * squared);
-  for (int axis = 0; axis < 3; ++axis)
-    spin[axis] = (dot(turn_across, normal) * along[axis] - dot(turn_along, normal) * across[axis]) / squared +
-                 about_normal * normal[axis];
+// Velocities (m/s) of a triangle's corners, also those of a surface that moves by itself; null on a mesh at rest.
+double** FixLoadLedger::corner_velocities(int triangle) const {
+  auto* velocities = mesh_->triMesh()->prop().getElementProperty<MultiVectorContainer<double, 3, 3> >("v");
+  return velocities ? velocities->begin()[triangle] : nullptr;
 }
 
 // ---------------------------------------------------------------- one step
@@ -233,6 +209,13 @@ void FixLoadLedger::sum_loads() {
     sums_.add(NORMAL_IMPULSE, triangle, impulse);
     sums_.add(ROLLING_WORK, triangle, impulse * contact.rolling_speed);
     sums_.add(CONTACT_TIME, triangle, dt);
+    sums_.add(TANGENTIAL_WORK, triangle, seen.friction_power * dt);
+    sums_.add(DRIVE_WORK, triangle, seen.drive_power * dt);
+    for (int k = 0; k < 3; ++k) {
+      sums_.add(IMPULSE + k, triangle, seen.force_on_facet[k] * dt);
+      if (seen.on_back) sums_.add(BACK_IMPULSE + k, triangle, seen.force_on_facet[k] * dt);
+      sums_.add(MOMENT + k, triangle, seen.moment_on_facet[k] * dt);
+    }
     const double total_force = length(touches_[seen.touch].force);
     const double radius = hertz_radius(total_force, contact.radius, seen.effective_modulus);
     const double means[4] = {radius, seen.weights[0], seen.weights[1], seen.weights[2]};

@@ -28,9 +28,15 @@ enum Column {
   ROLLING_WORK,              // J
   IMPACT_ENERGY,             // J
   CONTACT_TIME,              // s
+  TANGENTIAL_WORK,           // J
+  DRIVE_WORK,                // J
   BY_WORK,                   // contact radius (m) and weights of the three corners (-), each times sliding work
   BY_IMPULSE = BY_WORK + 4,  // the same times normal impulse, for triangles that are loaded without any sliding
-  FIRST_KERNEL = BY_IMPULSE + 4
+  // Vectors on the mesh in the facet's own frame: along, across, normal.
+  IMPULSE = BY_IMPULSE + 4,    // N s
+  BACK_IMPULSE = IMPULSE + 3,  // N s, the part of particles whose centre lies on the facet's back
+  MOMENT = BACK_IMPULSE + 3,   // N m s, about the facet's centroid
+  FIRST_KERNEL = MOMENT + 3
 };
 
 class FixLoadLedger : public LAMMPS_NS::Fix {
@@ -62,15 +68,20 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
  private:
   struct Observed {
     Contact contact;
-    int particle, triangle;    // local index of the particle, id of the triangle
-    double weights[3];         // -, of the triangle's corners at the contact point
-    double lever;              // m, from the centre to where the solver takes the surfaces to meet
-    double wall_velocity[3];   // m/s, at the contact point
-    double wall_spin[3];       // rad/s
-    double signed_force;       // N, along the normal, negative where the contact pulls
-    double approach_speed;     // m/s, of the centre along the normal before this force, without sign
-    double effective_modulus;  // Pa
-    int touch;                 // index into touches_
+    int particle, triangle;     // local index of the particle, id of the triangle
+    double weights[3];          // -, of the triangle's corners at the contact point
+    double lever;               // m, from the centre to where the solver takes the surfaces to meet
+    double wall_velocity[3];    // m/s, at the contact point
+    double wall_spin[3];        // rad/s
+    double force_on_facet[3];   // N, on the mesh: along, across, normal
+    double moment_on_facet[3];  // N m, on the mesh about the facet's centroid: along, across, normal
+    bool on_back;               // the centre lies on the facet's back
+    double friction_power;      // W, that the tangential force takes from the sliding
+    double drive_power;         // W, that the moving mesh gives to the particle
+    double signed_force;        // N, along the normal, negative where the contact pulls
+    double approach_speed;      // m/s, of the centre along the normal before this force, without sign
+    double effective_modulus;   // Pa
+    int touch;                  // index into touches_
   };
   // All contacts of one particle with the mesh in one step.
   struct Touch {
@@ -108,7 +119,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   void sum_body_impacts();
   void remember_touching();
   std::vector<BodyTouch> body_touches_of_all_ranks() const;
-  void wall_spin(int triangle, double* spin) const;
+  double** corner_velocities(int triangle) const;
   double impact_energy(const Observed& strongest) const;
 
   std::vector<std::string> column_names() const;

@@ -21,6 +21,8 @@ namespace load_ledger {
 
 namespace {
 
+constexpr int FORMAT = 2;  // of the file and of a ledger in a restart file; postproc/readers/load_ledger.py knows it
+
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (char letter : text) {
@@ -34,8 +36,15 @@ std::string quoted(const std::string& text) {
 
 std::vector<std::string> FixLoadLedger::column_names() const {
   std::vector<std::string> names = {"sliding_work_J",   "normal_impulse_N_s", "rolling_work_J",
-                                    "impact_energy_J",  "contact_time_s",     "contact_radius_m",
-                                    "contact_weight_1", "contact_weight_2",   "contact_weight_3"};
+                                    "impact_energy_J",  "contact_time_s",     "tangential_work_J",
+                                    "drive_work_J",     "contact_radius_m",   "contact_weight_1",
+                                    "contact_weight_2", "contact_weight_3"};
+  struct Vector {
+    const char *name, *unit;
+  };
+  for (const Vector& vector : {Vector{"impulse", "N_s"}, {"back_impulse", "N_s"}, {"moment", "N_m_s"}})
+    for (const char* direction : {"along", "across", "normal"})
+      names.push_back(std::string(vector.name) + '_' + direction + '_' + vector.unit);
   for (const ChosenKernel& chosen : kernels_) names.push_back(chosen.kernel.column);
   return names;
 }
@@ -44,7 +53,7 @@ std::vector<std::string> FixLoadLedger::column_names() const {
 std::string FixLoadLedger::header(double contacts) const {
   std::ostringstream text;
   text.precision(17);
-  text << "{\"load_ledger\": 1, \"mesh\": " << quoted(mesh_id_) << ", \"triangles\": " << triangles_
+  text << "{\"load_ledger\": " << FORMAT << ", \"mesh\": " << quoted(mesh_id_) << ", \"triangles\": " << triangles_
        << ", \"steps\": " << steps_ << ", \"time_s\": " << time_s_.value() << ", \"step\": " << update->ntimestep
        << ", \"contacts\": " << static_cast<std::int64_t>(contacts) << ", \"ranks\": " << comm->nprocs
        << ", \"solver\": " << quoted(universe->version) << ", \"columns\": [";
@@ -65,13 +74,13 @@ std::vector<std::vector<double>> FixLoadLedger::table(const LedgerSums& sums) co
     const double work = sums.value(SLIDING_WORK, triangle), impulse = sums.value(NORMAL_IMPULSE, triangle);
     const double weight = work > 0.0 ? work : impulse;
     const int first = work > 0.0 ? BY_WORK : BY_IMPULSE;
-    for (int column = SLIDING_WORK; column <= CONTACT_TIME; ++column)
+    for (int column = SLIDING_WORK; column <= DRIVE_WORK; ++column)
       columns[column][triangle] = sums.value(column, triangle);
     for (int k = 0; k < 4; ++k)
       columns[BY_WORK + k][triangle] =
           weight > 0.0 ? sums.value(first + k, triangle) / weight : std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t k = 0; k < kernels_.size(); ++k)
-      columns[BY_WORK + 4 + k][triangle] = sums.value(FIRST_KERNEL + static_cast<int>(k), triangle);
+    for (std::size_t k = BY_WORK + 4; k < columns.size(); ++k)
+      columns[k][triangle] = sums.value(IMPULSE + static_cast<int>(k) - (BY_WORK + 4), triangle);
   }
   return columns;
 }
@@ -101,7 +110,7 @@ void FixLoadLedger::write_file(const std::string& name) {
 std::string FixLoadLedger::identity() const {
   std::ostringstream text;
   text.precision(17);
-  text << "load_ledger 1 " << mesh_id_ << ' ' << triangles_;
+  text << "load_ledger " << FORMAT << ' ' << mesh_id_ << ' ' << triangles_;
   for (const ChosenKernel& chosen : kernels_) {
     text << ' ' << chosen.kernel.name;
     for (int k = 0; k < parameter_count(chosen.kernel); ++k)

@@ -22,11 +22,11 @@ struct CompensatedSum {
   double value() const { return sum + lost; }
 };
 
-// Columns of such sums, each over all triangles of a mesh.
+// Such sums for every triangle of a mesh. The sums of a triangle lie beside each other: a contact adds to most of them.
 class LedgerSums {
  public:
   LedgerSums(int columns, int triangles)
-      : triangles_(triangles), sums_(static_cast<std::size_t>(columns) * triangles) {}
+      : columns_(columns), triangles_(triangles), sums_(static_cast<std::size_t>(columns) * triangles) {}
 
   void add(int column, int triangle, double value) { sums_[index(column, triangle)].add(value); }
   double value(int column, int triangle) const { return sums_[index(column, triangle)].value(); }
@@ -50,9 +50,9 @@ class LedgerSums {
   void restore(const char* stored) { std::memcpy(static_cast<void*>(sums_.data()), stored, bytes()); }
 
  private:
-  std::size_t index(int column, int triangle) const { return static_cast<std::size_t>(column) * triangles_ + triangle; }
+  std::size_t index(int column, int triangle) const { return static_cast<std::size_t>(triangle) * columns_ + column; }
 
-  int triangles_;
+  int columns_, triangles_;
   std::vector<CompensatedSum> sums_;
 };
 

@@ -17,11 +17,17 @@ import numpy as np
 import pandas as pd
 
 TABLE = "ledger.parquet"  # of a finished cycle
-FORMAT = 1  # of the file, value of `load_ledger` in its header
+FORMAT = 2  # of the file, value of `load_ledger` in its header
 LONGEST_HEADER = 100_000  # bytes; a file without a line that short is no ledger
 SUMS = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J", "contact_time_s")
 RADIUS = "contact_radius_m"
 WEIGHTS = ("contact_weight_1", "contact_weight_2", "contact_weight_3")
+WORKS = ("tangential_work_J", "drive_work_J")  # signed, unlike SUMS
+VECTORS = tuple(  # on the mesh, in the frame of each facet: along its first edge, across it, normal
+    f"{name}_{direction}_{unit}"
+    for name, unit in (("impulse", "N_s"), ("back_impulse", "N_s"), ("moment", "N_m_s"))
+    for direction in ("along", "across", "normal")
+)
 _KEYS = {"mesh": str, "triangles": int, "steps": int, "time_s": (int, float), "columns": list}
 _ANNOUNCED = re.compile(r"^Load ledger \S+: .*$", re.MULTILINE)
 
@@ -35,8 +41,8 @@ class LoadLedger:
     """Loads of one mesh, summed over the steps of a run.
 
     mesh: fix id of the mesh; steps: steps accounted; time_s: their duration, s
-    columns: {name: (n,) float64}, units in the names; SUMS, RADIUS, WEIGHTS (barycentric coordinates of the mean
-        contact point in the order of the facet's corners) and sums of kernels; radius and weights are NaN on
+    columns: {name: (n,) float64}, units in the names; SUMS, WORKS, RADIUS, WEIGHTS (barycentric coordinates of the mean
+        contact point in the order of the facet's corners), VECTORS and sums of kernels; radius and weights are NaN on
         triangles that were never loaded
     header: all that the file says about itself
     """
@@ -117,12 +123,15 @@ def _header(content: bytes, path: Path) -> tuple[dict[str, Any], int]:
             f"{path}: found no header of a load ledger, allowed is a line of JSON that begins with load_ledger."
         ) from None
     if version != FORMAT:
-        raise LoadLedgerError(f"{path}: load_ledger is {version!r}, allowed is format {FORMAT}.")
+        raise LoadLedgerError(
+            f"{path}: load_ledger is {version!r}, allowed is format {FORMAT}, of a program built from the present "
+            "solver/ (make -C solver)."
+        )
     for key, kind in _KEYS.items():
         value = header.get(key)
         if not isinstance(value, kind) or isinstance(value, bool):
             raise LoadLedgerError(f"{path}: {key} in its header is {value!r}, allowed is {_words(kind)}.")
-    for name in (*SUMS, RADIUS, *WEIGHTS):
+    for name in (*SUMS, *WORKS, RADIUS, *WEIGHTS, *VECTORS):
         if header["columns"].count(name) != 1:
             times = header["columns"].count(name)
             raise LoadLedgerError(f"{path}: column {name} stands there {times} times, allowed is once.")

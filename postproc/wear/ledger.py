@@ -2,7 +2,8 @@
 
 Either the solver sums it at every step (`columns_of_solver`), or `LedgerBuilder` sums sampled contacts, each standing
 for the interval between two samples. Wear laws that are linear in the sums (Archard 1953) are arithmetic on the
-finished table; others add a sum of their own (kernels.py).
+finished table; others add a sum of their own (kernels.py). Vectors and places are those of the frame of the mesh's
+own file, wherever the mesh has moved since.
 """
 
 from __future__ import annotations
@@ -12,20 +13,32 @@ from types import MappingProxyType, SimpleNamespace
 
 import numpy as np
 
+from bulkwear.postproc.wear.dumped_forces import step_forces
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_rate
+from bulkwear.postproc.wear.mesh_frame import MeshFrame, Pose, facet_frames
+from bulkwear.postproc.wear.touches import episode_begins, touches
 
 CONTACTS_PER_BATCH = 100_000
-LEDGER_FIELDS = (
+SUMMED_FIELDS = (
     "sliding_work_J",
     "normal_impulse_N_s",
     "rolling_work_J",
     "impact_energy_J",
     "contact_time_s",
-    "contact_radius_m",
-    "contact_position_x_m",
-    "contact_position_y_m",
-    "contact_position_z_m",
+    "tangential_work_J",
+    "drive_work_J",
 )
+POSITION_FIELDS = ("contact_position_x_m", "contact_position_y_m", "contact_position_z_m")
+MEAN_FIELDS = ("contact_radius_m", *POSITION_FIELDS)
+VECTOR_UNITS = {"impulse": "N_s", "back_impulse": "N_s", "moment": "N_m_s"}  # on the mesh, in the frame of its file
+
+
+def vector_columns(name: str, components: Iterable[str] = "xyz") -> tuple[str, ...]:
+    """Return the three columns of a vector of VECTOR_UNITS; components: x, y, z or those of a facet's own frame."""
+    return tuple(f"{name}_{component}_{VECTOR_UNITS[name]}" for component in components)
+
+
+LEDGER_FIELDS = (*SUMMED_FIELDS, *MEAN_FIELDS, *(field for name in VECTOR_UNITS for field in vector_columns(name)))
 _ARRAYS = (
     "triangle",
     "mesh",
@@ -37,6 +50,7 @@ _ARRAYS = (
     "angular_velocity",
     "force",
     "radius",
+    "wall_force",
 )
 
 
@@ -50,7 +64,8 @@ def contact_kinematics(contacts, wall_angular_velocity=(0.0, 0.0, 0.0)) -> Simpl
     normal: (n, 3), from contact point to centre
     signed_force: (n,) N, force along the normal
     normal_force: (n,) N, the same, zero where the contact pulls
-    sliding_speed: (n,) m/s, at the contact point, spin included
+    sliding_velocity: (n, 3) m/s, in the surface at the contact point, spin included
+    sliding_speed: (n,) m/s, its magnitude
     rolling_speed: (n,) m/s, R times the part of the spin, relative to the wall's, about axes in the surface
     approach_speed: (n,) m/s, of the centre along the normal, without sign
 
@@ -71,6 +86,7 @@ def contact_kinematics(contacts, wall_angular_velocity=(0.0, 0.0, 0.0)) -> Simpl
         normal=normal,
         signed_force=signed_force,
         normal_force=np.maximum(signed_force, 0.0),
+        sliding_velocity=sliding,
         sliding_speed=np.sqrt(np.einsum("ij,ij->i", sliding, sliding)),
         rolling_speed=contacts.radius * np.sqrt(np.einsum("ij,ij->i", rolling, rolling)),
         approach_speed=np.abs(approach),
@@ -93,16 +109,40 @@ def columns_of_solver(
     """Return the ledger that the solver has summed: the columns that `LedgerBuilder.table` returns.
 
     columns: {name: (n,)}, as `postproc.readers.load_ledger.LoadLedger.columns`; contact points are barycentric
-        there, contact_weight_1 ... 3 in the order of the corners
-    corners: (n, 3, 3) m, corners of the triangles where the positions are wanted
+        there, contact_weight_1 ... 3 in the order of the corners, and vectors in the frame of each facet
+    corners: (n, 3, 3) m, corners of the facets as the solver got them (`postproc.mesh.stl_corners`), in the frame
+        where positions and vectors are wanted
     kernels: names of the kernels whose sums are wanted
 
     Raises KeyError when a column is missing, ValueError for an unknown kernel.
     """
     weights = np.column_stack([columns[f"contact_weight_{k}"] for k in (1, 2, 3)])
-    position = np.einsum("ik,ikj->ij", weights, corners)
-    found = {**columns, **{name: position[:, axis] for axis, name in enumerate(LEDGER_FIELDS[6:])}}
+    found = {**columns, **_by_axis(POSITION_FIELDS, np.einsum("ik,ikj->ij", weights, corners))}
+    frames = facet_frames(corners)
+    for name in VECTOR_UNITS:
+        parts = np.column_stack([columns[part] for part in vector_columns(name, ("along", "across", "normal"))])
+        found |= _by_axis(vector_columns(name), np.einsum("ik,ikj->ij", parts, frames))
     return {name: found[name] for name in (*LEDGER_FIELDS, *map(kernel_column, kernels))}
+
+
+def pressed_sides(columns: Mapping[str, np.ndarray], normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how much particles pressed on the front and on the back of each facet, two (m,) arrays >= 0 in N s.
+
+    columns: of a ledger, with impulse and back_impulse
+    normals: (m, 3) unit normals of the facets in the ledger's frame; the front is where they point
+
+    The normal impulse of contacts on the front, and of those whose particle lies on the back, each into the facet; a
+    side that was pulled rather than pressed has 0. Raises KeyError when a column is missing.
+    """
+    whole, behind = (
+        np.einsum("ij,ij->i", np.column_stack([columns[field] for field in vector_columns(name)]), normals)
+        for name in ("impulse", "back_impulse")
+    )
+    return np.maximum(behind - whole, 0.0), np.maximum(behind, 0.0)
+
+
+def _by_axis(names: Iterable[str], vectors: np.ndarray) -> dict[str, np.ndarray]:
+    return {name: vectors[:, axis] for axis, name in enumerate(names)}
 
 
 class LedgerBuilder:
@@ -116,11 +156,16 @@ class LedgerBuilder:
         previous cycle's builder, so that a lasting contact is no new impact); None: unknown, so nothing in
         the first sample counts as an impact
     kernels: {name in `postproc.wear.kernels.KERNELS`: {parameter: value}} to sum as well, one column each
-    face_normals: (n_triangles, 3) normals of the triangles, needed by kernels only
-    wall_angular_velocity: (3,) rad/s, of a mesh that rotates
+    corners: (n_triangles, 3, 3) m, of the facets as they stand in the mesh's file; kernels need them, and without them
+        the table lacks the columns back_impulse and moment
+    wall_angular_velocity: (3,) rad/s, of a mesh that rotates, in the simulation's frame
+    pose: time step -> (rotation (3, 3), translation (3,) m) of a mesh that moves, x_space = rotation @ x_file +
+        translation, for the steps of the samples; None: at rest where its file has it
+    periods: (3,) m, lengths of the simulation's box in its periodic directions, 0 in others; needed, with corners,
+        where contacts reach the mesh across a periodic boundary
 
-    Raises ValueError for an unknown kernel, for parameters that are not its own, and for kernels without normals of
-    every triangle.
+    Raises ValueError for an unknown kernel, for parameters that are not its own, and for kernels or periods without the
+    corners of every triangle.
     """
 
     def __init__(
@@ -131,23 +176,29 @@ class LedgerBuilder:
         density: float,
         touching=None,
         kernels: Mapping[str, Mapping[str, float]] = MappingProxyType({}),
-        face_normals=None,
+        corners=None,
         wall_angular_velocity=(0.0, 0.0, 0.0),
+        pose: Pose | None = None,
+        periods=(0.0, 0.0, 0.0),
     ):
         self.n_triangles, self.mesh_index = n_triangles, mesh_index
         self.effective_modulus, self.density = effective_modulus, density
         self.wall_angular_velocity = wall_angular_velocity
         self._kernels = {kernel_column(name): kernel_rate(name, given) for name, given in kernels.items()}
-        self._face_normals = None if face_normals is None else np.asarray(face_normals, np.float64)
-        found = None if self._face_normals is None else self._face_normals.shape
-        if kernels and found != (n_triangles, 3):
-            raise ValueError(f"face_normals for kernels have the shape {found}, allowed is {(n_triangles, 3)}.")
+        self._pose, self._periods = pose, np.asarray(periods, np.float64)
+        self._corners = None if corners is None else np.asarray(corners, np.float64)
+        found = None if corners is None else self._corners.shape
+        if found != (n_triangles, 3, 3) and (kernels or self._periods.any() or found is not None):
+            raise ValueError(f"corners of the facets have the shape {found}, allowed is {(n_triangles, 3, 3)}.")
+        if corners is not None:
+            self._centroids, self._normals = self._corners.mean(axis=1), facet_frames(self._corners)[:, 2]
         self._touching = None if touching is None else np.unique(np.asarray(touching, np.int64))
         self._samples, self._time_s = 0, 0.0
-        self._sums = {
-            name: np.zeros(n_triangles)
-            for name in (*LEDGER_FIELDS[:5], *self._kernels, *(f"{kind}_{what}" for kind in "wf" for what in "axyz"))
-        }
+        without = () if corners is not None else (*vector_columns("back_impulse"), *vector_columns("moment"))
+        self._fields = [name for name in (*LEDGER_FIELDS, *self._kernels) if name not in without]
+        weighted = [f"{kind}_{what}" for kind in "wf" for what in "axyz"]
+        summed = [name for name in self._fields if name not in MEAN_FIELDS]
+        self._sums = {name: np.zeros(n_triangles) for name in (*summed, *weighted)}
         self._buffer: list = []
         self._buffered, self._interval_s = 0, None
 
@@ -186,10 +237,12 @@ class LedgerBuilder:
     def add_batch(self, batch, interval_s: float) -> None:
         """Adds many samples at once (`postproc.readers.contacts.ContactBatch`): the sums of `add`, faster."""
         self._flush()
-        self._account(batch, np.diff(batch.starts), interval_s)
+        self._account(batch, batch.steps, np.diff(batch.starts), interval_s)
 
     def table(self) -> dict[str, np.ndarray]:
         """The ledger: one (n_triangles,) array per field of LEDGER_FIELDS and per kernel, units in the names.
+
+        Without the corners of the facets it lacks the columns back_impulse and moment.
 
         Contact radius and position are means weighted with the sliding work (with the normal impulse on
         triangles loaded without any sliding), NaN on triangles that were not loaded.
@@ -198,11 +251,10 @@ class LedgerBuilder:
         sums, means = self._sums, {}
         slid = sums["sliding_work_J"] > 0.0
         weight = np.where(slid, sums["sliding_work_J"], sums["normal_impulse_N_s"])
-        for letter, name in zip("axyz", LEDGER_FIELDS[5:], strict=True):
+        for letter, name in zip("axyz", MEAN_FIELDS, strict=True):
             moment = np.where(slid, sums[f"w_{letter}"], sums[f"f_{letter}"])
             means[name] = np.divide(moment, weight, out=np.full(weight.size, np.nan), where=weight > 0.0)
-        copies = {name: sums[name].copy() for name in (*LEDGER_FIELDS[:5], *self._kernels)}
-        return {name: {**copies, **means}[name] for name in (*LEDGER_FIELDS, *self._kernels)}
+        return {name: means[name] if name in means else sums[name].copy() for name in self._fields}
 
     def _flush(self) -> None:
         if not self._buffer:
@@ -210,15 +262,17 @@ class LedgerBuilder:
         parts, self._buffer, self._buffered = self._buffer, [], 0
         joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS}
         counts = np.array([len(part.triangle) for part in parts])
-        self._account(SimpleNamespace(**joined), counts, self._interval_s)
+        steps = np.array([part.step for part in parts])
+        self._account(SimpleNamespace(**joined), steps, counts, self._interval_s)
 
-    def _account(self, contacts, counts: np.ndarray, interval_s: float) -> None:
-        """Adds samples that hold counts[k] contacts each."""
+    def _account(self, contacts, steps: np.ndarray, counts: np.ndarray, interval_s: float) -> None:
+        """Adds samples, taken at the time steps `steps`, that hold counts[k] contacts each."""
         sample = np.repeat(np.arange(counts.size), counts)
+        force = step_forces(contacts, sample)
         mine = np.asarray(contacts.mesh) == self.mesh_index
         if not mine.all():
             contacts = SimpleNamespace(**{name: getattr(contacts, name)[mine] for name in _ARRAYS})
-            sample = sample[mine]
+            sample, force = sample[mine], force[mine]
         triangle = contacts.triangle
         if triangle.size and not 0 <= triangle.min() <= triangle.max() < self.n_triangles:
             raise ValueError(
@@ -226,24 +280,60 @@ class LedgerBuilder:
                 f"allowed are 0 ... {self.n_triangles - 1}."
             )
         motion = contact_kinematics(contacts, self.wall_angular_velocity)
-        pairs = _pairs(sample, contacts.particle, motion)
-        work = motion.normal_force * motion.sliding_speed * interval_s
-        impulse = motion.normal_force * interval_s
-        self._sum("sliding_work_J", triangle, work)
-        self._sum("normal_impulse_N_s", triangle, impulse)
-        self._sum("rolling_work_J", triangle, motion.normal_force * motion.rolling_speed * interval_s)
-        self._sum("contact_time_s", triangle, np.full(triangle.size, interval_s))
-        for name, kernel in self._kernels.items():
-            self._sum(name, triangle, kernel(contacts, motion, self._face_normals[triangle]) * interval_s)
-        pair_force = pairs.force[pairs.of_contact]
-        contact_radius = hertz_contact_radius(pair_force, contacts.radius, self.effective_modulus)
-        for kind, weight in (("w", work), ("f", impulse)):
-            self._sum(f"{kind}_a", triangle, weight * contact_radius)
-            for axis, letter in enumerate("xyz"):
-                self._sum(f"{kind}_{letter}", triangle, weight * contacts.contact_point[:, axis])
+        frame = MeshFrame.at(self._pose, steps, sample)
+        point = frame.body_points(contacts.contact_point)
+        if self._corners is not None:
+            point = frame.images_near(point, self._centroids[triangle], self._periods)
+        pairs = touches(sample, contacts.particle, motion)
+        self._loads(contacts, motion, force, interval_s)
+        self._means(contacts, motion, pairs, point, interval_s)
+        self._vectors(contacts, motion, force, frame, point, interval_s)
         self._impacts(contacts, motion, pairs, counts.size)
         self._samples += counts.size
         self._time_s += counts.size * interval_s
+
+    def _loads(self, contacts, motion, force: np.ndarray, interval_s: float) -> None:
+        """Adds what is a scalar of each contact; force: (n, 3) N, on the particle in the time step."""
+        triangle = contacts.triangle
+        self._sum("sliding_work_J", triangle, motion.normal_force * motion.sliding_speed * interval_s)
+        self._sum("normal_impulse_N_s", triangle, motion.normal_force * interval_s)
+        self._sum("rolling_work_J", triangle, motion.normal_force * motion.rolling_speed * interval_s)
+        self._sum("contact_time_s", triangle, np.full(triangle.size, interval_s))
+        # the sliding velocity lies in the surface, so only the tangential part of the force counts
+        friction = -np.einsum("ij,ij->i", force, motion.sliding_velocity)
+        self._sum("tangential_work_J", triangle, friction * interval_s)
+        drive = np.einsum("ij,ij->i", force, contacts.wall_velocity)
+        self._sum("drive_work_J", triangle, drive * interval_s)
+
+    def _means(self, contacts, motion, pairs, point: np.ndarray, interval_s: float) -> None:
+        """Adds Hertz radius and place of each contact, weighted with sliding work and with normal impulse."""
+        pair_force = pairs.force[pairs.of_contact]
+        contact_radius = hertz_contact_radius(pair_force, contacts.radius, self.effective_modulus)
+        work = motion.normal_force * motion.sliding_speed * interval_s
+        for kind, weight in (("w", work), ("f", motion.normal_force * interval_s)):
+            self._sum(f"{kind}_a", contacts.triangle, weight * contact_radius)
+            for axis, letter in enumerate("xyz"):
+                self._sum(f"{kind}_{letter}", contacts.triangle, weight * point[:, axis])
+
+    def _vectors(self, contacts, motion, force, frame: MeshFrame, point: np.ndarray, interval_s: float) -> None:
+        """Adds impulses and moments on the mesh, in its own frame, and the kernels, which need the facets' normals."""
+        triangle = contacts.triangle
+        impulse = frame.in_body(-interval_s * force)
+        self._sum_vectors("impulse", triangle, impulse)
+        if self._corners is None:
+            return
+        back = np.einsum("ij,ij->i", self._normals[triangle], frame.in_body(motion.normal)) < 0.0
+        self._sum_vectors("back_impulse", triangle[back], impulse[back])
+        self._sum_vectors("moment", triangle, np.cross(point - self._centroids[triangle], impulse))
+        if self._kernels:
+            normals = frame.in_space(self._normals[triangle])
+            for name, kernel in self._kernels.items():
+                self._sum(name, triangle, kernel(contacts, motion, normals) * interval_s)
+
+    def _sum_vectors(self, name: str, triangle: np.ndarray, vectors: np.ndarray) -> None:
+        if triangle.size:
+            for axis, column in enumerate(vector_columns(name)):
+                self._sum(column, triangle, vectors[:, axis])
 
     def _sum(self, name: str, triangle: np.ndarray, values: np.ndarray) -> None:
         self._sums[name] += np.bincount(triangle, weights=values, minlength=self.n_triangles)
@@ -259,7 +349,7 @@ class LedgerBuilder:
             return
         known = self._touching
         earlier = np.empty(0, np.int64) if known is None else known
-        begins = _episode_begins(pairs.sample, pairs.particle, earlier)
+        begins = episode_begins(pairs.sample, pairs.particle, earlier)
         if known is None:
             begins &= pairs.sample > 0
         at = pairs.strongest[begins]
@@ -269,38 +359,3 @@ class LedgerBuilder:
         energy += hertz_elastic_energy(force, radius, self.effective_modulus)
         self._sum("impact_energy_J", contacts.triangle[at], energy)
         self._touching = pairs.particle[pairs.sample == n_samples - 1]
-
-
-def _pairs(sample: np.ndarray, particle: np.ndarray, motion: SimpleNamespace) -> SimpleNamespace:
-    """Contacts gathered into (sample, particle) pairs: a sphere can touch several triangles at once.
-
-    Returns, sorted by sample and particle: sample, particle, force (N, magnitude of the summed normal force
-    vectors), strongest (contact with the largest normal force); and of_contact, the pair of each contact.
-    """
-    order = np.lexsort((motion.signed_force, particle, sample))
-    last = np.ones(order.size, bool)
-    same = (sample[order][1:] == sample[order][:-1]) & (particle[order][1:] == particle[order][:-1])
-    last[:-1] = ~same
-    of_contact = np.empty(order.size, np.int64)
-    of_contact[order] = np.cumsum(last) - last
-    strongest = order[last]
-    vectors = motion.normal_force[:, None] * motion.normal
-    total = np.stack([np.bincount(of_contact, vectors[:, axis], strongest.size) for axis in range(3)])
-    return SimpleNamespace(
-        sample=sample[strongest],
-        particle=particle[strongest],
-        force=np.sqrt(np.einsum("ij,ij->j", total, total)),
-        strongest=strongest,
-        of_contact=of_contact,
-    )
-
-
-def _episode_begins(sample: np.ndarray, particle: np.ndarray, touching_before: Iterable[int]) -> np.ndarray:
-    """Pairs (sorted by sample, unique) whose particle has no pair in the sample before."""
-    order = np.lexsort((sample, particle))
-    continues = np.zeros(sample.size, bool)
-    now, before = order[1:], order[:-1]
-    continues[now] = (particle[now] == particle[before]) & (sample[now] == sample[before] + 1)
-    first = sample == 0
-    continues[first] = np.isin(particle[first], touching_before)
-    return ~continues

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from bulkwear.meshes.plate import flat_plate
-from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.mesh import SurfaceMesh, stl_corners, write_stl
 from bulkwear.postproc.readers.contacts import read_contact_batches
 from bulkwear.postproc.readers.load_ledger import LoadLedger, read_load_ledger
-from bulkwear.postproc.wear.ledger import LedgerBuilder
+from bulkwear.postproc.wear.ledger import LedgerBuilder, columns_of_solver
 from tests import REPOSITORY
 
 BUILT = REPOSITORY / "solver" / "build" / "liggghts-ledger"  # by `make -C solver`
@@ -34,10 +34,11 @@ PIN_MOTION = (
     "fix guide all setforce 0.0 0.0 NULL",
     "fix integrate all nve",
 )
+WALL_FORCE = [f"f_force_wall[{k}]" for k in (1, 2, 3)]
 DUMP_LINES = (
     "variable wall_force_squared atom f_force_wall[1]^2+f_force_wall[2]^2+f_force_wall[3]^2",
-    "dump spins all custom 1 spins.dump id radius omegax omegay omegaz",
-    'dump_modify spins thresh v_wall_force_squared > 0.0 format "%d %.12g %.12g %.12g %.12g"',
+    "dump spins all custom 1 spins.dump id radius omegax omegay omegaz " + " ".join(WALL_FORCE),
+    'dump_modify spins thresh v_wall_force_squared > 0.0 format "%d' + 7 * " %.12g" + '"',
     "dump contacts all local 1 contacts.dump " + " ".join(f"c_wall_contact[{k}]" for k in range(1, 19)),
     "dump_modify contacts format '" + " ".join(["%.12g"] * 18) + "'",
 )
@@ -46,6 +47,11 @@ DUMP_LINES = (
 def effective_modulus(particle_modulus: float = PARTICLE_MODULUS) -> float:
     """E* of particle and wall as the frame deck sets them, Pa."""
     return 1.0 / ((1 - 0.24**2) / particle_modulus + (1 - 0.3**2) / 2.028e11)
+
+
+def hertz_force(overlap: float) -> float:
+    """Force (N) of the pin on a flat at an overlap (m), F = 4/3 E* sqrt(R) delta^1.5 (Hertz 1882)."""
+    return 4.0 / 3.0 * effective_modulus() * np.sqrt(RADIUS) * overlap**1.5
 
 
 def hertz_overlap(load: float = LOAD, radius: float = RADIUS, particle_modulus: float = PARTICLE_MODULUS) -> float:
@@ -134,6 +140,11 @@ def run_case(folder: Path, mesh: SurfaceMesh, particles, motion, ranks: int = 1,
     return read_load_ledger(folder / "load_ledger.bin", "sample", len(mesh.triangles))
 
 
+def table_of_solver(ledger: LoadLedger, mesh: SurfaceMesh) -> dict[str, np.ndarray]:
+    """The solver's ledger as a table, places and vectors in the frame of the mesh's file."""
+    return columns_of_solver(ledger.columns, stl_corners(mesh.points, mesh.triangles))
+
+
 def total(ledger: LoadLedger, column: str) -> float:
     """Sum of a column over all triangles."""
     return float(ledger.columns[column].sum())
@@ -149,7 +160,8 @@ def ledger_of_dumps(
     **rest,
 ) -> dict[str, np.ndarray]:
     """Ledger of the contacts that DUMP_LINES wrote at every step after `after_step`; modulus: Pa, of the particles."""
-    builder = LedgerBuilder(len(mesh.triangles), 0, effective_modulus(modulus), density, **rest)
+    corners = stl_corners(mesh.points, mesh.triangles)
+    builder = LedgerBuilder(len(mesh.triangles), 0, effective_modulus(modulus), density, corners=corners, **rest)
     for batch in read_contact_batches(folder / "contacts.dump", folder / "spins.dump", after_step=after_step):
         builder.add_batch(batch, time_step)
     return builder.table()

@@ -5,7 +5,7 @@ import pytest
 
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.mesh import write_stl
-from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.postproc.readers.load_ledger import SUMS, WORKS, read_load_ledger
 from tests.verification.ledger_cases import (
     LOAD,
     MESH_LINE,
@@ -68,10 +68,10 @@ def test_two_processes_give_the_ledger_of_one(tmp_path, processors, place, direc
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_totals_for_thermo_output(tmp_path, ranks):
-    """f_load_ledger and f_load_ledger[1] ... [5] are the sums of the file's columns, on any number of processes."""
-    names = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J", "contact_time_s")
-    variables = [f"variable total{k} equal f_load_ledger[{k}]" for k in range(1, 6)]
-    printed = " ".join(f"${{total{k}}}" for k in range(1, 6))
+    """f_load_ledger and f_load_ledger[1] ... [7] are the sums of the file's columns, on any number of processes."""
+    names = (*SUMS, *WORKS)
+    variables = [f"variable total{k} equal f_load_ledger[{k}]" for k in range(1, 8)]
+    printed = " ".join(f"${{total{k}}}" for k in range(1, 8))
     watch = f'fix watch all print 100 "${{total0}} {printed}" file totals.txt screen no'
     outputs = [*variables, "variable total0 equal f_load_ledger", "set group all omegax 200.0", watch]
     case = {"domain": CENTRED, "steps": 3000, "outputs": outputs}
@@ -79,7 +79,7 @@ def test_totals_for_thermo_output(tmp_path, ranks):
     ledger = dragged(tmp_path, ranks, f"{ranks} 1 1", (-0.002000712, 1.31234567e-4), (1, 0), above, **case)
     totals = np.loadtxt(tmp_path / "totals.txt")[-1]
     sums = [total(ledger, name) for name in names]
-    assert min(sums) > 0.0
+    assert min(sums[:-1]) > 0.0  # nothing drives the plate
     assert totals == pytest.approx([sums[0], *sums], rel=PRINTED)
 
 

@@ -180,6 +180,18 @@ def test_other_kernels_start_an_empty_ledger(tmp_path):
     assert_only_the_last(ledger_in(tmp_path), 600)
 
 
+def test_a_ledger_of_an_older_program_starts_empty(tmp_path):
+    """A restart file whose ledger is of another format is told from one of this program, and says which it holds."""
+    write_drag(tmp_path, "steady", ["restart 1000 a.restart b.restart"], steps=2000)
+    run(tmp_path)
+    stored = (tmp_path / "b.restart").read_bytes()
+    assert stored.count(b"load_ledger 2 sample") == 1
+    (tmp_path / "b.restart").write_bytes(stored.replace(b"load_ledger 2 sample", b"load_ledger 1 sample"))
+    said = resume(tmp_path, "b.restart", steps=2600)
+    assert "the restart file holds another ledger (load_ledger 1 sample " in said
+    assert_only_the_last(ledger_in(tmp_path), 600)
+
+
 def test_a_new_mesh_starts_an_empty_ledger(tmp_path):
     """A mesh with a new id starts with an empty ledger, and the run says so."""
     write_drag(tmp_path, "steady", ["restart 1000 a.restart b.restart"], steps=2000)

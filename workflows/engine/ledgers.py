@@ -86,7 +86,6 @@ def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMe
     """
     parameters = chain.parameters
     every, derived = parameters["solver"]["sampling_interval_steps"], parameters["derived"]
-    corners = surface.points[surface.triangles]
     builder = LedgerBuilder(
         len(surface.triangles),
         SAMPLE_MESH,
@@ -94,7 +93,7 @@ def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMe
         parameters["particle"]["density_kg_per_m3"],
         touching=_touching_before(chain, span.cycle),
         kernels=run_kernels(parameters),
-        face_normals=np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+        corners=stl_corners(surface.points, surface.triangles),
     )
     for batch in read_contact_batches(folder / CONTACTS, folder / SPINS, after_step=0):
         builder.add_batch(batch, every * derived["time_step_s"])

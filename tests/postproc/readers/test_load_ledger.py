@@ -6,10 +6,19 @@ import re
 import numpy as np
 import pytest
 
-from bulkwear.postproc.readers.load_ledger import RADIUS, SUMS, WEIGHTS, LoadLedgerError, announcement, read_load_ledger
+from bulkwear.postproc.readers.load_ledger import (
+    RADIUS,
+    SUMS,
+    VECTORS,
+    WEIGHTS,
+    WORKS,
+    LoadLedgerError,
+    announcement,
+    read_load_ledger,
+)
 
 TRIANGLES, STEPS = 5, 400
-COLUMNS = (*SUMS, RADIUS, *WEIGHTS, "finnie_work_J")
+COLUMNS = (*SUMS, *WORKS, RADIUS, *WEIGHTS, *VECTORS, "finnie_work_J")
 
 
 def numbers():
@@ -22,7 +31,7 @@ def numbers():
 def written(path, table=None, header=None, **changes):
     """Write a ledger as the solver does; `changes` go into its header, None takes a key out."""
     fields = {
-        "load_ledger": 1,
+        "load_ledger": 2,
         "mesh": "sample_1",
         "triangles": TRIANGLES,
         "steps": STEPS,
@@ -89,7 +98,9 @@ def test_a_truncated_file_is_refused(tmp_path, lost):
     path = written(tmp_path / "load_ledger.bin")
     path.write_bytes(path.read_bytes()[:-lost])
     whole = 8 * TRIANGLES * len(COLUMNS)
-    assert fault_of(path).startswith(f"found {whole - lost} bytes of numbers, allowed are {whole}, 10 columns of 5")
+    assert fault_of(path).startswith(
+        f"found {whole - lost} bytes of numbers, allowed are {whole}, {len(COLUMNS)} columns of 5"
+    )
 
 
 def test_a_longer_file_is_refused(tmp_path):
@@ -115,12 +126,16 @@ def test_a_missing_file_is_one_sentence(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"load_ledger": 2}, "load_ledger is 2, allowed is format 1."),
+        (
+            {"load_ledger": 1, "columns": [*SUMS, RADIUS, *WEIGHTS]},
+            "load_ledger is 1, allowed is format 2, of a program built from the present solver/ (make -C solver).",
+        ),
         ({"triangles": None}, "triangles in its header is None, allowed is a whole number."),
         ({"triangles": 5.0}, "triangles in its header is 5.0, allowed is a whole number."),
         ({"steps": True}, "steps in its header is True, allowed is a whole number."),
         ({"columns": "all"}, "columns in its header is 'all', allowed is a list of names."),
         ({"columns": list(COLUMNS[1:])}, "column sliding_work_J stands there 0 times, allowed is once."),
+        ({"columns": list(COLUMNS[:-2])}, "column moment_normal_N_m_s stands there 0 times, allowed is once."),
         ({"columns": [*COLUMNS[:-1], RADIUS]}, "column contact_radius_m stands there 2 times, allowed is once."),
     ],
 )
@@ -137,6 +152,7 @@ def test_a_wrong_header_is_refused(tmp_path, changes, sentence):
         ("contact_radius_m", np.nan, "is nan, allowed is a finite number where the triangle is loaded."),
         ("contact_weight_2", np.inf, "is inf, allowed is a finite number where the triangle is loaded."),
         ("finnie_work_J", np.inf, "is inf, allowed is a finite number."),
+        ("tangential_work_J", np.nan, "is nan, allowed is a finite number."),
     ],
 )
 def test_impossible_numbers_are_refused(tmp_path, name, value, words):
@@ -144,6 +160,14 @@ def test_impossible_numbers_are_refused(tmp_path, name, value, words):
     table = numbers()
     table[COLUMNS.index(name), 3] = value
     assert fault_of(written(tmp_path / "load_ledger.bin", table=table)) == f"{name} of triangle 3 {words}"
+
+
+@pytest.mark.parametrize("name", [*WORKS, *VECTORS])
+def test_works_and_vectors_have_a_sign(tmp_path, name):
+    """Friction that pushes along, a drive that is driven, and any component of a vector may be below 0."""
+    table = numbers()
+    table[COLUMNS.index(name), 3] = -1.5
+    assert read_load_ledger(written(tmp_path / "load_ledger.bin", table=table)).columns[name][3] == -1.5
 
 
 def test_the_solver_announces_its_ledger(tmp_path):

@@ -110,7 +110,7 @@ def test_the_solver_has_the_same_kernels():
 def test_an_unknown_kernel_is_named():
     """With those that there are."""
     with pytest.raises(ValueError, match=r"contact kernel 'oka_work' is unknown, allowed are: finnie_work"):
-        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={"oka_work": {}}, face_normals=np.zeros((4, 3)))
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={"oka_work": {}}, corners=np.zeros((4, 3, 3)))
 
 
 @pytest.mark.parametrize(
@@ -125,11 +125,11 @@ def test_a_kernel_takes_exactly_its_parameters(name, given, found, allowed):
     """One that is missing and one that it does not know are refused with those that it takes."""
     sentence = f"parameters of the contact kernel '{name}' are {found}, allowed are: {allowed}$"
     with long_slip_registered(), pytest.raises(ValueError, match=sentence):
-        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={name: given}, face_normals=np.zeros((4, 3)))
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={name: given}, corners=np.zeros((4, 3, 3)))
 
 
-@pytest.mark.parametrize("normals", [None, np.zeros((3, 3))])
-def test_kernels_without_normals_are_refused(normals):
-    """One normal per triangle, or the angle of impact is unknown."""
-    with pytest.raises(ValueError, match=r"face_normals for kernels have the shape .*, allowed is \(4, 3\)"):
-        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={"finnie_work": {}}, face_normals=normals)
+@pytest.mark.parametrize("corners", [None, np.zeros((3, 3, 3))])
+def test_kernels_without_facets_are_refused(corners):
+    """The corners of every triangle, or the angle of impact is unknown."""
+    with pytest.raises(ValueError, match=r"corners of the facets have the shape .*, allowed is \(4, 3, 3\)"):
+        LedgerBuilder(4, 0, 2e8, 2500.0, kernels={"finnie_work": {}}, corners=corners)

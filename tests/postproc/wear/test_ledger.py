@@ -7,10 +7,15 @@ import pytest
 
 from bulkwear.postproc.wear.ledger import (
     LEDGER_FIELDS,
+    MEAN_FIELDS,
+    POSITION_FIELDS,
+    SUMMED_FIELDS,
+    VECTOR_UNITS,
     LedgerBuilder,
     columns_of_solver,
     hertz_contact_radius,
     hertz_elastic_energy,
+    vector_columns,
 )
 from tests.support.law_cases import long_slip_registered
 
@@ -18,7 +23,11 @@ ROUND_OFF = 1e-12  # sums of up to a few thousand float64 terms
 CANCELLATION = 1e-15  # of F_n L: what equal and opposite velocities of order one leave in float64
 EFFECTIVE_MODULUS, DENSITY, RADIUS = 2e8, 2500.0, 0.0015
 MASS = 4.0 / 3.0 * np.pi * RADIUS**3 * DENSITY
-ADDITIVE = LEDGER_FIELDS[:5]
+ADDITIVE = [name for name in LEDGER_FIELDS if name not in MEAN_FIELDS]
+SCALARS = (*SUMMED_FIELDS, "contact_radius_m")
+VECTORS = [POSITION_FIELDS, *map(vector_columns, VECTOR_UNITS)]
+FACET = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # m, at z = 0, its normal upwards
+CORNERS = np.tile(FACET, (12, 1, 1)) + np.arange(12.0)[:, None, None] * [0.1, 0.0, 0.0]
 
 
 def sample(n=1, **given):
@@ -36,6 +45,7 @@ def sample(n=1, **given):
         "angular_velocity": np.zeros((n, 3)),
         "force": np.tile([0.0, 0.0, 2.0], (n, 1)),
         "radius": np.full(n, RADIUS),
+        "wall_force": np.full((n, 3), np.nan),
     }
     assert set(given) <= set(arrays)
     return SimpleNamespace(**{**arrays, **{name: np.asarray(value) for name, value in given.items()}})
@@ -74,7 +84,8 @@ def batch_of(samples):
 
 
 def ledger(samples, interval_s=1e-3, triangles=12, **options):
-    settings = {"mesh_index": 0, "effective_modulus": EFFECTIVE_MODULUS, "density": DENSITY, **options}
+    settings = {"mesh_index": 0, "effective_modulus": EFFECTIVE_MODULUS, "density": DENSITY, "corners": CORNERS}
+    settings |= options
     builder = LedgerBuilder(triangles, **settings)
     for contacts in samples:
         builder.add(contacts, interval_s)
@@ -147,14 +158,15 @@ def test_a_pulling_contact_counts_as_zero_force():
 def test_friction_adds_nothing_to_the_normal_force():
     """F_n = F . n, whatever the tangential force."""
     rubbing = sample(force=[[7.0, -3.0, 2.0]], particle_velocity=[[0.3, 0.0, 0.0]])
-    assert_same(ledger([rubbing]), ledger([sample(particle_velocity=[[0.3, 0.0, 0.0]])]))
+    plain = sample(particle_velocity=[[0.3, 0.0, 0.0]])
+    assert_same(ledger([rubbing]), ledger([plain]), (*SUMMED_FIELDS[:5], *MEAN_FIELDS))
 
 
 def test_triangles_never_touched_have_zero_sums_and_no_mean():
     """NaN is the mean of nothing."""
     table = ledger([sample()])
     assert all(table[name][5] == 0.0 for name in ADDITIVE)
-    assert all(np.isnan(table[name][5]) for name in LEDGER_FIELDS[5:])
+    assert all(np.isnan(table[name][5]) for name in MEAN_FIELDS)
 
 
 def test_contacts_on_other_meshes_are_left_out():
@@ -180,16 +192,26 @@ def rotated(contacts, rotation):
     return SimpleNamespace(**{**vars(contacts), **{name: getattr(contacts, name) @ rotation.T for name in names}})
 
 
-def test_rotating_the_world_changes_no_scalar_and_turns_the_positions():
-    """Rotation invariance."""
-    rotation, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))
-    rotation *= np.sign(np.linalg.det(rotation))
-    crowd = random_samples()
-    plain, turned = ledger(crowd), ledger([rotated(contacts, rotation) for contacts in crowd])
-    assert_same(turned, plain, LEDGER_FIELDS[:6])
-    positions = np.column_stack([plain[name] for name in LEDGER_FIELDS[6:]])
-    turned_positions = np.column_stack([turned[name] for name in LEDGER_FIELDS[6:]])
-    np.testing.assert_allclose(turned_positions, positions @ rotation.T, rtol=0, atol=1e-11)  # of order one, F . n
+def turn(seed):
+    """A rotation about no particular axis."""
+    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return rotation * np.sign(np.linalg.det(rotation))
+
+
+def vector(table, names):
+    """Three columns as vectors."""
+    return np.column_stack([table[name] for name in names])
+
+
+def test_rotating_the_world_changes_no_scalar_and_turns_the_vectors():
+    """Rotation invariance, of samples and facets together."""
+    rotation, crowd = turn(3), random_samples()
+    plain = ledger(crowd)
+    turned = ledger([rotated(contacts, rotation) for contacts in crowd], corners=CORNERS @ rotation.T)
+    assert_same(turned, plain, SCALARS)
+    for names in VECTORS:
+        expected = vector(plain, names) @ rotation.T
+        np.testing.assert_allclose(vector(turned, names), expected, rtol=0, atol=1e-11)  # of order one, F . n
 
 
 def test_changing_the_units_changes_only_the_units():
@@ -212,11 +234,13 @@ def test_changing_the_units_changes_only_the_units():
         1e-3 * time,
         effective_modulus=EFFECTIVE_MODULUS * force / length**2,
         density=DENSITY * mass / length**3,
+        corners=CORNERS * length,
     )
-    units = dict.fromkeys(("sliding_work_J", "rolling_work_J", "impact_energy_J"), energy)
-    units |= {"normal_impulse_N_s": force * time, "contact_time_s": time}
+    units = {"J": energy, "N_s": force * time, "N_m_s": force * length * time, "s": time, "m": length}
     plain = ledger(crowd)
-    assert_same(table, {name: plain[name] * units.get(name, length) for name in LEDGER_FIELDS})
+    unit_of = {name: next(unit for unit in units if name.endswith(f"_{unit}")) for name in LEDGER_FIELDS}
+    unit_of |= dict.fromkeys(vector_columns("moment"), "N_m_s")
+    assert_same(table, {name: plain[name] * units[unit_of[name]] for name in LEDGER_FIELDS})
 
 
 def test_relabelling_the_triangles_permutes_the_ledger():
@@ -224,7 +248,7 @@ def test_relabelling_the_triangles_permutes_the_ledger():
     relabel = np.random.default_rng(5).permutation(12)
     crowd = random_samples()
     renamed = [SimpleNamespace(**{**vars(one), "triangle": relabel[one.triangle]}) for one in crowd]
-    table, plain = ledger(renamed), ledger(crowd)
+    table, plain = ledger(renamed, corners=CORNERS[np.argsort(relabel)]), ledger(crowd)
     assert_same({name: table[name][relabel] for name in LEDGER_FIELDS}, plain)
 
 
@@ -242,7 +266,7 @@ def test_two_cycles_add_up_to_one():
     """Sums are additive, and contacts that outlast a cycle's end are no new impacts."""
     crowd = random_samples()
     whole = ledger(crowd, touching=[])
-    first, options = LedgerBuilder(12, 0, EFFECTIVE_MODULUS, DENSITY, touching=[]), {}
+    first, options = LedgerBuilder(12, 0, EFFECTIVE_MODULUS, DENSITY, touching=[], corners=CORNERS), {}
     for contacts in crowd[:17]:
         first.add(contacts, 1e-3)
     options["touching"] = first.touching
@@ -255,7 +279,7 @@ def test_two_cycles_add_up_to_one():
 def test_batches_give_the_same_ledger_as_single_samples():
     """add_batch is only faster."""
     crowd = random_samples()
-    builder = LedgerBuilder(12, 0, EFFECTIVE_MODULUS, DENSITY)
+    builder = LedgerBuilder(12, 0, EFFECTIVE_MODULUS, DENSITY, corners=CORNERS)
     for first in range(0, len(crowd), 16):
         builder.add_batch(batch_of(crowd[first : first + 16]), 1e-3)
     assert builder.samples == len(crowd)
@@ -386,8 +410,8 @@ def test_the_wall_spin_changes_the_rolling_only():
 
 def test_kernels_add_their_sum_and_change_nothing_else():
     """finnie_work_J = sum of 2 E v F dt per triangle; batches give the same."""
-    crowd, up = random_samples(), np.tile([0.0, 0.0, 1.0], (12, 1))
-    options = {"kernels": {"finnie_work": {}}, "face_normals": up}
+    crowd = random_samples()
+    options = {"kernels": {"finnie_work": {}}, "corners": CORNERS}
     table = ledger(crowd, **options)
     assert list(table) == [*LEDGER_FIELDS, "finnie_work_J"]
     assert_same(table, ledger(crowd))
@@ -402,22 +426,31 @@ def test_kernels_add_their_sum_and_change_nothing_else():
 
 def test_a_kernel_gets_its_parameters():
     """|v_t| (L / 1 mm)^n dt with n = 2 and L = 3 mm is nine times the slip; the column ends in the kernel's unit."""
-    up = np.tile([0.0, 0.0, 1.0], (12, 1))
     with long_slip_registered():
         given = {"long_slip": {"length_m": 3e-3, "exponent": 2.0}}
-        table = ledger([sample(particle_velocity=[[0.4, 0.0, -0.3]])], kernels=given, face_normals=up)
+        table = ledger([sample(particle_velocity=[[0.4, 0.0, -0.3]])], kernels=given)
     assert table["long_slip_m"][0] == pytest.approx(9.0 * 0.4 * table["contact_time_s"][0], rel=ROUND_OFF)
+
+
+def solver_columns(weights, frames):
+    """Columns of the solver's file for as many triangles as there are weights; its vectors in the facets' frames."""
+    count = len(weights)
+    columns = {name: np.arange(float(count)) for name in (*SUMMED_FIELDS, "contact_radius_m", "finnie_work_J")}
+    columns |= {f"contact_weight_{k + 1}": weights[:, k] for k in range(3)}
+    for name, vectors in frames.items():
+        parts = vector_columns(name, ("along", "across", "normal"))
+        columns |= {part: vectors[:, k] for k, part in enumerate(parts)}
+    return columns
 
 
 def test_columns_of_the_solver_are_those_of_the_samples():
     """Same names in the same order; weights 1, 0, 0 lie on the first corner, thirds on the centroid."""
     corners = np.random.default_rng(2).normal(size=(3, 3, 3))
-    columns = {name: np.arange(3.0) for name in (*ADDITIVE, "contact_radius_m", "finnie_work_J")}
     weights = np.array([[1.0, 0.0, 0.0], [1 / 3, 1 / 3, 1 / 3], [np.nan] * 3])
-    columns |= {f"contact_weight_{k + 1}": weights[:, k] for k in range(3)}
+    columns = solver_columns(weights, dict.fromkeys(VECTOR_UNITS, np.zeros((3, 3))))
     table = columns_of_solver(columns, corners)
     assert list(table) == list(LEDGER_FIELDS) == list(ledger([sample()]))
-    found = np.column_stack([table[name] for name in LEDGER_FIELDS[6:]])
+    found = vector(table, POSITION_FIELDS)
     np.testing.assert_allclose(found[:2], [corners[0, 0], corners[1].mean(axis=0)], rtol=ROUND_OFF)
     assert np.isnan(found[2]).all()
     assert list(columns_of_solver(columns, corners, ("finnie_work",)))[-1] == "finnie_work_J"

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from bulkwear.postproc.mesh import SurfaceMesh
-from bulkwear.postproc.readers.load_ledger import RADIUS, SUMS, WEIGHTS, LoadLedgerError
+from bulkwear.postproc.readers.load_ledger import RADIUS, SUMS, VECTORS, WEIGHTS, WORKS, LoadLedgerError
 from bulkwear.postproc.wear.kernels import kernel_column
 from bulkwear.postproc.wear.laws import LAWS
-from bulkwear.postproc.wear.ledger import LEDGER_FIELDS
+from bulkwear.postproc.wear.ledger import LEDGER_FIELDS, POSITION_FIELDS, vector_columns
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, PRODUCERS, SPINS, TOUCHING, SamplesError, producer
@@ -31,7 +31,9 @@ SURFACE = SurfaceMesh(
     np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.02, 0.0], [0.0, 0.02, 0.0]]),
     np.array([[0, 1, 2], [0, 2, 3]]),
 )
-POINT, FORCE, SPEED = (0.01, 0.005, 0.0), 2.0, 0.3  # of the one contact, on triangle 0: m, N, m/s
+# Of the one contact, on triangle 0, whose first edge is the x axis: m, N, N against the sliding, m/s
+POINT, FORCE, FRICTION, SPEED = (0.01, 0.005, 0.0), 2.0, 0.5, 0.3
+DUMPED_FRICTION = 1.7  # N; evaluated for the dump
 
 
 def chain_of(folder, ledger, **changes):
@@ -61,14 +63,20 @@ def weights():
 def write_load_ledger(chain, folder, **changes):
     """What the solver would sum of one contact that slides on triangle 0 during a whole cycle."""
     kernels = map(kernel_column, LAWS[chain.parameters["wear"]["law"]].kernels)
-    sums = {name: [0.0, 0.0] for name in (*SUMS, *kernels)}
+    sums = {name: [0.0, 0.0] for name in (*SUMS, *WORKS, *VECTORS, *kernels)}
     sums["sliding_work_J"] = [FORCE * SPEED * time_of(chain), 0.0]
     sums["normal_impulse_N_s"] = [FORCE * time_of(chain), 0.0]
     sums["contact_time_s"] = [time_of(chain), 0.0]
+    sums["tangential_work_J"] = [FRICTION * SPEED * time_of(chain), 0.0]
+    impulse = np.array([FRICTION, 0.0, -FORCE]) * time_of(chain)
+    moment = np.cross(POINT - SURFACE.points[SURFACE.triangles[0]].mean(axis=0), impulse)
+    for name, vector in (("impulse", impulse), ("moment", moment)):
+        for field, part in zip(vector_columns(name, ("along", "across", "normal")), vector, strict=True):
+            sums[field] = [part, 0.0]
     columns = {**sums, RADIUS: [1e-4, np.nan]}
     columns |= {name: [weight, np.nan] for name, weight in zip(WEIGHTS, weights(), strict=True)}
     steps = chain.parameters["derived"]["first_cycle_steps"]
-    header = {"load_ledger": 1, "mesh": "sample_1", "triangles": 2, "steps": steps, "time_s": time_of(chain)}
+    header = {"load_ledger": 2, "mesh": "sample_1", "triangles": 2, "steps": steps, "time_s": time_of(chain)}
     header |= {"columns": list(columns), **changes}
     numbers = np.array(list(columns.values()), "<f8").tobytes()
     (folder / LOAD_LEDGER).write_bytes(json.dumps(header).encode() + b"\n" + numbers)
@@ -77,7 +85,7 @@ def write_load_ledger(chain, folder, **changes):
 def write_dumps(chain, folder, samples=None):
     """The same contact as sampled: the set-up's sample, then one per interval."""
     radius = 0.004
-    row = [*POINT, *POINT[:2], radius, 0, 0, 0, SPEED, 0, 0, 0, 0, 7, 0, 0, FORCE]
+    row = [*POINT, *POINT[:2], radius, 0, 0, 0, SPEED, 0, 0, 0, 0, 7, -DUMPED_FRICTION, 0, FORCE]
     every, total = (
         chain.parameters["solver"]["sampling_interval_steps"],
         chain.parameters["derived"]["first_cycle_steps"],
@@ -87,7 +95,8 @@ def write_dumps(chain, folder, samples=None):
     contacts, spins = [], []
     for step in range(0, total + 1, every)[:samples]:
         contacts.append(head.format(step, "ENTRIES", "ENTRIES", names, " ".join(map(str, row))))
-        spins.append(head.format(step, "ATOMS", "ATOMS", "id radius omegax omegay omegaz", f"7 {radius} 0 0 0"))
+        columns = "id radius omegax omegay omegaz f_force_walls[1] f_force_walls[2] f_force_walls[3]"
+        spins.append(head.format(step, "ATOMS", "ATOMS", columns, f"7 {radius} 0 0 0 -{FRICTION} 0 {FORCE}"))
     (folder / CONTACTS).write_text("".join(contacts))
     (folder / SPINS).write_text("".join(spins))
 
@@ -118,11 +127,13 @@ def test_both_producers_write_the_same_columns(tmp_path, law):
 
 
 def test_both_producers_agree_on_one_contact(tmp_path):
-    """Work F v t, impulse F t, time and place of a contact that slides through the whole cycle."""
+    """Work F v t, impulse F t, time, place and friction of a contact that slides through the whole cycle."""
     one, other = (columns_of(name, tmp_path / name / "cycle_001") for name in ("solver", "dumps"))
-    for name in ("sliding_work_J", "normal_impulse_N_s", "contact_time_s", *LEDGER_FIELDS[6:]):
+    vectors = [field for name in ("impulse", "back_impulse", "moment") for field in vector_columns(name)]
+    works = ("sliding_work_J", "normal_impulse_N_s", "contact_time_s", "tangential_work_J", "drive_work_J")
+    for name in (*works, *POSITION_FIELDS, *vectors):
         np.testing.assert_allclose(one[name], other[name], rtol=ROUND_OFF, err_msg=name)
-    position = [one[name][0] for name in LEDGER_FIELDS[6:]]
+    position = [one[name][0] for name in POSITION_FIELDS]
     np.testing.assert_allclose(position, POINT, rtol=ROUND_OFF, atol=ROUND_OFF)
 
 
