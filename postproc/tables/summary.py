@@ -11,6 +11,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import PLAIN
 
 MEANS = ("mean_normal_force_N", "bed_over_floor_velocity")  # over time; the second where friction alone moves a bed
+THROUGH = "through_nodes"  # at the end: nodes at which the local thickness is worn away
 AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
 SUMMED = (
     "worn_volume_m3",
@@ -24,7 +25,8 @@ SUMMED = (
 
 def run_summary(wear: pd.DataFrame) -> dict[str, float]:
     """Return a run's totals (m3, J), its state at the end, mean normal force (N) and wear per metre (m3/m); where the
-    floor's friction alone moves the bed also its mean velocity over the floor's (-).
+    floor's friction alone moves the bed also its mean velocity over the floor's (-), and how many nodes are worn
+    through.
 
     wear: rows of wear.csv, cycle by cycle.
     """
@@ -37,6 +39,7 @@ def run_summary(wear: pd.DataFrame) -> dict[str, float]:
         **totals,
         "worn_volume_per_metre_m3_per_m": totals["worn_volume_m3"] / last["travel_m"],
         **{name: float(np.average(wear[name], weights=duration)) for name in MEANS if name in wear},
+        **({THROUGH: int(wear[THROUGH].iloc[-1])} if THROUGH in wear else {}),
         "largest_balance_error": float(wear["balance_error"].max()),
     }
 

@@ -82,11 +82,11 @@ def worn_through(mesh: SurfaceMesh) -> np.ndarray:
 
 
 def through_phrase(mesh: SurfaceMesh) -> str | None:
-    """Phrase on where a surface is worn through, the place of the thinnest part first; None where it is not."""
+    """Phrase on where a surface is worn through, the place of the most removed one first; None where it is not."""
     nodes = np.flatnonzero(worn_through(mesh))
     if not nodes.size:
         return None
-    at = nodes[np.argmin(mesh.point_data[LOCAL_THICKNESS][nodes])]
+    at = nodes[np.argmax((mesh.point_data[REMOVED_THICKNESS] / mesh.point_data[LOCAL_THICKNESS])[nodes])]
     x, y, z = METRES_TO_MM * mesh.points[at]
     return (
         f"worn through at {nodes.size} nodes, first at ({x:.4g}, {y:.4g}, {z:.4g}) mm, where the part was "

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, worn_faces
+from bulkwear.postproc.mesh import SurfaceMesh, read_surface, worn_faces
 from bulkwear.postproc.readers.mesh_loads import read_mesh_loads
+from bulkwear.postproc.wear.thickness import through_phrase
 from bulkwear.workflows.engine.case import CycleError
-from bulkwear.workflows.engine.chain import Chain
+from bulkwear.workflows.engine.chain import SURFACE, WORN_THROUGH, Chain
 from bulkwear.workflows.engine.ledgers import producer
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.wear_step import law_volume, load_sums, on_whole_surface, wear
@@ -36,7 +37,10 @@ def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
     row = wear(chain, span, folder, surface, ledger) | own
     spent = [*source.written(folder), *(folder / name for name in case.leftovers)]
     spent += case.reduce(chain.parameters, span, folder)
-    return {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}, spent
+    record = {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}
+    if row["through_nodes"]:
+        record[WORN_THROUGH] = through_phrase(read_surface(folder / SURFACE))
+    return record, spent
 
 
 def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.DataFrame:

@@ -16,6 +16,7 @@ from bulkwear.workflows.engine.solver import DECK, LAUNCHER
 from bulkwear.workflows.engine.templates import render
 
 MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
+WORN_THROUGH = "worn_through"  # of a cycle's state: where, a phrase
 SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
 
 
@@ -46,10 +47,14 @@ def surface_before(chain: Chain, cycle: int) -> Path:
 
 
 def span_of(chain: Chain, cycle: int) -> Span | None:
-    """Return the span of a wear cycle (1, 2, ...) whose predecessors are finished; None after the last one."""
+    """Return the span of a wear cycle (1, 2, ...) whose predecessors are finished; None after the last one, or where
+    the surface is worn through and the run is to end then.
+    """
     if cycle == 1:
         return first_span(chain.parameters)
     before = state.read_state(chain.folder, cycle - 1)
+    if before.get(WORN_THROUGH) and chain.parameters["wear"].get("worn_through", "stop") == "stop":
+        return None
     span = next_span(chain.parameters, Span(**before["span"]), before["wear"])
     return span and replace(span, substeps=chain.case.substeps(chain.parameters, before["wear"]))
 

@@ -22,6 +22,7 @@ from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.chain import (
     RESTART,
     SURFACE,
+    WORN_THROUGH,
     Chain,
     run_in_steps,
     span_of,
@@ -112,6 +113,10 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         triangles = write_cycle(chain, span, folder, surface)
         pieces = simulate(chain, span, folder, triangles, progress, origin)
         record, spent = account_and_wear(chain, span, folder, surface) if span else ({"cost": {}}, [])
+        if through := record.get(WORN_THROUGH):
+            progress.say(f"{title(chain, cycle)}: {through}")
+        if turned := record.get("wear", {}).get("turned_faces"):
+            progress.say(f"{title(chain, cycle)}: {turned} faces looked away from the particles and were turned")
         record["cost"] = cost(chain, span, folder, triangles, pieces, time.monotonic() - started) | record["cost"]
         record |= {
             "span": asdict(span) if span else None,

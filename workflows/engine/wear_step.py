@@ -24,6 +24,7 @@ from bulkwear.postproc.mesh import (
 from bulkwear.postproc.wear.balance import GrowthError, lost_volume, volume_balance
 from bulkwear.postproc.wear.caps import next_cycle_factor, wanted_step
 from bulkwear.postproc.wear.laws import worn_volume
+from bulkwear.postproc.wear.ledger import pressed_sides
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
 from bulkwear.postproc.wear.patch import ContactPatch, chosen_radius
 from bulkwear.postproc.wear.remesh import RemeshError, remesh
@@ -139,8 +140,6 @@ def pressed(surface: SurfaceMesh, ledger: pd.DataFrame) -> tuple[np.ndarray, np.
     """Return the impulse (N s) on front and back of each face (m,), None where the ledger does not know it."""
     if IMPULSE not in ledger:
         return None
-    from bulkwear.postproc.wear.ledger import pressed_sides
-
     normals = unit_normals(surface.points, surface.triangles)
     return pressed_sides({name: ledger[name].to_numpy() for name in ledger}, normals)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.postproc.tables.summary import THROUGH
 from bulkwear.postproc.wear.laws import LAWS, NEUTRAL_LAW
 
 if TYPE_CHECKING:
@@ -164,7 +165,20 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, furth
         f"most {further_cap}. The rest is carried into later cycles: at the end "
         f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
     )
-    return [law, acceleration, caps]
+    return [law, acceleration, caps, *_worn_through(wear, summary)]
+
+
+def _worn_through(wear: Mapping[str, Any], summary: pd.DataFrame) -> list[tuple[str, str]]:
+    """Return which runs are worn through, nothing where the thickness is not known."""
+    if "local_thickness_mm" not in wear:
+        return []
+    through = summary[summary[THROUGH] > 0]
+    how = {"stop": "The run ends then.", "cap": "The surface stops there.", "go_on": "The run goes on."}
+    rows = zip(through["run"], through[THROUGH], through["time_s"], strict=True)
+    runs = [f"{run} ({nodes} nodes by {time:.3g} s)" for run, nodes, time in rows]
+    found = f"Worn through: {', '.join(runs)}." if runs else "No run is worn through."
+    meaning = f"A place is worn through when {wear['local_thickness_mm']:g} mm of thickness are removed."
+    return [("Worn through", f"{meaning} {how[wear.get('worn_through', 'stop')]} {found}")]
 
 
 def law_words(wear: Mapping[str, Any], coefficient: str) -> str:

@@ -234,6 +234,27 @@ def test_other_ways_to_wear_run_too(finished, tmp_path, wear):
     assert (excess > 0.1) == (wear.get("scheme") == "per_triangle")
 
 
+@pytest.mark.parametrize("then", ["stop", "cap", "go_on"])
+def test_a_part_that_is_worn_through(finished, tmp_path, capsys, then):
+    """With half the first cycle's depth as thickness the sample is worn through in that cycle: the run ends, stops at
+    the back, or goes on, says so, and its balance closes."""
+    half = 0.5 * wear_table(finished)["largest_depth_m"].iloc[0]
+    study = tiny_study(wear={"local_thickness_mm": 1e3 * half, "worn_through": then})
+    chain = replace(twin(finished, tmp_path), parameters=study.run(finished.name).parameters)
+    cycles.run_chain(chain)
+    table = wear_table(chain)
+    assert len(table) == (1 if then == "stop" else wear_cycles(chain))
+    assert table["through_nodes"].iloc[0] > 0
+    assert "worn through at" in capsys.readouterr().err
+    assert state.read_state(chain.folder, 1)["worn_through"].startswith("worn through at")
+    assert (table["balance_error"] < 1e-6).all()
+    surface = read_surface(chain.folder / "worn_surface.vtu")
+    deepest = surface.point_data["removed_thickness_m"].max()
+    assert (deepest > half * (1.0 + 1e-6)) == (then != "cap")
+    assert (table["beyond_back_volume_m3"].sum() > 0.0) == (then == "cap")
+    assert np.nanmin(surface.point_data["remaining_thickness_m"]) == 0.0  # the holder has none
+
+
 def first_ledger(chain, finished) -> pd.DataFrame:
     """Ledger of a chain's first wear cycle, from the restart file of the undisturbed run."""
     shutil.copytree(state.cycle_folder(finished.folder, 0), state.cycle_folder(chain.folder, 0))

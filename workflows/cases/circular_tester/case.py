@@ -151,9 +151,10 @@ class CircularTester(SampleCase):
 
     def on_surface(self, parameters: Parameters, ledger: pd.DataFrame) -> pd.DataFrame:
         """Return a ledger with its vectors in the sample's own frame."""
-        pose = tester_deck.pose(parameters["tester"])
-        turned = {}
-        for columns in vector_columns(ledger):
+        from bulkwear.postproc.wear.ledger import POSITION_FIELDS, VECTOR_UNITS, vector_columns
+
+        pose, turned = tester_deck.pose(parameters["tester"]), {}
+        for columns in map(list, (POSITION_FIELDS, *map(vector_columns, VECTOR_UNITS))):
             turned |= dict(zip(columns, (ledger[columns].to_numpy() @ pose).T, strict=True))
         return ledger.assign(**turned)
 
@@ -247,12 +248,6 @@ class CircularTester(SampleCase):
 
 
 register(CircularTester())
-
-
-def vector_columns(ledger: pd.DataFrame) -> list[list[str]]:
-    """Return the columns of a ledger that are x, y and z of a vector, three by three."""
-    first = [name.split("_x_") for name in ledger if "_x_" in name]
-    return [[f"{name}_{axis}_{unit}" for axis in "xyz"] for name, unit in first]
 
 
 def revolution(parameters: Parameters, steps: Any) -> Any:
