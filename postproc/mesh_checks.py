@@ -103,20 +103,21 @@ def _interval(corners: np.ndarray, heights: np.ndarray, line: np.ndarray) -> tup
 def _covering(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
     """Mask (p,) of the pairs in one plane that no edge of either separates (separating axes)."""
     first, second = points[triangles[pairs[:, 0]]], points[triangles[pairs[:, 1]]]
-    result = np.ones(len(pairs), dtype=bool)
-    axes = []
+    rows, normals = np.arange(len(pairs)), []
     for ours, theirs in ((first, second), (second, first)):
-        edges = np.roll(ours, -1, axis=1) - ours
-        normal = np.cross(edges[:, 0], edges[:, 1])
+        normal = np.cross(ours[rows, 1] - ours[rows, 0], ours[rows, 2] - ours[rows, 0])
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
-        result &= (np.abs(np.einsum("kcj,kj->kc", theirs - ours[:, :1], normal)) <= clearance).all(axis=1)
-        axes.append(np.cross(edges, normal[:, None]))
-    rows = np.flatnonzero(result)
-    sideways = np.concatenate(axes, axis=1)[rows]
-    sideways /= np.maximum(np.linalg.norm(sideways, axis=2, keepdims=True), np.finfo(float).tiny)
-    ours, theirs = (np.einsum("kcj,kaj->kac", each[rows] - first[rows][:, :1], sideways) for each in (first, second))
+        heights = np.einsum("kcj,kj->kc", theirs[rows] - ours[rows, :1], normal)
+        near = (np.abs(heights) <= clearance).all(axis=1)
+        rows, normals = rows[near], [each[near] for each in (*normals, normal)]
+    first, second = first[rows], second[rows]
+    edges = [np.roll(each, -1, axis=1) - each for each in (first, second)]
+    axes = np.concatenate([np.cross(e, n[:, None]) for e, n in zip(edges, normals, strict=True)], axis=1)
+    axes /= np.maximum(np.linalg.norm(axes, axis=2, keepdims=True), np.finfo(float).tiny)
+    ours, theirs = (np.einsum("kcj,kaj->kac", each - first[:, :1], axes) for each in (first, second))
     overlap = np.minimum(ours.max(axis=2), theirs.max(axis=2)) - np.maximum(ours.min(axis=2), theirs.min(axis=2))
-    result[rows] = overlap.min(axis=1) > clearance
+    result = np.zeros(len(pairs), dtype=bool)
+    result[rows[overlap.min(axis=1) > clearance]] = True
     return result
 
 

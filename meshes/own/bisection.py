@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 SAME_LENGTH = 1.0 + 1e-9  # -, of edges: a path ends at an edge that no other of its two triangles is longer than
+ALIKE = 0.7  # -, over the longest edge: a crease that long is halved instead
 DELAUNAY = 1e-9  # -, sine of the sum of two opposite angles over pi at which an edge is turned
 MOST_PASSES = 100  # over all edges, turning them; some ten are needed
 MOST_STEPS = 10_000  # along a path or round a node: more than any has
@@ -253,6 +254,22 @@ def _end_of_path(points, tri, adj, t, room, lengths) -> tuple[int, int]:
 
 
 @njit(cache=True)
+def _crease_instead(points, tri, adj, part, t, k, flat, room, lengths) -> tuple[int, int]:
+    """Triangle and edge to halve where edge k of t is the longest: a crease about as long beside it, if that can be
+    turned itself. A node on the diagonal of a strip between two creases would halve the strip's width.
+    """
+    if _gap(points, tri, adj, part, t, k, room) > flat:
+        return t, k
+    for triangle in (t, adj[t, k]):
+        longest = _lengths(points, tri, triangle, room, lengths)
+        for step in range(1, 3):
+            edge = (longest + step) % 3
+            if lengths[edge] >= ALIKE * lengths[longest] and _gap(points, tri, adj, part, triangle, edge, room) > flat:
+                return triangle, edge
+    return t, k
+
+
+@njit(cache=True)
 def refine_all(points, tri, adj, part, limit, n_points, count, sine, shortest, flat, told) -> tuple[int, int, bool]:
     """Halve edges until none is above its limit, and smallest angles are above one of that sine where they can be.
 
@@ -277,6 +294,7 @@ def refine_all(points, tri, adj, part, limit, n_points, count, sine, shortest, f
         if n_points >= len(points) or count + 2 > len(tri):
             return n_points, count, False
         at, edge = _end_of_path(points, tri, adj, t, room, lengths)
+        at, edge = _crease_instead(points, tri, adj, part, at, edge, flat, room, lengths)
         before, m = count, n_points
         across = adj[at, edge]
         count = _halve(points, tri, adj, part, limit, at, edge, m, count)

@@ -84,17 +84,23 @@ def check_cuts(solids: Solids, tolerance: float, unit: str, repairs: Repairs) ->
             repairs.add(f"warning: {other} part '{solids.names[second]}', pairs of faces", part[mine, 0], middle[mine])
 
 
-def check_for_solver(solids: Solids, tolerance: float, unit: str) -> None:
-    """Raise `RefusedMeshError` where LIGGGHTS would refuse or drop a triangle: too sharp, or edges too short."""
+def sharp_faces(solids: Solids) -> np.ndarray:
+    """Faces (k,) with an angle that the solver refuses, the sharpest first."""
     angle = smallest_angles(solids.points, solids.triangles)
     sharp = np.flatnonzero(angle <= LEAST_ANGLE)
+    return sharp[np.argsort(angle[sharp], kind="stable")]
+
+
+def check_for_solver(solids: Solids, tolerance: float, unit: str) -> None:
+    """Raise `RefusedMeshError` where LIGGGHTS would refuse or drop a triangle: too sharp, or edges too short."""
+    sharp = sharp_faces(solids)
     if len(sharp):
-        at = sharp[np.argmin(angle[sharp])]
-        place = centroids(solids.points, solids.triangles[[at]])[0]
-        said = f"has {len(sharp)} faces that are too sharp for the solver, the sharpest of {angle[at]:.2g} degrees"
+        sharpest = solids.triangles[sharp[:1]]
+        angle, place = smallest_angles(solids.points, sharpest)[0], centroids(solids.points, sharpest)[0]
+        said = f"has {len(sharp)} faces that are too sharp for the solver, the sharpest of {angle:.2g} degrees"
         wider = f"a weld tolerance above {1e3 * tolerance:.3g} mm"
         allowed = f"are angles above {LEAST_ANGLE} degrees: give a target edge, or {wider}"
-        raise refusal(solids, np.append(at, sharp[sharp != at]), place, said, allowed, unit)
+        raise refusal(solids, sharp, place, said, allowed, unit)
     shortest = edge_lengths_per_triangle(solids.points, solids.triangles).min(axis=1)
     at = int(np.argmin(shortest))
     if shortest[at] < EDGES_APART * SOLVER_PRECISION:

@@ -9,17 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from bulkwear.meshes.own.check import check_cuts, check_for_solver, check_gaps, check_manifold
+from bulkwear.meshes.own.check import check_cuts, check_for_solver, check_gaps, check_manifold, sharp_faces
 from bulkwear.meshes.own.orient import oriented, touched_sides
 from bulkwear.meshes.own.read import read_solids
-from bulkwear.meshes.own.refine import WANTED_ANGLE, Region, refined
+from bulkwear.meshes.own.refine import WANTED_ANGLE, Region, across_edges, refined, turned
 from bulkwear.meshes.own.repairs import Repair, Repairs, repairs_text, table
 from bulkwear.meshes.own.solids import Solids, check_sizes, joined, target_edges
 from bulkwear.meshes.own.weld import stitched, weld_tolerance, welded
 from bulkwear.postproc.mesh import (
     SurfaceMesh,
     areas,
-    boundary_edges,
     edge_lengths_per_triangle,
     enclosed_volume,
     obtuse_last,
@@ -105,6 +104,8 @@ def own_mesh(
     solids = _mended(solids, tolerance, unit, repairs)
     if np.isfinite(targets).any() or fine:
         solids = refined(solids, targets, fine, tolerance, smallest_angle_deg, repairs)
+    elif len(sharp := sharp_faces(solids)):
+        solids = turned(solids, np.isin(np.arange(len(targets)), solids.part[sharp]), tolerance, repairs)
     check_for_solver(solids, tolerance, unit)
     order = np.argsort(solids.part, kind="stable")
     triangles = obtuse_last(solids.points, solids.triangles[order])
@@ -137,7 +138,7 @@ def _mended(solids: Solids, tolerance: float, unit: str, repairs: Repairs) -> So
 def _part(surface: SurfaceMesh, number: int, name: str) -> Part:
     """The facts of a part of a surface."""
     points, triangles = surface.points, surface.triangles[surface.cell_data["part"] == number]
-    closed = not len(boundary_edges(triangles))
+    closed = bool((across_edges(triangles) >= 0).all())
     corners = points[triangles].reshape(-1, 3)
     lengths, angles = edge_lengths_per_triangle(points, triangles), smallest_angles(points, triangles)
     return Part(

@@ -19,7 +19,7 @@ from bulkwear.meshes.own.solids import Solids
 from bulkwear.postproc.mesh import centroids, directed_edges, edge_lengths_per_triangle
 
 LONGEST_OVER_TARGET = 1.5  # -, edges above it are halved: what is left has 0.75 to 1.5 targets
-SHORTEST_OVER_TARGET = 0.2  # -, no edge is halved below it for an angle's sake
+SHORTEST_OVER_TARGET = 0.25  # -, no edge is halved below it for an angle's sake
 WANTED_ANGLE = 15.0  # degrees, as the smallest that remeshing allows a worn surface
 MOST_TRIANGLES = 4_000_000  # more than a solver takes in days
 MOST_ROUNDS = 30  # of asking for the targets of smaller and smaller triangles
@@ -87,12 +87,29 @@ def refined(
             solids = _one_round(solids, limit, flat, angle_deg, told)
         if not fine:
             break
-    turned = np.flatnonzero(told[:, 0])
-    for part in turned:
+    _tell_turns(told, repairs)
+    return solids
+
+
+def turned(solids: Solids, parts: np.ndarray, flat: float, repairs: Repairs) -> Solids:
+    """Solids with the edges within flat regions of some parts turned until angles are as large as their nodes allow.
+
+    parts: (parts,) bool; flat: m, as in `refined`
+    """
+    told = np.zeros((len(solids.names), 5))
+    tri, part = solids.triangles.copy(), solids.part.astype(np.int64)
+    limit = np.where(parts[part], np.finfo(float).max, np.inf)
+    turn_all(solids.points, tri, across_edges(tri), part, limit, len(tri), flat, told)
+    _tell_turns(told, repairs)
+    return replace(solids, triangles=tri)
+
+
+def _tell_turns(told: np.ndarray, repairs: Repairs) -> None:
+    """Put the edges that were turned, counted in `told` (parts, 5), into the table."""
+    for part in np.flatnonzero(told[:, 0]):
         count = int(told[part, 0])
         place = np.broadcast_to(told[part, 2:], (count, 3))
         repairs.add("edges turned in flat regions", np.full(count, part), place, told[part, 1])
-    return solids
 
 
 def wanted_targets(solids: Solids, targets: np.ndarray, fine: Sequence[Region]) -> np.ndarray:

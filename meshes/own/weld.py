@@ -18,6 +18,7 @@ from bulkwear.postproc.mesh import areas, centroids, directed_edges, edge_length
 from bulkwear.postproc.mesh_checks import overlapping_boxes
 
 WELD_OF_SIZE = 1e-6  # -, of the largest extent or coordinate: some ten roundings of a float32, one of six digits
+WIDTH_OF_WELD = 0.1  # -, of the weld tolerance: facets thinner than that are none; wider ones keep their nodes apart
 MOST_ROUNDS = 8  # of dropping and splitting; each ends what the one before laid bare
 
 
@@ -29,8 +30,7 @@ def weld_tolerance(points: np.ndarray) -> float:
 def welded(solids: Solids, tolerance: float, repairs: Repairs) -> Solids:
     """Solids, in m, whose parts are meshes without degenerate and duplicate facets and without unused nodes.
 
-    tolerance: m, points closer than that are one, facets thinner than that are dropped, nodes closer than that to the
-    inside of an open edge are put into it
+    tolerance: m, points closer than that are one, and nodes closer than that to an open edge are put into it
     """
     solids = _one_node_per_place(_own_nodes(solids), tolerance, repairs)
     for _ in range(MOST_ROUNDS):
@@ -95,12 +95,12 @@ def _groups(pairs: np.ndarray, count: int) -> np.ndarray:
 
 
 def _without_useless(solids: Solids, tolerance: float, repairs: Repairs) -> Solids:
-    """The solids without facets that collapsed, are thinner than the tolerance, or are there twice."""
+    """The solids without facets that collapsed, have no width (`WIDTH_OF_WELD`), or are there twice."""
     points, triangles = solids.points, solids.triangles
     ordered = np.sort(triangles, axis=1)
     collapsed = (ordered[:, :-1] == ordered[:, 1:]).any(axis=1)
     longest = edge_lengths_per_triangle(points, triangles).max(axis=1)
-    thin = ~collapsed & (2.0 * areas(points, triangles) <= tolerance * longest)
+    thin = ~collapsed & (2.0 * areas(points, triangles) <= WIDTH_OF_WELD * tolerance * longest)
     twice = np.ones(len(triangles), dtype=bool)
     twice[np.unique(ordered, axis=0, return_index=True)[1]] = False
     twice &= ~collapsed & ~thin
