@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh, boundary_nodes, smallest_angles, unit_normals, worn_faces
+from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes, smallest_angles, unit_normals, worn_faces
 from bulkwear.postproc.wear.balance import check_growth, with_swept_rim
 from bulkwear.postproc.wear.built_shape import PRISTINE_RISE, face_labels, with_turned_shape
 from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, pristine_normal_depth, ray_depth
@@ -26,7 +26,8 @@ RAY_DEPTH = "ray_depth_m"
 NORMAL_DEPTH = "normal_depth_m"
 FREE_RIM = "free_rim"  # point data: 1 at the nodes of `free_rim`
 CARRIED_VOLUME = "carried_volume_m3"
-UPRIGHT = 1e-6  # -, sine: a face that leans over by less counts as upright, as at the foot of a half sphere
+UPRIGHT = 0.2  # -, sine: coarse faces at the foot of a half ellipsoid lean over by 6 degrees; they count as upright
+LEAST_PLAN = 0.5  # -, area in plan over area: a surface is steeper than 60 degrees on average below
 BACKS = ("go_on", "cap")  # what a node does whose local thickness is worn away
 
 
@@ -164,13 +165,14 @@ def with_depths(worn: SurfaceMesh, pristine: SurfaceMesh) -> SurfaceMesh:
 
 
 def stands_over_plan(worn: SurfaceMesh, pristine: SurfaceMesh) -> bool:
-    """Whether height losses make sense: all worn faces of the pristine surface look up, and its plan is still the same.
+    """Whether height losses make sense: the worn faces of the pristine surface look up, and its plan is still the same.
 
-    The rim of the worn faces must lie over the rim of before: then every place of either surface is above or below one
-    of the other.
+    None of them may look down, and half of their area is to be seen from above. The rim of the worn faces must lie over
+    that of before: then every place of either surface is above or below one of the other.
     """
     faces = pristine.triangles[worn_faces(pristine)]
-    if (unit_normals(pristine.points, faces)[:, 2] < -UPRIGHT).any():
+    upward, size = unit_normals(pristine.points, faces)[:, 2], areas(pristine.points, faces)
+    if (upward < -UPRIGHT).any() or upward @ size < LEAST_PLAN * size.sum():
         return False
     rims = [
         np.unique(mesh.points[boundary_nodes(mesh.triangles[worn_faces(mesh)])][:, :2], axis=0)

@@ -110,8 +110,11 @@ def test_the_sample_faces_the_flow():
     back, front = (there.points[top][np.isclose(sample.points[top, 1], side)] for side in (0.02, -0.02))
     rise = back[:, 2].mean() - front[:, 2].mean()
     assert rise == pytest.approx(0.04 * math.sin(math.radians(2.0)), rel=ROUND_OFF)
-    ledger = pd.DataFrame(there.points, columns=[f"contact_position_{axis}_m" for axis in "xyz"])
-    np.testing.assert_allclose(case.on_surface(parameters, ledger).to_numpy(), sample.points, atol=ROUND_OFF)
+    vectors = ("contact_position_{}_m", "impulse_{}_N_s", "back_impulse_{}_N_s", "moment_{}_N_m_s")
+    columns = [name.format(axis) for name in vectors for axis in "xyz"]
+    ledger = pd.DataFrame(np.tile(there.points, (1, len(vectors))), columns=columns)
+    own = np.tile(sample.points, (1, len(vectors)))
+    np.testing.assert_allclose(case.on_surface(parameters, ledger).to_numpy(), own, atol=ROUND_OFF)
 
 
 def test_a_ring_turns_as_fast_as_a_channel_goes():
