@@ -24,13 +24,14 @@ LARGEST_FILE_BYTES = 1_000_000
 CASE = "workflows.cases.<own>"
 LAYERS = {
     "postproc.mesh": (),
+    "postproc.mesh_checks": ("postproc.mesh",),
     "postproc.readers": ("postproc.mesh", "postproc.readers"),
-    "postproc.wear": ("postproc.mesh", "postproc.wear"),
+    "postproc.wear": ("postproc.mesh", "postproc.mesh_checks", "postproc.wear"),
     "postproc.reference": ("postproc.reference",),
     "postproc.statistics": ("postproc.statistics",),
     "postproc.inference": ("postproc.inference",),
     "postproc": ("postproc",),
-    "meshes": ("postproc.mesh", "meshes"),
+    "meshes": ("postproc.mesh", "postproc.mesh_checks", "meshes"),
     "workflows.environment": ("workflows.environment",),
     "workflows.engine": ("postproc", "meshes", "workflows.engine"),
     "workflows.config": ("postproc", "meshes", "workflows.engine", "workflows.config"),

@@ -13,7 +13,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from bulkwear.postproc.mesh import (
     SurfaceMesh,
@@ -24,13 +23,10 @@ from bulkwear.postproc.mesh import (
     sum_over_nodes,
     worn_faces,
 )
+from bulkwear.postproc.mesh_checks import intersecting_faces
 from bulkwear.postproc.wear.remesh_patch import border_nodes, neighbours
 
 TARGET_EDGE = "target_edge_m"  # point data: edge length that the mesh should have at a node
-SIZE_CLASS_RATIO = 2.0  # -, faces are searched in classes of alike size, so few candidates are far away
-LARGEST_PAIR_BLOCK = 500_000  # pairs of faces handled at once: bounds the memory at some 300 MB
-INSIDE_TOLERANCE = 1e-12  # -, barycentric: an edge through a corner must not slip between faces
-IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
 METRES_TO_MM = 1e3
 
 
@@ -199,91 +195,6 @@ def folded_faces(points: np.ndarray, triangles: np.ndarray, largest_fold_deg: fl
     cosine = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)
     result[pairs[cosine < np.cos(np.radians(largest_fold_deg))].ravel()] = True
     return result
-
-
-def intersecting_faces(points: np.ndarray, triangles: np.ndarray, among: np.ndarray | None = None) -> np.ndarray:
-    """Pairs of faces that cut one another, (p, 2), lower index first.
-
-    among: (m,) bool, only pairs with at least one of these; None: all. Neighbours at an edge never count (see
-    `folded_faces`); of faces that share one node the edges opposite to it are tested. Coplanar overlap is not found:
-    it comes with folds.
-    """
-    low, high = points[triangles].min(axis=1), points[triangles].max(axis=1)
-    found = [np.empty((0, 2), dtype=np.int64)]
-    for candidates in _close_pairs(points, triangles, among):
-        first, second = candidates.T
-        keep = ((low[first] <= high[second]) & (low[second] <= high[first])).all(axis=1) & (first != second)
-        near = candidates[keep]
-        for start in range(0, len(near), LARGEST_PAIR_BLOCK):
-            block = near[start : start + LARGEST_PAIR_BLOCK]
-            found.append(block[_cutting(points, triangles, block)])
-    return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
-
-
-def _close_pairs(points: np.ndarray, triangles: np.ndarray, among: np.ndarray | None):
-    """Yield arrays (p, 2) of faces whose circles round the centroid overlap, one of them `among` (None: any)."""
-    corners = points[triangles]
-    centre = corners.mean(axis=1)
-    size = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
-    exponent = np.floor(np.log(np.maximum(size, np.finfo(float).tiny)) / np.log(SIZE_CLASS_RATIO))
-    classes = [np.flatnonzero(exponent == value) for value in np.unique(exponent)]
-    trees = [cKDTree(centre[members]) for members in classes]
-    for k, (members, tree) in enumerate(zip(classes, trees, strict=True)):
-        ours, our_tree, reach = members, tree, size[members].max()
-        if among is not None:
-            ours = members[among[members]]
-            our_tree = cKDTree(centre[ours])
-        else:
-            yield members[tree.query_pairs(2.0 * reach, output_type="ndarray")].reshape(-1, 2)
-        for j in range(k if among is None else len(classes)):
-            distance = reach + size[classes[j]].max()
-            both = our_tree.sparse_distance_matrix(trees[j], distance, output_type="ndarray")
-            yield np.column_stack([ours[both["i"]], classes[j][both["j"]]])
-
-
-def _cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """Mask (p,) of the pairs of which one face's edge passes through the other; neighbours at an edge never do."""
-    first, second = triangles[pairs[:, 0]], triangles[pairs[:, 1]]
-    equal = first[:, :, None] == second[:, None, :]
-    rows = np.flatnonzero(equal.sum(axis=(1, 2)) < 2)
-    rows = rows[_planes_cross(points, first[rows], second[rows])]
-    result = np.zeros(len(pairs), dtype=bool)
-    if not len(rows):
-        return result
-    ours, theirs = np.vstack([first[rows], second[rows]]), np.vstack([second[rows], first[rows]])
-    shared = np.vstack([equal[rows].any(axis=2), equal[rows].any(axis=1)])
-    ends = np.roll(ours, -1, axis=1)
-    pair, edge = np.nonzero(~(shared | np.roll(shared, -1, axis=1)))  # edges without a node of the other face
-    hit = _segment_hits(points[ours[pair, edge]], points[ends[pair, edge]], points[theirs[pair]])
-    result[np.tile(rows, 2)[pair[hit]]] = True
-    return result
-
-
-def _planes_cross(points: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Mask of pairs of triangles (k, 3) each of which has corners clearly on both sides of the other's plane."""
-    result = np.ones(len(first), dtype=bool)
-    for ours, theirs in ((first, second), (second, first)):
-        normal = area_vectors(points, theirs)
-        height = np.einsum("kcj,kj->kc", points[ours] - points[theirs[:, :1]], normal)
-        reach = np.linalg.norm(points[ours] - points[theirs[:, :1]], axis=2).max(axis=1)
-        least = IN_PLANE * reach * np.linalg.norm(normal, axis=1)
-        result &= (height.min(axis=1) < -least) & (height.max(axis=1) > least)
-    return result
-
-
-def _segment_hits(start: np.ndarray, end: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Mask (k,): the segment passes through the triangle (k, 3, 3), its edges included.
-
-    Source: T. Moeller and B. Trumbore, J. Graphics Tools 2 (1997) 21.
-    """
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    direction, offset = end - start, start - corners[:, 0]
-    p, q = np.cross(direction, second), np.cross(offset, first)
-    determinant = np.einsum("ij,ij->i", first, p)
-    scale = np.divide(1.0, determinant, out=np.full(len(p), np.nan), where=determinant != 0.0)
-    u, v, t = (np.einsum("ij,ij->i", a, b) * scale for a, b in ((offset, p), (direction, q), (second, q)))
-    low, high = -INSIDE_TOLERANCE, 1.0 + INSIDE_TOLERANCE
-    return (u >= low) & (v >= low) & (u + v <= high) & (t >= low) & (t <= high)
 
 
 def node_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

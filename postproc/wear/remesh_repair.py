@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, worn_faces
+from bulkwear.postproc.mesh_checks import intersecting_faces
 from bulkwear.postproc.wear.mesh_faults import (
     TARGET_EDGE,
     Bounds,
     MeshFaults,
     folded_faces,
-    intersecting_faces,
     mesh_faults,
 )
 from bulkwear.postproc.wear.remesh_operations import (

@@ -6,8 +6,9 @@ import pytest
 from bulkwear.meshes.pattern import ConvexPattern
 from bulkwear.meshes.sample import sample_top
 from bulkwear.postproc.mesh import areas, centroids, unit_normals, volume_above_plane
+from bulkwear.postproc.mesh_checks import intersecting_faces
 from bulkwear.postproc.wear.caps import step_limit
-from bulkwear.postproc.wear.mesh_faults import intersecting_faces, mesh_faults, with_target_edges
+from bulkwear.postproc.wear.mesh_faults import mesh_faults, with_target_edges
 from bulkwear.postproc.wear.pattern_left import pattern_volume
 from bulkwear.postproc.wear.remesh import remesh
 from bulkwear.postproc.wear.remesh_patch import neighbours

@@ -9,20 +9,12 @@ from bulkwear.postproc.wear.mesh_faults import (
     Bounds,
     aspects,
     folded_faces,
-    intersecting_faces,
     mesh_faults,
     tangle_message,
     with_target_edges,
 )
 
-SEED = 20220317
 EXACT = 1e-12  # relative: closed forms of single triangles
-
-
-def crossing_sheets():
-    """Two triangles that share no node; an edge of the second passes through the first at its centroid."""
-    points = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0], [1, 1, -1], [1, 1, 2], [5, 5, 2.0]])
-    return points, np.array([[0, 1, 2], [3, 4, 5]])
 
 
 def test_sound_surfaces_have_no_faults():
@@ -39,42 +31,6 @@ def test_aspect_of_an_equilateral_triangle():
     found = aspects(points, np.array([[0, 1, 2], [0, 1, 3]]))
     assert found[0] == pytest.approx(2.0 / np.sqrt(3.0), rel=EXACT)
     assert found[1] == np.inf
-
-
-def test_cutting_faces_are_found_in_any_order():
-    """An edge through a face is found whichever face comes first; shifted away it is not."""
-    points, triangles = crossing_sheets()
-    for order in ([0, 1], [1, 0]):
-        assert intersecting_faces(points, triangles[order]).tolist() == [[0, 1]]
-    points[3:] += (3.0, 3.0, 0.0)
-    assert len(intersecting_faces(points, triangles)) == 0
-
-
-def test_faces_of_unlike_size_cut():
-    """A face a hundred times smaller that pierces a large one is found: size classes hide nothing."""
-    points, triangles = crossing_sheets()
-    points[3:] = np.array([1.0, 1.0, 0.0]) + 0.01 * (points[3:] - points[3])
-    points[3:, 2] -= 0.005
-    assert intersecting_faces(points, triangles).tolist() == [[0, 1]]
-
-
-def test_faces_with_a_common_node():
-    """Of faces that share one node the opposite edges are tested: piercing is found, mere touching at it is none."""
-    points = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, 1], [1, 1, -1], [-1, -1, 1], [-2, -1, 1.0]])
-    assert intersecting_faces(points, np.array([[0, 1, 2], [0, 3, 4]])).tolist() == [[0, 1]]
-    assert len(intersecting_faces(points, np.array([[0, 1, 2], [0, 5, 6]]))) == 0
-
-
-def test_search_among_some_faces():
-    """Only pairs with one of the named faces are looked for, and all of those are found."""
-    random = np.random.default_rng(SEED)
-    corners = random.random((60, 3, 3))
-    points, triangles = corners.reshape(-1, 3), np.arange(180).reshape(-1, 3)
-    pairs = intersecting_faces(points, triangles)
-    among = np.arange(60) < 10
-    expected = pairs[among[pairs].any(axis=1)]
-    assert len(pairs) > len(expected) > 0
-    assert np.array_equal(intersecting_faces(points, triangles, among), expected)
 
 
 def test_fold_of_two_faces():
@@ -107,8 +63,8 @@ def test_holder_counts_only_when_tangled():
 
 def test_message_names_place_and_cause():
     """The phrase gives the faces, the place in mm and the count."""
-    points, triangles = crossing_sheets()
-    mesh = SurfaceMesh(points * 1e-3, triangles)
+    sheets = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0], [1, 1, -1], [1, 1, 2], [5, 5, 2.0]])  # mm
+    mesh = SurfaceMesh(sheets * 1e-3, np.array([[0, 1, 2], [3, 4, 5]]))
     message = tangle_message(mesh, mesh_faults(mesh))
     assert message == "faces 0 and 1 of the worn surface cut one another at (1, 1, 0) mm; 2 such faces"
 
