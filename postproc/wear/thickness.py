@@ -18,6 +18,7 @@ REMAINING_THICKNESS = "remaining_thickness_m"
 REMOVED_THICKNESS = "removed_thickness_m"
 OFF_CORNER = 1e-3  # -, of the way to the centroid: a ray from a corner must not run within a neighbouring face
 OFF_FACE = 1e-6  # -, of the shortest edge, inward: a ray must not hit the face it starts from
+LEAST_FACING_COSINE = 0.25  # -, of the face behind with the ray: a side that a ray grazes at a sharp edge is no back
 THROUGH = 1e-9  # -, of the local thickness: rounding of sums of steps
 METRES_TO_MM = 1e3
 
@@ -66,7 +67,8 @@ def thickness_to_back(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     points, faces = np.ascontiguousarray(points), np.ascontiguousarray(triangles)
     tree.init(points, faces)
     face, distance, _ = tree.intersect_ray_first(points, faces, np.ascontiguousarray(start.reshape(-1, 3)), rays)
-    return np.where(face < 0, np.nan, distance).reshape(-1, 3) + nudge[:, None]
+    faces_away = np.einsum("ij,ij->i", rays, normal[np.maximum(face, 0)]) > LEAST_FACING_COSINE
+    return np.where((face >= 0) & faces_away, distance, np.nan).reshape(-1, 3) + nudge[:, None]
 
 
 def remaining_thickness(mesh: SurfaceMesh) -> np.ndarray:
