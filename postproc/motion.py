@@ -164,9 +164,7 @@ class Combined(Motion):
         return tuple(lines)
 
 
-def at_rest() -> Motion:
-    """Return the motion of a part that rests."""
-    return Motion()
+AT_REST = Motion()
 
 
 def translation(

@@ -7,9 +7,9 @@ import pytest
 
 from bulkwear.postproc.courses import Steady, Swinging
 from bulkwear.postproc.motion import (
+    AT_REST,
     Motion,
     angular_oscillation,
-    at_rest,
     belt,
     combined,
     oscillation,
@@ -36,9 +36,9 @@ def turned(points, point, axis, angle):
 
 def test_rest_moves_nothing():
     """A part at rest stays bit for bit, and the deck holds no line of its motion."""
-    assert np.array_equal(at_rest().placed(POINTS, 7.3), POINTS)
-    assert at_rest().deck_lines("plate", 7.3) == ()
-    assert at_rest().mesh_words() == ""
+    assert np.array_equal(AT_REST.placed(POINTS, 7.3), POINTS)
+    assert AT_REST.deck_lines("plate", 7.3) == ()
+    assert AT_REST.mesh_words() == ""
 
 
 def test_translation_is_velocity_times_time():
@@ -199,7 +199,7 @@ def test_belt_rests_and_tells_its_velocity():
         (lambda: oscillation((1.0, 0.0, 0.0), 0.0), "period of 0.0 s"),
         (lambda: belt((0.0, 0.0, 0.0)), "velocity of a belt"),
         (lambda: combined(belt((1.0, 0.0, 0.0)), rotation(POINT, AXIS, 1.0)), "motion 0 of a combination is a Belt"),
-        (lambda: combined(at_rest()), "motion 0 of a combination is a Motion"),
+        (lambda: combined(AT_REST), "motion 0 of a combination is a Motion"),
         (lambda: combined(rotation(POINT, AXIS, 1.0), translation((1.0, 0.0, 0.0))), "allowed are parallel ones"),
     ],
 )
@@ -211,7 +211,7 @@ def test_refusals(make, said):
 
 def test_every_motion_is_one():
     """All that the module makes is a Motion, which can be compared and be a key."""
-    made = (at_rest(), translation(AXIS), rotation(POINT, AXIS, 1.0), oscillation(AXIS, 1.0), belt(AXIS))
+    made = (AT_REST, translation(AXIS), rotation(POINT, AXIS, 1.0), oscillation(AXIS, 1.0), belt(AXIS))
     assert all(isinstance(motion, Motion) for motion in made)
     assert len(set(made)) == len(made)
     assert translation(AXIS) == translation(AXIS)

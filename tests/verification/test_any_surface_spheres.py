@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from bulkwear.meshes.plate import flat_plate
-from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles
+from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, unit_normals
 from bulkwear.postproc.motion import rotation, translation
 from bulkwear.postproc.wear.balance import lost_volume
+from bulkwear.postproc.wear.ledger import pressed_sides
 from bulkwear.postproc.wear.update import REMOVED_THICKNESS, wear_update
 from tests.verification.ledger_cases import LOAD, RADIUS, hertz_overlap
 from tests.verification.surface_cases import COEFFICIENT, attitude, height, shell, slide, slivers
@@ -44,12 +45,14 @@ def flipped(mesh: SurfaceMesh) -> SurfaceMesh:
     return SurfaceMesh(mesh.points, mesh.triangles[:, ::-1])
 
 
-def drag(folder, mesh, where, **rest):
-    """Ledger of a sphere that is dragged along WAY over a flat mesh at an attitude; both in the space of the deck."""
-    centre = where.points([[*START, height()]])[0]
-    return slide(
-        folder, placed(mesh, where), centre, where.direction(WAY / DURATION), where.direction([0, 0, 1]), **rest
-    )
+def above(where) -> tuple[np.ndarray, np.ndarray]:
+    """Centre (m) and velocity (m/s) of a sphere that slides along WAY over a flat mesh at an attitude."""
+    return where.points([[*START, height()]])[0], where.direction(WAY / DURATION)
+
+
+def drag(folder, mesh, where) -> dict[str, np.ndarray]:
+    """Ledger of a sphere that is dragged along WAY over a flat mesh at an attitude."""
+    return slide(folder, placed(mesh, where), *above(where), where.direction([0, 0, 1]))
 
 
 def centre_of_wear(columns) -> np.ndarray:
@@ -90,6 +93,23 @@ def test_bad_triangulation(tmp_path, seed):
     mesh, where = slivers(0.006, 0.012, 150, 6.0, seed), attitude(seed)
     assert smallest_angles(mesh.points, mesh.triangles).min() < 1.0
     assert_k_f_l(drag(tmp_path, mesh, where), mesh, where)
+
+
+@pytest.mark.parametrize("seed", [9, 10])
+def test_flipped_facets(tmp_path, seed):
+    """Facets that look away from the sphere: all of F T on their back, and the plate is worn from the sphere's side."""
+    where = attitude(seed)
+    mesh = placed(flipped(flat_plate(0.006, 0.012, 0.5e-3)), where)
+    columns = slide(tmp_path, mesh, *above(where), where.direction([0, 0, 1]))
+    front, back = pressed_sides(columns, unit_normals(mesh.points, mesh.triangles))
+    assert not front.any()
+    assert back.sum() == pytest.approx(LOAD * DURATION, rel=LOAD_TOLERANCE)
+    worn, record = wear_update(mesh, COEFFICIENT * columns["sliding_work_J"], pressed=(front, back))
+    assert record["turned_faces"] == len(mesh.triangles)
+    assert lost_volume(mesh, worn)[0] == pytest.approx(COEFFICIENT * LOAD * SPEED * DURATION, rel=LOAD_TOLERANCE)
+    heights = (worn.points - mesh.points) @ where.direction([0, 0, 1])
+    assert heights.max() <= INWARD
+    assert -heights.min() > 1e3 * INWARD
 
 
 def test_plate_moves_under_the_sphere(tmp_path):
