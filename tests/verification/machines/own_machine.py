@@ -1,0 +1,111 @@
+"""Wears the parts of a machine with a deck of one's own: a loop to copy.
+
+The deck is plain LIGGGHTS input with two includes: `parts.in` where its meshes belong, which sets `number` and `meshes`
+for the wall's line, and `running.in` as the last line, which moves, accounts, runs and writes the restart file. It gets
+the variables `update` (0, 1, ...), `before` (restart file to go on from, but for update 0) and `time_step` (s).
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from bulkwear.postproc.mesh import SurfaceMesh, stl_corners, unit_normals, write_stl
+from bulkwear.postproc.motion import AT_REST, Motion
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.postproc.wear.balance import lost_volume, volume_balance
+from bulkwear.postproc.wear.caps import edge_limit
+from bulkwear.postproc.wear.laws import worn_volume
+from bulkwear.postproc.wear.ledger import columns_of_solver, pressed_sides
+from bulkwear.postproc.wear.side import SIDE, UNKNOWN, with_sides
+from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
+from tests.verification.ledger_cases import run
+
+RESTART = "after.restart"
+EDGE_SHARE = 0.05  # -, of the shortest edge at a node, that it may recede in one update; what is left is carried
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A part that wears: its surface in its own frame (m), present and pristine, and how it moves.
+
+    law_volume_m3: of the wear law, over all updates; columns: of the last ledger; balance_error: relative, of volumes
+    """
+
+    name: str
+    surface: SurfaceMesh
+    pristine: SurfaceMesh
+    motion: Motion = AT_REST
+    law_volume_m3: float = 0.0
+    columns: dict | None = None
+    balance_error: float = 0.0
+
+
+def part_of(name: str, surface: SurfaceMesh, motion: Motion = AT_REST) -> Part:
+    """A part that nothing has worn."""
+    return Part(name, surface, surface, motion)
+
+
+def wear_machine(
+    folder: Path,
+    deck: Path,
+    parts: Sequence[Part],
+    cycle_steps: int,
+    time_step_s: float,
+    coefficient_per_pa: float,
+    updates: int,
+    ranks: int = 1,
+) -> Iterator[list[Part]]:
+    """Simulate and wear in turn; yields the parts after every update. Each update has a folder with all its files."""
+    cycle_s = cycle_steps * time_step_s
+    for update in range(updates):
+        here = folder / f"update_{update:03d}"
+        write_update(here, deck, parts, update, update * cycle_s, cycle_steps)
+        before = f"../update_{update - 1:03d}/{RESTART}"
+        said = run(here, ranks, update=update, before=before, time_step=time_step_s)
+        (here / "screen.txt").write_text(said)
+        parts = [worn(part, here, update, coefficient_per_pa) for part in parts]
+        yield parts
+
+
+def write_update(here: Path, deck: Path, parts: Sequence[Part], update: int, begin_s: float, steps: int) -> None:
+    """Write what the solver reads: the parts where they stand at that time (s), and the lines that go with them.
+
+    Every update has mesh ids of its own: a known id would bring the old surface back out of the restart file.
+    """
+    here.mkdir(parents=True)
+    shutil.copy(deck, here / "deck.in")
+    meshes, running, ledgers = [], [], [f"ledger_{part.name}" for part in parts]
+    for part in parts:
+        mesh, surface = f"{part.name}_{update}", part.surface
+        write_stl(here / f"{part.name}.stl", part.motion.placed(surface.points, begin_s), surface.triangles)
+        meshes.append(f"fix {mesh} all mesh/surface/stress file {part.name}.stl type 2 {part.motion.mesh_words()}")
+        running += part.motion.deck_lines(mesh, begin_s)
+        running.append(f"fix ledger_{part.name} all load/ledger mesh {mesh} file {part.name}.bin")
+    running += [f"run {steps}", *(f"unfix {name}" for name in ledgers), f"write_restart {RESTART}"]
+    names = " ".join(f"{part.name}_{update}" for part in parts)
+    variables = [f"variable number index {len(parts)}", f'variable meshes index "{names}"']
+    (here / "parts.in").write_text("\n".join([*meshes, *variables]) + "\n")
+    (here / "running.in").write_text("\n".join(running) + "\n")
+
+
+def worn(part: Part, here: Path, update: int, coefficient_per_pa: float) -> Part:
+    """The part after the wear of an update: ledger, touched side, law, displacement, and the balance of volumes."""
+    surface = part.surface
+    ledger = read_load_ledger(here / f"{part.name}.bin", f"{part.name}_{update}", len(surface.triangles))
+    columns = columns_of_solver(ledger.columns, stl_corners(surface.points, surface.triangles))
+    # Where the side is known already, normals are trusted: a sphere on an acute edge lies behind one of its two faces.
+    unknown = with_sides(surface).cell_data[SIDE] == UNKNOWN
+    pressed = pressed_sides(columns, unit_normals(surface.points, surface.triangles))
+    pressed = tuple(np.where(unknown, impulse, 0.0) for impulse in pressed)
+    volume = worn_volume("archard", columns, {"wear_coefficient_per_pa": coefficient_per_pa})
+    limit = edge_limit(surface.points, surface.triangles, EDGE_SHARE)
+    surface, _ = wear_update(surface, volume, limit, pressed=pressed)
+    lost, rounding = lost_volume(part.pristine, surface)
+    law = part.law_volume_m3 + float(volume.sum())
+    error = volume_balance(lost, float(surface.point_data[CARRIED_VOLUME].sum()), law, rounding)
+    return replace(part, surface=surface, law_volume_m3=law, columns=columns, balance_error=error)
