@@ -12,13 +12,15 @@ from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own.solids import Solids, distinct, metres_per, target_edges
 
 CAD_FORMATS = (".step", ".stp", ".iges", ".igs", ".brep")
-WITH_UNIT = CAD_FORMATS[:4]  # formats that tell their unit: lengths are read as mm from any of them
+WITH_UNIT = CAD_FORMATS[:4]  # formats that tell their unit: OpenCASCADE hands over mm, whatever it is
+SEWING_OF_SIZE = 1e-6  # -, of the largest extent: edges of faces that are closer are one
 PER_CIRCLE = 12  # edges round a full circle, however coarse the target: 3.4 % of the radius within its chords
 SHORTEST_OVER_TARGET = 0.2  # -, edges that curvature asks for go no further down
 STEP_UNIT = re.compile(
     r"LENGTH_UNIT\s*\(\s*\)[^;]*?(?:SI_UNIT\s*\(\s*([^,\s]+)\s*,\s*\.METRE\.|CONVERSION_BASED_UNIT\s*\(\s*'([^']+)')"
 )
 CONVERSION_FIRST = re.compile(r"CONVERSION_BASED_UNIT\s*\(\s*'([^']+)'[^;]*LENGTH_UNIT")
+NUMBERED_BY_PROGRAM = "Open CASCADE"  # how labels begin that nobody gave
 SI_PREFIX = {"$": "m", ".CENTI.": "cm", ".MILLI.": "mm", ".MICRO.": "um"}
 CONVERSIONS = {"INCH": "in", "FOOT": "ft"}
 IGES_UNITS = {1: "in", 2: "mm", 4: "ft", 6: "m", 9: "um", 10: "cm"}  # flag 14 of the global section
@@ -35,10 +37,10 @@ def read_cad_solids(path: Path, unit: str, edges: Mapping[str, float] | float | 
     _check_unit(path, unit)
     scale = 1e-3 if path.suffix.lower() in WITH_UNIT else metres_per(unit)
     with gmsh_model() as gmsh:
-        gmsh.option.setString("Geometry.OCCTargetUnit", "MM" if path.suffix.lower() in WITH_UNIT else "")
         try:
             gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
             gmsh.model.occ.synchronize()
+            _sew_faces(gmsh)
         except Exception as error:  # gmsh has no kind of its own
             raise ValueError(f"{path}: not a readable {path.suffix} file ({error})") from error
         bodies = _bodies(gmsh, path.stem)
@@ -76,6 +78,14 @@ def said_unit(path: Path) -> str | None:
     return IGES_UNITS.get(int(fields[13])) if len(fields) > 13 and fields[13].strip().isdigit() else None
 
 
+def _sew_faces(gmsh) -> None:
+    """Make bodies of faces where there is no body, as in IGES files that know faces only."""
+    if gmsh.model.getEntities(2) and not gmsh.model.getEntities(3):
+        low, high = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
+        gmsh.model.occ.healShapes(tolerance=SEWING_OF_SIZE * float(np.linalg.norm(high - low)))
+        gmsh.model.occ.synchronize()
+
+
 def _bodies(gmsh, stem: str) -> list[tuple[str, list[int]]]:
     """Name and faces of each body, then of each group of free faces that hang together by edges."""
     result, owned = [], set()
@@ -100,8 +110,9 @@ def _bodies(gmsh, stem: str) -> list[tuple[str, list[int]]]:
 
 
 def _entity_name(gmsh, dimension: int, tag: int) -> str:
-    """Last word of an entity's label in the file, empty without one."""
-    return gmsh.model.getEntityName(dimension, tag).rpartition("/")[2].strip()
+    """Last word of an entity's label in the file, empty without one or where a program numbered it."""
+    name = gmsh.model.getEntityName(dimension, tag).rpartition("/")[2].strip()
+    return "" if name.startswith(NUMBERED_BY_PROGRAM) else name
 
 
 def _set_sizes(gmsh, names: tuple[str, ...], faces: list[list[int]], edges, scale: float) -> None:

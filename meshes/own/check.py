@@ -24,7 +24,7 @@ def refusal(
     name = solids.names[solids.part[faces[0]]]
     surface = SurfaceMesh(solids.points, solids.triangles, {"part": solids.part})
     return RefusedMeshError(
-        f"part '{name}' {said} at {place_text(place, unit)}; allowed {allowed}", surface, faces, place
+        f"{solids.source}: part '{name}' {said} at {place_text(place, unit)}; allowed {allowed}", surface, faces, place
     )
 
 

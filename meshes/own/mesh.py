@@ -126,7 +126,9 @@ def _mended(solids: Solids, tolerance: float, unit: str, repairs: Repairs) -> So
     solids = welded(solids, tolerance, repairs)
     for number, name in enumerate(solids.names):
         if not (solids.part == number).any():
-            raise ValueError(f"part '{name}' has no triangle left that is wider than {tolerance:g} m, allowed is one")
+            raise ValueError(
+                f"{solids.source}: part '{name}' has no triangle wider than {tolerance:g} m, allowed is one or more"
+            )
     check_gaps(solids, tolerance, unit)
     solids = stitched(solids, tolerance, repairs)
     check_manifold(solids, unit)

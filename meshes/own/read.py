@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -47,7 +48,7 @@ def read_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None
     else:
         solids, scale = READERS[suffix](path), metres_per(unit)
     _check_numbers(path, solids)
-    return solids, scale
+    return replace(solids, source=str(path)), scale
 
 
 def _check_signature(path: Path, suffix: str) -> None:

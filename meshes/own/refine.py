@@ -147,7 +147,7 @@ def _one_round(solids: Solids, limit: np.ndarray, flat: float, angle_deg: float,
     while not done:
         if count > MOST_TRIANGLES:
             raise ValueError(
-                f"these target edges give more than {MOST_TRIANGLES} triangles, allowed are fewer; give larger edges"
+                f"{solids.source}: the target edges give more than {MOST_TRIANGLES} triangles, allowed are fewer"
             )
         points, tri, adj, part, limit = (
             _with_room(array, used)

@@ -18,13 +18,15 @@ LARGEST_PART, SMALLEST_PART = 1e3, 1e-6  # m, diagonal of a part: beyond them it
 class Solids:
     """Triangles of one or more parts.
 
-    points: (n, 3) in any unit; triangles: (m, 3) node indices; part: (m,) index of the name; names: of the parts
+    points: (n, 3) in any unit; triangles: (m, 3) node indices; part: (m,) index of the name; names: of the parts;
+    source: the files, for messages
     """
 
     points: np.ndarray
     triangles: np.ndarray
     part: np.ndarray
     names: tuple[str, ...]
+    source: str = ""
 
 
 class RefusedMeshError(ValueError):
@@ -64,6 +66,7 @@ def joined(files: Sequence[Solids]) -> Solids:
         np.concatenate([each.triangles + first for each, first in zip(files, nodes, strict=False)]),
         np.concatenate([each.part + first for each, first in zip(files, parts, strict=False)]),
         distinct([name for each in files for name in each.names]),
+        ", ".join(each.source for each in files),
     )
 
 
@@ -100,6 +103,6 @@ def check_sizes(solids: Solids, unit: str) -> None:
         size = float(np.linalg.norm(np.ptp(points, axis=0)))
         if not SMALLEST_PART <= size <= LARGEST_PART:
             raise ValueError(
-                f"part '{name}' is {size:.3g} m large if its unit is {unit}, allowed are {SMALLEST_PART:g} to "
-                f"{LARGEST_PART:g} m; say the unit that it was drawn in ({', '.join(UNITS)})"
+                f"{solids.source}: part '{name}' is {size:.3g} m large if its unit is {unit}, allowed are "
+                f"{SMALLEST_PART:g} to {LARGEST_PART:g} m; say the unit that it was drawn in ({', '.join(UNITS)})"
             )

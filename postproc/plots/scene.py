@@ -82,7 +82,8 @@ def _look(plotter, direction: tuple[float, float, float], bounds: np.ndarray) ->
     plotter.renderer.ResetCameraClippingRange()
 
 
-def _pixels(plotter) -> np.ndarray:
+def pixels_of(plotter) -> np.ndarray:
+    """Return the pixels (h, w, 3) of what a plotter shows, and close it."""
     pixels = np.array(plotter.screenshot(return_img=True))
     plotter.close()
     return pixels[..., :3]
@@ -126,7 +127,7 @@ def depth_oblique(
     plotter = new_plotter(size)
     add_sample(plotter, mesh, depth, limits)
     _look(plotter, OBLIQUE, bounds)
-    return _pixels(plotter)
+    return pixels_of(plotter)
 
 
 def surface_plan(
@@ -146,7 +147,7 @@ def surface_plan(
     plotter.camera_position = [(*middle, top + far), (*middle, top), (0.0, 1.0, 0.0)]
     plotter.camera.parallel_scale = (high - low)[1] / 2.0
     plotter.renderer.ResetCameraClippingRange()
-    return _pixels(plotter), (low[0], high[0], low[1], high[1])
+    return pixels_of(plotter), (low[0], high[0], low[1], high[1])
 
 
 def bed_bounds(cuts: Iterable[pd.DataFrame], meshes: Iterable[SurfaceMesh]) -> np.ndarray:
@@ -179,7 +180,7 @@ def bed_picture(
     plotter.add_mesh(_poly(mesh.points, mesh.triangles), color=STEEL, ambient=0.35, diffuse=0.65)
     plotter.add_mesh(_outline(mesh), color="black", line_width=1.5)
     _look(plotter, FROM_THE_CUT, bounds)
-    return _pixels(plotter)
+    return pixels_of(plotter)
 
 
 def trimmed(pictures: Sequence[np.ndarray]) -> list[np.ndarray]:
