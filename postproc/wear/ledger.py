@@ -38,6 +38,7 @@ def vector_columns(name: str, components: Iterable[str] = "xyz") -> tuple[str, .
     return tuple(f"{name}_{component}_{VECTOR_UNITS[name]}" for component in components)
 
 
+LEAST_PRESSING_COSINE = 0.5  # -, of an impulse with the facet's normal: friction up to 1.7 leans over by less
 LEDGER_FIELDS = (*SUMMED_FIELDS, *MEAN_FIELDS, *(field for name in VECTOR_UNITS for field in vector_columns(name)))
 _ARRAYS = (
     "triangle",
@@ -132,13 +133,16 @@ def pressed_sides(columns: Mapping[str, np.ndarray], normals: np.ndarray) -> tup
     normals: (m, 3) unit normals of the facets in the ledger's frame; the front is where they point
 
     The normal impulse of contacts on the front, and of those whose particle lies on the back, each into the facet; a
-    side that was pulled rather than pressed has 0. Raises KeyError when a column is missing.
+    side that was pulled rather than pressed has 0, and so has one whose impulse leans over by more than 60 degrees: a
+    sphere on an acute edge lies behind one of its two facets. Raises KeyError when a column is missing.
     """
     whole, behind = (
-        np.einsum("ij,ij->i", np.column_stack([columns[field] for field in vector_columns(name)]), normals)
-        for name in ("impulse", "back_impulse")
+        np.column_stack([columns[field] for field in vector_columns(name)]) for name in ("impulse", "back_impulse")
     )
-    return np.maximum(behind - whole, 0.0), np.maximum(behind, 0.0)
+    along = [np.einsum("ij,ij->i", vector, normals) for vector in (behind - whole, behind)]
+    size = [np.sqrt(np.einsum("ij,ij->i", vector, vector)) for vector in (behind - whole, behind)]
+    front, back = (np.where(a > LEAST_PRESSING_COSINE * s, a, 0.0) for a, s in zip(along, size, strict=True))
+    return front, back
 
 
 def _by_axis(names: Iterable[str], vectors: np.ndarray) -> dict[str, np.ndarray]:
