@@ -1,7 +1,7 @@
 """Speed of the contact reader and of the sampled load ledger on a synthetic dump, by one core.
 
-MB are those of the contact dump; the spin dump, a quarter more text, is read along with it. A child process writes both
-and keeps its memory.
+MB are those of the contact dump; the spin dump, nearly half as much text, is read along with it. A child process writes
+both and keeps its memory.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ REPEATS, QUICK_REPEATS = 3, 2
 TRIANGLES = 50_000
 PARTICLES = 400_000
 DISTINCT_FRAMES = 8
+SPIN_NAMES = "id radius omegax omegay omegaz f_force_walls[1] f_force_walls[2] f_force_walls[3]"
 BOX = "ITEM: BOX BOUNDS pp ff ff\n-0.15 0.15\n-0.6 0.6\n0 0.12\n"
 
 
@@ -39,7 +40,7 @@ def _frame_texts(contacts: int, seed: int) -> tuple[str, str]:
     ids = np.column_stack([np.zeros(contacts), random.integers(0, TRIANGLES, contacts), particle])
     force = normal * random.exponential(0.1, (contacts, 1))
     rows = np.column_stack([centre - 0.001325 * normal, centre, velocities, ids, force])
-    spins = np.column_stack([particle, np.full(contacts, 0.001325), random.normal(0.0, 50.0, (contacts, 3))])
+    spins = np.column_stack([particle, np.full(contacts, 0.001325), random.normal(0.0, 50.0, (contacts, 3)), force])
     return tuple("".join(" ".join(f"{x:g}" for x in row) + " \n" for row in table) for table in (rows, spins))
 
 
@@ -54,12 +55,13 @@ def write_dumps(folder: Path, megabytes: float, contacts: int) -> int:
             step += 1
             head = f"ITEM: TIMESTEP\n{step * 20}\nITEM: NUMBER OF {{}}\n{contacts}\n{BOX}"
             written += local.write(f"{head.format('ENTRIES')}ITEM: ENTRIES {names} \n{rows}")
-            custom.write(f"{head.format('ATOMS')}ITEM: ATOMS id radius omegax omegay omegaz \n{spins}")
+            custom.write(f"{head.format('ATOMS')}ITEM: ATOMS {SPIN_NAMES} \n{spins}")
     return step
 
 
 def _ledger(folder: Path, batched: bool) -> None:
-    builder = LedgerBuilder(TRIANGLES, 0, 2e8, 2460.0)
+    corners = np.random.default_rng(1).uniform(-0.1, 0.1, (TRIANGLES, 3, 3))
+    builder = LedgerBuilder(TRIANGLES, 0, 2e8, 2460.0, corners=corners)
     paths = folder / "contacts.dump", folder / "spins.dump"
     for contacts in read_contact_batches(*paths) if batched else read_contacts(*paths):
         (builder.add_batch if batched else builder.add)(contacts, 1e-4)
