@@ -20,7 +20,8 @@ STEP_UNIT = re.compile(
     r"LENGTH_UNIT\s*\(\s*\)[^;]*?(?:SI_UNIT\s*\(\s*([^,\s]+)\s*,\s*\.METRE\.|CONVERSION_BASED_UNIT\s*\(\s*'([^']+)')"
 )
 CONVERSION_FIRST = re.compile(r"CONVERSION_BASED_UNIT\s*\(\s*'([^']+)'[^;]*LENGTH_UNIT")
-NUMBERED_BY_PROGRAM = "Open CASCADE"  # how labels begin that nobody gave
+NAMED_BY_PROGRAM = "Open CASCADE"  # how labels begin that nobody gave
+NO_NAMES = ("COMPOUND", "SOLID", "SHELL", "FACE")  # labels that nobody gave
 SI_PREFIX = {"$": "m", ".CENTI.": "cm", ".MILLI.": "mm", ".MICRO.": "um"}
 CONVERSIONS = {"INCH": "in", "FOOT": "ft"}
 IGES_UNITS = {1: "in", 2: "mm", 4: "ft", 6: "m", 9: "um", 10: "cm"}  # flag 14 of the global section
@@ -110,9 +111,9 @@ def _bodies(gmsh, stem: str) -> list[tuple[str, list[int]]]:
 
 
 def _entity_name(gmsh, dimension: int, tag: int) -> str:
-    """Last word of an entity's label in the file, empty without one or where a program numbered it."""
+    """Last word of an entity's label in the file, empty without one or where a program gave it."""
     name = gmsh.model.getEntityName(dimension, tag).rpartition("/")[2].strip()
-    return "" if name.startswith(NUMBERED_BY_PROGRAM) else name
+    return "" if name in NO_NAMES or name.startswith(NAMED_BY_PROGRAM) else name
 
 
 def _set_sizes(gmsh, names: tuple[str, ...], faces: list[list[int]], edges, scale: float) -> None:

@@ -10,10 +10,10 @@ import numpy as np
 
 from bulkwear.meshes.own.cad import CAD_FORMATS, read_cad_solids
 from bulkwear.meshes.own.obj import read_obj_solids
-from bulkwear.meshes.own.solids import Solids, distinct, metres_per
+from bulkwear.meshes.own.ply import read_ply_solids
+from bulkwear.meshes.own.solids import PART_DATA, Solids, distinct, metres_per
 from bulkwear.meshes.own.stl import read_stl_solids
 
-PART_DATA = ("part", "gmsh:physical", "region", "solid", "group", "material")  # cell data that tell parts, best first
 FLAT_CELLS = {"triangle": 3, "quad": 4}  # cells that are a surface, and their corners
 SIGNATURES = {  # how a file begins: the formats that do
     b"ISO-10303-21": (".step", ".stp"),
@@ -115,5 +115,6 @@ def _in_space(points: np.ndarray) -> np.ndarray:
 READERS: dict[str, Callable[[Path], Solids]] = {
     ".stl": read_stl_solids,
     ".obj": read_obj_solids,
-    **dict.fromkeys((".ply", ".vtk", ".vtu", ".msh"), _read_meshio),
+    ".ply": read_ply_solids,
+    **dict.fromkeys((".vtk", ".vtu", ".msh"), _read_meshio),
 }

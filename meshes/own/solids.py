@@ -10,6 +10,7 @@ import numpy as np
 from bulkwear.postproc.mesh import SurfaceMesh
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048}  # m
+PART_DATA = ("part", "gmsh:physical", "region", "solid", "group", "material")  # cell data that tell parts, best first
 OTHERS = "*"  # name that stands for all parts which are not named
 LARGEST_PART, SMALLEST_PART = 1e3, 1e-6  # m, diagonal of a part: beyond them its unit is wrong
 

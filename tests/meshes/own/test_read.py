@@ -1,0 +1,208 @@
+"""Every format gives the same surface; units, names and parts are the file's; what cannot be read is one sentence."""
+
+import numpy as np
+import pytest
+
+from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.own.mesh import own_mesh
+from tests.support.own_solids import (
+    AREA,
+    BOX,
+    MM,
+    SIZES,
+    VOLUMES,
+    all_facets,
+    bodies,
+    write_ascii,
+    write_binary,
+    write_bodies,
+)
+
+EDGE = 0.02  # m
+EXACT = 1e-12  # relative: formats with all digits
+SINGLE = 1e-6  # relative: binary STL has 24 bits
+CAD = 1e-9  # relative: OpenCASCADE's own precision on flat faces
+FORMATS = {
+    "ascii.stl": EXACT,
+    "binary.stl": SINGLE,
+    "bodies.obj": EXACT,
+    "bodies.vtk": EXACT,
+    "bodies.vtu": EXACT,
+    "bodies.ply": EXACT,
+    "text.ply": EXACT,
+    "bodies.msh": EXACT,
+    "bodies.step": CAD,
+    "bodies.brep": CAD,
+}
+WITH_PARTS = [name for name in FORMATS if name != "binary.stl"]
+WITH_NAMES = ["ascii.stl", "bodies.obj", "bodies.msh", "bodies.step"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """All files."""
+    made = tmp_path_factory.mktemp("files")
+    for name in FORMATS:
+        write_bodies(made / name)
+    return made
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_gives_the_same_surface(folder, name):
+    """Area, volume and bounding box are those of the bodies, refined or meshed; all faces look outward."""
+    found = own_mesh(folder / name, "mm", EDGE)
+    tolerance = FORMATS[name]
+    assert sum(part.area_m2 for part in found.parts) == pytest.approx(AREA, rel=tolerance)
+    assert sum(part.volume_m3 for part in found.parts) == pytest.approx(sum(VOLUMES), rel=tolerance)
+    points = found.surface.points
+    np.testing.assert_allclose([points.min(axis=0), points.max(axis=0)], BOX, atol=tolerance * np.ptp(BOX))
+    assert (found.surface.cell_data["side"] == 1).all()
+
+
+@pytest.mark.parametrize("name", WITH_PARTS)
+def test_bodies_are_parts(folder, name):
+    """Two bodies are two parts, in order, each with its own volume, and with its name where the format has names."""
+    found = own_mesh(folder / name, "mm", EDGE)
+    assert [part.volume_m3 for part in found.parts] == pytest.approx(VOLUMES, rel=CAD)
+    assert np.array_equal(np.unique(found.surface.cell_data["part"]), [0, 1])
+    assert (np.diff(found.surface.cell_data["part"]) >= 0).all()
+    if name in WITH_NAMES:
+        assert [part.name for part in found.parts] == list(SIZES)
+
+
+def test_several_files_are_parts(folder, tmp_path):
+    """A file each: a part each, in the order of the files; equal names are numbered."""
+    for name, (points, triangles) in bodies().items():
+        write_binary(tmp_path / f"{name}.stl", points, triangles)
+    found = own_mesh([tmp_path / "lip.stl", tmp_path / "trough.stl"], "mm")
+    assert [part.name for part in found.parts] == ["lip", "trough"]
+    moved, triangles = bodies()["lip"]
+    write_ascii(tmp_path / "other.stl", {"lip": (moved + 500.0, triangles)})
+    found = own_mesh([tmp_path / "lip.stl", tmp_path / "other.stl"], "mm")
+    assert [part.name for part in found.parts] == ["lip", "lip_2"]
+
+
+@pytest.mark.parametrize(
+    ("unit", "metres"), [("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6), ("in", 0.0254), ("ft", 0.3048)]
+)
+def test_the_unit_is_what_the_user_says(folder, unit, metres):
+    """Lengths scale with the unit, volumes with its cube; nothing is guessed."""
+    found = own_mesh(folder / "ascii.stl", unit)
+    assert found.parts[0].volume_m3 == pytest.approx(VOLUMES[0] * (metres / MM) ** 3, rel=EXACT)
+
+
+@pytest.mark.parametrize(
+    ("unit", "scale", "said"), [("m", 1e4, "unit is m"), ("um", 1e-3, "unit is um"), ("yard", 1.0, "'yard'")]
+)
+def test_a_unit_that_makes_no_sense_is_refused(tmp_path, unit, scale, said):
+    """Parts over a kilometre or under a micrometre: the sentence says so and names the units."""
+    points, triangles = bodies()["trough"]
+    write_ascii(tmp_path / "a.stl", {"trough": (points * scale, triangles)})
+    with pytest.raises(ValueError, match=f"{said}.*mm"):
+        own_mesh(tmp_path / "a.stl", unit)
+
+
+def test_a_unit_other_than_the_files_own_is_refused(folder):
+    """STEP says its unit; another one is a mistake of somebody."""
+    with pytest.raises(ValueError, match=r"bodies\.step: the file says that its lengths are in mm, found unit in"):
+        own_mesh(folder / "bodies.step", "in", EDGE)
+
+
+def test_metres_of_a_step_file_are_metres(folder, tmp_path):
+    """A file whose unit is the metre is a thousand times larger."""
+    text = (folder / "bodies.step").read_text().replace("SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT($,.METRE.)")
+    (tmp_path / "m.step").write_text(text)
+    found = own_mesh(tmp_path / "m.step", "m", EDGE / MM)
+    assert found.parts[0].volume_m3 == pytest.approx(VOLUMES[0] / MM**3, rel=CAD)
+
+
+def test_faces_of_an_iges_file_are_sewn(tmp_path):
+    """IGES knows faces only: those of one body become a closed part."""
+    with gmsh_model() as gmsh:
+        gmsh.model.occ.addBox(0.0, 0.0, 0.0, *SIZES["trough"])
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(tmp_path / "trough.iges"))
+    (part,) = own_mesh(tmp_path / "trough.iges", "mm", EDGE).parts
+    assert part.volume_m3 == pytest.approx(VOLUMES[0], rel=CAD)
+
+
+def test_a_cad_file_needs_a_target_edge(folder):
+    """It has no triangles of its own."""
+    with pytest.raises(ValueError, match="has no triangles, allowed is a target edge"):
+        own_mesh(folder / "bodies.step", "mm")
+
+
+def test_a_binary_stl_may_begin_with_solid(tmp_path):
+    """It is known by its size, not by its title."""
+    points, triangles, _ = all_facets()
+    write_binary(tmp_path / "a.stl", points, triangles, b"solid of some program")
+    assert len(own_mesh(tmp_path / "a.stl", "mm").surface.triangles) == len(triangles)
+
+
+def _cut(path):
+    path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
+
+
+@pytest.mark.parametrize("name", [name for name in FORMATS if name != "bodies.brep"])
+def test_a_truncated_file_is_one_sentence(folder, tmp_path, name):
+    """It names the file."""
+    (tmp_path / name).write_bytes((folder / name).read_bytes())
+    _cut(tmp_path / name)
+    with pytest.raises(ValueError, match=name.replace(".", r"\.")) as said:
+        own_mesh(tmp_path / name, "mm", EDGE)
+    assert "Traceback" not in str(said.value)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_an_empty_file_is_one_sentence(tmp_path, name):
+    """It names the file and what is allowed."""
+    (tmp_path / name).touch()
+    with pytest.raises(ValueError, match=r"the file is empty, allowed is a surface"):
+        own_mesh(tmp_path / name, "mm", EDGE)
+
+
+def test_a_coordinate_that_is_no_number_is_refused(tmp_path):
+    """NaN in a facet: file, part and number of the facet; in ASCII a word that is no number, too."""
+    points, triangles, _ = all_facets()
+    points[9, 1] = np.nan
+    write_binary(tmp_path / "a.stl", points, triangles)
+    with pytest.raises(ValueError, match=r"a\.stl: \d triangles have a coordinate that is not finite, .* number 1\d"):
+        own_mesh(tmp_path / "a.stl", "mm")
+    write_ascii(tmp_path / "b.stl", bodies())
+    (tmp_path / "b.stl").write_text((tmp_path / "b.stl").read_text().replace("120.0", "12O.0", 1))
+    with pytest.raises(ValueError, match=r"b\.stl: a coordinate of solid 'trough' is not a number"):
+        own_mesh(tmp_path / "b.stl", "mm")
+
+
+@pytest.mark.parametrize(
+    ("name", "under", "said"),
+    [
+        ("bodies.step", "a.stl", "begins with 'ISO-10303-21'"),
+        ("bodies.ply", "a.step", "begins with 'ply'"),
+        ("ascii.stl", "a.obj", "no triangle found"),
+        ("ascii.stl", "a.dwg", r"the format '\.dwg' is unknown, allowed are \.stl"),
+    ],
+)
+def test_a_wrong_ending_is_refused(folder, tmp_path, name, under, said):
+    """What the file holds is not what its name says."""
+    (tmp_path / under).write_bytes((folder / name).read_bytes())
+    with pytest.raises(ValueError, match=said):
+        own_mesh(tmp_path / under, "mm", EDGE)
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    """The sentence names it."""
+    with pytest.raises(FileNotFoundError, match=r"chute\.stl: no such file"):
+        own_mesh(tmp_path / "chute.stl", "mm")
+
+
+@pytest.mark.parametrize(
+    ("line", "said"), [("f 1 2", "a face has 2 vertices"), ("f 1 2 99", "vertex 99 of 8"), ("v 1 2 x", "could not")]
+)
+def test_a_faulty_line_of_an_obj_is_named(tmp_path, line, said):
+    """The sentence has file, line and what is wrong."""
+    write_bodies(tmp_path / "a.obj")
+    lines = (tmp_path / "a.obj").read_text().splitlines()
+    (tmp_path / "a.obj").write_text("\n".join([*lines[:8], line, *lines[8:]]))
+    with pytest.raises(ValueError, match=rf"a\.obj, line 9: .*{said}"):
+        own_mesh(tmp_path / "a.obj", "mm")
