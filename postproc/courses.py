@@ -46,20 +46,27 @@ class Steady:
             return 0.0
         return 1.0 if time_s >= self.start_s + self.ramp_s and math.isinf(self.stop_s) else None
 
-    def mean_pace(self, end: str) -> str:
-        """Return the solver's formula of the mean pace in the step that ends at the time in the variable `end`."""
-        return f"({self._formula(end)}-({self._formula(f'{end}-dt')}))/dt"
+    def pace_lines(self, name: str) -> tuple[str, ...]:
+        """Return the solver's variables that end in the mean pace of a step, `<name>_pace`; see `course_lines`."""
+        if math.isinf(self.stop_s):
+            return (f"variable {name}_pace equal {self._ramp(f'v_{name}_time', self.start_s)}",)
+        return (
+            f"variable {name}_up equal {self._ramp(f'v_{name}_time', self.start_s)}",
+            f"variable {name}_down equal {self._ramp(f'v_{name}_time', self.stop_s)}",
+            f"variable {name}_pace equal v_{name}_up-v_{name}_down",
+        )
 
-    def _formula(self, time: str) -> str:
-        moments = [self.start_s] if math.isinf(self.stop_s) else [self.start_s, self.stop_s]
-        return "-".join(self._since_formula(time, moment) for moment in moments)
+    def _ramp(self, end: str, start_s: float) -> str:
+        """Formula of the mean pace of a ramp that starts then, in the step to the time `end`, a variable.
 
-    def _since_formula(self, time: str, moment: float) -> str:
-        since = _positive_part(f"{time}-{number(moment)}")
+        The pace is 1/2 + (|t - a| - |t - b|) / (2 (b - a)) for a ramp from a to b; |x| x / 2 is the integral of |x|.
+        The solver's formulas have neither a maximum nor comparisons.
+        """
+        a, b = number(start_s), number(start_s + self.ramp_s)
         if self.ramp_s == 0.0:
-            return since
-        over = _positive_part(f"{time}-{number(moment + self.ramp_s)}")
-        return f"({since}-{over})*({since}+{over})/{number(2.0 * self.ramp_s)}"
+            return f"0.5+0.5*(abs({end}-{a})-abs({end}-dt-{a}))/dt"
+        signed = [f"({time}-{moment})*abs({time}-{moment})" for time in (end, f"{end}-dt") for moment in (a, b)]
+        return f"0.5+({signed[0]}-{signed[1]}-{signed[2]}+{signed[3]})/{number(4.0 * self.ramp_s)}/dt"
 
 
 @dataclass(frozen=True)
@@ -80,27 +87,22 @@ class Swinging:
     def pace(self, time_s: float) -> float | None:
         """Return None: the pace always changes."""
 
-    def mean_pace(self, end: str) -> str:
-        """Return the solver's formula of the mean pace in the step that ends at the time in the variable `end`.
+    def pace_lines(self, name: str) -> tuple[str, ...]:
+        """Return the solver's variable of the mean pace of a step, `<name>_pace`; see `course_lines`.
 
         sin a - sin b = 2 sin((a - b)/2) cos((a + b)/2): no digits are lost in a short step.
         """
-        rate = number(2.0 * math.pi / self.period_s)
-        return f"2.0*sin(0.5*{rate}*dt)*cos({rate}*({end}-0.5*dt)+{number(self.phase_rad)})/dt"
+        rate, phase = number(2.0 * math.pi / self.period_s), number(self.phase_rad)
+        return (f"variable {name}_pace equal 2.0*sin(0.5*{rate}*dt)*cos({rate}*(v_{name}_time-0.5*dt)+{phase})/dt",)
 
 
-def pace_lines(name: str, course: Steady | Swinging, time_s: float) -> tuple[str, ...]:
-    """Return the solver's variables of the time at the end of a step and of the mean pace in it."""
+def course_lines(name: str, course: Steady | Swinging, time_s: float) -> tuple[str, ...]:
+    """Return the solver's variables of the time at the end of a step, and of the mean pace in it, `<name>_pace`."""
     return (
         f"variable {name}_first equal $(step)",
         f"variable {name}_time equal {number(time_s)}+(step-v_{name}_first)*dt",
-        f"variable {name}_pace equal {course.mean_pace(f'v_{name}_time')}",
+        *course.pace_lines(name),
     )
-
-
-def _positive_part(text: str) -> str:
-    """Formula of max(text, 0); the solver has neither a maximum nor comparisons."""
-    return f"(0.5*({text}+abs({text})))"
 
 
 def number(value: float) -> str:

@@ -18,7 +18,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from bulkwear.postproc.courses import Steady, Swinging, number, pace_lines
+from bulkwear.postproc.courses import Steady, Swinging, course_lines, number
 
 PARALLEL = 1e-12  # -, sine of the angle between two directions that count as parallel: rounding of unit vectors
 
@@ -79,7 +79,7 @@ class Straight(Motion):
             for axis, value in zip("xyz", self.vector, strict=True)
         ]
         return (
-            *pace_lines(name, self.course, time_s),
+            *course_lines(name, self.course, time_s),
             *speeds,
             f"{fix} linear/variable v_{name}_x v_{name}_y v_{name}_z",
         )
@@ -112,7 +112,7 @@ class Turning(Motion):
         if pace is not None:
             return (f"{fix} rotate {about} period {2.0 * math.pi / self.angle:.17g}",) if pace else ()
         return (
-            *pace_lines(name, self.course, time_s),
+            *course_lines(name, self.course, time_s),
             f"variable {name}_omega equal {number(self.angle)}*v_{name}_pace",
             f"{fix} rotate/variable {about} omega v_{name}_omega",
         )

@@ -137,9 +137,16 @@ def test_constant_motions_need_no_variables():
 
 
 def solver_sum(course, begin, step, steps):
-    """What the solver adds up in that many steps: its formula of the mean pace, evaluated at the end of each."""
-    names = {"sin": math.sin, "cos": math.cos, "abs": abs, "dt": step}
-    return sum(step * eval(course.mean_pace("end"), names | {"end": begin + k * step}) for k in range(1, steps + 1))
+    """What the solver adds up in that many steps: its variables of the mean pace, evaluated at the end of each."""
+    formulas = [line.split(maxsplit=3)[1::2] for line in course.pace_lines("part")]
+
+    def mean_pace(end):
+        names = {"sin": math.sin, "cos": math.cos, "abs": abs, "dt": step, "v_part_time": end}
+        for name, formula in formulas:
+            names[f"v_{name}"] = eval(formula, names)
+        return names["v_part_pace"]
+
+    return sum(step * mean_pace(begin + k * step) for k in range(1, steps + 1))
 
 
 @pytest.mark.parametrize("step", [1e-5, 3.7e-3])
