@@ -1,0 +1,80 @@
+"""The command `mesh`: a surface and its tables, or a sentence and a picture of the fault."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from bulkwear.__main__ import main
+from bulkwear.postproc.mesh import read_stl, read_surface
+from tests.support.own_solids import AREA, MM, bodies, box, write_ascii
+
+LONGEST = 15.00001  # mm, 1.5 targets and the last digit of the STL
+EXACT = 1e-9  # relative: an STL has nine digits
+RED = (160, 90, 90)  # of a pixel's red at least, green and blue at most: the colour of faults under any light
+
+
+@pytest.fixture
+def trough(tmp_path):
+    """The path of an STL with two bodies, in mm."""
+    write_ascii(tmp_path / "plant.stl", bodies())
+    return tmp_path / "plant.stl"
+
+
+def test_a_surface_and_its_tables(trough, tmp_path, capsys):
+    """Files in m for a study and for the solver, in the same order; lengths of the command are in the file's unit."""
+    files = ["-o", str(tmp_path / "out.vtu"), "--stl", str(tmp_path / "out.stl")]
+    choices = "--unit mm --edge 10 --edge lip=5 --ball 0 0 0 20 2 --weld 0.001".split()
+    assert main(["mesh", str(trough), *choices, *files]) == 0
+    said = capsys.readouterr().out
+    assert "trough" in said
+    assert "lip" in said
+    assert "points within 0.001 mm are one" in said
+    surface, corners = read_surface(tmp_path / "out.vtu"), read_stl(tmp_path / "out.stl")
+    np.testing.assert_allclose(corners, surface.points[surface.triangles], rtol=0.0, atol=EXACT)
+    size = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1) / MM
+    part, places = surface.cell_data["part"], corners.mean(axis=1) / MM
+    assert 0.5 * LONGEST < size[part == 0].max() <= LONGEST
+    assert size[part == 1].max() <= 0.5 * LONGEST
+    assert size[np.linalg.norm(places, axis=1) < 18.0].max() <= 0.2 * LONGEST
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    assert area.sum() == pytest.approx(AREA, rel=1e-6)  # digits of the STL
+    assert surface.cell_data["side"].dtype == part.dtype == np.int64
+
+
+def test_a_refused_surface_is_drawn(tmp_path, capsys, monkeypatch):
+    """Two cubes in one solid that overlap: a sentence with the place, a picture with red faces in both views."""
+    monkeypatch.chdir(tmp_path)
+    points, triangles = box((100.0, 100.0, 100.0))
+    both = np.concatenate([points, points + np.array([50.0, 30, 20])])
+    write_ascii(tmp_path / "a.stl", {"wall": (both, np.concatenate([triangles, triangles + 8]))})
+    assert main(["mesh", "a.stl", "--unit", "mm", "-o", "out.vtu"]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("a.stl: part 'wall' cuts itself")
+    assert said.rstrip().endswith("Its picture is out.fault.png")
+    assert not (tmp_path / "out.vtu").exists()
+    pixels = np.asarray(Image.open(tmp_path / "out.fault.png").convert("RGB")).astype(int)
+    red = (pixels[:, :, 0] > RED[0]) & (pixels[:, :, 1:] < RED[1]).all(axis=2)
+    half = pixels.shape[1] // 2
+    assert red[:, :half].sum() > 100
+    assert red[:, half:].sum() > 1000
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--unit", "yard"], "the unit of lengths is 'yard', allowed is one of m, cm"),
+        (["--unit", "mm", "--edge", "lip=fine"], "--edge is 'lip=fine', allowed is a length or"),
+        (["--unit", "mm", "--edge", "floor=3"], "edges name the part 'floor', allowed are trough, lip and"),
+    ],
+)
+def test_words_that_make_no_sense(trough, capsys, words, said):
+    """One sentence and no traceback."""
+    assert main(["mesh", str(trough), *words]) == 1
+    assert said in capsys.readouterr().err
+
+
+def test_the_unit_has_to_be_said(trough, capsys):
+    """It is never guessed."""
+    with pytest.raises(SystemExit):
+        main(["mesh", str(trough)])
+    assert "--unit" in capsys.readouterr().err
