@@ -11,6 +11,7 @@ PUBLIC = {  # name: module that has it
     "SurfaceMesh": "bulkwear.postproc.mesh",  # points (m), triangles, labels and fields of a surface
     "read_surface": "bulkwear.postproc.mesh",  # from a .vtu of a run
     "write_surface": "bulkwear.postproc.mesh",
+    "own_mesh": "bulkwear.meshes.own.mesh",  # a surface of a plant's own CAD and mesh files
     "read_ledger": "bulkwear.postproc.readers.load_ledger",  # loads per triangle of a wear cycle
     "LAWS": "bulkwear.postproc.wear.laws",  # wear laws by name
     "worn_volume": "bulkwear.postproc.wear.laws",  # m3 per triangle, by a law, from a ledger

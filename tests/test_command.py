@@ -23,7 +23,7 @@ def trough(tmp_path):
 def test_a_surface_and_its_tables(trough, tmp_path, capsys):
     """Files in m for a study and for the solver, in the same order; lengths of the command are in the file's unit."""
     files = ["-o", str(tmp_path / "out.vtu"), "--stl", str(tmp_path / "out.stl")]
-    choices = "--unit mm --edge 10 --edge lip=5 --ball 0 0 0 20 2 --weld 0.001".split()
+    choices = ["--unit", "mm", "--edge", "10", "--edge", "lip=5", "--ball", "0", "0", "0", "20", "2", "--weld", "0.001"]
     assert main(["mesh", str(trough), *choices, *files]) == 0
     said = capsys.readouterr().out
     assert "trough" in said

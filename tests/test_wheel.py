@@ -71,10 +71,10 @@ def test_the_wheel_holds_the_whole_package(wheel):
     assert names == placed | profiles | {"bulkwear/Snakefile", "bulkwear/docs/project.md"}
 
 
-def test_ten_names_are_public(python, tmp_path):
+def test_eleven_names_are_public(python, tmp_path):
     """All of them can be had, from the installed package; another name is an error that lists them."""
-    assert len(bulkwear.__all__) == 10
-    assert len(run(python, NAMES, tmp_path).split()) == 10
+    assert len(bulkwear.__all__) == 11
+    assert len(run(python, NAMES, tmp_path).split()) == 11
     where = run(python, "import bulkwear.postproc.wear.laws as laws; print(laws.__file__)", tmp_path)
     assert "site-packages/bulkwear/postproc" in where
     with pytest.raises(AttributeError, match="bulkwear has no 'read_legder', its public names are SurfaceMesh, "):
