@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh, stl_corners, unit_normals, write_stl
+from bulkwear.postproc.mesh import SurfaceMesh, stl_corners, unit_normals, write_stl, write_surface
 from bulkwear.postproc.motion import AT_REST, Motion
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.balance import lost_volume, volume_balance
@@ -23,7 +23,7 @@ from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.ledger import columns_of_solver, pressed_sides
 from bulkwear.postproc.wear.side import SIDE, UNKNOWN, with_sides
 from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
-from tests.verification.ledger_cases import run
+from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
 
 RESTART = "after.restart"
 EDGE_SHARE = 0.05  # -, of the shortest edge at a node, that it may recede in one update; what is left is carried
@@ -60,14 +60,18 @@ def wear_machine(
     updates: int,
     ranks: int = 1,
 ) -> Iterator[list[Part]]:
-    """Simulate and wear in turn; yields the parts after every update. Each update has a folder with all its files."""
+    """Simulate and wear in turn; yields the parts after every update, which has a folder with all its files.
+
+    deck: see above; cycle_steps: of one update, each time_step_s long; coefficient_per_pa: Archard's, volume over work
+    """
     cycle_s = cycle_steps * time_step_s
     for update in range(updates):
         here = folder / f"update_{update:03d}"
         write_update(here, deck, parts, update, update * cycle_s, cycle_steps)
         before = f"../update_{update - 1:03d}/{RESTART}"
-        said = run(here, ranks, update=update, before=before, time_step=time_step_s)
-        (here / "screen.txt").write_text(said)
+        variables = {"update": str(update), "before": before, "time_step": str(time_step_s)}
+        kept = {f"{part.name}_{update}": len(part.surface.triangles) for part in parts}
+        run_deck(here, ranks, triangles=kept, executable=LEDGER_EXECUTABLE, variables=variables)
         parts = [worn(part, here, update, coefficient_per_pa) for part in parts]
         yield parts
 
@@ -98,13 +102,14 @@ def worn(part: Part, here: Path, update: int, coefficient_per_pa: float) -> Part
     surface = part.surface
     ledger = read_load_ledger(here / f"{part.name}.bin", f"{part.name}_{update}", len(surface.triangles))
     columns = columns_of_solver(ledger.columns, stl_corners(surface.points, surface.triangles))
+    pressed = pressed_sides(columns, unit_normals(surface.points, surface.triangles))
     # Where the side is known already, normals are trusted: a sphere on an acute edge lies behind one of its two faces.
     unknown = with_sides(surface).cell_data[SIDE] == UNKNOWN
-    pressed = pressed_sides(columns, unit_normals(surface.points, surface.triangles))
     pressed = tuple(np.where(unknown, impulse, 0.0) for impulse in pressed)
     volume = worn_volume("archard", columns, {"wear_coefficient_per_pa": coefficient_per_pa})
     limit = edge_limit(surface.points, surface.triangles, EDGE_SHARE)
     surface, _ = wear_update(surface, volume, limit, pressed=pressed)
+    write_surface(here / f"{part.name}.vtu", surface)
     lost, rounding = lost_volume(part.pristine, surface)
     law = part.law_volume_m3 + float(volume.sum())
     error = volume_balance(lost, float(surface.point_data[CARRIED_VOLUME].sum()), law, rounding)
