@@ -60,26 +60,21 @@ def wear_update(
     patch : contact positions, in the frame of the mesh, and radii over which the wear is spread, see
         `postproc.wear.patch`; None: a third of each triangle's wear goes to each of its corners
     scheme : name in `postproc.wear.schemes.SCHEMES`
-    pressed : (m,) N s each, impulse on front and back of the faces (`postproc.wear.ledger.pressed_sides`): pieces whose
-        normals look away from the particles are turned first, see `postproc.wear.side`; None: the normals are trusted
-    back : where the mesh has its local thickness (`postproc.wear.thickness`): "cap" stops nodes at the back, "go_on"
-        does not
+    pressed : (m,) N s each, on front and back of the faces (`postproc.wear.ledger.pressed_sides`), by which pieces are
+        turned first whose normals look away from the particles (`postproc.wear.side`); None: the normals are trusted
+    back : "cap" stops nodes at the back where the local thickness is known (`postproc.wear.thickness`), "go_on" does not
 
     Returns
     -------
     mesh : new points; point data `removed_thickness_m`, `carried_volume_m3`
     record : worn_volume_m3 (this cycle, worn faces only), applied_volume_m3 (this cycle), carried_volume_m3
-        (now), beyond_back_volume_m3 (this cycle, of the law at nodes that stopped at the back: no part is there to lose
-        it), excess_volume_m3 (applied this cycle beyond what was due and is not carried: rounding for
-        `conserving`, several times the wear for `per_triangle`), largest_step_m, smallest_angle_deg (worn
-        faces), largest_depth_m and rim_recession_m (of the removed thickness, off and on the free rim),
-        turned_faces, through_nodes
+        (now), beyond_back_volume_m3 (this cycle, the law's at nodes that stopped at the back), excess_volume_m3 (applied
+        this cycle beyond what was due and is not carried: rounding for `conserving`, several times the wear for
+        `per_triangle`), largest_step_m, smallest_angle_deg (worn faces), largest_depth_m and rim_recession_m (of the
+        removed thickness, off and on the free rim), turned_faces, through_nodes
 
-    Raises
-    ------
-    ValueError, StepTooLargeError : see `displace`, `spread` and `scheme_of`.
-    TouchedSideError : see `turned_to_flow`.
-    GrowthError : a touched face would leave the body.
+    Raises ValueError and StepTooLargeError as `displace`, `spread` and `scheme_of`, TouchedSideError as
+    `turned_to_flow`, and GrowthError where a touched face would leave the body.
     """
     if back not in BACKS:
         raise ValueError(f"back is '{back}', allowed are: {', '.join(BACKS)}")
@@ -94,10 +89,10 @@ def wear_update(
     thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
     fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
     result = SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields)
-    through, beyond = worn_through(result), 0.0
-    if back == "cap":
-        beyond = float(moved.carried_volume[through].sum())
-        result.point_data[CARRIED_VOLUME] = np.where(through, 0.0, moved.carried_volume)
+    through = worn_through(result)
+    lost_at = through if back == "cap" else np.zeros(len(through), dtype=bool)
+    beyond = float(moved.carried_volume[lost_at].sum())
+    result.point_data[CARRIED_VOLUME] = np.where(lost_at, 0.0, moved.carried_volume)
     record = _record(mesh, result, moved, float(np.sum(worn_volume, where=worn)), beyond)
     return with_swept_rim(mesh, result), record | {
         "turned_faces": sum(piece.faces for piece in turned),

@@ -15,11 +15,11 @@ from bulkwear.meshes.sample import sample_top
 from bulkwear.postproc.mesh import SurfaceMesh, unit_normals
 from bulkwear.postproc.readers.load_ledger import RADIUS as CONTACT_RADIUS
 from bulkwear.postproc.readers.load_ledger import WEIGHTS, LoadLedger
+from bulkwear.postproc.wear.balance import lost_volume
 from bulkwear.postproc.wear.caps import step_limit
 from bulkwear.postproc.wear.displacement import StepTooLargeError
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.patch import ContactPatch, hertz_disc
-from bulkwear.postproc.wear.balance import lost_volume
 from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
 from bulkwear.workflows.cases.pin_on_disc.contours import AREA_SHARE
 from tests.verification.ledger_cases import LOAD, PIN_MOTION, RADIUS, hertz_overlap, pin, run_case
