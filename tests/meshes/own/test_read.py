@@ -21,6 +21,7 @@ from tests.support.own_solids import (
 EDGE = 0.02  # m
 EXACT = 1e-12  # relative: formats with all digits
 SINGLE = 1e-6  # relative: binary STL has 24 bits
+RADIUS = 30.0  # mm, of a pipe
 CAD = 1e-9  # relative: OpenCASCADE's own precision on flat faces
 FORMATS = {
     "ascii.stl": EXACT,
@@ -124,6 +125,60 @@ def test_faces_of_an_iges_file_are_sewn(tmp_path):
         gmsh.write(str(tmp_path / "trough.iges"))
     (part,) = own_mesh(tmp_path / "trough.iges", "mm", EDGE).parts
     assert part.volume_m3 == pytest.approx(VOLUMES[0], rel=CAD)
+
+
+@pytest.fixture(scope="module")
+def pipe(tmp_path_factory):
+    """A STEP file of two pipes side by side, in mm."""
+    path = tmp_path_factory.mktemp("pipes") / "pipes.step"
+    with gmsh_model() as gmsh:
+        for place in (0.0, 4.0 * RADIUS):
+            outer, inner = (gmsh.model.occ.addCylinder(place, 0, 0, 0, 0, 90.0, r) for r in (RADIUS, 0.8 * RADIUS))
+            gmsh.model.occ.cut([(3, outer)], [(3, inner)])
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(path))
+    return path
+
+
+def test_cad_files_are_meshed_on_their_true_surface(pipe):
+    """Every node of a pipe lies on one of its two cylinders; the volume is short of the true one by the chords."""
+    found = own_mesh(pipe, "mm", 0.005)
+    surface = found.surface
+    nodes = np.unique(surface.triangles[surface.cell_data["part"] == 0])
+    radius = np.linalg.norm(surface.points[nodes][:, :2], axis=1) / (RADIUS * MM)
+    on_ends = np.isin(surface.points[nodes][:, 2], [0.0, 90.0 * MM])
+    off = np.minimum(np.abs(radius - 1.0), np.abs(radius - 0.8))
+    assert off[~on_ends].max() < SINGLE  # of gmsh's projection
+    true = np.pi * (1.0 - 0.8**2) * RADIUS**2 * 90.0 * MM**3
+    assert found.parts[0].volume_m3 == pytest.approx(true, rel=0.02)  # 5 mm chords on 30 mm: 0.5 %, twice
+
+
+def test_bodies_of_a_cad_file_have_edges_of_their_own(pipe):
+    """Fine where told fine; a part without an edge, and one that is not there, are sentences."""
+    fine, coarse = own_mesh(pipe, "mm", {"pipes_body_1": 0.005, "*": 0.02}).parts
+    assert fine.triangles > 3 * coarse.triangles
+    with pytest.raises(ValueError, match="part 'pipes_body_2' of a CAD file has no target edge"):
+        own_mesh(pipe, "mm", {"pipes_body_1": 0.005})
+    with pytest.raises(ValueError, match="edges name the part 'elbow', allowed are pipes_body_1, pipes_body_2 and"):
+        own_mesh(pipe, "mm", {"elbow": 0.005, "*": 0.02})
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_polygons_of_any_length_in_a_binary_ply(tmp_path, order):
+    """A square pyramid of one quadrilateral and four triangles: closed, its volume a third of base times height."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 3.0]])
+    faces = [[0, 1, 4], [3, 2, 1, 0], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+    kind = "little" if order == "<" else "big"
+    head = ["ply", f"format binary_{kind}_endian 1.0", f"element vertex {len(points)}"]
+    head += [f"property float {axis}" for axis in "xyz"] + [
+        "element face 5",
+        "property list uchar short vertex_indices",
+    ]
+    rows = b"".join(bytes([len(face)]) + np.array(face, dtype=f"{order}i2").tobytes() for face in faces)
+    content = "\n".join([*head, "end_header", ""]).encode() + points.astype(f"{order}f4").tobytes() + rows
+    (tmp_path / "a.ply").write_bytes(content)
+    (part,) = own_mesh(tmp_path / "a.ply", "m").parts
+    assert part.volume_m3 == pytest.approx(1.0, rel=EXACT)
 
 
 def test_a_cad_file_needs_a_target_edge(folder):
