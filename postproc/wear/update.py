@@ -62,13 +62,13 @@ def wear_update(
     scheme : name in `postproc.wear.schemes.SCHEMES`
     pressed : (m,) N s each, on front and back of the faces (`postproc.wear.ledger.pressed_sides`), by which pieces are
         turned first whose normals look away from the particles (`postproc.wear.side`); None: the normals are trusted
-    back : "cap" stops nodes at the back where the local thickness is known (`postproc.wear.thickness`), "go_on" does not
+    back : "cap" stops nodes at the back where the thickness is known (`postproc.wear.thickness`), "go_on" does not
 
     Returns
     -------
     mesh : new points; point data `removed_thickness_m`, `carried_volume_m3`
     record : worn_volume_m3 (this cycle, worn faces only), applied_volume_m3 (this cycle), carried_volume_m3
-        (now), beyond_back_volume_m3 (this cycle, the law's at nodes that stopped at the back), excess_volume_m3 (applied
+        (now), beyond_back_volume_m3 (this cycle, the law's at nodes stopped at the back), excess_volume_m3 (applied
         this cycle beyond what was due and is not carried: rounding for `conserving`, several times the wear for
         `per_triangle`), largest_step_m, smallest_angle_deg (worn faces), largest_depth_m and rim_recession_m (of the
         removed thickness, off and on the free rim), turned_faces, through_nodes
