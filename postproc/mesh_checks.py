@@ -1,4 +1,4 @@
-"""Which faces of a surface cut one another, and which lie on one another in one plane.
+"""Which faces of a surface cut one another, which lie on one another in one plane, and what the solver refuses.
 
 Candidates are pairs of faces whose boxes overlap, from a tree of boxes: slivers and faces of unlike size cost little.
 """
@@ -12,6 +12,7 @@ from numba import njit
 
 from bulkwear.postproc.mesh import area_vectors
 
+LEAST_SOLVER_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 LARGEST_PAIR_BLOCK = 500_000  # pairs of faces handled at once: bounds the memory at some 300 MB
 IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
 MORTON_BITS = 20  # per axis, of a place along the curve that orders boxes: three of them fit an int64

@@ -9,10 +9,9 @@ from bulkwear.meshes.own.repairs import Repairs
 from bulkwear.meshes.own.solids import RefusedMeshError, Solids, place_text
 from bulkwear.meshes.own.weld import nodes_at_open_edges
 from bulkwear.postproc.mesh import SurfaceMesh, centroids, directed_edges, edge_lengths_per_triangle, smallest_angles
-from bulkwear.postproc.mesh_checks import intersecting_faces, overlapping_faces
+from bulkwear.postproc.mesh_checks import LEAST_SOLVER_ANGLE, intersecting_faces, overlapping_faces
 
 GAP = 10.0  # -, over the weld tolerance: open edges and nodes closer than that are a gap that should be none
-LEAST_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 SOLVER_PRECISION = 1e-8  # m; LIGGGHTS takes nodes that are closer for one
 EDGES_APART = 10.0  # -, over the solver's precision: the shortest edge that stays one
 
@@ -87,7 +86,7 @@ def check_cuts(solids: Solids, tolerance: float, unit: str, repairs: Repairs) ->
 def sharp_faces(solids: Solids) -> np.ndarray:
     """Faces (k,) with an angle that the solver refuses, the sharpest first."""
     angle = smallest_angles(solids.points, solids.triangles)
-    sharp = np.flatnonzero(angle <= LEAST_ANGLE)
+    sharp = np.flatnonzero(angle <= LEAST_SOLVER_ANGLE)
     return sharp[np.argsort(angle[sharp], kind="stable")]
 
 
@@ -99,7 +98,7 @@ def check_for_solver(solids: Solids, tolerance: float, unit: str) -> None:
         angle, place = smallest_angles(solids.points, sharpest)[0], centroids(solids.points, sharpest)[0]
         said = f"has {len(sharp)} faces that are too sharp for the solver, the sharpest of {angle:.2g} degrees"
         wider = f"a weld tolerance above {1e3 * tolerance:.3g} mm"
-        allowed = f"are angles above {LEAST_ANGLE} degrees: give a target edge, or {wider}"
+        allowed = f"are angles above {LEAST_SOLVER_ANGLE} degrees: give a target edge, or {wider}"
         raise refusal(solids, sharp, place, said, allowed, unit)
     shortest = edge_lengths_per_triangle(solids.points, solids.triangles).min(axis=1)
     at = int(np.argmin(shortest))

@@ -21,6 +21,7 @@ from bulkwear.postproc.mesh import (
     worn_faces,
     write_surface,
 )
+from bulkwear.postproc.mesh_checks import LEAST_SOLVER_ANGLE
 from bulkwear.postproc.wear.balance import GrowthError, lost_volume, volume_balance
 from bulkwear.postproc.wear.caps import next_cycle_factor, wanted_step
 from bulkwear.postproc.wear.laws import worn_volume
@@ -41,7 +42,6 @@ SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_ener
 SUMS = (*SUMMED, "finnie_volume_m3", "worn_volume_m3")  # cell data of the surface, over all cycles so far
 CAP_SHARES = (1.0, 0.5, 0.25, 0.1)  # of the cap on a step, one after the other while the worn surface is beyond repair
 MEANS = ("contact_position", "contact_radius")  # columns of a ledger that are no sums: nothing where nothing touched
-LEAST_SOLVER_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 TOTALS = {  # columns of wear.csv that are sums over all cycles -> what each cycle adds
     "total_worn_volume_m3": "worn_volume_m3",
     "total_applied_volume_m3": "applied_volume_m3",
