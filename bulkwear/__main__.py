@@ -7,9 +7,15 @@ python -m bulkwear mesh chute.step --unit mm --edge 10 -o chute.vtu
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+if TYPE_CHECKING:
+    from bulkwear.meshes.own.mesh import OwnMesh
+
+UNSAFE = r"[^\w.-]+"  # characters of a part's name that are none of a file's
 LENGTHS = "lengths are in the unit of the files"
 
 
@@ -50,7 +56,12 @@ def _parser() -> argparse.ArgumentParser:
     mesh.add_argument("--weld", type=float, metavar="LENGTH", help="points closer than that are one")
     mesh.add_argument("--angle", type=float, metavar="DEGREES", help="wanted smallest angle")
     mesh.add_argument("-o", "--output", type=Path, metavar="VTU", help="surface for a study")
-    mesh.add_argument("--stl", type=Path, metavar="STL", help="the same for LIGGGHTS, in m")
+    mesh.add_argument(
+        "--stl",
+        type=Path,
+        metavar="STL",
+        help="the same for LIGGGHTS, in m; a file per part where it refuses them together",
+    )
     mesh.set_defaults(do=_mesh)
     return parser
 
@@ -66,7 +77,7 @@ def _mesh(given: argparse.Namespace) -> str:
     from bulkwear.meshes.own.mesh import own_mesh
     from bulkwear.meshes.own.refine import WANTED_ANGLE, Ball
     from bulkwear.meshes.own.solids import RefusedMeshError, metres_per
-    from bulkwear.postproc.mesh import write_stl, write_surface
+    from bulkwear.postproc.mesh import write_surface
 
     scale = metres_per(given.unit)
     balls = [Ball((x * scale, y * scale, z * scale), r * scale, edge * scale) for x, y, z, r, edge in given.ball]
@@ -84,8 +95,21 @@ def _mesh(given: argparse.Namespace) -> str:
     if given.output:
         write_surface(given.output, found.surface)
     if given.stl:
-        write_stl(given.stl, found.surface.points, found.surface.triangles)
+        _write_stl(given.stl, found)
     return found.text()
+
+
+def _write_stl(path: Path, found: OwnMesh) -> None:
+    """Write a surface for the solver, a file per part where it would refuse them in one mesh."""
+    from bulkwear.postproc.mesh import write_stl
+
+    points, triangles, part = found.surface.points, found.surface.triangles, found.surface.cell_data["part"]
+    if found.one_mesh:
+        write_stl(path, points, triangles)
+        return
+    for number, each in enumerate(found.parts):
+        name = f"{path.stem}_{re.sub(UNSAFE, '_', each.name)}"
+        write_stl(path.with_name(name + path.suffix), points, triangles[part == number])
 
 
 def _edges(words: list[str], scale: float) -> dict[str, float] | None:

@@ -41,6 +41,21 @@ def test_a_surface_and_its_tables(trough, tmp_path, capsys):
     assert surface.cell_data["side"].dtype == part.dtype == np.int64
 
 
+def test_bodies_that_touch_are_a_file_each(tmp_path, capsys):
+    """Where the solver would refuse all parts in one mesh, the STL is one per part, named for it."""
+    points, triangles = box((100.0, 100.0, 100.0))
+    beside = points + np.array([100.0, 0, 0])
+    write_ascii(tmp_path / "a.stl", {"left wall": (points, triangles), "right/wall": (beside, triangles)})
+    assert main(["mesh", str(tmp_path / "a.stl"), "--unit", "mm", "--stl", str(tmp_path / "out.stl")]) == 0
+    assert "a mesh per part for the solver" in capsys.readouterr().out
+    assert not (tmp_path / "out.stl").exists()
+    right = read_stl(tmp_path / "out_right_wall.stl")
+    np.testing.assert_allclose(
+        [right.min(axis=(0, 1)), right.max(axis=(0, 1))], [[0.1, 0, 0], [0.2, 0.1, 0.1]], atol=EXACT
+    )
+    assert len(read_stl(tmp_path / "out_left_wall.stl")) == 12
+
+
 def test_a_refused_surface_is_drawn(tmp_path, capsys, monkeypatch):
     """Two cubes in one solid that overlap: a sentence with the place, a picture with red faces in both views."""
     monkeypatch.chdir(tmp_path)

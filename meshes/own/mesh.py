@@ -15,6 +15,7 @@ from bulkwear.meshes.own.read import read_solids
 from bulkwear.meshes.own.refine import WANTED_ANGLE, Region, across_edges, refined, turned
 from bulkwear.meshes.own.repairs import Repair, Repairs, repairs_text, table
 from bulkwear.meshes.own.solids import Solids, check_sizes, joined, target_edges
+from bulkwear.meshes.own.together import one_mesh
 from bulkwear.meshes.own.weld import stitched, weld_tolerance, welded
 from bulkwear.postproc.mesh import (
     SurfaceMesh,
@@ -54,13 +55,15 @@ class OwnMesh:
     """A surface of files, ready for the solver.
 
     surface: m, with cell data `part` (number in `parts`) and `side` (1: outward winding, 0: the touched side is not
-    known yet); parts: in order; repairs: rows of what was mended and of warnings; weld_m: tolerance that was used
+    known yet); parts: in order; repairs: rows of what was mended and of warnings; weld_m: tolerance that was used;
+    one_mesh: whether LIGGGHTS takes all parts as one mesh, else each part has to be a mesh of its own
     """
 
     surface: SurfaceMesh
     parts: tuple[Part, ...]
     repairs: tuple[Repair, ...]
     weld_m: float
+    one_mesh: bool
 
     def text(self) -> str:
         """Parts and repairs as two tables of text."""
@@ -107,11 +110,12 @@ def own_mesh(
     elif len(sharp := sharp_faces(solids)):
         solids = turned(solids, np.isin(np.arange(len(targets)), solids.part[sharp]), tolerance, repairs)
     check_for_solver(solids, tolerance, unit)
+    together = one_mesh(solids, tolerance, repairs)
     order = np.argsort(solids.part, kind="stable")
     triangles = obtuse_last(solids.points, solids.triangles[order])
     surface = SurfaceMesh(solids.points, triangles, {"part": solids.part[order], "side": touched_sides(triangles)})
     parts = tuple(_part(surface, number, name) for number, name in enumerate(solids.names))
-    return OwnMesh(surface, parts, tuple(repairs.rows), tolerance)
+    return OwnMesh(surface, parts, tuple(repairs.rows), tolerance, together)
 
 
 def _check_tolerance(tolerance: float, targets: np.ndarray) -> None:

@@ -72,7 +72,7 @@ def _one_node_per_place(solids: Solids, tolerance: float, repairs: Repairs) -> S
     pairs = close_points(solids.points, part, tolerance)
     if not len(pairs):
         return solids
-    group = _groups(pairs, len(solids.points))
+    group = groups_of(pairs, len(solids.points))
     first = np.full(group.max() + 1, len(group))
     np.minimum.at(first, group, np.arange(len(group)))
     into = first[group]
@@ -88,7 +88,7 @@ def close_points(points: np.ndarray, part: np.ndarray, tolerance: float) -> np.n
     return pairs[part[pairs[:, 0]] == part[pairs[:, 1]]]
 
 
-def _groups(pairs: np.ndarray, count: int) -> np.ndarray:
+def groups_of(pairs: np.ndarray, count: int) -> np.ndarray:
     """Number of the group of each of `count` things that pairs (p, 2) hold together."""
     links = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     return connected_components(links, directed=False)[1]
@@ -190,7 +190,7 @@ def stitched(solids: Solids, tolerance: float, repairs: Repairs) -> Solids:
     pairs = cKDTree(solids.points[nodes]).query_pairs(tolerance, output_type="ndarray")
     if not len(pairs):
         return solids
-    place = _groups(pairs, len(nodes))[index.reshape(-1, 2)]
+    place = groups_of(pairs, len(nodes))[index.reshape(-1, 2)]
     key = place.min(axis=1) * (place.max() + 1) + place.max(axis=1)
     order = np.argsort(key, kind="stable")
     counts = np.unique(key, return_counts=True)[1]
@@ -203,7 +203,7 @@ def stitched(solids: Solids, tolerance: float, repairs: Repairs) -> Solids:
     same = place[firsts, 0] == place[seconds, 0]
     other = np.where(same[:, None], ends[seconds], ends[seconds][:, ::-1])
     links = np.concatenate([np.column_stack([ends[firsts, k], other[:, k]]) for k in range(2)])
-    group = _groups(links, len(solids.points))
+    group = groups_of(links, len(solids.points))
     first = np.full(group.max() + 1, len(group))
     np.minimum.at(first, group, np.arange(len(group)))
     middle = solids.points[ends[firsts]].mean(axis=1)

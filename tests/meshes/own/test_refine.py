@@ -214,14 +214,48 @@ def test_neighbours_across_edges():
     assert across_edges(np.array([[0, 1, 2], [2, 1, 3]])).tolist() == [[-1, 1, -1], [0, -1, -1]]
 
 
+def loaded(folder, points, triangles):
+    """How many triangles of a surface LIGGGHTS says it has loaded."""
+    write_stl(folder / "own.stl", points, triangles)
+    (folder / "deck.in").write_text(DECK)
+    command = ["stdbuf", "-o0", "liggghts", "-in", "deck.in"]
+    said = subprocess.run(command, cwd=folder, check=True, capture_output=True).stdout.decode(errors="replace")
+    return int(re.search(r"mesh own containing (\d+) triangle\(s\) successful", said)[1])
+
+
+@pytest.mark.solver
+@pytest.mark.parametrize("edge", [None, 0.02])
+def test_the_solver_takes_bodies_that_touch_apart(tmp_path, edge):
+    """Two cubes with a side in common, one the mirror image of the other: facets that LIGGGHTS refuses in one mesh.
+    That is said before, and it takes each part.
+    """
+    points, triangles = box((100.0, 100.0, 100.0))
+    mirrored = points * (-1.0, 1.0, 1.0) + np.array([200.0, 0, 0])
+    write_ascii(tmp_path / "a.stl", {"a": (points, triangles), "b": (mirrored, triangles[:, ::-1])})
+    found = own_mesh(tmp_path / "a.stl", "mm", edge)
+    assert not found.one_mesh
+    assert any("a mesh per part for the solver" in row.repair for row in found.repairs)
+    with pytest.raises(subprocess.CalledProcessError):
+        loaded(tmp_path, found.surface.points, found.surface.triangles)
+    for number, part in enumerate(found.parts):
+        mine = found.surface.triangles[found.surface.cell_data["part"] == number]
+        assert loaded(tmp_path, found.surface.points, mine) == part.triangles
+
+
+@pytest.mark.solver
+@pytest.mark.parametrize("corner", [(103.0, 0.0, 0.0), (50.0, 30.0, 20.0), (100.0, 30.0, 20.0), (100.0, 100.0, 0.0)])
+def test_the_solver_takes_other_parts_together(tmp_path, corner):
+    """Cubes apart, through one another, side to side off the edges, with an edge in common: one mesh, as is said."""
+    points, triangles = box((100.0, 100.0, 100.0))
+    write_ascii(tmp_path / "a.stl", {"a": (points, triangles), "b": (points + np.array(corner), triangles)})
+    found = own_mesh(tmp_path / "a.stl", "mm", 0.02)
+    assert found.one_mesh
+    assert loaded(tmp_path, found.surface.points, found.surface.triangles) == len(found.surface.triangles)
+
+
 @pytest.mark.solver
 @pytest.mark.parametrize("edge", [None, 0.01])
 def test_the_solver_keeps_every_triangle(tmp_path, tilted, edge):
     """LIGGGHTS loads as many triangles as the surface has: none is degenerate, double or too sharp for it."""
     surface = own_mesh(written(tmp_path, *tilted), "mm", edge).surface
-    write_stl(tmp_path / "own.stl", surface.points, surface.triangles)
-    (tmp_path / "deck.in").write_text(DECK)
-    command = ["stdbuf", "-o0", "liggghts", "-in", "deck.in"]
-    said = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True).stdout.decode(errors="replace")
-    loaded = re.search(r"mesh own containing (\d+) triangle\(s\) successful", said)
-    assert int(loaded[1]) == len(surface.triangles)
+    assert loaded(tmp_path, surface.points, surface.triangles) == len(surface.triangles)
