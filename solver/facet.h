@@ -9,6 +9,8 @@
 
 namespace load_ledger {
 
+constexpr double STRAIGHT = 0.999;  // -, cosine, 2.6 degrees: over the facet itself contacts are square to it
+
 inline void subtract(const double* a, const double* b, double* result) {
   for (int axis = 0; axis < 3; ++axis) result[axis] = a[axis] - b[axis];
 }
@@ -36,8 +38,9 @@ class Facet {
     for (int k = 0; k < 3; ++k) result[k] = dot(frame_[k], vector);
   }
 
-  // Whether something that lies in that direction of the facet lies on its back.
-  bool on_back(const double* direction) const { return dot(direction, normal_) < 0.0; }
+  // Whether something that lies in that direction of its contact, a unit vector, lies straight behind the facet. A
+  // sphere on an edge lies beside it, on an acute one also behind: that says nothing of the side that is touched.
+  bool on_back(const double* direction) const { return dot(direction, frame_[2]) < -STRAIGHT; }
 
   void from_centroid(const double* point, double* result) const {
     for (int axis = 0; axis < 3; ++axis)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "atom.h"
 #include "comm.h"
@@ -67,6 +68,12 @@ void FixLoadLedger::init() {
   listen(mesh_, this);
   observed_.clear();
   phase_ = Phase::set_up;
+}
+
+// A run begins: the file of an earlier one goes, and this one writes its own when it is complete. Writing a restart file
+// initialises the solver as well, but begins no run.
+void FixLoadLedger::setup(int) {
+  if (comm->me == 0) std::remove(file_.c_str());
 }
 
 // ---------------------------------------------------------------- one contact

@@ -34,7 +34,7 @@ enum Column {
   BY_IMPULSE = BY_WORK + 4,  // the same times normal impulse, for triangles that are loaded without any sliding
   // Vectors on the mesh in the facet's own frame: along, across, normal.
   IMPULSE = BY_IMPULSE + 4,    // N s
-  BACK_IMPULSE = IMPULSE + 3,  // N s, the part of particles whose centre lies on the facet's back
+  BACK_IMPULSE = IMPULSE + 3,  // N s, the part of particles that lie straight behind the facet
   MOMENT = BACK_IMPULSE + 3,   // N m s, about the facet's centroid
   FIRST_KERNEL = MOMENT + 3
 };
@@ -49,6 +49,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
 
   int setmask() override;
   void init() override;
+  void setup(int) override;
   void initial_integrate(int) override;
   void end_of_step() override;
   double compute_scalar() override;
@@ -75,7 +76,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
     double wall_spin[3];        // rad/s
     double force_on_facet[3];   // N, on the mesh: along, across, normal
     double moment_on_facet[3];  // N m, on the mesh about the facet's centroid: along, across, normal
-    bool on_back;               // the centre lies on the facet's back
+    bool on_back;               // the particle lies straight behind the facet
     double friction_power;      // W, that the tangential force takes from the sliding
     double drive_power;         // W, that the moving mesh gives to the particle
     double signed_force;        // N, along the normal, negative where the contact pulls

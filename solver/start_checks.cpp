@@ -130,7 +130,6 @@ void FixLoadLedger::check_deck() {
       stop("fix " + std::string(other->id) + " writes to " + file_ + " as well.");
   }
   if (sums_.bytes() > LARGEST_RECORD) stop("the mesh has too many triangles for a restart file.");
-  if (comm->me == 0) std::remove(file_.c_str());  // of an earlier run; this one writes its own when it is complete
 }
 
 // Fields read through our headers are compared with what the solver's own compiled code gives for them.

@@ -38,7 +38,7 @@ def vector_columns(name: str, components: Iterable[str] = "xyz") -> tuple[str, .
     return tuple(f"{name}_{component}_{VECTOR_UNITS[name]}" for component in components)
 
 
-LEAST_PRESSING_COSINE = 0.5  # -, of an impulse with the facet's normal: friction up to 1.7 leans over by less
+STRAIGHT = 0.999  # -, cosine, 2.6 degrees: contacts over a facet are square to it, those of its edges lean
 LEDGER_FIELDS = (*SUMMED_FIELDS, *MEAN_FIELDS, *(field for name in VECTOR_UNITS for field in vector_columns(name)))
 _ARRAYS = (
     "triangle",
@@ -132,17 +132,14 @@ def pressed_sides(columns: Mapping[str, np.ndarray], normals: np.ndarray) -> tup
     columns: of a ledger, with impulse and back_impulse
     normals: (m, 3) unit normals of the facets in the ledger's frame; the front is where they point
 
-    The normal impulse of contacts on the front, and of those whose particle lies on the back, each into the facet; a
-    side that was pulled rather than pressed has 0, and so has one whose impulse leans over by more than 60 degrees: a
-    sphere on an acute edge lies behind one of its two facets. Raises KeyError when a column is missing.
+    The normal impulse of contacts whose particle lies straight behind the facet, and of all others, each into the facet;
+    a side that was pulled rather than pressed has 0. Raises KeyError when a column is missing.
     """
     whole, behind = (
-        np.column_stack([columns[field] for field in vector_columns(name)]) for name in ("impulse", "back_impulse")
+        np.einsum("ij,ij->i", np.column_stack([columns[field] for field in vector_columns(name)]), normals)
+        for name in ("impulse", "back_impulse")
     )
-    along = [np.einsum("ij,ij->i", vector, normals) for vector in (behind - whole, behind)]
-    size = [np.sqrt(np.einsum("ij,ij->i", vector, vector)) for vector in (behind - whole, behind)]
-    front, back = (np.where(a > LEAST_PRESSING_COSINE * s, a, 0.0) for a, s in zip(along, size, strict=True))
-    return front, back
+    return np.maximum(behind - whole, 0.0), np.maximum(behind, 0.0)
 
 
 def _by_axis(names: Iterable[str], vectors: np.ndarray) -> dict[str, np.ndarray]:
@@ -326,7 +323,7 @@ class LedgerBuilder:
         self._sum_vectors("impulse", triangle, impulse)
         if self._corners is None:
             return
-        back = np.einsum("ij,ij->i", self._normals[triangle], frame.in_body(motion.normal)) < 0.0
+        back = np.einsum("ij,ij->i", self._normals[triangle], frame.in_body(motion.normal)) < -STRAIGHT
         self._sum_vectors("back_impulse", triangle[back], impulse[back])
         self._sum_vectors("moment", triangle, np.cross(point - self._centroids[triangle], impulse))
         if self._kernels:

@@ -18,8 +18,8 @@ from bulkwear.postproc.motion import oscillation
 from bulkwear.postproc.wear.displacement import swept_volume
 from bulkwear.postproc.wear.ledger import pressed_sides
 from bulkwear.postproc.wear.side import SIDE, TURNED, turned_as
+from bulkwear.workflows.engine.own_machine import Part, part_of, wear_machine
 from tests.verification.machines.four import MACHINES, chute
-from tests.verification.machines.own_machine import Part, part_of, wear_machine
 
 pytestmark = pytest.mark.solver
 

@@ -8,9 +8,9 @@ import pytest
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.motion import Motion, combined, oscillation, rotation, translation
+from bulkwear.workflows.engine.own_machine import part_of, wear_machine
 from tests.verification.ledger_cases import LOAD
 from tests.verification.machines.four import DECKS
-from tests.verification.machines.own_machine import part_of, wear_machine
 from tests.verification.surface_cases import Attitude, attitude, height, pressed_sphere
 
 pytestmark = pytest.mark.solver

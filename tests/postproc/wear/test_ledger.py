@@ -17,6 +17,7 @@ from bulkwear.postproc.wear.ledger import (
     hertz_elastic_energy,
     vector_columns,
 )
+from bulkwear.postproc.wear.mesh_frame import facet_frames
 from tests.support.law_cases import long_slip_registered
 
 ROUND_OFF = 1e-12  # sums of up to a few thousand float64 terms
@@ -51,19 +52,25 @@ def sample(n=1, **given):
     return SimpleNamespace(**{**arrays, **{name: np.asarray(value) for name, value in given.items()}})
 
 
-def random_samples(seed=7, samples=40, triangles=12):
-    """Samples of a tumbling crowd: 0 to 9 contacts, several triangles per particle, some of them pulling."""
+def random_samples(seed=7, samples=40, triangles=12, straight=0.4):
+    """Samples of a tumbling crowd: 0 to 9 contacts, several triangles per particle, some of them pulling.
+
+    straight: -, share of contacts over or behind their facet, square to it; others are beside it
+    """
     random = np.random.default_rng(seed)
     result = []
     for step in range(samples):
         n = random.integers(0, 10)
         normal = random.normal(size=(n, 3))
         normal /= np.linalg.norm(normal, axis=1)[:, None]
+        triangle, sign = random.integers(0, triangles, n), random.choice([-1.0, 1.0], (n, 1))
+        square = random.random((n, 1)) < straight
+        normal = np.where(square, sign * facet_frames(CORNERS)[triangle, 2], normal)
         centre, overlap = random.normal(size=(n, 3)), random.uniform(0.0, 0.02, (n, 1)) * RADIUS
         vectors = {name: random.normal(size=(n, 3)) for name in ("wall_velocity", "particle_velocity", "force")}
         contacts = sample(
             n,
-            triangle=random.integers(0, triangles, n),
+            triangle=triangle,
             particle=random.integers(1, 6, n),
             centre=centre,
             contact_point=centre - (RADIUS - overlap) * normal,

@@ -94,6 +94,15 @@ def test_the_side_is_that_of_the_particle_s_centre():
     assert not rows(ledger([sample(**RUBBING)]), "back_impulse").any()
 
 
+def test_a_sphere_on_an_edge_is_on_no_back():
+    """Beside an acute edge the centre lies behind one of the two facets: that says nothing of the side it touches."""
+    beside = np.array([[0.3 * RADIUS, 0.0, -np.sqrt(1.0 - 0.3**2) * RADIUS]])  # 17 degrees off the straight
+    table = ledger([sample(centre=beside, force=200.0 * beside)])
+    assert rows(table, "impulse").any()
+    assert not rows(table, "back_impulse").any()
+    assert [side[0] for side in pressed_sides(table, facet_frames(CORNERS)[:, 2])] == [0.0, 0.0]
+
+
 def test_both_sides_pressed_are_told_apart():
     """3 N above and 2 N below leave 1 N in sum, but 3 and 2 on the sides."""
     both = sample(
@@ -114,7 +123,7 @@ def test_a_side_that_is_pulled_is_not_pressed():
 
 def test_flipped_facets_swap_the_sides_and_nothing_else():
     """Normals of the file say which side is the front; impulse and moment do not depend on them."""
-    crowd = random_samples()
+    crowd = random_samples(straight=1.0)
     plain, flipped = ledger(crowd), ledger(crowd, corners=CORNERS[:, ::-1])
     same = [name for name in LEDGER_FIELDS if not name.startswith("back")]
     assert_same(flipped, plain, same)

@@ -11,8 +11,8 @@ from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.meshes.plate import closed_box, flat_plate
 from bulkwear.postproc.mesh import SurfaceMesh, centroids
 from bulkwear.postproc.motion import belt, combined, rotation, translation
+from bulkwear.workflows.engine.own_machine import Part, part_of
 from tests import REPOSITORY
-from tests.verification.machines.own_machine import Part, part_of
 
 DATA = REPOSITORY / "tests" / "data" / "machines"
 DECKS = Path(__file__).parent

@@ -1,4 +1,4 @@
-"""Wears the parts of a machine with a deck of one's own: a loop to copy.
+"""Wears the parts of a machine with a deck of one's own, update by update.
 
 The deck is plain LIGGGHTS input with two includes: `parts.in` where its meshes belong, which sets `number` and `meshes`
 for the wall's line, and `running.in` as the last line, which moves, accounts, runs and writes the restart file. It gets
@@ -12,16 +12,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from bulkwear.postproc.mesh import SurfaceMesh, stl_corners, unit_normals, write_stl, write_surface
 from bulkwear.postproc.motion import AT_REST, Motion
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.balance import lost_volume, volume_balance
+from bulkwear.postproc.wear.built_shape import with_built_shape
 from bulkwear.postproc.wear.caps import edge_limit
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.ledger import columns_of_solver, pressed_sides
-from bulkwear.postproc.wear.side import SIDE, UNKNOWN, with_sides
+from bulkwear.postproc.wear.mesh_faults import Bounds, with_target_edges
+from bulkwear.postproc.wear.remesh import remesh
 from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
 
@@ -46,8 +46,9 @@ class Part:
 
 
 def part_of(name: str, surface: SurfaceMesh, motion: Motion = AT_REST) -> Part:
-    """A part that nothing has worn."""
-    return Part(name, surface, surface, motion)
+    """A part that nothing has worn, its sharp edges and hollows known as built."""
+    pristine = with_target_edges(with_built_shape(surface))
+    return Part(name, pristine, pristine, motion)
 
 
 def wear_machine(
@@ -59,10 +60,12 @@ def wear_machine(
     coefficient_per_pa: float,
     updates: int,
     ranks: int = 1,
+    bounds: Bounds | None = None,
 ) -> Iterator[list[Part]]:
     """Simulate and wear in turn; yields the parts after every update, which has a folder with all its files.
 
-    deck: see above; cycle_steps: of one update, each time_step_s long; coefficient_per_pa: Archard's, volume over work
+    deck: see above; cycle_steps: of one update, each time_step_s long; coefficient_per_pa: Archard's, volume over work;
+    bounds: beyond which worn triangles are remeshed, None: never
     """
     cycle_s = cycle_steps * time_step_s
     for update in range(updates):
@@ -72,7 +75,7 @@ def wear_machine(
         variables = {"update": str(update), "before": before, "time_step": str(time_step_s)}
         kept = {f"{part.name}_{update}": len(part.surface.triangles) for part in parts}
         run_deck(here, ranks, triangles=kept, executable=LEDGER_EXECUTABLE, variables=variables)
-        parts = [worn(part, here, update, coefficient_per_pa) for part in parts]
+        parts = [worn(part, here, update, coefficient_per_pa, bounds) for part in parts]
         yield parts
 
 
@@ -97,18 +100,17 @@ def write_update(here: Path, deck: Path, parts: Sequence[Part], update: int, beg
     (here / "running.in").write_text("\n".join(running) + "\n")
 
 
-def worn(part: Part, here: Path, update: int, coefficient_per_pa: float) -> Part:
+def worn(part: Part, here: Path, update: int, coefficient_per_pa: float, bounds: Bounds | None) -> Part:
     """The part after the wear of an update: ledger, touched side, law, displacement, and the balance of volumes."""
     surface = part.surface
     ledger = read_load_ledger(here / f"{part.name}.bin", f"{part.name}_{update}", len(surface.triangles))
     columns = columns_of_solver(ledger.columns, stl_corners(surface.points, surface.triangles))
     pressed = pressed_sides(columns, unit_normals(surface.points, surface.triangles))
-    # Where the side is known already, normals are trusted: a sphere on an acute edge lies behind one of its two faces.
-    unknown = with_sides(surface).cell_data[SIDE] == UNKNOWN
-    pressed = tuple(np.where(unknown, impulse, 0.0) for impulse in pressed)
     volume = worn_volume("archard", columns, {"wear_coefficient_per_pa": coefficient_per_pa})
     limit = edge_limit(surface.points, surface.triangles, EDGE_SHARE)
     surface, _ = wear_update(surface, volume, limit, pressed=pressed)
+    if bounds is not None:
+        surface = remesh(surface, bounds).mesh
     write_surface(here / f"{part.name}.vtu", surface)
     lost, rounding = lost_volume(part.pristine, surface)
     law = part.law_volume_m3 + float(volume.sum())
