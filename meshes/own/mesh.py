@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from bulkwear.meshes.own.check import check_cuts, check_for_solver, check_gaps, check_manifold, sharp_faces
-from bulkwear.meshes.own.orient import oriented, touched_sides
+from bulkwear.meshes.own.orient import oriented
 from bulkwear.meshes.own.read import read_solids
 from bulkwear.meshes.own.refine import WANTED_ANGLE, Region, across_edges, refined, turned
 from bulkwear.meshes.own.repairs import Repair, Repairs, repairs_text, table
@@ -54,9 +54,9 @@ class Part:
 class OwnMesh:
     """A surface of files, ready for the solver.
 
-    surface: m, with cell data `part` (number in `parts`) and `side` (1: outward winding, 0: the touched side is not
-    known yet); parts: in order; repairs: rows of what was mended and of warnings; weld_m: tolerance that was used;
-    one_mesh: whether LIGGGHTS takes all parts as one mesh, else each part has to be a mesh of its own
+    surface: m, with cell data `part` (number in `parts`); parts: in order; repairs: rows of what was mended and of
+    warnings; weld_m: tolerance that was used; one_mesh: whether LIGGGHTS takes all parts as one mesh,
+    else each part has to be a mesh of its own
     """
 
     surface: SurfaceMesh
@@ -113,7 +113,7 @@ def own_mesh(
     together = one_mesh(solids, tolerance, repairs)
     order = np.argsort(solids.part, kind="stable")
     triangles = obtuse_last(solids.points, solids.triangles[order])
-    surface = SurfaceMesh(solids.points, triangles, {"part": solids.part[order], "side": touched_sides(triangles)})
+    surface = SurfaceMesh(solids.points, triangles, {"part": solids.part[order]})
     parts = tuple(_part(surface, number, name) for number, name in enumerate(solids.names))
     return OwnMesh(surface, parts, tuple(repairs.rows), tolerance, together)
 

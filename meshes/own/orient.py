@@ -12,7 +12,6 @@ from bulkwear.meshes.own.solids import Solids
 from bulkwear.meshes.own.weld import open_corners
 from bulkwear.postproc.mesh import areas, centroids, nonmanifold_edges
 
-KNOWN, UNKNOWN = 1, 0  # label `side`: the winding tells the touched side, or the first contacts have to
 INSIDE = 0.5  # -, winding number of a place within a closed piece: 1, outside 0
 
 
@@ -23,12 +22,6 @@ def consistently_wound(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     triangles run through in the same sense (`nonmanifold_edges`).
     """
     return igl.bfs_orient(np.ascontiguousarray(triangles))
-
-
-def touched_sides(triangles: np.ndarray) -> np.ndarray:
-    """Label `side` (m,) of triangles whose windings are consistent: `KNOWN` in closed pieces, else `UNKNOWN`."""
-    piece = consistently_wound(triangles)[1]
-    return np.where(_closed(triangles, piece)[piece], KNOWN, UNKNOWN).astype(np.int64)
 
 
 def _closed(triangles: np.ndarray, piece: np.ndarray) -> np.ndarray:

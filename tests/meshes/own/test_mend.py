@@ -57,7 +57,6 @@ def test_windings_in_the_file_do_not_matter(tmp_path_factory, flips, order):
     (part,) = found.parts
     assert part.closed
     assert part.volume_m3 == pytest.approx(VOLUME, rel=EXACT)
-    assert (found.surface.cell_data["side"] == 1).all()
     assert len(nonmanifold_edges(found.surface.triangles)) == 0
     assert counted(found).get("facets turned round", 0) == sum(flips)
 
@@ -149,7 +148,6 @@ def test_the_side_of_an_open_plate_is_unknown(tmp_path):
     open_box[2] = open_box[2][::-1]
     found = made(tmp_path, open_box)
     assert not found.parts[0].closed
-    assert (found.surface.cell_data["side"] == 0).all()
     assert len(nonmanifold_edges(found.surface.triangles)) == 0
     assert counted(found) == {"facets turned round": 1, "open pieces, touched side unknown": 1}
 
@@ -163,7 +161,6 @@ def test_solids_that_are_faces_of_one_body_share_its_edges(tmp_path):
     found = own_mesh(tmp_path / "a.stl", "mm")
     assert len(found.surface.points) == 8
     assert len(boundary_edges(found.surface.triangles)) == 0
-    assert (found.surface.cell_data["side"] == 1).all()
     assert sum(row.count for row in found.repairs if "joined" in row.repair) == 12
 
 

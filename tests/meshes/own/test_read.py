@@ -57,7 +57,6 @@ def test_every_format_gives_the_same_surface(folder, name):
     assert sum(part.volume_m3 for part in found.parts) == pytest.approx(sum(VOLUMES), rel=tolerance)
     points = found.surface.points
     np.testing.assert_allclose([points.min(axis=0), points.max(axis=0)], BOX, atol=tolerance * np.ptp(BOX))
-    assert (found.surface.cell_data["side"] == 1).all()
 
 
 @pytest.mark.parametrize("name", WITH_PARTS)
