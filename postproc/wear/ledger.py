@@ -132,8 +132,8 @@ def pressed_sides(columns: Mapping[str, np.ndarray], normals: np.ndarray) -> tup
     columns: of a ledger, with impulse and back_impulse
     normals: (m, 3) unit normals of the facets in the ledger's frame; the front is where they point
 
-    The normal impulse of contacts whose particle lies straight behind the facet, and of all others, each into the facet;
-    a side that was pulled rather than pressed has 0. Raises KeyError when a column is missing.
+    The normal impulse of contacts whose particle lies straight behind the facet, and of all others, into the facet; a
+    side that was pulled rather than pressed has 0. Raises KeyError when a column is missing.
     """
     whole, behind = (
         np.einsum("ij,ij->i", np.column_stack([columns[field] for field in vector_columns(name)]), normals)
