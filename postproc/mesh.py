@@ -250,20 +250,3 @@ def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray
             file.write("endsolid surface\n")
 
     _write_atomically(path, write)
-
-
-def read_stl(path: str | os.PathLike) -> np.ndarray:
-    """Corners of the facets of an ASCII STL, (m, 3, 3) m. Raises ValueError when cut short or not ASCII."""
-    content = Path(path).read_bytes()
-    lines = content.split(b"\n")
-    if not content.startswith(b"solid") or not content.rstrip().rpartition(b"\n")[2].startswith(b"endsolid"):
-        raise ValueError(f"{path}: an ASCII STL must begin with 'solid' and end with 'endsolid'")
-    vertices = [line for line in map(bytes.lstrip, lines) if line.startswith(b"vertex")]
-    facets = content.count(b"endfacet")
-    numbers = b" ".join(vertices).replace(b"vertex", b"").split()
-    if len(vertices) != 3 * facets or len(numbers) != 9 * facets:
-        raise ValueError(f"{path}: {facets} facets need {9 * facets} coordinates, found {len(numbers)}")
-    try:
-        return np.array(numbers, dtype="S").astype(np.float64).reshape(facets, 3, 3)
-    except ValueError as error:
-        raise ValueError(f"{path}: a coordinate is not a number ({error})") from error

@@ -5,8 +5,9 @@ import pytest
 from PIL import Image
 
 from bulkwear.__main__ import main
-from bulkwear.postproc.mesh import read_stl, read_surface
+from bulkwear.postproc.mesh import read_surface
 from tests.support.own_solids import AREA, MM, bodies, box, write_ascii
+from tests.support.stl import stl_facets
 
 LONGEST = 15.00001  # mm, 1.5 targets and the last digit of the STL
 EXACT = 1e-9  # relative: an STL has nine digits
@@ -29,7 +30,7 @@ def test_a_surface_and_its_tables(trough, tmp_path, capsys):
     assert "trough" in said
     assert "lip" in said
     assert "points within 0.001 mm are one" in said
-    surface, corners = read_surface(tmp_path / "out.vtu"), read_stl(tmp_path / "out.stl")
+    surface, corners = read_surface(tmp_path / "out.vtu"), stl_facets(tmp_path / "out.stl")
     np.testing.assert_allclose(corners, surface.points[surface.triangles], rtol=0.0, atol=EXACT)
     size = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1) / MM
     part, places = surface.cell_data["part"], corners.mean(axis=1) / MM
@@ -38,7 +39,7 @@ def test_a_surface_and_its_tables(trough, tmp_path, capsys):
     assert size[np.linalg.norm(places, axis=1) < 18.0].max() <= 0.2 * LONGEST
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     assert area.sum() == pytest.approx(AREA, rel=1e-6)  # digits of the STL
-    assert surface.cell_data["side"].dtype == part.dtype == np.int64
+    assert part.dtype == np.int64
 
 
 def test_bodies_that_touch_are_a_file_each(tmp_path, capsys):
@@ -49,11 +50,11 @@ def test_bodies_that_touch_are_a_file_each(tmp_path, capsys):
     assert main(["mesh", str(tmp_path / "a.stl"), "--unit", "mm", "--stl", str(tmp_path / "out.stl")]) == 0
     assert "a mesh per part for the solver" in capsys.readouterr().out
     assert not (tmp_path / "out.stl").exists()
-    right = read_stl(tmp_path / "out_right_wall.stl")
+    right = stl_facets(tmp_path / "out_right_wall.stl")
     np.testing.assert_allclose(
         [right.min(axis=(0, 1)), right.max(axis=(0, 1))], [[0.1, 0, 0], [0.2, 0.1, 0.1]], atol=EXACT
     )
-    assert len(read_stl(tmp_path / "out_left_wall.stl")) == 12
+    assert len(stl_facets(tmp_path / "out_left_wall.stl")) == 12
 
 
 def test_a_refused_surface_is_drawn(tmp_path, capsys, monkeypatch):

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.mesh import areas, read_stl, read_surface, stl_corners
+from bulkwear.postproc.mesh import areas, read_surface, stl_corners
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
@@ -30,6 +30,7 @@ from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import SolverError
 from bulkwear.workflows.engine.wear_step import law_volume
 from tests import REPOSITORY
+from tests.support.stl import stl_facets
 from tests.support.tiny import tiny_chain, tiny_study
 
 pytestmark = pytest.mark.solver
@@ -180,7 +181,7 @@ def test_wear_stays_on_the_top_surface_and_goes_inward(finished):
 
 def test_worn_surface_goes_back_into_the_solver(finished):
     """The solver's mesh in cycle 2 is the surface that cycle 1 left."""
-    facets = read_stl(state.cycle_folder(finished.folder, 2) / "surface.stl")
+    facets = stl_facets(state.cycle_folder(finished.folder, 2) / "surface.stl")
     surface = read_surface(state.cycle_folder(finished.folder, 1) / "surface.vtu")
     np.testing.assert_allclose(facets, stl_corners(surface.points, surface.triangles), atol=STL_ROUNDING)
     assert not np.array_equal(surface.points, read_surface(finished.surface).points)

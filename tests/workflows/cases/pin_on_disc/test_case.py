@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.mesh import read_stl, read_surface, write_surface
+from bulkwear.postproc.mesh import read_surface, write_surface
 from bulkwear.workflows.cases.pin_on_disc.case import LOAD_TOLERANCE
 from bulkwear.workflows.cases.pin_on_disc.decks import pin_on_disc
 from bulkwear.workflows.cases.pin_on_disc.page import update_remark
@@ -22,6 +22,7 @@ from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.schedule import known_spans
 from tests import DATA, REPOSITORY
+from tests.support.stl import stl_facets
 from tests.workflows.engine.test_cycles import kill_when, start_driver, wait_until_no_solver
 
 GOLDEN = DATA / "golden_pin_on_disc.in"
@@ -208,7 +209,9 @@ def test_decks_by_hand_are_those_of_the_first_cycles(tmp_path):
     write_decks(chain)
     folders = sorted(chain.folder.glob("cycle_*"))
     assert [folder.name for folder in folders] == [f"cycle_{number:03d}" for number in range(MOST_DECKS + 1)]
-    first, last = (read_stl(folder / "surface.stl")[:, :, :2].mean(axis=(0, 1)) for folder in (folders[1], folders[12]))
+    first, last = (
+        stl_facets(folder / "surface.stl")[:, :, :2].mean(axis=(0, 1)) for folder in (folders[1], folders[12])
+    )
     assert np.arctan2(*first[::-1]) == pytest.approx(np.radians(7.5), abs=0.1)
     assert np.arctan2(*last[::-1]) == pytest.approx(np.radians(172.5), abs=0.1)
 
