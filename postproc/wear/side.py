@@ -13,12 +13,14 @@ from dataclasses import dataclass
 import igl
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges
 
 SIDE = "side"  # cell data: KNOWN, the normal looks out of the body; UNKNOWN; TURNED, known, and the file's looked in
 KNOWN, UNKNOWN, TURNED = 1, 0, -1
 PIECE = "piece"  # cell data: number of the connected piece
-LARGEST_BACK_SHARE = 0.02  # -, of the normal impulse: what grazes a rim from behind stays below, a touched back not
+# Of the normal impulse, -. Open pieces: what grazes a rim from behind stays below, a touched back does not. Closed ones:
+# at the lip of a wedge a soft sphere overlaps the face on the other side too, with some per cent of its impulse.
+LARGEST_BACK_SHARE, LARGEST_BACK_SHARE_OF_CLOSED = 0.02, 0.3
 METRES_TO_MM = 1e3
 
 
@@ -70,20 +72,21 @@ def turned_to_flow(
     Raises
     ------
     TouchedSideError : a piece is pressed from both sides, each by more than `LARGEST_BACK_SHARE` of its normal
-        impulse, or from the other side than before.
+        impulse (`LARGEST_BACK_SHARE_OF_CLOSED` of a closed one), or from the other side than before.
     """
     mesh = with_sides(mesh)
     piece, side = mesh.cell_data[PIECE], np.array(mesh.cell_data[SIDE])
     counted = np.ones(len(piece)) if worn is None else np.asarray(worn, dtype=np.float64)
     ahead, behind = (np.bincount(piece, counted * values) for values in (front, back))
     share = np.divide(behind, ahead + behind, out=np.zeros_like(ahead), where=ahead + behind > 0.0)
+    limit = np.where(_closed(mesh.triangles, piece), LARGEST_BACK_SHARE_OF_CLOSED, LARGEST_BACK_SHARE)
     triangles, told = np.array(mesh.triangles), []
     for number in np.flatnonzero(ahead + behind > 0.0):
         faces = piece == number
-        if share[number] <= LARGEST_BACK_SHARE:
+        if share[number] <= limit[number]:
             side[faces & (side == UNKNOWN)] = KNOWN
             continue
-        if share[number] < 1.0 - LARGEST_BACK_SHARE or (side[faces] != UNKNOWN).any():
+        if share[number] < 1.0 - limit[number] or (side[faces] != UNKNOWN).any():
             raise TouchedSideError(_fault(mesh, faces, ahead[number], behind[number], back * counted))
         triangles[faces] = triangles[faces][:, [0, 2, 1]]
         side[faces] = TURNED
@@ -91,6 +94,15 @@ def turned_to_flow(
     if np.array_equal(side, mesh.cell_data[SIDE]):
         return mesh, told
     return SurfaceMesh(mesh.points, triangles, mesh.cell_data | {SIDE: side}, mesh.point_data), told
+
+
+def _closed(triangles: np.ndarray, piece: np.ndarray) -> np.ndarray:
+    """Whether each piece (k,) has no boundary; piece: (m,) as from `connected_pieces`."""
+    at_boundary = np.zeros(int(triangles.max()) + 1, dtype=bool)
+    at_boundary[boundary_edges(triangles)] = True
+    closed = np.ones(int(piece.max()) + 1, dtype=bool)
+    closed[piece[at_boundary[triangles].any(axis=1)]] = False
+    return closed
 
 
 def turned_as(pristine: SurfaceMesh, present: SurfaceMesh) -> SurfaceMesh:

@@ -73,6 +73,14 @@ def test_pressed_from_both_sides_is_refused():
         turned_to_flow(mesh, front, back)
 
 
+def test_a_soft_sphere_at_a_lip_is_no_fault_of_a_closed_body():
+    """A tenth from behind is allowed where the body has a back of its own, a half is not."""
+    mesh = box((0.3, 0.2, 0.1), 4)
+    assert turned_to_flow(mesh, even(mesh), 0.1 * even(mesh))[1] == []
+    with pytest.raises(TouchedSideError, match="from both sides"):
+        turned_to_flow(mesh, even(mesh), even(mesh))
+
+
 def test_the_other_side_than_before_is_refused():
     """Once the touched side is known, contacts on the other one are a fault, not a reason to turn again."""
     mesh, _ = turned_to_flow(plate(0.4, 0.3, 4), even(plate(0.4, 0.3, 4)), NOTHING * even(plate(0.4, 0.3, 4)))
