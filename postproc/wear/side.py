@@ -18,8 +18,8 @@ from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges
 SIDE = "side"  # cell data: KNOWN, the normal looks out of the body; UNKNOWN; TURNED, known, and the file's looked in
 KNOWN, UNKNOWN, TURNED = 1, 0, -1
 PIECE = "piece"  # cell data: number of the connected piece
-# Of the normal impulse, -. Open pieces: what grazes a rim from behind stays below, a touched back does not. Closed ones:
-# at the lip of a wedge a soft sphere overlaps the face on the other side too, with some per cent of its impulse.
+# Of the normal impulse, -. Open pieces: what grazes a rim from behind stays below, a touched back does not. Closed
+# ones: at the lip of a wedge a soft sphere overlaps the face on the other side too, with some per cent of its impulse.
 LARGEST_BACK_SHARE, LARGEST_BACK_SHARE_OF_CLOSED = 0.02, 0.3
 METRES_TO_MM = 1e3
 
