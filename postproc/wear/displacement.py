@@ -30,6 +30,7 @@ from bulkwear.postproc.wear.directions import LabelParting, between_labels, load
 from bulkwear.postproc.wear.hollows import handed_over
 
 CONVERGENCE = 1e-12  # -, summed volume errors of all nodes over the total volume; rounding is near 1e-15
+MOST_TURNS = 60  # -, passes after which the directions between labels stay: in corners two of them may take turns
 MOST_ITERATIONS = 200  # -, a step of a tenth of an edge needs about ten
 LEAST_DIRECTION_COSINE = 0.05  # -, below it a node would have to travel 20 times the thickness it removes
 LARGEST_STEP_OVER_ALTITUDE = 0.5  # -, without limits: two corners closing in on one another meet at one half
@@ -174,8 +175,10 @@ def _solve(points, faces, resistance, target, limit) -> np.ndarray:
     step = np.zeros(len(points))
     mobile = wanted > 0.0
     relaxation, last_error = 1.0, np.inf
-    for _ in range(MOST_ITERATIONS):
-        area = resistance(step)
+    for number in range(MOST_ITERATIONS):
+        if number == MOST_TURNS and resistance.turns:
+            relaxation, last_error = 1.0, np.inf
+        area = resistance(step, turn=number < MOST_TURNS)
         mobile &= area > LEAST_DIRECTION_COSINE * resistance.gross
         goal = np.minimum(np.divide(wanted, area, out=np.zeros_like(area), where=mobile), limit)
         error = np.abs(goal - step)[mobile] @ area[mobile]
@@ -194,19 +197,20 @@ def _solve(points, faces, resistance, target, limit) -> np.ndarray:
 class _Resistance:
     """Area -u_n . sum Abar_i(d) / 3 in m2 that each node sweeps per step, as a function of all steps.
 
-    Where labels meet, every call turns `inward` (3, n) so that with those steps they part exactly.
+    Where labels meet, a call turns `inward` (3, n), unless told not to, so that with those steps they part exactly.
     """
 
     def __init__(self, points, faces, at_nodes, inward, parting=None):
         self.faces, self.at_nodes, self.parting = faces, at_nodes, parting
+        self.turns = parting is not None and parting.near.size > 0
         self.inward = np.ascontiguousarray(inward.T)
         self.first, self.second = _edges(np.ascontiguousarray(points.T), faces)
         self.gross = at_nodes @ np.sqrt((_cross(self.first, self.second) ** 2).sum(axis=0)) / 6.0
 
-    def __call__(self, step: np.ndarray) -> np.ndarray:
+    def __call__(self, step: np.ndarray, turn: bool = True) -> np.ndarray:
         motion = _edges(step * self.inward, self.faces)
         area = _mean_area(self.first, self.second, *motion)
-        if self.parting is not None and self.parting.near.size:
+        if turn and self.turns:
             nodes, directions = self.parting(area[:, self.parting.near].T)
             self.inward[:, nodes] = directions.T
         gathered = self.at_nodes @ np.ascontiguousarray(area.T)

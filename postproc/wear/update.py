@@ -16,11 +16,14 @@ from bulkwear.postproc.wear.side import PIECE, turned_to_flow
 from bulkwear.postproc.wear.thickness import (
     LOCAL_THICKNESS,
     REMAINING_THICKNESS,
-    REMOVED_THICKNESS,
     remaining_thickness,
+    room_to_back,
+    with_lost_thickness,
+    with_turned_thickness,
     worn_through,
 )
 
+REMOVED_THICKNESS = "removed_thickness_m"
 HEIGHT_LOSS = "height_loss_m"
 RAY_DEPTH = "ray_depth_m"
 NORMAL_DEPTH = "normal_depth_m"
@@ -76,28 +79,34 @@ def wear_update(
     Raises ValueError and StepTooLargeError as `displace`, `spread` and `scheme_of`, TouchedSideError as
     `turned_to_flow`, and GrowthError where a touched face would leave the body.
     """
-    if back not in BACKS:
-        raise ValueError(f"back is '{back}', allowed are: {', '.join(BACKS)}")
+    _check_back(back)
     worn, turned = worn_faces(mesh), []
     if pressed is not None:
         mesh, turned = turned_to_flow(mesh, *pressed, worn)
-        mesh = with_turned_shape(mesh, np.isin(mesh.cell_data[PIECE], [piece.piece for piece in turned]))
-    if back == "cap":
-        left = np.nan_to_num(remaining_thickness(mesh), nan=np.inf)
-        step_limit = left if step_limit is None else np.fmin(step_limit, left)
+        round_about = np.isin(mesh.cell_data[PIECE], [piece.piece for piece in turned])
+        mesh = with_turned_thickness(with_turned_shape(mesh, round_about), round_about)
+    if back == "cap" and LOCAL_THICKNESS in mesh.point_data:
+        room = room_to_back(mesh, worn & (np.asarray(worn_volume) > 0.0))
+        step_limit = room if step_limit is None else np.fmin(step_limit, room)
     moved = _moved(mesh, worn_volume, step_limit, wall, patch, scheme)
     thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
     fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
     result = SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields)
+    result = with_lost_thickness(mesh, result)
     through = worn_through(result)
-    lost_at = through if back == "cap" else np.zeros(len(through), dtype=bool)
-    beyond = float(moved.carried_volume[lost_at].sum())
-    result.point_data[CARRIED_VOLUME] = np.where(lost_at, 0.0, moved.carried_volume)
+    gone = through & (back == "cap")
+    beyond = float(moved.carried_volume[gone].sum())
+    result.point_data[CARRIED_VOLUME] = np.where(gone, 0.0, moved.carried_volume)
     record = _record(mesh, result, moved, float(np.sum(worn_volume, where=worn)), beyond)
     return with_swept_rim(mesh, result), record | {
         "turned_faces": sum(piece.faces for piece in turned),
         "through_nodes": int(through.sum()),
     }
+
+
+def _check_back(back: str) -> None:
+    if back not in BACKS:
+        raise ValueError(f"back is '{back}', allowed are: {', '.join(BACKS)}")
 
 
 def _moved(mesh, worn_volume, step_limit, wall, patch, scheme) -> Displacement:

@@ -12,19 +12,25 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from bulkwear.postproc.mesh import SurfaceMesh, stl_corners, unit_normals, write_stl, write_surface
 from bulkwear.postproc.motion import AT_REST, Motion
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
-from bulkwear.postproc.wear.balance import lost_volume, volume_balance
+from bulkwear.postproc.wear.balance import BalanceError, GrowthError, lost_volume, volume_balance
 from bulkwear.postproc.wear.built_shape import with_built_shape
 from bulkwear.postproc.wear.caps import edge_limit
+from bulkwear.postproc.wear.displacement import StepTooLargeError
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.ledger import columns_of_solver, pressed_sides
 from bulkwear.postproc.wear.mesh_faults import Bounds, with_target_edges
-from bulkwear.postproc.wear.remesh import remesh
+from bulkwear.postproc.wear.remesh import RemeshError, remesh
+from bulkwear.postproc.wear.side import TouchedSideError
 from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
+from bulkwear.workflows.engine.wear_step import CAP_SHARES, WearError
 
+CURED_BY_SMALLER_STEPS = (GrowthError, StepTooLargeError, RemeshError)
 RESTART = "after.restart"
 EDGE_SHARE = 0.05  # -, of the shortest edge at a node, that it may recede in one update; what is left is carried
 
@@ -107,12 +113,28 @@ def worn(part: Part, here: Path, update: int, coefficient_per_pa: float, bounds:
     columns = columns_of_solver(ledger.columns, stl_corners(surface.points, surface.triangles))
     pressed = pressed_sides(columns, unit_normals(surface.points, surface.triangles))
     volume = worn_volume("archard", columns, {"wear_coefficient_per_pa": coefficient_per_pa})
-    limit = edge_limit(surface.points, surface.triangles, EDGE_SHARE)
-    surface, _ = wear_update(surface, volume, limit, pressed=pressed)
-    if bounds is not None:
-        surface = remesh(surface, bounds).mesh
+    try:
+        surface = receded(surface, volume, pressed, bounds)
+        lost, rounding = lost_volume(part.pristine, surface)
+        law = part.law_volume_m3 + float(volume.sum())
+        error = volume_balance(lost, float(surface.point_data[CARRIED_VOLUME].sum()), law, rounding)
+    except (*CURED_BY_SMALLER_STEPS, TouchedSideError, BalanceError) as fault:
+        raise WearError(f"part {part.name}, update {update}: {fault}") from fault
     write_surface(here / f"{part.name}.vtu", surface)
-    lost, rounding = lost_volume(part.pristine, surface)
-    law = part.law_volume_m3 + float(volume.sum())
-    error = volume_balance(lost, float(surface.point_data[CARRIED_VOLUME].sum()), law, rounding)
     return replace(part, surface=surface, law_volume_m3=law, columns=columns, balance_error=error)
+
+
+def receded(
+    surface: SurfaceMesh, volume: np.ndarray, pressed: tuple[np.ndarray, np.ndarray], bounds: Bounds | None
+) -> SurfaceMesh:
+    """The surface after a volume (m,) m3 is worn off, remeshed if bounds are given; smaller steps where it must be."""
+    limit = edge_limit(surface.points, surface.triangles, EDGE_SHARE)
+    for share in CAP_SHARES:
+        try:
+            worn, _ = wear_update(surface, volume, share * limit, pressed=pressed)
+            worn = worn if bounds is None else remesh(worn, bounds).mesh
+            break
+        except CURED_BY_SMALLER_STEPS:
+            if share == CAP_SHARES[-1]:
+                raise
+    return worn

@@ -24,6 +24,7 @@ from bulkwear.postproc.mesh import (
 from bulkwear.postproc.mesh_checks import LEAST_SOLVER_ANGLE
 from bulkwear.postproc.wear.balance import GrowthError, lost_volume, volume_balance
 from bulkwear.postproc.wear.caps import next_cycle_factor, wanted_step
+from bulkwear.postproc.wear.displacement import StepTooLargeError
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.ledger import pressed_sides
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
@@ -98,8 +99,8 @@ def moved(
 ) -> tuple[SurfaceMesh, dict[str, float], dict[str, float | int]]:
     """Return the surface after a cycle's wear, remeshed, the record of the update, and what caps and remeshing tell.
 
-    A surface that cannot be repaired is worn again with a smaller cap; what it does not lose now is carried. Raises
-    WearError when the smallest one does not help.
+    A surface that would grow, fold or be beyond repair is worn again with a smaller cap; what it does not lose now is
+    carried. Raises WearError when the smallest one does not help.
     """
     parameters, case = chain.parameters, chain.case
     limit = node_limits(case, parameters, surface, span)
@@ -112,10 +113,10 @@ def moved(
     }
     for share in CAP_SHARES:
         cap = share * limit
-        worn, update = update_of_cycle(chain, span, surface, volume, cap, options)
-        asked = {"step_limit_m": float(cap.max()), **planned(case, parameters, span, surface, worn)}
-        asked |= case.geometry_columns(surface, worn, volume > 0.0)
         try:
+            worn, update = update_of_cycle(chain, span, surface, volume, cap, options)
+            asked = {"step_limit_m": float(cap.max()), **planned(case, parameters, span, surface, worn)}
+            asked |= case.geometry_columns(surface, worn, volume > 0.0)
             worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume), surface)
             break
         except WearError:
@@ -127,12 +128,12 @@ def moved(
 def update_of_cycle(
     chain: Chain, span: Span, surface: SurfaceMesh, volume: np.ndarray, cap: np.ndarray, options: Mapping[str, Any]
 ) -> tuple[SurfaceMesh, dict[str, float]]:
-    """Return what `wear_update` does. Raises WearError with run and cycle where a face would grow, or is touched from
-    within the body.
+    """Return what `wear_update` does. Raises WearError with run and cycle where a face would grow or turn over, or is
+    touched from within the body.
     """
     try:
         return wear_update(surface, volume, cap, **options)
-    except (TouchedSideError, GrowthError) as fault:
+    except (TouchedSideError, GrowthError, StepTooLargeError) as fault:
         raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}") from fault
 
 

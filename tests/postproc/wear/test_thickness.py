@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from bulkwear.postproc.mesh import areas
+from bulkwear.postproc.mesh import areas, enclosed_volume, unit_normals
 from bulkwear.postproc.wear.balance import lost_volume
 from bulkwear.postproc.wear.built_shape import with_built_shape
 from bulkwear.postproc.wear.thickness import remaining_thickness, through_phrase, with_thickness, worn_through
@@ -15,6 +15,7 @@ from tests.support.shapes import box, cone, flipped, moved_rigidly, plate, shift
 RAY = 1e-6  # relative: rays begin a thousandth of an element off the corner, on the flat face
 EXACT = 1e-9  # relative
 THICK = 0.02  # m
+MEET = 5e-5  # m, where two sides meet: what the back has lost is known by faces, which differ by an update
 
 
 def hollow_box():
@@ -83,7 +84,10 @@ def test_remaining_thickness_of_an_eroded_box():
     worn, _ = wear_update(mesh, floor * 5e-3 * areas(mesh.points, mesh.triangles))
     left, nodes = remaining_thickness(worn), np.unique(mesh.triangles[floor])
     assert left[nodes] == pytest.approx(THICK - 5e-3, rel=RAY, abs=0.0)
-    others = np.setdiff1d(np.arange(len(left)), nodes)
+    under = (mesh.points[:, 2] < -0.5 * THICK) & (mesh.points[:, :2] >= 0.0).all(axis=1)
+    under &= (mesh.points[:, :2] <= (0.3, 0.2)).all(axis=1)
+    assert left[under] == pytest.approx(THICK - 5e-3, rel=RAY, abs=0.0)  # seen from outside it is as thin
+    others = np.setdiff1d(np.arange(len(left)), np.union1d(nodes, np.flatnonzero(under)))
     assert left[others] == pytest.approx(mesh.point_data["local_thickness_m"][others])
     assert lost_volume(mesh, worn)[0] == pytest.approx(0.06 * 5e-3, rel=EXACT, abs=0.0)
     assert with_depths(worn, mesh).point_data["remaining_thickness_m"][nodes] == pytest.approx(
@@ -116,6 +120,41 @@ def test_wear_stops_at_the_back_where_asked():
     assert mesh.points[:, 2] == pytest.approx(-0.01, rel=EXACT, abs=0.0)
     assert beyond == pytest.approx(law * 6.0 / 16.0, rel=EXACT, abs=0.0)
     assert record["carried_volume_m3"] == 0.0
+
+
+@pytest.mark.parametrize("wrong", [False, True])
+def test_a_thin_body_worn_from_both_sides_is_through_when_they_meet(wrong):
+    """A closed plate of 2 mm, 0.04 mm per update on either face: both have lost half when it is through, not all.
+
+    With its normals the wrong way it is the same. Capped, the faces do not pass through one another.
+    """
+    body = box((0.1, 0.08, 2e-3), 6)
+    mesh = with_thickness(with_built_shape(flipped(body) if wrong else body))
+    area = areas(mesh.points, mesh.triangles)
+    centre = mesh.points[mesh.triangles].mean(axis=1)[:, :2] - (0.05, 0.04)
+    broad = (np.abs(unit_normals(mesh.points, mesh.triangles)[:, 2]) > 0.9) & (np.abs(centre) < 0.03).all(axis=1)
+    for number in range(40):
+        pressed = (0.0 * area, area) if wrong and number == 0 else (area, 0.0 * area)
+        mesh, record = wear_update(mesh, broad * 4e-5 * area, pressed=pressed, back="cap")
+        if number < 24:
+            assert record["through_nodes"] == 0
+    middle = (np.abs(mesh.points[:, :2] - (0.05, 0.04)) < 0.01).all(axis=1)
+    assert worn_through(mesh)[middle].all()
+    top, bottom = (mesh.points[middle & (body.points[:, 2] > level)][:, 2].min() for level in (1e-3, -1.0))
+    assert top == pytest.approx(1e-3, abs=MEET)
+    assert bottom == pytest.approx(1e-3, abs=MEET)
+    assert enclosed_volume(mesh.points, mesh.triangles) >= 0.0
+    assert record["beyond_back_volume_m3"] > 0.0
+
+
+def test_an_edge_is_not_through_before_its_faces_are():
+    """A cube worn evenly by 1.4 mm of 2: edge nodes have gone 1.4 and 1.7 times as far and have 0.6 mm left too."""
+    mesh = with_thickness(with_built_shape(box((0.02, 0.02, 0.02), 4)), 2e-3)
+    for _ in range(14):
+        mesh, record = wear_update(mesh, 1e-4 * areas(mesh.points, mesh.triangles))
+    assert mesh.point_data["removed_thickness_m"].max() > 1.9e-3
+    assert record["through_nodes"] == 0
+    assert remaining_thickness(mesh) == pytest.approx(0.6e-3, abs=0.05e-3)  # the cube shrinks by 7 % on the way
 
 
 def test_a_thin_part_is_not_reached_through_from_behind():
