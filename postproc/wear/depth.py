@@ -7,7 +7,8 @@
   exactly.
 * ray depth: distance from the present node along its outward normal to the pristine surface. The thickness
   that a gauge held square to the worn surface would read.
-* normal depth: distance from the present node along the normal of the pristine surface to that surface.
+* normal depth: distance from the present node along the normal of the pristine surface to that surface, or to its
+  nearest place where there is none along it.
 
 NaN says undefined: no pristine surface above, or none within `LARGEST_RAY_OVER_THICKNESS` removed
 thicknesses.
@@ -17,6 +18,7 @@ from __future__ import annotations
 
 from itertools import chain, pairwise
 
+import igl
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -67,9 +69,10 @@ def pristine_normal_depth(
     pristine_points: np.ndarray,
     pristine_triangles: np.ndarray,
 ) -> np.ndarray:
-    """Distance (k,) m from each point along the pristine surface's normal to that surface, NaN where undefined.
+    """Distance (k,) m from each point along the pristine surface's normal to that surface.
 
-    Parameters as in `ray_depth`. The normal is that of the pristine face which the ray of `ray_depth` meets.
+    Parameters as in `ray_depth`. The normal is that of the pristine face which the ray of `ray_depth` meets. Where
+    either meets none, as at rims and in corners, it is the distance to the nearest place of the pristine surface.
     """
     old = pristine_points, pristine_triangles
     _, face = _to_pristine(points, outward, removed_thickness, *old)
@@ -77,6 +80,9 @@ def pristine_normal_depth(
     normal = unit_normals(pristine_points, pristine_triangles[face[found]])
     result = np.full(len(points), np.nan)
     result[found] = _to_pristine(points[found], normal, removed_thickness[found], *old)[0]
+    if (missing := np.flatnonzero(np.isnan(result))).size:
+        at, surface = np.ascontiguousarray(points[missing]), map(np.ascontiguousarray, old)
+        result[missing] = np.sqrt(igl.point_mesh_squared_distance(at, *surface)[0])
     return result
 
 

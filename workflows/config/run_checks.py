@@ -180,4 +180,12 @@ def pattern_fits(run: CheckedRun) -> Fault | None:
     return None if fault is None else ("", fault)
 
 
-COMMON_CHECKS: tuple[Check, ...] = (model_properties_given,)
+def thickness_known(run: CheckedRun) -> Fault | None:
+    """What happens where a part is worn through can only be said of one whose thickness is given."""
+    wear = run.parameters.get("wear", {})
+    if "worn_through" not in wear or "local_thickness_m" in wear:
+        return None
+    return "wear.worn_through", "a study that gives wear.local_thickness_mm as well, or neither"
+
+
+COMMON_CHECKS: tuple[Check, ...] = (model_properties_given, thickness_known)

@@ -115,8 +115,11 @@ def test_a_plate_at_any_angle_loses_area_times_depth():
     assert record["largest_depth_m"] == pytest.approx(2e-3, rel=DEPTH, abs=0.0)
     assert record["rim_recession_m"] == pytest.approx(2e-3, rel=DEPTH, abs=0.0)
     fields = with_depths(worn, mesh).point_data
-    for name in ("removed_thickness_m", "ray_depth_m", "normal_depth_m"):
-        assert np.nan_to_num(fields[name], nan=2e-3) == pytest.approx(2e-3, rel=DEPTH, abs=0.0)
+    for name in ("removed_thickness_m", "normal_depth_m"):
+        assert fields[name] == pytest.approx(2e-3, rel=DEPTH, abs=0.0)
+    ray = fields["ray_depth_m"]
+    assert ray[np.isfinite(ray)] == pytest.approx(2e-3, rel=DEPTH, abs=0.0)
+    assert np.isfinite(ray).sum() > 0.5 * len(ray)  # at rims it may pass beside the pristine plate
     assert "height_loss_m" not in fields  # its plan has moved
     assert np.array_equal(np.flatnonzero(fields["free_rim"]), boundary_nodes(mesh.triangles))
 

@@ -17,6 +17,7 @@ from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.derived import rayleigh_time, rolling_coefficient_for_solver, whole_steps, youngs_modulus
 from bulkwear.workflows.report.page_parameters import figure_remarks
+from tests.support.tiny import tiny_study
 
 ROUNDING = 1e-12  # relative; a few floating-point operations
 DIGITS_GIVEN = 1e-6  # relative; numbers worked out by hand to seven digits
@@ -668,3 +669,11 @@ def test_a_row_that_is_not_in_the_design_is_refused():
         load_study("screening", overrides={"rows": ["R9", "R99"]})
     with pytest.raises(ConfigError, match="rows is 'R9', allowed is a list of rows of the design"):
         load_study("screening", overrides={"rows": "R9"})
+
+
+def test_worn_through_needs_a_thickness():
+    """What a run does where it is worn through is refused without the thickness, in a sentence; with it, it is taken."""
+    with pytest.raises(ConfigError, match=r"wear\.worn_through is 'cap' for row R9, allowed is a study that gives"):
+        tiny_study(wear={"worn_through": "cap"})
+    study = tiny_study(wear={"worn_through": "cap", "local_thickness_mm": 2})
+    assert study.run("R9_convex").parameters["wear"]["local_thickness_m"] == pytest.approx(0.002)
