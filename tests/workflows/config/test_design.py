@@ -672,7 +672,7 @@ def test_a_row_that_is_not_in_the_design_is_refused():
 
 
 def test_worn_through_needs_a_thickness():
-    """What a run does where it is worn through is refused without the thickness, in a sentence; with it, it is taken."""
+    """What a run does where it is worn through is refused without the thickness, in a sentence; with it it is taken."""
     with pytest.raises(ConfigError, match=r"wear\.worn_through is 'cap' for row R9, allowed is a study that gives"):
         tiny_study(wear={"worn_through": "cap"})
     study = tiny_study(wear={"worn_through": "cap", "local_thickness_mm": 2})
