@@ -7,13 +7,17 @@ python -m bulkwear mesh chute.step --unit mm --edge 10 -o chute.vtu
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from bulkwear.meshes.own.mesh import OwnMesh
+    from bulkwear.meshes.own.solids import RefusedMeshError
 
 UNSAFE = r"[^\w.-]+"  # characters of a part's name that are none of a file's
 LENGTHS = "lengths are in the unit of the files"
@@ -24,7 +28,11 @@ def main(words: list[str] | None = None) -> int:
     given = _parser().parse_args(words)
     try:
         print(given.do(given))
-    except (ValueError, FileNotFoundError) as fault:
+    except OSError as fault:  # ours have a sentence, the system's a reason
+        reason = f"{fault.filename or 'a file'}: {fault.strerror}, allowed is what can be read and written"
+        print(reason if fault.strerror else fault, file=sys.stderr)
+        return 1
+    except ValueError as fault:
         print(fault, file=sys.stderr)
         return 1
     return 0
@@ -77,8 +85,10 @@ def _mesh(given: argparse.Namespace) -> str:
     from bulkwear.meshes.own.mesh import own_mesh
     from bulkwear.meshes.own.refine import WANTED_ANGLE, Ball
     from bulkwear.meshes.own.solids import RefusedMeshError, metres_per
-    from bulkwear.postproc.mesh import write_surface
+    from bulkwear.postproc.mesh import write_stl, write_surface
 
+    _check_written("-o", given.output, ".vtu", given.files)
+    _check_written("--stl", given.stl, ".stl", given.files)
     scale = metres_per(given.unit)
     balls = [Ball((x * scale, y * scale, z * scale), r * scale, edge * scale) for x, y, z, r, edge in given.ball]
     weld = None if given.weld is None else given.weld * scale
@@ -86,41 +96,76 @@ def _mesh(given: argparse.Namespace) -> str:
     try:
         found = own_mesh(given.files, given.unit, _edges(given.edge, scale), balls, weld, angle)
     except RefusedMeshError as fault:
-        from bulkwear.postproc.plots.fault import save_fault
-
         picture = (given.output or given.files[0]).with_suffix(".fault.png").name
         picture = (given.output.parent if given.output else Path()) / picture
-        save_fault(picture, fault.surface, fault.faces, fault.place, str(fault))
-        raise ValueError(f"{fault}. Its picture is {picture}") from fault
+        raise ValueError(f"{fault}. {_drawn(picture, fault)}") from fault
+    stls = _stl_files(given.stl, given.files, found) if given.stl else {}
     if given.output:
         write_surface(given.output, found.surface)
-    if given.stl:
-        _write_stl(given.stl, found)
+    for path, triangles in stls.items():
+        write_stl(path, found.surface.points, triangles)
     return found.text()
 
 
-def _write_stl(path: Path, found: OwnMesh) -> None:
-    """Write a surface for the solver, a file per part where it would refuse them in one mesh."""
-    from bulkwear.postproc.mesh import write_stl
-
-    points, triangles, part = found.surface.points, found.surface.triangles, found.surface.cell_data["part"]
-    if found.one_mesh:
-        write_stl(path, points, triangles)
+def _check_written(option: str, path: Path | None, suffix: str, files: list[Path]) -> None:
+    """Raise ValueError where a file that an option names cannot be written, or is one that is read."""
+    if path is None:
         return
-    for number, each in enumerate(found.parts):
-        name = f"{path.stem}_{re.sub(UNSAFE, '_', each.name)}"
-        write_stl(path.with_name(name + path.suffix), points, triangles[part == number])
+    folder = path.parent
+    if path.suffix != suffix:
+        raise ValueError(f"{option} is '{path}', allowed is a name that ends with {suffix}")
+    if path.is_dir():
+        raise ValueError(f"{option} is '{path}', which is a folder, allowed is a file")
+    if not folder.is_dir():
+        found = "a file" if folder.exists() else "not there"
+        raise ValueError(f"{option} is '{path}', its folder '{folder}' is {found}, allowed is one that exists")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise ValueError(f"{option} is '{path}', its folder '{folder}' is read-only, allowed is one to write into")
+    if os.path.realpath(path) in map(os.path.realpath, files):
+        raise ValueError(f"{option} is '{path}', which is an input, allowed is another file")
+
+
+def _drawn(picture: Path, fault: RefusedMeshError) -> str:
+    """Draw a refused surface; where that is told."""
+    from bulkwear.postproc.plots.fault import save_fault
+
+    try:
+        save_fault(picture, fault.surface, fault.faces, fault.place, str(fault))
+    except Exception as reason:  # of a folder or of a renderer; what is wrong with the surface has to be told anyway
+        return f"Its picture {picture} cannot be drawn ({' '.join(str(reason).split())})"
+    return f"Its picture is {picture}"
+
+
+def _stl_files(path: Path, files: list[Path], found: OwnMesh) -> dict[Path, np.ndarray]:
+    """Files for the solver and their triangles (k, 3): a file per part where it would refuse them in one mesh."""
+    from bulkwear.meshes.own.solids import distinct
+
+    triangles, part = found.surface.triangles, found.surface.cell_data["part"]
+    if found.one_mesh:
+        return {path: triangles}
+    names = distinct([f"{path.stem}_{re.sub(UNSAFE, '_', each.name)}" for each in found.parts])
+    result = {path.with_name(name + path.suffix): triangles[part == k] for k, name in enumerate(names)}
+    for each in result:
+        _check_written("--stl", each, path.suffix, files)
+    return result
 
 
 def _edges(words: list[str], scale: float) -> dict[str, float] | None:
     """Target edges (m) by part, from words `LENGTH` and `PART=LENGTH`."""
+    from bulkwear.meshes.own.solids import OTHERS
+
     result = {}
     for word in words:
         name, _, length = word.rpartition("=")
         try:
-            result[name or "*"] = float(length) * scale
+            edge = float(length) * scale
         except ValueError as fault:
             raise ValueError(f"--edge is '{word}', allowed is a length or a part's name, '=', and a length") from fault
+        name = name or OTHERS
+        if name in result:
+            whose = "all parts" if name == OTHERS else f"part '{name}'"
+            raise ValueError(f"--edge is given twice for {whose}, the second time '{word}', allowed is once")
+        result[name] = edge
     return result or None
 
 

@@ -81,12 +81,87 @@ def test_a_refused_surface_is_drawn(tmp_path, capsys, monkeypatch):
         (["--unit", "yard"], "the unit of lengths is 'yard', allowed is one of m, cm"),
         (["--unit", "mm", "--edge", "lip=fine"], "--edge is 'lip=fine', allowed is a length or"),
         (["--unit", "mm", "--edge", "floor=3"], "edges name the part 'floor', allowed are trough, lip and"),
+        (["--unit", "mm", "--edge", "3", "--edge", "4"], "--edge is given twice for all parts, the second time '4'"),
+        (["--unit", "mm", "--edge", "lip=3", "--edge", "lip=3"], "--edge is given twice for part 'lip', the second"),
+        (["--unit", "mm", "--edge", "inf"], "target edge of all parts is inf m, allowed is a finite length above 0"),
+        (["--unit", "mm", "--ball", "0", "0", "0", "-1", "3"], "the radius of ball 1 is -0.001 m, allowed is a"),
+        (["--unit", "mm", "--angle", "nan"], "the wanted smallest angle is nan degrees, allowed are 0 to 45"),
     ],
 )
 def test_words_that_make_no_sense(trough, capsys, words, said):
-    """One sentence and no traceback."""
+    """One sentence in one line, and no traceback."""
     assert main(["mesh", str(trough), *words]) == 1
-    assert said in capsys.readouterr().err
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["-o", "out.txt"], "-o is 'out.txt', allowed is a name that ends with .vtu"),
+        (["--stl", "out.vtu"], "--stl is 'out.vtu', allowed is a name that ends with .stl"),
+        (["-o", "folder.vtu"], "-o is 'folder.vtu', which is a folder, allowed is a file"),
+        (["--stl", "none/out.stl"], "--stl is 'none/out.stl', its folder 'none' is not there, allowed is one that"),
+        (["-o", "plant.stl/out.vtu"], "-o is 'plant.stl/out.vtu', its folder 'plant.stl' is a file, allowed is one"),
+        (["--stl", "folder.vtu/../plant.stl"], "which is an input, allowed is another file"),
+    ],
+)
+def test_files_that_cannot_be_written(trough, capsys, monkeypatch, words, said):
+    """One sentence before anything is read: the input is none, but that is not what is told."""
+    monkeypatch.chdir(trough.parent)
+    (trough.parent / "folder.vtu").mkdir()
+    trough.write_text("hello")
+    assert main(["mesh", "plant.stl", "--unit", "mm", *words]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+    assert trough.read_text() == "hello"
+
+
+def test_a_folder_that_is_read_only(trough, capsys, monkeypatch):
+    """Told before, for whoever may not write there."""
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    assert main(["mesh", str(trough), "--unit", "mm", "-o", str(trough.parent / "out.vtu")]) == 1
+    assert "is read-only, allowed is one to write into" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["out.vtu", None])
+def test_faults_of_the_system_are_sentences(trough, capsys, monkeypatch, name):
+    """A disk that is full: the file, where the system names one, and its reason; no traceback."""
+
+    def full(path, surface):
+        raise OSError(28, "No space left on device", *filter(None, [name]))
+
+    monkeypatch.setattr("bulkwear.postproc.mesh.write_surface", full)
+    assert main(["mesh", str(trough), "--unit", "mm", "-o", str(trough.parent / "out.vtu")]) == 1
+    assert capsys.readouterr().err == (
+        f"{name or 'a file'}: No space left on device, allowed is what can be read and written\n"
+    )
+
+
+def test_files_of_parts_are_all_written(tmp_path, capsys):
+    """Parts whose names differ by what no file's name has are two files, and none of them is an input."""
+    points, triangles = box((100.0, 100.0, 100.0))
+    beside = points + np.array([100.0, 0, 0])
+    write_ascii(tmp_path / "a.stl", {"wall/left": (points, triangles), "wall left": (beside, triangles)})
+    words = ["mesh", str(tmp_path / "a.stl"), "--unit", "mm", "--stl"]
+    assert main([*words, str(tmp_path / "out.stl")]) == 0
+    left, right = (stl_facets(tmp_path / f"out_wall_left{end}.stl")[:, :, 0].max() for end in ("", "_2"))
+    assert [left, right] == pytest.approx([0.1, 0.2])
+    (tmp_path / "a.stl").rename(tmp_path / "out_wall_left.stl")
+    words[1] = str(tmp_path / "out_wall_left.stl")
+    assert main([*words, str(tmp_path / "out.stl")]) == 1
+    assert "out_wall_left.stl', which is an input, allowed is another file" in capsys.readouterr().err
+
+
+def test_a_fault_is_told_without_its_picture(tmp_path, capsys, monkeypatch):
+    """Where the picture cannot be written, the sentence of the fault comes first, and why there is no picture."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.fault.png").mkdir()
+    write_ascii(tmp_path / "a.stl", {"needle": (np.array([[0, 0, 0], [100, 0, 0], [100, 0.3, 0.0]]), [[0, 1, 2]])})
+    assert main(["mesh", "a.stl", "--unit", "mm"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("a.stl: part 'needle' has 1 faces that are too sharp")
+    assert "Its picture a.fault.png cannot be drawn (" in line
 
 
 def test_the_unit_has_to_be_said(trough, capsys):

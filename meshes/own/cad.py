@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.own.refine import check_count
 from bulkwear.meshes.own.solids import Solids, distinct, metres_per, target_edges
 
 CAD_FORMATS = (".step", ".stp", ".iges", ".igs", ".brep")
@@ -48,7 +49,8 @@ def read_cad_solids(path: Path, unit: str, edges: Mapping[str, float] | float | 
         if not bodies:
             raise ValueError(f"{path}: no body and no face found, allowed are one or more")
         names = distinct([name for name, _ in bodies])
-        _set_sizes(gmsh, names, [faces for _, faces in bodies], edges, scale)
+        targets = _targets(gmsh, path, names, [faces for _, faces in bodies], edges, scale)
+        _set_sizes(gmsh, [faces for _, faces in bodies], targets / scale)
         try:
             gmsh.model.mesh.generate(2)
         except Exception as error:
@@ -116,17 +118,24 @@ def _entity_name(gmsh, dimension: int, tag: int) -> str:
     return "" if name in NO_NAMES or name.startswith(NAMED_BY_PROGRAM) else name
 
 
-def _set_sizes(gmsh, names: tuple[str, ...], faces: list[list[int]], edges, scale: float) -> None:
-    """Let gmsh mesh the faces of each part with its own edge; on a face of two parts the smaller one counts."""
+def _targets(gmsh, path: Path, names: tuple[str, ...], faces: list[list[int]], edges, scale: float) -> np.ndarray:
+    """Target edge of each part, (parts,) m. Raises ValueError where there is none, or one for too many triangles."""
     targets = target_edges(names, edges)
     if not np.isfinite(targets).all():
         name = names[int(np.argmax(~np.isfinite(targets)))]
         raise ValueError(f"part '{name}' of a CAD file has no target edge, allowed is one for each part")
+    area = [sum(gmsh.model.occ.getMass(2, tag) for tag in tags) for tags in faces]
+    check_count(str(path), names, scale**2 * np.array(area), targets)
+    return targets
+
+
+def _set_sizes(gmsh, faces: list[list[int]], targets: np.ndarray) -> None:
+    """Let gmsh mesh the faces of each part with its own edge (in its unit); on a face of two the smaller one counts."""
     field = gmsh.model.mesh.field
     constants = []
     for target, tags in zip(targets, faces, strict=True):
         constants.append(field.add("Constant"))
-        field.setNumber(constants[-1], "VIn", target / scale)
+        field.setNumber(constants[-1], "VIn", target)
         field.setNumbers(constants[-1], "SurfacesList", tags)
         field.setNumber(constants[-1], "IncludeBoundary", 1)
     smallest = field.add("Min")
@@ -136,7 +145,7 @@ def _set_sizes(gmsh, names: tuple[str, ...], faces: list[list[int]], edges, scal
         ("MeshSizeExtendFromBoundary", 0),
         ("MeshSizeFromPoints", 0),
         ("MeshSizeFromCurvature", PER_CIRCLE),
-        ("MeshSizeMin", SHORTEST_OVER_TARGET * targets.min() / scale),
+        ("MeshSizeMin", SHORTEST_OVER_TARGET * targets.min()),
     ):
         gmsh.option.setNumber(f"Mesh.{option}", value)
 

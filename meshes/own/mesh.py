@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from bulkwear.meshes.own.check import check_cuts, check_for_solver, check_gaps, check_manifold, sharp_faces
+from bulkwear.meshes.own.choices import check_choices, check_long_faces, checked_tolerance
 from bulkwear.meshes.own.orient import oriented
-from bulkwear.meshes.own.read import read_solids
+from bulkwear.meshes.own.read import check_file, read_solids
 from bulkwear.meshes.own.refine import WANTED_ANGLE, Region, across_edges, refined, turned
 from bulkwear.meshes.own.repairs import Repair, Repairs, repairs_text, table
 from bulkwear.meshes.own.solids import Solids, check_sizes, joined, target_edges
 from bulkwear.meshes.own.together import one_mesh
-from bulkwear.meshes.own.weld import stitched, weld_tolerance, welded
+from bulkwear.meshes.own.weld import compacted, stitched, welded
 from bulkwear.postproc.mesh import (
     SurfaceMesh,
     areas,
@@ -25,8 +26,6 @@ from bulkwear.postproc.mesh import (
     obtuse_last,
     smallest_angles,
 )
-
-COARSEST_WELD = 0.1  # -, of the smallest target edge: a larger weld tolerance would eat what is wanted
 
 
 @dataclass(frozen=True)
@@ -87,22 +86,26 @@ def own_mesh(
     unit : of the files' lengths: m, cm, mm, um, in, ft
     edges : m, target edge of all triangles, or by name of a part, `*` for those that are not named; None: as they are
     fine : regions with smaller targets (`meshes.own.refine`: Ball, Box, NearPlaces, or a function of centroids)
-    weld_m : m, points closer than that are one; None: 1e-6 of the largest extent or coordinate
-    smallest_angle_deg : degrees, wanted where edges are given; facets between two creases may keep less
+    weld_m : m, points closer than that are one, up to 1 % of the largest extent and a tenth of the smallest edge;
+        None: 1e-6 of the largest extent or coordinate
+    smallest_angle_deg : degrees, 0 to 45, wanted where edges are given; facets between two creases may keep less
 
     The surface stays on the facets: it moves by no more than the weld tolerance. Raises FileNotFoundError, ValueError
-    where a file cannot be read, its unit or an edge makes no sense, and `RefusedMeshError` with place and faces where
+    where a file cannot be read, its unit or a choice makes no sense, and `RefusedMeshError` with place and faces where
     the surface has a fault that cannot be mended.
     """
     paths = [Path(files)] if isinstance(files, (str, os.PathLike)) else [Path(each) for each in files]
     if not paths:
         raise ValueError("no file is named, allowed are one or more")
+    check_choices(edges, fine, weld_m, smallest_angle_deg)
+    for path in paths:
+        check_file(path)
     found = [read_solids(path, unit, edges) for path in paths]
-    solids = joined([replace(each, points=each.points * scale) for each, scale in found])
+    solids = compacted(joined([replace(each, points=each.points * scale) for each, scale in found]))
     check_sizes(solids, unit)
     targets = target_edges(solids.names, edges)
-    tolerance = weld_tolerance(solids.points) if weld_m is None else weld_m
-    _check_tolerance(tolerance, targets)
+    tolerance = checked_tolerance(solids, targets, fine, weld_m)
+    check_long_faces(solids, targets)
     repairs = Repairs(solids.names)
     solids = _mended(solids, tolerance, unit, repairs)
     if np.isfinite(targets).any() or fine:
@@ -116,13 +119,6 @@ def own_mesh(
     surface = SurfaceMesh(solids.points, triangles, {"part": solids.part[order]})
     parts = tuple(_part(surface, number, name) for number, name in enumerate(solids.names))
     return OwnMesh(surface, parts, tuple(repairs.rows), tolerance, together)
-
-
-def _check_tolerance(tolerance: float, targets: np.ndarray) -> None:
-    """Raise ValueError for a weld tolerance that is no length or not well below the target edges."""
-    most = COARSEST_WELD * targets.min()
-    if not 0.0 < tolerance <= most:
-        raise ValueError(f"the weld tolerance is {tolerance:g} m, allowed is above 0 and up to {most:g} m")
 
 
 def _mended(solids: Solids, tolerance: float, unit: str, repairs: Repairs) -> Solids:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -27,22 +30,28 @@ SIGNATURES = {  # how a file begins: the formats that do
 }
 
 
-def read_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None) -> tuple[Solids, float]:
-    """Solids of a file, and how many m its numbers are in: its unit's, or what a CAD file says itself.
-
-    edges: m, of CAD files: target edge of the triangles (`own_mesh`). Raises FileNotFoundError, or ValueError with the
-    file, what was found and what is allowed.
-    """
+def check_file(path: Path) -> None:
+    """Raise FileNotFoundError or ValueError for what is no file of a format that is read, before it is read."""
+    formats = ", ".join([*READERS, *CAD_FORMATS])
+    if path.is_dir():
+        raise ValueError(f"{path}: is a folder, allowed is a file of {formats}")
     if not path.is_file():
-        raise FileNotFoundError(f"{path}: no such file")
+        raise FileNotFoundError(f"{path}: no such file, allowed is a file of {formats}")
     suffix = path.suffix.lower()
     if suffix not in CAD_FORMATS and suffix not in READERS:
-        raise ValueError(
-            f"{path}: the format '{path.suffix}' is unknown, allowed are {', '.join([*READERS, *CAD_FORMATS])}"
-        )
+        raise ValueError(f"{path}: the format '{path.suffix}' is unknown, allowed are {formats}")
     if not path.stat().st_size:
         raise ValueError(f"{path}: the file is empty, allowed is a surface as {suffix}")
     _check_signature(path, suffix)
+
+
+def read_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None) -> tuple[Solids, float]:
+    """Solids of a file that `check_file` lets pass, and the m of its numbers: its unit's, or what a CAD file says.
+
+    edges: m, of CAD files: target edge of the triangles (`own_mesh`). Raises ValueError with the file, what was found
+    and what is allowed.
+    """
+    suffix = path.suffix.lower()
     if suffix in CAD_FORMATS:
         solids, scale = read_cad_solids(path, unit, edges)
     else:
@@ -80,10 +89,16 @@ def _read_meshio(path: Path) -> Solids:
     """Solids of a file that meshio knows: parts by a cell label (`PART_DATA`), names of physical groups."""
     import meshio  # slow to import, and its faults are many
 
+    warnings = StringIO()
     try:
-        content = meshio.read(path)
-    except (SystemExit, Exception) as error:  # meshio leaves by sys.exit on some broken files
-        raise ValueError(f"{path}: not a readable {path.suffix} file ({error or 'cut short'})") from error
+        with redirect_stdout(StringIO()), redirect_stderr(warnings):  # of formats that it tried it prints faults, too
+            content = meshio.read(path)
+    except SystemExit as error:  # meshio leaves by sys.exit on some broken files
+        raise ValueError(f"{path}: not a readable {path.suffix} file (cut short, or of another format)") from error
+    except Exception as error:
+        reason = " ".join(str(error).split()) or "cut short"
+        raise ValueError(f"{path}: not a readable {path.suffix} file ({reason})") from error
+    sys.stderr.write(warnings.getvalue())
     wanted = [k for k, block in enumerate(content.cells) if block.type in FLAT_CELLS]
     if not wanted:
         found = ", ".join(sorted({block.type for block in content.cells})) or "none"

@@ -22,6 +22,7 @@ LONGEST_OVER_TARGET = 1.5  # -, edges above it are halved: what is left has 0.75
 SHORTEST_OVER_TARGET = 0.25  # -, no edge is halved below it for an angle's sake
 WANTED_ANGLE = 15.0  # degrees, as the smallest that remeshing allows a worn surface
 MOST_TRIANGLES = 4_000_000  # more than a solver takes in days
+EQUILATERAL = 0.25 * 3.0**0.5  # -, area over the square of the edge
 MOST_ROUNDS = 30  # of asking for the targets of smaller and smaller triangles
 
 
@@ -89,6 +90,18 @@ def refined(
             break
     _tell_turns(told, repairs)
     return solids
+
+
+def check_count(source: str, names: Sequence[str], area: np.ndarray, targets: np.ndarray) -> None:
+    """Raise ValueError where areas (parts,) m2 in equilateral triangles with target edges (parts,) m are too many."""
+    counts = area / (EQUILATERAL * targets**2)
+    if counts.sum() > MOST_TRIANGLES:
+        most = int(np.argmax(counts))
+        least = np.sqrt(area[np.isfinite(targets)].sum() / (EQUILATERAL * MOST_TRIANGLES))
+        raise ValueError(
+            f"{source}: the target edges give about {counts.sum():.2g} triangles, most of them in part '{names[most]}' "
+            f"with {targets[most]:g} m, allowed are {MOST_TRIANGLES}, which an edge of {least:.3g} m gives"
+        )
 
 
 def turned(solids: Solids, parts: np.ndarray, flat: float, repairs: Repairs) -> Solids:

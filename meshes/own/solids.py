@@ -86,14 +86,12 @@ def target_edges(names: Sequence[str], edges: Mapping[str, float] | float | None
     """Target edge of each part, (parts,) m, infinite where none is wanted.
 
     edges: m, of all parts, or by name with `OTHERS` for those that are not named. Raises ValueError for a name that no
-    part has, and for an edge that is no length.
+    part has.
     """
     given = edges if isinstance(edges, Mapping) else {OTHERS: np.inf if edges is None else edges}
-    for name, edge in given.items():
+    for name in given:
         if name != OTHERS and name not in names:
             raise ValueError(f"edges name the part '{name}', allowed are {', '.join(names)} and '{OTHERS}'")
-        if not edge > 0.0:
-            raise ValueError(f"the target edge of '{name}' is {edge} m, allowed is a length above 0")
     return np.array([given.get(name, given.get(OTHERS, np.inf)) for name in names], dtype=np.float64)
 
 

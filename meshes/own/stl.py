@@ -28,7 +28,7 @@ def read_stl_solids(path: Path) -> Solids:
     if len(content) == HEADER + COUNT + FACET * facets:
         corners = np.frombuffer(content, FACET_TYPE, facets, HEADER + COUNT)["corners"]
         return _solids([corners.astype(np.float64)], [path.stem])
-    if not SOLID.match(content.lstrip()):
+    if b"\0" in content or not SOLID.match(content.lstrip()):  # a text has no zero bytes
         raise ValueError(
             f"{path}: found {len(content)} bytes, allowed is an ASCII STL, which begins with 'solid', or a binary one, "
             f"which has {HEADER + COUNT} bytes and {FACET} for each of its facets; it says {max(facets, 0)}"

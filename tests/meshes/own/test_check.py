@@ -5,6 +5,7 @@ import pytest
 
 from bulkwear.meshes.own import refine
 from bulkwear.meshes.own.mesh import own_mesh
+from bulkwear.meshes.own.refine import Ball, Box, NearPlaces
 from bulkwear.meshes.own.solids import RefusedMeshError
 from tests.support.own_solids import MM, box, write_ascii
 
@@ -108,9 +109,23 @@ def test_a_part_of_no_width(tmp_path):
     ("options", "said"),
     [
         ({"edges": {"floor": 0.01}}, r"edges name the part 'floor', allowed are wall and '\*'"),
-        ({"edges": -1.0}, "target edge of .* is -1.0 m, allowed is a length above 0"),
-        ({"edges": 0.01, "weld_m": 0.002}, "weld tolerance is 0.002 m, allowed is above 0 and up to 0.001 m"),
-        ({"weld_m": 0.0}, "weld tolerance is 0 m, allowed is above 0"),
+        ({"edges": {"wall": 0.01, "*": -1.0}}, "target edge of all parts is -1 m, allowed is a finite length above 0"),
+        ({"edges": {"wall": np.inf}}, "target edge of 'wall' is inf m, allowed is a finite length above 0"),
+        ({"edges": np.nan}, "target edge of all parts is nan m"),
+        ({"edges": 1e-6}, r"a\.stl: .* edge of part 'wall' is 1e-06 m, allowed are 1\.73205e-06 m or more, 10 weld"),
+        ({"fine": [Ball((0, 0, 0), 0.01, 1e-6)]}, r"a\.stl: .* edge of ball 1 is 1e-06 m, allowed are 1\.73205e-06"),
+        ({"edges": 0.01, "weld_m": 0.002}, "is 0.002 m, allowed is above 0 and up to 0.001 m, 10 % of the target edge"),
+        ({"weld_m": 0.002}, "is 0.002 m, allowed is above 0 and up to 0.00173205 m, 1 % of the largest extent"),
+        ({"weld_m": 0.0}, "weld tolerance is 0 m, allowed is a finite length above 0"),
+        ({"weld_m": np.inf}, "weld tolerance is inf m, allowed is a finite length above 0"),
+        ({"smallest_angle_deg": np.nan}, "smallest angle is nan degrees, allowed are 0 to 45"),
+        ({"smallest_angle_deg": -1.0}, "smallest angle is -1 degrees, allowed are 0 to 45"),
+        ({"smallest_angle_deg": 46.0}, "smallest angle is 46 degrees, allowed are 0 to 45"),
+        ({"fine": [Ball((0, np.nan, 0), 0.01, 0.01)]}, r"the centre of ball 1 is \(0, nan, 0\) m, allowed are finite"),
+        ({"fine": [Ball((0, 0, 0), np.inf, 0.01)]}, "the radius of ball 1 is inf m, allowed is a finite length"),
+        ({"fine": [np.ravel, Ball((0, 0, 0), 0.01, 0.0)]}, "the target edge of ball 2 is 0 m, allowed is a finite"),
+        ({"fine": [NearPlaces(np.zeros((1, 3)), 0.0, 0.01)]}, "the radius of nearplaces 1 is 0 m, allowed is a finite"),
+        ({"fine": [Box((0, 0, 2), (1, 1, 1), 0.01)]}, "the corners of box 1 are .* allowed are finite numbers, the l"),
         ({"fine": [lambda places: np.zeros(len(places))]}, "a region gives target edges .* allowed are"),
     ],
 )
@@ -122,10 +137,35 @@ def test_choices_that_make_no_sense(tmp_path, options, said):
         own_mesh(tmp_path / "a.stl", "mm", **options)
 
 
-def test_more_triangles_than_a_solver_takes(tmp_path, monkeypatch):
-    """A target that is far too small ends in a sentence, not in a full memory."""
-    monkeypatch.setattr(refine, "MOST_TRIANGLES", 5_000)
+@pytest.fixture
+def cube(tmp_path):
+    """The path of an STL with a cube."""
     facets = cube_facets()
     write_ascii(tmp_path / "a.stl", {"wall": (facets.reshape(-1, 3), np.arange(36).reshape(-1, 3))})
+    return tmp_path / "a.stl"
+
+
+def test_an_edge_for_too_many_triangles(cube, monkeypatch):
+    """Area over that of an equilateral triangle, before any edge is halved; the smallest edge that is told is taken."""
+    monkeypatch.setattr(refine, "_one_round", None)
+    count, least = 6 * 0.1**2 / (np.sqrt(3.0) / 4.0 * 1e-4**2), np.sqrt(6 * 0.1**2 / (np.sqrt(3.0) / 4.0 * 4e6))
+    said = rf"a\.stl: the target edges give about {count:.2g} triangles, most of them in part 'wall' with 0\.0001 m, "
+    with pytest.raises(
+        ValueError, match=f"{said}allowed are 4000000, which an edge of {least:.3g} m gives".replace("+", r"\+")
+    ):
+        own_mesh(cube, "mm", 1e-4)
+    with pytest.raises(TypeError, match="not callable"):
+        own_mesh(cube, "mm", 1.01 * least)
+
+
+def test_a_surface_that_is_fine_enough_is_not_too_large(cube, monkeypatch):
+    """Triangles that stay as they are count for nothing."""
+    monkeypatch.setattr(refine, "MOST_TRIANGLES", 20)
+    assert own_mesh(cube, "mm", 0.1).parts[0].triangles == 12
+
+
+def test_more_triangles_than_a_solver_takes(cube, monkeypatch):
+    """A region whose target is far too small ends in a sentence, not in a full memory."""
+    monkeypatch.setattr(refine, "MOST_TRIANGLES", 5_000)
     with pytest.raises(ValueError, match=r"a\.stl: the target edges give more than 5000 triangles, allowed are fewer"):
-        own_mesh(tmp_path / "a.stl", "mm", 1e-4)
+        own_mesh(cube, "mm", fine=[Ball((0, 0, 0), 0.1, 1e-4)])

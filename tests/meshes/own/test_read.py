@@ -193,6 +193,43 @@ def test_a_binary_stl_may_begin_with_solid(tmp_path):
     assert len(own_mesh(tmp_path / "a.stl", "mm").surface.triangles) == len(triangles)
 
 
+@pytest.mark.parametrize("change", [-30, 2])
+def test_a_binary_stl_of_another_length_is_no_text(tmp_path, change):
+    """It has zero bytes: what it begins with does not matter, and none of its bytes are told."""
+    points, triangles, _ = all_facets()
+    write_binary(tmp_path / "a.stl", points, triangles, b"solid of some program")
+    content = (tmp_path / "a.stl").read_bytes()
+    (tmp_path / "a.stl").write_bytes(content[:change] if change < 0 else content + b"x" * change)
+    with pytest.raises(ValueError, match=rf"a\.stl: found {len(content) + change} bytes, allowed .* says 24$") as said:
+        own_mesh(tmp_path / "a.stl", "mm")
+    assert str(said.value).isprintable()
+
+
+@pytest.mark.parametrize("name", ["a.vtu", "a.msh"])
+def test_a_broken_file_prints_nothing(tmp_path, capsys, name):
+    """The error is the one sentence; the reader of the format says nothing of its own."""
+    (tmp_path / name).write_text({"a.vtu": "<VTKFile>no", "a.msh": "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"}[name])
+    with pytest.raises(ValueError, match=rf"{name}: not a readable \{name[1:]} file \(\D+\)$"):
+        own_mesh(tmp_path / name, "mm")
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_folder_is_no_file(tmp_path):
+    """It is told before the files beside it are read."""
+    (tmp_path / "a.stl").write_text("hello")
+    (tmp_path / "b.stl").mkdir()
+    with pytest.raises(ValueError, match=r"b\.stl: is a folder, allowed is a file of \.stl, \.obj"):
+        own_mesh([tmp_path / "a.stl", tmp_path / "b.stl"], "mm")
+
+
+def test_a_cad_file_is_not_meshed_with_too_small_an_edge(folder):
+    """Areas of its true faces tell before that the triangles will be too many."""
+    count = AREA / (np.sqrt(3.0) / 4.0 * 1e-5**2)
+    said = rf"bodies\.step: the target edges give about {count:.2g} triangles, .*part 'trough' with 1e-05 m, allowed"
+    with pytest.raises(ValueError, match=said.replace("+", r"\+")):
+        own_mesh(folder / "bodies.step", "mm", 1e-5)
+
+
 def _cut(path):
     path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
 
