@@ -250,7 +250,7 @@ def test_a_part_that_is_worn_through(finished, tmp_path, capsys, then):
     assert state.read_state(chain.folder, 1)["worn_through"].startswith("worn through at")
     assert (table["balance_error"] < 1e-6).all()
     surface = read_surface(chain.folder / "worn_surface.vtu")
-    deepest = surface.point_data["removed_thickness_m"].max()
+    deepest = surface.point_data["lost_thickness_m"].max()
     assert (deepest > half * (1.0 + 1e-6)) == (then != "cap")
     assert (table["beyond_back_volume_m3"].sum() > 0.0) == (then == "cap")
     assert np.nanmin(surface.point_data["remaining_thickness_m"]) == 0.0  # the holder has none
