@@ -48,11 +48,10 @@ def test_a_part_that_cuts_itself(tmp_path):
 def test_a_part_that_covers_itself(tmp_path):
     """A plate over half of another one in the same plane, in one solid."""
     plate = np.array([[[0, 0, 0], [SIDE, 0, 0], [0, SIDE, 0]]], dtype=float)
-    refused(
-        tmp_path,
-        np.concatenate([plate, plate + np.array([20.0, 10, 0])]),
-        "covers itself, faces lie on one another, 1 pairs",
-    )
+    both = np.concatenate([plate, plate + np.array([20.0, 10, 0])])
+    fault = refused(tmp_path, both, "covers itself, faces lie on one another, 1 pairs")
+    assert sorted(fault.faces) == [0, 1]
+    assert fault.place[2] == pytest.approx(0.0, abs=NEAR)
 
 
 def test_three_faces_at_an_edge(tmp_path):
@@ -74,7 +73,8 @@ def test_a_strip_with_one_side(tmp_path):
     left, right = middle + across, middle - across
     quads = [[left[:-1], right[:-1], right[1:]], [left[:-1], right[1:], left[1:]]]
     facets = np.concatenate([np.stack(each, axis=1) for each in quads])
-    refused(tmp_path, facets, "has a piece with one side only, like a Moebius strip")
+    fault = refused(tmp_path, facets, "has a piece with one side only, like a Moebius strip")
+    assert len(fault.faces) == 2  # whose windings do not fit at the edge between them
 
 
 def test_a_hairline_gap(tmp_path):

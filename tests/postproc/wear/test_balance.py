@@ -70,7 +70,11 @@ SHAPES = {
 @pytest.mark.parametrize("angles", [(0.0, 0.0, 0.0), (0.5 * np.pi, 0.0, 0.0), (0.7, -1.1, 2.3)])
 def test_what_was_lost_is_what_the_law_took(shape, angles):
     """Five uneven updates of a shape, lying, upright and askew: lost plus carried is the law's volume in each."""
-    worn_unevenly(moved_rigidly(SHAPES[shape](), angles, (1.3, -0.4, 2.2)), 1e-3)
+    mesh = moved_rigidly(SHAPES[shape](), angles, (1.3, -0.4, 2.2))
+    worn, law = worn_unevenly(mesh, 1e-3)
+    carried = worn.point_data["carried_volume_m3"].sum()
+    assert lost_volume(mesh, worn)[0] + carried == pytest.approx(law, rel=BALANCE, abs=0.0)
+    assert carried < 0.5 * law  # most of it is lost, not put off
 
 
 @given(ANGLES, SHIFTS)
@@ -122,6 +126,15 @@ def test_a_plate_at_any_angle_loses_area_times_depth():
     assert np.isfinite(ray).sum() > 0.5 * len(ray)  # at rims it may pass beside the pristine plate
     assert "height_loss_m" not in fields  # its plan has moved
     assert np.array_equal(np.flatnonzero(fields["free_rim"]), boundary_nodes(mesh.triangles))
+
+
+def test_without_panels_a_corner_is_taken_for_a_pit():
+    """Then a cavity's floor hands the wear of its edges on: 1.5 times the depth somewhere, the volume is the same."""
+    mesh = box((0.3, 0.2, 0.1), 6, inward=True)
+    side = np.isclose(mesh.points[mesh.triangles][:, :, 2].max(axis=1), 0.0)
+    worn, _ = wear_update(mesh, side * uniform(mesh, 2e-3))
+    assert lost_volume(mesh, worn)[0] == pytest.approx(0.06 * 2e-3, rel=EXACT, abs=0.0)
+    assert worn.points[:, 2].min() < -1.5 * 2e-3
 
 
 def test_one_inner_side_of_a_box_recedes_as_a_whole():

@@ -52,6 +52,23 @@ def test_sums_over_cycles_are_those_of_the_ledgers(chain, tmp_path):
         np.testing.assert_allclose(twice.cell_data[name], 2.0 * ledger[name], rtol=EXACT)
 
 
+def test_a_surface_whose_normals_look_away_is_turned_and_wears_down(chain, tmp_path):
+    """Pressed on the back of its facets only, it is turned, told, and recedes; its balance is that of the geometry."""
+    mesh, span = read_surface(chain.surface), first_span(chain.parameters)
+    upside = SurfaceMesh(mesh.points, mesh.triangles[:, [0, 2, 1]], mesh.cell_data)
+    write_surface(chain.surface, upside)
+    pressing = {f"{kind}_{axis}_N_s": 0.0 for kind in ("impulse", "back_impulse") for axis in "xy"}
+    down = -areas(mesh.points, mesh.triangles)  # N s on the mesh, from above
+    ledger = ledger_of(upside, 1e2).assign(**pressing, impulse_z_N_s=down, back_impulse_z_N_s=down)
+    row = wear_step.wear(chain, span, tmp_path / FOLDER, upside, ledger)
+    worn = read_surface(tmp_path / FOLDER / "surface.vtu")
+    assert row["turned_faces"] == len(mesh.triangles)
+    assert row["applied_volume_m3"] > 0.0
+    assert row["balance_error"] < 1e-9
+    assert (worn.points[:, 2] <= mesh.points[:, 2]).all()
+    assert np.array_equal(worn.triangles, mesh.triangles)
+
+
 def test_remeshing_hands_sums_on_part_by_part(chain):
     """As sums per area, with two triangles of the base exchanged for their three parts, every part keeps its sum."""
     mesh = read_surface(chain.surface)
