@@ -165,10 +165,10 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, furth
         f"most {further_cap}. The rest is carried into later cycles: at the end "
         f"up to {carried:.3g} % of a run's worn volume is not yet applied to the shape.",
     )
-    return [law, acceleration, caps, *_worn_through(wear, summary)]
+    return [law, acceleration, caps, *worn_through_words(wear, summary)]
 
 
-def _worn_through(wear: Mapping[str, Any], summary: pd.DataFrame) -> list[tuple[str, str]]:
+def worn_through_words(wear: Mapping[str, Any], summary: pd.DataFrame) -> list[tuple[str, str]]:
     """Return which runs are worn through, nothing where the thickness is not known."""
     if "local_thickness_mm" not in wear:
         return []
