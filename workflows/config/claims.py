@@ -1,0 +1,87 @@
+"""Claims on published findings, from config/published/verdicts.yaml: checked, one sentence per fault."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from bulkwear.postproc.statistics.verdicts import Claim
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.engine.project import current_project
+
+CLAIMS_FILE = "config/published/verdicts.yaml"
+KEYS = {
+    *("finding", "source", "quantity", "unit", "direction", "reference", "magnitude", "margin", "range", "range_unit"),
+    "why",
+}
+NEEDED = ("finding", "source", "quantity")
+DIRECTIONS = ("above", "below")
+
+
+def claims_of(part: str, path: str | Path | None = None) -> dict[str, Claim]:
+    """Return {key: claim} of one part of the file, such as a study's. Raises ConfigError."""
+    path = Path(path or current_project().path(CLAIMS_FILE))
+    parts = _read(path).get("claims", {})
+    if part not in parts:
+        raise ConfigError(f"{path.name}: found no claims of {part}, allowed are {', '.join(parts) or 'none'}.")
+    return {key: _claim(key, told, f"{path.name}: claims.{part}.{key}") for key, told in parts[part].items()}
+
+
+def date_of_rules(path: str | Path | None = None) -> str:
+    """Return the date from which rules and margins hold."""
+    return str(_read(Path(path or current_project().path(CLAIMS_FILE)))["date"])
+
+
+@cache
+def _read(path: Path) -> dict[str, Any]:
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def _claim(key: str, told: dict[str, Any], where: str) -> Claim:
+    """Return one claim. Raises ConfigError."""
+    if unknown := sorted(set(told) - KEYS):
+        raise ConfigError(f"{where}: found {unknown[0]}, allowed are {', '.join(sorted(KEYS))}.")
+    if missing := [name for name in NEEDED if name not in told]:
+        raise ConfigError(f"{where}: {missing[0]} is missing, allowed is a text.")
+    direction, size = told.get("direction"), told.get("magnitude")
+    if direction not in (None, *DIRECTIONS):
+        raise ConfigError(f"{where}: direction is {direction}, allowed are {' and '.join(DIRECTIONS)}.")
+    if direction is None and size is None:
+        raise ConfigError(f"{where}: found neither direction nor magnitude, allowed is a claim with one or both.")
+    if size is not None and not told.get("margin", 0.0) > 0.0:
+        raise ConfigError(f"{where}: margin is {told.get('margin')}, allowed with a magnitude is a number above 0.")
+    claim = Claim(
+        key=key,
+        finding=told["finding"],
+        source=told["source"],
+        quantity=told["quantity"],
+        unit=told.get("unit", ""),
+        direction=direction,
+        reference=float(told.get("reference", 0.0)),
+        magnitude=None if size is None else _pair(size, f"{where}: magnitude"),
+        margin=float(told.get("margin", 0.0)),
+        reach=_pair(told["range"], f"{where}: range") if "range" in told else None,
+        reach_unit=told.get("range_unit", ""),
+    )
+    if direction and size is not None and not _on_one_side(claim):
+        raise ConfigError(
+            f"{where}: magnitude with margin is {claim.region[0]:g} to {claim.region[1]:g}, allowed with direction"
+            f" {direction} is all of it {direction} {claim.reference:g}."
+        )
+    return claim
+
+
+def _pair(value: Any, where: str) -> tuple[float, float]:
+    low, high = value if isinstance(value, list) and len(value) == 2 else (value, value)
+    if not all(isinstance(end, int | float) and not math.isnan(end) for end in (low, high)) or low > high:
+        raise ConfigError(f"{where} is {value}, allowed is a number or [low, high].")
+    return float(low), float(high)
+
+
+def _on_one_side(claim: Claim) -> bool:
+    low, high = claim.region
+    return low >= claim.reference if claim.direction == "above" else high <= claim.reference
