@@ -15,8 +15,10 @@ from typing import Any
 from bulkwear.postproc.flow.bulk_test import HEAP
 from bulkwear.postproc.readers.solver_log import failure, last_step, solver_version, thermo_table, warnings
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.bulk_tests import deck_text, write_test
-from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds, run_deck
+from bulkwear.workflows.engine.bulk_tests import deck_text, kind_of, write_test
+from bulkwear.workflows.engine.case import CASES_PACKAGE, find_case
+from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code
+from bulkwear.workflows.engine.solver import EXECUTABLE, LOG, SCREEN, SolverError, processor_seconds, run_deck
 from bulkwear.workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
 
 POURED = 1.04  # -, poured particles over those that fill the box, as counted
@@ -40,6 +42,7 @@ def simulated(test: Mapping[str, Any], root: Path, alone: bool = False) -> Path:
     """
     kept, inputs = simulation_folder(test, root), inputs_digest(test)
     if state.finished_cycles(kept, inputs) == 0:
+        code = _simulating_code(test)
         with state.working_folder(kept, 0) as folder:
             write_test(test, folder)
             before = processor_seconds()
@@ -47,7 +50,7 @@ def simulated(test: Mapping[str, Any], root: Path, alone: bool = False) -> Path:
             if alone:
                 spent["processor_s"] = round(processor_seconds() - before, 3)
             check_rest(folder, test)
-            state.write_state(folder, inputs, (HEAP, FILLED, LOG), _record(test, folder, spent))
+            state.write_state(folder, inputs, (HEAP, FILLED, LOG), _record(test, folder, spent, code))
     return state.cycle_folder(kept, 0)
 
 
@@ -72,11 +75,21 @@ def check_rest(folder: Path, test: Mapping[str, Any]) -> None:
             )
 
 
-def _record(test: Mapping[str, Any], folder: Path, spent: Mapping[str, float]) -> dict[str, Any]:
+def _simulating_code(test: Mapping[str, Any]) -> dict[str, Any]:
+    """Return which code simulates a test: that of the case in whose folder its kind is."""
+    words = kind_of(test).deck.__module__.removeprefix(f"{CASES_PACKAGE}.").split(".")
+    return simulating_code(find_case(words[0]))
+
+
+def _record(
+    test: Mapping[str, Any], folder: Path, spent: Mapping[str, float], code: Mapping[str, Any]
+) -> dict[str, Any]:
     thermo = thermo_table(folder / LOG)
+    cost = {**spent, "steps": last_step(folder / LOG), "particles": int(thermo["Atoms"].max())}
     return {
         "test": test,
-        "cost": {**spent, "steps": last_step(folder / LOG), "particles": int(thermo["Atoms"].max())},
+        "cost": cost,
+        PROVENANCE: provenance(code, EXECUTABLE, cost),
         "solver": solver_version(folder / SCREEN),
         "solver_warnings": warnings(folder / SCREEN),
     }

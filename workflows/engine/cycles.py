@@ -38,6 +38,7 @@ from bulkwear.workflows.engine.inputs import SIMULATED_FROM, inputs_digest, simu
 from bulkwear.workflows.engine.job import Progress, write_table
 from bulkwear.workflows.engine.ledgers import producer
 from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
+from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code, write_provenance
 from bulkwear.workflows.engine.schedule import Span, first_span, known_spans
 from bulkwear.workflows.engine.solver import (
     CYCLE_EXECUTABLES,
@@ -105,7 +106,7 @@ def cycles_of(chain: Chain) -> int | None:
 def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:
     """Simulate, account, wear and displace one cycle; cycle 0 (None) brings the run to its start, without wear."""
     started, cycle = time.monotonic(), span.cycle if span else 0
-    origin = origin_digest(chain, cycle, inputs)
+    origin, code = origin_digest(chain, cycle, inputs), simulating_code(chain.case)
     with state.working_folder(chain.folder, cycle, lambda part: bool(finished_pieces(part, origin))) as folder:
         surface = read_surface(surface_before(chain, cycle))
         started -= sum(piece.wall_s for piece in finished_pieces(folder, origin))
@@ -121,6 +122,7 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         record |= {
             "span": asdict(span) if span else None,
             **chain.case.record(chain.parameters, chain.bed, span),
+            PROVENANCE: provenance(code, cycle_executable(chain, span), record["cost"]),
             "solver": solver_version(folder / SCREEN),
             "solver_ledger": announcement(folder / SCREEN),
             "solver_warnings": warnings(folder / SCREEN),
@@ -219,10 +221,10 @@ def write_products(chain: Chain, finished: int) -> None:
 def fill_bed(
     case: Case, name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1, launcher: str = LAUNCHER
 ) -> None:
-    """Fill and settle a bed; leaves bed.restart and cost.csv in the folder. Raises SolverError."""
+    """Fill and settle a bed; leaves bed.restart, provenance.json and cost.csv in the folder. Raises SolverError."""
     parameters = case.bed_deck(bed)
     total = sum(parameters.get(name, 0) for name in BED_STEPS)
-    progress = Progress(name, total)
+    progress, code = Progress(name, total), simulating_code(case)
     with state.only_driver(folder, progress.say):
         write_bed(case, bed, folder)
         before = processor_seconds()
@@ -230,4 +232,5 @@ def fill_bed(
     particles = int(thermo_table(folder / LOG)["Atoms"][-1])
     processor = round(processor_seconds() - before, 3)
     row = {"solver_s": round(seconds, 3), "processor_s": processor, "steps": total, "particles": particles}
+    write_provenance(folder, provenance(code, EXECUTABLE, row) | {"solver": solver_version(folder / SCREEN)})
     write_table(folder / "cost.csv", [row])

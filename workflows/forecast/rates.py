@@ -6,8 +6,6 @@ from __future__ import annotations
 
 import json
 import os
-import platform
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -16,6 +14,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from bulkwear.workflows.engine.machine import machine_facts
 from bulkwear.workflows.engine.project import Project, current_project
 
 MEASURED, DEFAULT = Path("results/cost_rates.json"), Path("config/cost_rates.json")
@@ -100,25 +99,6 @@ def write_rates(path: Path, rates: MachineRates) -> None:
     part = path.with_suffix(".part")
     part.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
     os.replace(part, path)
-
-
-def machine_facts() -> dict[str, Any]:
-    """Return processor, cores, memory (GB) and system of this machine."""
-    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    return {
-        "processor": _processor(),
-        "cores": os.cpu_count(),
-        "memory_gb": round(pages / 1e9, 1),
-        "system": f"{platform.system()} {platform.machine()}",
-    }
-
-
-def _processor() -> str:
-    try:
-        found = re.search(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-    except OSError:
-        found = None
-    return found[1].strip() if found else platform.processor() or platform.machine()
 
 
 def seconds(work: pd.DataFrame, rates: Rates, terms: Sequence[str] = TERMS) -> np.ndarray:

@@ -25,7 +25,9 @@ from bulkwear.workflows.engine.chain import write_cycle, write_shared_files
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.ledgers import PRODUCERS
+from bulkwear.workflows.engine.machine import interpreter, machine_facts
 from bulkwear.workflows.engine.pieces import PIECES
+from bulkwear.workflows.engine.provenance import PROVENANCE, PROVENANCE_FILE, simulating_code
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import SolverError
 from bulkwear.workflows.engine.wear_step import law_volume
@@ -49,6 +51,7 @@ FINNIE_TOLERANCE = 1e-6  # of the largest triangle; the solver's file has six di
 # it not in the restart file.
 PIECES_TOLERANCES = {"sliding_work_J": 1e-2, "normal_impulse_N_s": 1e-2, "contact_time_s": 1e-2, "finnie_wear": 0.2}
 LOOKS = {"wear_interval_mm": 2, "picture_interval_mm": 1}
+FASTEST, SLOWEST = 1e-8, 1e-3  # s of a processor per particle step; seen 1e-6, of few particles more
 KILL_TIMEOUT = 120.0  # s, for a chain that takes seconds
 DRIVER = """
 import pickle, sys
@@ -104,6 +107,21 @@ def test_every_cycle_leaves_its_contract(finished):
         assert not [name for name in names if name.startswith("load_ledger.bin")]
         said = state.read_state(finished.folder, cycle)["solver_ledger"]
         assert (said is not None) == (cycle > 0), said
+
+
+def test_every_simulation_says_what_made_it(finished):
+    """Code, solver's programs, machine, speed and date stand in the state of each cycle and beside the bed; the digest
+    of the run's inputs knows none of them."""
+    code, inputs = simulating_code(finished.case), inputs_digest(finished)
+    cycles_found = [state.read_state(finished.folder, cycle) for cycle in range(wear_cycles(finished) + 1)]
+    bed = json.loads((finished.bed_restart.parent / PROVENANCE_FILE).read_text())
+    for found in (*(each[PROVENANCE] for each in cycles_found), bed):
+        assert {key: found[key] for key in code} == code
+        assert found["machine"] == machine_facts() | interpreter()
+        assert FASTEST < found["solver_s_per_particle_step"] < SLOWEST
+        assert any(name.startswith("libliggghts") for name in found["programs"])
+    assert {"liggghts-ledger" in each[PROVENANCE]["programs"] for each in cycles_found[1:]} == {True}
+    assert {each["inputs"] for each in cycles_found} == {inputs}
 
 
 def test_applied_plus_carried_is_alpha_times_work_at_every_cycle(finished):

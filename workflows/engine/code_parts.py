@@ -1,0 +1,123 @@
+"""Hashes of the code that simulated numbers depend on, part by part, so that two versions can be compared without git.
+
+Comments, docstrings and blank lines of Python do not count, nor does what only draws, forecasts, checks or reports.
+"""
+
+from __future__ import annotations
+
+import ast
+import io
+import tokenize
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+
+from bulkwear.workflows.engine.project import PACKAGE
+from bulkwear.workflows.engine.state import digest
+
+LETTERS = 12  # of a part's hash
+PARTS = {  # name: what it is of the package
+    "wear": ("postproc/wear/*.py", "postproc/mesh.py", "postproc/mesh_checks.py", "postproc/readers/*.py"),
+    "flow": ("postproc/flow/*.py",),
+    "engine": ("workflows/engine/*.py",),
+    "meshes": ("meshes/**/*.py",),
+    "solver": ("solver/*.cpp", "solver/*.h"),
+}
+OF_CASE = {"case": "workflows/cases", "templates": "templates"}  # parts of which each run has its case's
+SHARED_TEMPLATES = "_shared"
+ASIDE = {  # files that change no number of a run
+    *(f"workflows/engine/{name}.py" for name in ("code_parts", "inputs", "job", "own_code", "project")),
+    *(f"workflows/engine/{name}.py" for name in ("provenance", "state", "work")),
+    "postproc/readers/point_cloud.py",
+    "meshes/estimate.py",
+}
+ASIDE_OF_CASES = {"checks.py", "evaluation.py", "study.py", "volume.py", "work.py"}  # refuse, forecast or evaluate
+ROOTS = ("case.py", "decks.py", "driver.py", "simulations.py")  # of a case's folder, whence its code is found
+PACKAGE_NAME = "bulkwear"
+
+
+def part_hashes(cases: Iterable[str], root: Path = PACKAGE) -> dict[str, str]:
+    """Return {part: hash} of a package's code for runs of cases, named as their folders in `workflows/cases`.
+
+    root: folder of the package, or of another version of it
+    """
+    return {part: _hash_of(root, files) for part, files in part_files(tuple(cases), root).items()}
+
+
+def part_files(cases: Iterable[str], root: Path = PACKAGE) -> dict[str, list[str]]:
+    """Return {part: the files that it consists of}, as paths from the package's folder, sorted."""
+    found = {part: _matching(root, patterns) for part, patterns in PARTS.items()}
+    folders = [SHARED_TEMPLATES, *cases]
+    found["templates"] = _matching(root, [f"{OF_CASE['templates']}/{folder}/*.in.j2" for folder in folders])
+    found["case"] = sorted({file for case in cases for file in case_files(case, root)})
+    return found
+
+
+def _matching(root: Path, patterns: Iterable[str]) -> list[str]:
+    files = (path.relative_to(root).as_posix() for pattern in patterns for path in root.glob(pattern))
+    return sorted(file for file in files if file not in ASIDE)
+
+
+def case_files(case: str, root: Path = PACKAGE) -> list[str]:
+    """Return the files of cases that a case's class, its decks and its jobs reach by imports.
+
+    Figures, findings and pages are so not among them.
+    """
+    folder = root / OF_CASE["case"]
+    waiting, found = [path for name in ROOTS if (path := folder / case / name).is_file()], set()
+    while waiting:
+        path = waiting.pop()
+        if path not in found and path.name not in ASIDE_OF_CASES:
+            found.add(path)
+            waiting += [file for file in _imported(path, root) if folder in file.parents]
+    return sorted(path.relative_to(root).as_posix() for path in found)
+
+
+def _imported(path: Path, root: Path) -> Iterator[Path]:
+    """Yield the files of the package that a module imports, at its top or within its functions, for types alone not."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for_types = {each for node in ast.walk(tree) if _is_for_types(node) for each in ast.walk(node)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node not in for_types and (node.module or "").startswith(PACKAGE_NAME):
+            folder = root.joinpath(*node.module.split(".")[1:])
+            names = [folder.with_suffix(".py"), *(folder / f"{name.name}.py" for name in node.names)]
+            yield from (file for file in names if file.is_file())
+
+
+def _is_for_types(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
+
+
+def _hash_of(root: Path, files: Iterable[str]) -> str:
+    parts = [text for file in files for text in (file, _essence_of(root / file))]
+    return digest(*parts)[:LETTERS]
+
+
+def _essence_of(path: Path) -> str:
+    found = path.stat()
+    return _kept_essence(path, found.st_mtime_ns)
+
+
+@cache  # a process that simulates several runs asks for each
+def _kept_essence(path: Path, changed_ns: int) -> str:
+    text = path.read_text(encoding="utf-8")
+    return essence(text) if path.suffix == ".py" else text
+
+
+def essence(text: str) -> str:
+    """Return Python without comments, docstrings, blank lines and spaces at the ends of lines."""
+    lines = text.splitlines()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column]
+    for said in filter(None, map(_docstring, ast.walk(ast.parse(text)))):
+        lines[said.lineno - 1 : said.end_lineno] = [""] * (said.end_lineno - said.lineno + 1)
+    return "\n".join(line.rstrip() for line in lines if line.strip())
+
+
+def _docstring(node: ast.AST) -> ast.expr | None:
+    """Return what documents a module, class or function; a line of text after a constant is no docstring, but alike."""
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+        return node.value
+    return None
