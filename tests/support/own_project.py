@@ -9,6 +9,7 @@ from bulkwear.workflows.engine.project import PACKAGE
 STUDY, SECOND = "mine", "second"
 WORD = "what the dimples do"
 FEW = """\
+packings: 1
 fidelities:
   quick:
     particle_scale: 4

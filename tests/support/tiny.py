@@ -8,6 +8,7 @@ from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.cycles import fill_bed
 
 TINY = {
+    "packings": 1,
     "particle_scale": 4,
     "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 2},
     "bed": {"width_mm": 60, "ahead_mm": 20, "behind_mm": 20},

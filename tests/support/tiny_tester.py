@@ -9,6 +9,7 @@ from bulkwear.workflows.report.products import job_of, outputs_of, paths_of, pro
 from tests import REPOSITORY
 
 TINY = {
+    "packings": 1,
     "particle_scale": 4,
     "sample": {"width_mm": 40, "length_mm": 40, "thickness_mm": 5, "element_size_mm": 2},
     "tester": {

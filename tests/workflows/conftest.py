@@ -73,6 +73,7 @@ solver:
   sampling_interval_steps: 20
 ledger: solver
 remeshing: {smallest_angle_deg: 15, largest_aspect: 10, smallest_edge: 0.3, largest_edge: 2.5}
+packings: 1
 """
 SLIDING_SAMPLE = """\
 sample:

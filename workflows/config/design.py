@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property, partial, reduce
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from bulkwear.workflows.config.layers import (
     display_name,
     with_row,
 )
+from bulkwear.workflows.config.packings import PACKINGS, Packings, with_packings, without_packings
 from bulkwear.workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
 from bulkwear.workflows.config.schema import case_schema, leaves, load_schema
 from bulkwear.workflows.config.sources import (
@@ -51,7 +52,7 @@ __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies",
 
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
-FEWEST_RUNS = 5  # for which a regression is made: AICc needs four more than a model has terms
+FEWEST_SETTINGS = 5  # for which a regression is made: AICc needs four more than a model has terms
 ROWS = "rows"  # key of the settings
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -67,7 +68,8 @@ DESIGNS = "config/designs"
 class Study:
     """A checked study. `settings` are merged, in the units that their keys spell; so are `design_rows`.
 
-    runs: those of its rows; all_runs: those of the whole design, where `rows` chooses some of it
+    runs: those of its rows; all_runs: those of the whole design, where `rows` chooses some of it, added packings last
+    setting_of, packing_of: {row: its setting} and {row: number among its packings} of the whole design, see packings.py
     factors: {short name: column of the design} of the regression of its results; empty without one
     head: the keys of its file that are the study's own, no settings
     confirms: the study whose best designs this one simulates, "" for all others
@@ -82,11 +84,18 @@ class Study:
     runs: tuple[Run, ...]
     all_runs: tuple[Run, ...]
     design_rows: tuple[dict[str, Any], ...]
+    setting_of: dict[str, str]
+    packing_of: dict[str, int]
     factors: dict[str, str]
     paper_settings: dict[str, Any]
     materials: dict[str, Any]
     head: dict[str, Any]
     confirms: str = ""
+
+    @property
+    def chosen_settings(self) -> list[str]:
+        """Return the names of the settings that the rows of the study are packings of."""
+        return list(dict.fromkeys(self.setting_of[str(row["row"])] for row in self.design_rows))
 
     def run(self, name: str) -> Run:
         """Return the run of that name. Raises ConfigError naming the runs there are."""
@@ -105,13 +114,13 @@ class Study:
         return first if first != run_name else None
 
     def design_table(self) -> list[dict[str, Any]]:
-        """Return one row per run: run, row, surface where there are any, the factors with their units, and what follows
-        from them in this case.
+        """Return one row per run: run, row, its setting and packing, surface where there are any, the factors with
+        their units, and what follows from them in this case.
         """
         factors = {str(row["row"]): {k: v for k, v in row.items() if k != "row"} for row in self.design_rows}
         columns = dict.fromkeys(name for row in factors.values() for name in row)
         return [
-            {"run": run.name, "row": run.row}
+            {"run": run.name, "row": run.row, "setting": self.setting_of[run.row], "packing": self.packing_of[run.row]}
             | ({"surface": run.surface} if run.surface else {})
             | {name: factors[run.row].get(name, "") for name in columns}
             | self.case.table_columns(run.parameters)
@@ -126,7 +135,8 @@ class Study:
     def beds(self) -> dict[str, dict[str, Any]]:
         """Return {bed id: parameters}; runs with equal parameters share a bed, and some cases have none.
 
-        A bed is that of the whole design, so that a run is the same whichever rows are chosen beside it.
+        A bed is that of the whole design, so that a run is the same whichever rows are chosen beside it, and however
+        many packings there are.
         """
         beds, bed_of = self._beds
         used = {bed_of[run.name] for run in self.runs if run.name in bed_of}
@@ -150,10 +160,10 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
             f"config/studies/{name}.yaml: a study cannot be called {name}, allowed are small letters, digits and"
             f" underscores, not ending in {' or '.join(TARGETS)}, and none of {', '.join(sorted(RULE_NAMES))}."
         )
-    written = list_studies(project)
-    confirms = name.removesuffix(CONFIRMATION) if name not in written and name.endswith(CONFIRMATION) else ""
-    if (confirms or name) not in written:
-        raise ConfigError(unknown_name(STUDIES, "study", confirms or name, written))
+    studies = list_studies(project)
+    confirms = name.removesuffix(CONFIRMATION) if name not in studies and name.endswith(CONFIRMATION) else ""
+    if (confirms or name) not in studies:
+        raise ConfigError(unknown_name(STUDIES, "study", confirms or name, studies))
     sources = read_sources(confirms or name, project, overrides)
     fidelity = fidelity_of(sources)
     layers = sources.stack(fidelity)
@@ -163,14 +173,15 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     check_material_names(layers, settings, materials, sources.case.material_keys)
     check_calibrated_for(layers, settings, materials, sources.case.material_keys)
     head = sources.head
-    designed = _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project)
-    rows = designed if confirms else _chosen_rows(layers, settings, designed)
-    names = {row_layer.values["row"] for row_layer in rows}
-    all_runs = tuple(
-        _checked_run(sources, layers, settings, materials, row_layer, surface)
-        for row_layer in designed
-        for surface in sources.case.surfaces(head)
-    )
+    written = _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project)
+    designed = _packings(sources, layers, settings, written)
+    rows = list(designed.rows) if confirms else _chosen_rows(layers, settings, designed)
+    runs_of = {
+        row.values["row"]: [
+            _checked_run(sources, layers, settings, materials, row, surface) for surface in sources.case.surfaces(head)
+        ]
+        for row in designed.added_last()
+    }
     factors = {} if confirms else _factors(sources, designed)
     study = Study(
         name=name,
@@ -179,10 +190,12 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         question="Does one run of each best design wear what was predicted?" if confirms else head["question"],
         fidelity=fidelity,
         settings=settings,
-        runs=tuple(run for run in all_runs if run.row in names),
-        all_runs=all_runs,
-        design_rows=tuple(row_layer.values for row_layer in rows),
-        factors=factors if _can_tell(factors, rows) else {},
+        runs=tuple(run for row in rows for run in runs_of[row.values["row"]]),
+        all_runs=tuple(run for runs in runs_of.values() for run in runs),
+        design_rows=tuple(row.values for row in rows),
+        setting_of=designed.setting_of,
+        packing_of=designed.packing_of,
+        factors=factors if _can_tell(factors, designed, rows) else {},
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
         materials=materials,
         head=head,
@@ -229,24 +242,44 @@ def _design_rows(sources: Sources, fidelity: str, project: Project) -> list[Laye
     return rows
 
 
-def _chosen_rows(layers: tuple[Layer, ...], settings: dict[str, Any], rows: list[Layer]) -> list[Layer]:
-    """Return the rows of a design that the settings choose, all where they choose none. Raises ConfigError."""
-    known = [row.values["row"] for row in rows]
+def _chosen_rows(layers: tuple[Layer, ...], settings: dict[str, Any], designed: Packings) -> list[Layer]:
+    """Return the rows that the settings choose by their names or by their setting's, all where they choose none.
+
+    Raises ConfigError.
+    """
+    known = list(dict.fromkeys(name for pair in designed.setting_of.items() for name in reversed(pair)))
     chosen = settings.get(ROWS, known)
     for name in chosen:
         if name not in known:
             raise ConfigError(unknown_name(locate(layers, (ROWS,)), "row", name, known))
-    return [row for row in rows if row.values["row"] in chosen]
+    return [row for row in designed.rows if not {designed.setting_of[n := row.values["row"]], n}.isdisjoint(chosen)]
 
 
-def _can_tell(factors: dict[str, str], rows: list[Layer]) -> bool:
+def _packings(sources: Sources, layers: tuple[Layer, ...], settings: dict[str, Any], rows: list[Layer]) -> Packings:
+    """Return the rows of a design with all their packings. Raises ConfigError, as for several where there is no bed."""
+    case = sources.case
+    if case.seed_setting:
+        column = setting_columns(load_schema(f"cases/{case.name}/design"))[case.seed_setting]
+        return with_packings(rows, settings, column, reduce(dict.__getitem__, case.seed_setting.split("."), settings))
+    if settings[PACKINGS] > 1:
+        raise ConfigError(
+            f"{locate(layers, (PACKINGS,))}: {PACKINGS} is {settings[PACKINGS]}, allowed is 1 in studies of case"
+            f" {case.name}: {case.one_packing}."
+        )
+    return without_packings(rows)
+
+
+def _can_tell(factors: dict[str, str], designed: Packings, rows: list[Layer]) -> bool:
     """Return whether the chosen rows are enough for a regression on the factors."""
-    return len(rows) >= FEWEST_RUNS and all(len({row.values[name] for row in rows}) > 1 for name in factors.values())
+    settings = {designed.setting_of[row.values["row"]] for row in rows}
+    told = all(len({row.values[name] for row in rows}) > 1 for name in factors.values())
+    return len(settings) >= FEWEST_SETTINGS and told
 
 
-def _factors(sources: Sources, rows: list[Layer]) -> dict[str, str]:
+def _factors(sources: Sources, designed: Packings) -> dict[str, str]:
     """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError."""
-    factors = sources.study.values.get(FACTORS, {})
+    factors, rows = sources.study.values.get(FACTORS, {}), designed.rows
+    settings = set(designed.setting_of.values())
     for name, column in factors.items():
         if any(column not in row.values for row in rows):
             raise ConfigError(
@@ -259,10 +292,10 @@ def _factors(sources: Sources, rows: list[Layer]) -> dict[str, str]:
                 f"{sources.study.where((FACTORS, name))}: {FACTORS}.{name} is {column}, which is"
                 f" {levels.pop():g} in every row of the design, allowed are columns with two levels or more."
             )
-    if factors and len(rows) < FEWEST_RUNS:
+    if factors and len(settings) < FEWEST_SETTINGS:
         raise ConfigError(
-            f"{sources.study.where((FACTORS,))}: {FACTORS} ask for a regression, found a design of {len(rows)} rows,"
-            f" allowed are {FEWEST_RUNS} or more."
+            f"{sources.study.where((FACTORS,))}: {FACTORS} ask for a regression, found a design of {len(settings)}"
+            f" settings, allowed are {FEWEST_SETTINGS} or more."
         )
     return dict(factors)
 
@@ -289,5 +322,9 @@ def _checked_run(
 
 def row_overrides(row: Layer, schema: dict[str, Any]) -> dict[str, str]:
     """Return {setting: column} of the settings that a design row overrides: the schema of such a column names one."""
-    named = {inner["x-setting"]: column for (column,), inner in leaves(schema) if "x-setting" in inner}
-    return {setting: column for setting, column in named.items() if column in row.values}
+    return {setting: column for setting, column in setting_columns(schema).items() if column in row.values}
+
+
+def setting_columns(schema: dict[str, Any]) -> dict[str, str]:
+    """Return {setting: column} of all columns that stand for a setting of their row."""
+    return {inner["x-setting"]: column for (column,), inner in leaves(schema) if "x-setting" in inner}

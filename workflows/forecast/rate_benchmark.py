@@ -41,6 +41,7 @@ BED_STUDY, BED_RUN = "demo", "R9_plain"
 PIN_STUDY, PIN_RUN = "pin_on_disc", "c17-conserving"
 SHRUNK = {
     "fidelity": "quick",
+    "packings": 1,
     "particle_scale": 1.75,  # fewer particles fit into a processor's cache, and each costs less
     "sliding": {"run_in_mm": 4, "travel_mm": 8, "cycles": 2},
     "solver": {"ranks": 1, "rayleigh_fraction": 0.4},

@@ -43,7 +43,7 @@ def test_shipped_studies_load_at_every_fidelity(name, fidelity):
 
 def test_screening_is_table_3_8():
     """Thirteen rows, each with a plain twin; every factor is balanced (Yan 2022, Table 3.8)."""
-    study = load_study("screening")
+    study = load_study("screening", overrides={"packings": 1})
     assert [run.name for run in study.runs][:2] == ["R1_convex", "R1_plain"]
     assert len(study.runs) == 26
     levels = {
@@ -80,10 +80,12 @@ def test_least_layers_lowers_the_scale_of_thin_beds_only():
 
 def test_plain_twins_under_the_same_conditions_are_one_simulation():
     """A plain sample knows no pattern: rows of equal velocity and thickness share it. Convex samples share nothing."""
-    study = load_study("screening")
+    study = load_study("screening", overrides={"packings": 2})
     shared = {run.name: study.same_as(run.name) for run in study.runs if study.same_as(run.name)}
     assert shared == {
-        f"{row}_plain": f"{first}_plain" for row, first in (("R7", "R4"), ("R8", "R1"), ("R11", "R3"), ("R13", "R5"))
+        f"{row}{packing}_plain": f"{first}{packing}_plain"
+        for row, first in (("R7", "R4"), ("R8", "R1"), ("R11", "R3"), ("R13", "R5"))
+        for packing in ("", "-2")
     }
 
 
@@ -230,12 +232,14 @@ def test_the_plain_twin_has_no_pattern_and_is_otherwise_equal(config):
 
 
 def test_the_design_table_has_one_row_per_run_with_units_in_the_names(config):
-    """run, row and surface, then the factors as written."""
+    """run, row, setting, packing and surface, then the factors as written."""
     table = load_study("small", config.project).design_table()
     assert [row["run"] for row in table] == ["R9_convex", "R9_plain", "R5_convex", "R5_plain"]
     assert table[3] == {
         "run": "R5_plain",
         "row": "R5",
+        "setting": "R5",
+        "packing": 1,
         "surface": "plain",
         "major_radius_mm": 4,
         "minor_radius_mm": 8,
@@ -574,7 +578,7 @@ def test_factors_of_a_regression(config):
     [
         ("{a: major_radius_mm, b: colour}", "", "factors.b is 'colour', allowed is one of major_radius_mm,"),
         ("{a: major_radius_mm}", "", "factors"),
-        ("{a: major_radius_mm, b: minor_radius_mm}", "", "found a design of 2 rows, allowed are 5 or more."),
+        ("{a: major_radius_mm, b: minor_radius_mm}", "", "found a design of 2 settings, allowed are 5 or more."),
         (
             "{a: major_radius_mm, t: height_mm}",
             "R1,2,2,20,6.0,0.5,30\nR2,4,2,20,6.0,0.5,30\nR3,4,4,20,6.0,0.5,30\n",
@@ -644,8 +648,10 @@ def test_a_study_without_factors_has_nothing_to_confirm(config):
 
 def test_a_run_is_the_same_whichever_rows_are_chosen():
     """Chosen rows keep their parameters and their bed, whose height follows the highest sample of the whole design."""
-    whole, chosen = load_study("screening"), load_study("screening", overrides={"rows": ["R9", "R2"]})
-    assert [run.name for run in chosen.runs] == ["R2_convex", "R2_plain", "R9_convex", "R9_plain"]
+    whole, chosen = (
+        load_study("screening", overrides={"packings": 2, **rows}) for rows in ({}, {"rows": ["R9", "R2-2"]})
+    )
+    assert [run.row for run in chosen.runs[::2]] == ["R2-2", "R9", "R9-2"]
     for run in chosen.runs:
         assert run == whole.run(run.name)
         assert chosen.beds[chosen.bed_of(run.name)] == whole.beds[whole.bed_of(run.name)]
@@ -664,7 +670,7 @@ def test_few_rows_have_regimes_but_no_regression():
 
 def test_a_row_that_is_not_in_the_design_is_refused():
     with pytest.raises(
-        ConfigError, match=r"command line: row is 'R99', allowed is one of R1, R2.*\(the nearest is R9\)"
+        ConfigError, match=r"command line: row is 'R99', allowed is one of R1, R1-2, R1-3, R2.*\(the nearest is R9\)"
     ):
         load_study("screening", overrides={"rows": ["R9", "R99"]})
     with pytest.raises(ConfigError, match="rows is 'R9', allowed is a list of rows of the design"):

@@ -91,8 +91,8 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, rows, materials, ledger, wear, remeshing, solver, deck, sample, pattern, bed,"
-        " sliding, packing, design.",
+        " allowed are particle_scale, packings, rows, materials, ledger, wear, remeshing, solver, deck, sample,"
+        " pattern, bed, sliding, packing, design.",
     ),
     (
         OWN_SETTINGS,
@@ -482,8 +482,8 @@ BAD_COMBINATIONS = [
     ),
     (
         {"title": "x"},
-        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, rows, materials, ledger,"
-        " wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
+        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, packings, rows, materials,"
+        " ledger, wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
     ),
 ]
 

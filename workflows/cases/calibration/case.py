@@ -113,6 +113,7 @@ class Calibration(Case):
     """
 
     name = "calibration"
+    one_packing = "calibration.repeats says with how many packings it is done"
     material_keys = (
         ("bulk", "material", "particles"),
         ("shear_box", "wall_material", "walls"),

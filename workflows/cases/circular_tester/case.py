@@ -48,6 +48,7 @@ class CircularTester(SampleCase):
     checks = TESTER_CHECKS
     run_templates = ("tester_run_in", "circular_tester")
     bed_template = "tester_bed"
+    seed_setting = "bed.seed"
     figure_modules = ("figures", "flow_figures")
     shared_figures = ("worn_surface", "wear_updates")
     geometry = ("sample", "pattern")

@@ -65,6 +65,7 @@ class SlidingSample(SampleCase):
     run_templates = ("lowered_bed", "sliding_sample")
     bed_template = "settled_bed"
     more_templates = ("packed_container", "bed_contacts", "collision")
+    seed_setting = "bed.seed"
     figure_modules = ("particle_size.figures", "screening.figures", "screening.regression_figures", "figures")
     shared_figures = ("worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
     solver_rules = (*SampleCase.solver_rules, "packing_profiles")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import re
 from typing import Any
 
 from bulkwear.postproc.mesh import PLAIN
@@ -27,8 +26,8 @@ PATTERN = (  # columns that make two rows the same
 
 
 def compares_rows(study: Study) -> bool:
-    """Return whether a study sets patterned over plain wear of several design rows side by side."""
-    return len(study.design_rows) > 1 and bool(plain_runs(study))
+    """Return whether a study sets patterned over plain wear of several settings side by side."""
+    return len(study.chosen_settings) > 1 and bool(plain_runs(study))
 
 
 def varies_scale(study: Study) -> bool:
@@ -112,20 +111,8 @@ def published_rows(study: Study) -> dict[str, str]:
 
 
 def replicate_settings(study: Study) -> dict[str, str]:
-    """Return {row: name of its setting}; rows that differ in nothing but their seed have the same.
-
-    The name is R5 of R5-1 and R5-2, or that of the first of them where they are named otherwise.
-    """
-    groups: dict[tuple, list[str]] = {}
-    for row in study.design_rows:
-        key = tuple(sorted((name, value) for name, value in row.items() if name not in ("row", "seed")))
-        groups.setdefault(key, []).append(str(row["row"]))
-    stems = [{re.sub(r"-\d+$", "", row) for row in rows} for rows in groups.values()]
-    names = [
-        stem.copy().pop() if len(rows) > 1 and len(stem) == 1 and stems.count(stem) == 1 else rows[0]
-        for stem, rows in zip(stems, groups.values(), strict=True)
-    ]
-    return {row: name for name, rows in zip(names, groups.values(), strict=True) for row in rows}
+    """Return {row: name of its setting}; rows that differ in nothing but their seed have the same."""
+    return {str(row["row"]): study.setting_of[str(row["row"])] for row in study.design_rows}
 
 
 def equivalent_size_ratios(study: Study) -> dict[str, float | None]:
