@@ -152,7 +152,7 @@ def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
     bed as it is, start from the same particles.
     """
     row = f"S{case.scale}"
-    study = load_study(STUDY, overrides={**settings, "rows": [row]})
+    study = load_study(STUDY, overrides={**settings, "rows": [row], "packings": 1})
     candidate = CANDIDATES[case.candidate]
     runs = [with_change(run, candidate.change, case.seed) for run in study.runs]
     beds, bed_of = study.case.beds(runs)

@@ -175,7 +175,7 @@ def at_source_size() -> pd.DataFrame:
     for name, given in BEDS.items():
         bed = {"ends": WALLS} if name == FULL else given["bed"]
         overrides = {"bed": {**bed, "exchange_mm": SOURCE_EXCHANGE}, "solver": {"rayleigh_fraction": given["fraction"]}}
-        study = load_study("screening", overrides={"fidelity": "paper", **overrides})
+        study = load_study("screening", overrides={"fidelity": "paper", "packings": 1, **overrides})
         derived = study.runs[0].parameters["derived"]
         row = {
             "bed": name,
