@@ -38,7 +38,8 @@ class Estimate:
     value: the mean, geometric where `log`; NaN without a packing
     error: its standard error, of the logarithm (-) where `log`; NaN where the scatter is unknown
     freedom: degrees of freedom of the error; 0 where it is unknown
-    packings: how many there are; log: whether errors and intervals are those of the logarithm
+    packings: how many there are; 1 with a known error is of this run alone, see `increments`
+    log: whether errors and intervals are those of the logarithm
     """
 
     value: float
@@ -61,7 +62,12 @@ class Estimate:
         return self._about(self.error, 1.0 - error_rate)
 
     def of_one_more(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
-        """Return the interval in which the value of one further packing falls; NaN where the scatter is unknown."""
+        """Return the interval in which the value of one further packing falls; NaN where the scatter is unknown.
+
+        Of one packing it is: an interval that its own blocks give is of this run, and tells nothing of another one.
+        """
+        if self.packings < 2:
+            return math.nan, math.nan
         return self._about(self.error * math.sqrt(self.packings + 1.0), 0.5 + 0.5 * confidence)
 
     def width(self, confidence: float = CONFIDENCE) -> float:
@@ -90,10 +96,8 @@ class Estimate:
         if not self.known:
             return f"{mean} ({UNKNOWN})" if self.packings < 2 else f"{mean} (scatter unknown)"
         low, high = (factor * end for end in self.interval())
-        return (
-            f"{mean} ({100.0 * CONFIDENCE:.0f} % interval {low:.{decimals}f} to {high:.{decimals}f},"
-            f" {self.packings} packings)"
-        )
+        of = f"{self.packings} packings" if self.packings > 1 else "of this run"
+        return f"{mean} ({100.0 * CONFIDENCE:.0f} % interval {low:.{decimals}f} to {high:.{decimals}f}, {of})"
 
 
 def _decimals(value: float, digits: int) -> int:
