@@ -56,10 +56,10 @@ CANDIDATES: dict[str, Candidate] = {
         OPEN,
         "of the median, 30, 40 and 30 % of the mass: a coarse tail, of which the source says nothing",
     ),
-    "rows 20 mm apart": Candidate(
-        {"pattern": {"row_spacing_m": 0.02}},
+    "neighbouring rows 40 mm apart": Candidate(
+        {"pattern": {"row_spacing_between": "neighbouring_rows"}},
         OPEN,
-        "c = 40 mm read as the distance of rows of the same phase, as the source's Figure 6.1 asks",
+        "c = 40 mm read as the distance from one row to the next, which the source's Figure 6.1 rules out",
     ),
     "c and d exchanged": Candidate(
         {"pattern": {"row_spacing_m": 0.06, "column_spacing_m": 0.04}},

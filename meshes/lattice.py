@@ -217,8 +217,8 @@ def _overlap_fault(pattern: Pattern, width: float, length: float) -> str | None:
     room = length - 2 * (lengthwise + pattern.rim_margin)
     if 2 * pattern.row_spacing <= min(2 * lengthwise, room):
         return (
-            f"{pattern.noun}s overlap: {along_name} {millimetres(lengthwise)} needs a row spacing of more than "
-            f"{millimetres(lengthwise)}, found {millimetres(pattern.row_spacing)}"
+            f"{pattern.noun}s overlap: {along_name} {millimetres(lengthwise)} needs each row more than "
+            f"{millimetres(lengthwise)} from the next, found {millimetres(pattern.row_spacing)}"
         )
     centres, _ = pattern_centres(pattern, width, length)
     pairs = cKDTree(centres / (2 * across, 2 * lengthwise)).query_pairs(1.0, output_type="ndarray")

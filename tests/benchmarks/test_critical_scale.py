@@ -13,7 +13,7 @@ from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touch
 from bulkwear.postproc.statistics.screening_design import FIRST_SEED
 from bulkwear.workflows.config.design import load_study
 
-OTHER = "rows 20 mm apart"
+OTHER = "neighbouring rows 40 mm apart"
 TINY = {
     "fidelity": "quick",
     "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 4, "skirt_radius_mm": 0, "skirt_slope_deg": 1},

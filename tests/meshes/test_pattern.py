@@ -90,7 +90,7 @@ def test_major_axis_turns_the_foot():
             "minor radius 8 mm needs a column spacing of more than 16 mm, found 12 mm",
         ),
         ({"column_spacing": 16e-3}, 0.2, "needs a column spacing of more than 16 mm, found 16 mm"),
-        ({"row_spacing": 8e-3}, 0.2, "major radius 8 mm needs a row spacing of more than 8 mm, found 8 mm"),
+        ({"row_spacing": 8e-3}, 0.2, "major radius 8 mm needs each row more than 8 mm from the next, found 8 mm"),
         ({"row_spacing": 12e-3}, 0.2, "neighbours stand 10 mm across and 12 mm along the travel apart"),
         (
             {},

@@ -18,7 +18,10 @@ from bulkwear.workflows.config.units import to_si
 
 SURFACES = (*PATTERNS, PLAIN)
 SHAPE = "shape"  # key of the section `pattern` of a run's parameters: the name of its surface
-LATTICE = {"row_spacing_m": "row_spacing", "column_spacing_m": "column_spacing", "row_offset_fraction": "row_offset"}
+LATTICE = {"column_spacing_m": "column_spacing", "row_offset_fraction": "row_offset"}
+ROW_SPACING, ROW_SPACING_BETWEEN = "row_spacing_m", "row_spacing_between"
+# What the row spacing c of a source lies between, and how often one row comes after another in it: docs/decisions.md.
+ROWS_PER_SPACING = {"rows_in_phase": 2, "neighbouring_rows": 1}
 # Places in a schema that the registered patterns fill: properties or items, items, words.
 DIMENSIONS, OPTIONS, LISTED, NAMED = "<dimensions>", "<options>", "<surfaces>", "<patterns>"
 
@@ -39,7 +42,7 @@ def option_keys(surface: str) -> list[str]:
 
 
 def _fields_in_si(shape: type[Pattern]) -> dict[str, str]:
-    """Return {key in SI: field} of a shape and its lattice."""
+    """Return {key in SI: field} of a shape and its lattice, the distance between rows aside."""
     own = [*shape.dimensions(), *shape.options()]
     return {next(iter(to_si({_key(each): 0.0}))): each.name for each in own} | LATTICE
 
@@ -48,7 +51,8 @@ def pattern_section(surface: str, values: Mapping[str, Any]) -> dict[str, Any] |
     """Return the section `pattern` of a run's parameters, of what its surface needs of `values` (SI); None if plain."""
     if surface == PLAIN:
         return None
-    return {SHAPE: surface, **{key: values[key] for key in _fields_in_si(PATTERNS[surface])}}
+    keys = [*_fields_in_si(PATTERNS[surface]), ROW_SPACING, ROW_SPACING_BETWEEN]
+    return {SHAPE: surface, **{key: values[key] for key in keys}}
 
 
 def surface_name(section: Mapping[str, Any] | None) -> str:
@@ -61,7 +65,8 @@ def pattern_of(section: Mapping[str, Any] | None) -> Pattern | None:
     if section is None:
         return None
     shape = PATTERNS[section[SHAPE]]
-    return shape(**{field: section[key] for key, field in _fields_in_si(shape).items()})
+    row_spacing = section[ROW_SPACING] / ROWS_PER_SPACING[section[ROW_SPACING_BETWEEN]]
+    return shape(row_spacing=row_spacing, **{field: section[key] for key, field in _fields_in_si(shape).items()})
 
 
 def highest_point(section: Mapping[str, Any] | None) -> float:

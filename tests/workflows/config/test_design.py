@@ -196,6 +196,7 @@ def test_settings_and_factors_arrive_in_si(config):
         "shape": "convex",
         "major_axis": "along_travel",
         "row_spacing_m": 0.04,
+        "row_spacing_between": "neighbouring_rows",
         "row_offset_fraction": 0.5,
         "major_radius_m": 0.008,
         "minor_radius_m": 0.002,

@@ -459,7 +459,7 @@ BAD_COMBINATIONS = [
     ),
     (
         {"pattern": {"row_spacing_mm": 2}},
-        f"{ROW_9}: bumps overlap: major radius 8 mm needs a row spacing of more than 8 mm, found 2 mm.",
+        f"{ROW_9}: bumps overlap: major radius 8 mm needs each row more than 8 mm from the next, found 2 mm.",
     ),
     (
         {"fidelity": "paper"},
