@@ -1,4 +1,4 @@
-"""The best design of each flow regime as a design table, and one simulated run of it against the prediction."""
+"""The best design of each flow regime as a design table, and simulated runs of it against the prediction."""
 
 from __future__ import annotations
 
@@ -64,13 +64,16 @@ def design_of(predictions: pd.DataFrame, design: pd.DataFrame, columns: Sequence
 
 
 def confirmation_table(predictions: pd.DataFrame, summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
-    """Return prediction and simulation of each row, in display units, and whether the run is inside the interval.
+    """Return prediction and simulation of each packing, in display units, and whether its run is inside the interval.
 
-    predictions: as from `best_of_regimes`; summary, regimes: of the confirming study, whose rows have the same names
-    Columns row, found_regime, predicted, run_low, run_high, simulated, plain (all mm3_per_m), inside, over_predicted.
+    predictions: as from `best_of_regimes`; summary, regimes: of the confirming study, whose settings have the names of
+    their rows
+    Columns row, setting, found_regime, predicted, run_low, run_high, simulated, plain (all mm3_per_m), inside,
+    over_predicted.
     """
     patterned, plain = (summary[(summary["surface"] == PLAIN) == which].set_index("row") for which in (False, True))
-    table = predictions[["row", *(f"{name}_m3_per_m" for name in PREDICTED)]]
+    predicted = predictions[["row", *(f"{name}_m3_per_m" for name in PREDICTED)]].rename(columns={"row": "setting"})
+    table = patterned["setting"].reset_index().merge(predicted, on="setting")
     simulated = table["row"].map(patterned[WEAR])
     table = table.assign(
         found_regime=table["row"].map(groups_of_rows(regimes)),
@@ -94,8 +97,9 @@ def check_fidelity(predictions: pd.DataFrame, fidelity: str, source: str) -> Non
 
 def confirmation_remarks(table: pd.DataFrame) -> list[str]:
     """Return what the figure must say: where a run has not the regime that its design was chosen for."""
-    other = table[table["found_regime"] != table["row"]]
-    return [f"the run for {row} flow is found {found}" for row, found in other[["row", "found_regime"]].to_numpy()]
+    other = table[table["found_regime"] != table["setting"]]
+    told = other[["row", "setting", "found_regime"]].to_numpy()
+    return [f"the run {row} for {setting} flow is found {found}" for row, setting, found in told]
 
 
 def interval_reach(table: pd.DataFrame) -> np.ndarray:

@@ -24,6 +24,7 @@ TEXTS = (  # columns of words, which may be empty
     *("found", "reason", "published_regime", "published_wear_over_plain"),
 )
 HEADS = {"row": ("regime", "")}  # of tables whose rows are the best designs of the regimes
+OF_RUNS = {"setting": ("regime", "")}  # of tables whose rows are runs of these
 SIMULATED = "figures/confirmation.csv"
 
 
@@ -135,7 +136,7 @@ def regression(folder: Path) -> Section:
 
 
 def best_designs(name: str, folder: Path) -> Section:
-    """Return the designs of least wear as predicted, and what a run of each wore where there is one."""
+    """Return the designs of least wear as predicted, and what runs of each wore where there are any."""
     inside = read_with_texts(folder / "regression" / "best_designs.csv")
     predicted = in_display_units(read_with_texts(folder / "confirmation" / "prediction.csv"))
     run = folder.with_name(f"{folder.name}_confirmation") / SIMULATED
@@ -149,7 +150,7 @@ def best_designs(name: str, folder: Path) -> Section:
         "least is predicted; per metre of travel, with the interval of one further run. The target "
         f"{name}_confirmation simulates these designs and sets the result against the prediction."
     )
-    simulated = [Text("Simulated:"), Table(read_with_texts(run), heads=HEADS)] if run.is_file() else []
+    simulated = [Text("Simulated:"), Table(read_with_texts(run), heads=OF_RUNS)] if run.is_file() else []
     blocks = [
         Text(of_ranges),
         Table(inside.assign(given=inside["given"].replace("", "nothing")), "best_designs"),
@@ -161,6 +162,6 @@ def best_designs(name: str, folder: Path) -> Section:
 
 
 def confirmed(folder: Path) -> Section:
-    """Return what one run of each best design wears beside what was predicted of it."""
-    table = Table(read_with_texts(folder / SIMULATED), heads=HEADS)
+    """Return what runs of each best design wear beside what was predicted of it."""
+    table = Table(read_with_texts(folder / SIMULATED), heads=OF_RUNS)
     return Section("Best designs, predicted and simulated", [table, Pictures(["confirmation"])])

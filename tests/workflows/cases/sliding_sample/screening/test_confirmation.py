@@ -85,17 +85,22 @@ def test_only_regimes_that_were_seen_have_a_design(summary, regimes):
 
 
 def test_simulated_runs_against_their_intervals(predictions):
-    """A run of the predicted wear is inside, one of ten times as much outside; another regime is said."""
-    wear = predictions["predicted_m3_per_m"].to_numpy() * [1.0, 10.0]
-    runs = pd.DataFrame({"row": predictions["row"], "surface": "convex", "worn_volume_per_metre_m3_per_m": wear})
+    """A run of the predicted wear is inside, one of ten times as much outside, each packing by itself; another regime
+    is said.
+    """
+    settings = np.repeat(predictions["row"].to_numpy(), 2)
+    wear = np.repeat(predictions["predicted_m3_per_m"].to_numpy(), 2) * [1.0, 10.0, 1.0, 1.0]
+    rows = [CONTINUOUS, f"{CONTINUOUS}-2", DISCONTINUOUS, f"{DISCONTINUOUS}-2"]
+    runs = pd.DataFrame({"row": rows, "setting": settings, "surface": "convex", "worn_volume_per_metre_m3_per_m": wear})
     plain = runs.assign(surface="plain", worn_volume_per_metre_m3_per_m=5e-9)
     regimes = runs[["row", "surface"]].assign(regime=CONTINUOUS)
     table = confirmation_table(predictions, pd.concat([runs, plain], ignore_index=True), regimes)
-    assert table["inside"].tolist() == [True, False]
-    assert table["over_predicted"].tolist() == pytest.approx([1.0, 10.0])
+    assert table["inside"].tolist() == [True, False, True, True]
+    assert table["over_predicted"].tolist() == pytest.approx([1.0, 10.0, 1.0, 1.0])
     assert table["simulated_mm3_per_m"].tolist() == pytest.approx(1e9 * wear)
-    assert table["plain_mm3_per_m"].tolist() == pytest.approx([5.0, 5.0])
-    assert confirmation_remarks(table) == ["the run for discontinuous flow is found continuous"]
+    assert table["plain_mm3_per_m"].tolist() == pytest.approx([5.0] * 4)
+    said = confirmation_remarks(table)
+    assert said == [f"the run {row} for discontinuous flow is found continuous" for row in rows[2:]]
 
 
 def test_another_fidelity_confirms_nothing(predictions):
