@@ -24,7 +24,7 @@ def log_likelihood_variance(predicted: Predictions, measured: Mapping[str, Measu
     mean_log, square_log = 0.0, 0.0
     for name, (mean, variance) in predicted.items():
         if name in measured:
-            value, noise = measured[name].value, measured[name].deviation ** 2
+            value, noise = measured[name].value, measured[name].variance
             mean_log = mean_log + log_normal(value, mean, noise + variance)
             square_log = square_log + log_normal(value, mean, noise / 2.0 + variance)
             square_log = square_log - np.log(2.0 * np.sqrt(np.pi * noise))
@@ -59,13 +59,13 @@ def spread_over(points: np.ndarray, first: int, inside: np.ndarray, count: int) 
 def surrogate_share(
     weights: np.ndarray, predicted: Predictions, measured: Mapping[str, Measured], responses: Sequence[str]
 ) -> float:
-    """Return which share of the variance of prediction and measurement is the surrogate's, in the posterior's mean.
+    """Return which share of the variance of the measured response is the surrogate's, in the posterior's mean.
 
-    The largest of the given responses counts. The stopping rule: enough when it is at most `Problem.surrogate_share`;
-    more simulations then sharpen the posterior less than the measurement blurs it.
+    The rest is that of measurement and model; the largest of the given responses counts. The stopping rule: enough when
+    it is at most `Problem.surrogate_share`; more simulations then sharpen the posterior less than these blur it.
     """
     shares = [
-        float(weights @ (variance / (variance + measured[name].deviation ** 2)))
+        float(weights @ (variance / (variance + measured[name].variance)))
         for name, (_, variance) in predicted.items()
         if name in responses and name in measured
     ]
@@ -77,8 +77,8 @@ def expected_information(
 ) -> dict[str, float]:
     """Return {response: bits} that measuring it once more is expected to tell about the parameters.
 
-    The mutual information between parameters, distributed as the posterior, and a response measured with its standard
-    deviation: 0 where all of the family give the same, 1 bit where it halves the family. Nested Monte Carlo, seeded.
+    The mutual information between parameters, distributed as the posterior, and a response measured and modelled with
+    its standard deviations: 0 where all of the family give the same, 1 bit where it halves the family. Nested Monte Carlo, seeded.
     """
     random = np.random.default_rng(seed)
     drawn = random.choice(len(weights), DRAWS, p=weights)
@@ -86,7 +86,7 @@ def expected_information(
     for name, (mean, variance) in predicted.items():
         if name not in measured:
             continue
-        spread = measured[name].deviation ** 2 + variance[drawn]
+        spread = measured[name].variance + variance[drawn]
         values = mean[drawn] + np.sqrt(spread) * random.standard_normal(DRAWS)
         logs = log_normal(values[:, None], mean[drawn][None], spread[None])
         gain = np.diag(logs) - (logsumexp(logs, axis=1) - np.log(DRAWS))

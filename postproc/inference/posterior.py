@@ -1,5 +1,14 @@
 """What measured responses say about the parameters: the posterior over points of the unit cube, and what follows.
 
+The model (in the spirit of M. C. Kennedy and A. O'Hagan, Journal of the Royal Statistical Society B 63 (2001) 425-464):
+
+    measured = simulated + discrepancy + error of the measurement
+
+Simulated is the mean over packings, known up to the surrogate's variance; the discrepancy, what the model is off by even
+with the right parameters, is normal about 0 with a standard deviation that is given per response. It is given, not found:
+there are about as many responses as parameters, and these say nothing of its size. Scales that are marginalised
+(half-normal, half-Cauchy) widen the region as much and hold the truth less often (docs/calibration_coverage.md).
+
 All functions take the posterior as weights (n,) of evenly spread points (n, p), which sum to 1.
 """
 
@@ -25,10 +34,10 @@ def posterior_weights(predicted: Predictions, measured: Mapping[str, Measured]) 
     """Return the posterior weights (n,) of points with these predictions, every point as likely before.
 
     The likelihood of a point is the product over the responses of the normal density of the measured value, with the
-    variance of the measurement and of the surrogate added.
+    variances of measurement, discrepancy and surrogate added.
     """
     logs = sum(
-        log_normal(measured[name].value, mean, measured[name].deviation ** 2 + variance)
+        log_normal(measured[name].value, mean, measured[name].variance + variance)
         for name, (mean, variance) in predicted.items()
         if name in measured
     )
@@ -67,11 +76,11 @@ def interval(values: np.ndarray, weights: np.ndarray, share: float = FAMILY_SHAR
 def distance_from(weights: np.ndarray, predicted: Predictions, measured: Mapping[str, Measured], index: int) -> dict:
     """Return how far a point is from what was measured, and from the family.
 
-    For each response its deviation over the standard deviation of measurement and surrogate; and the share of the
-    posterior in points that are denser than it: below 0.95 it belongs to the family.
+    For each response its deviation over the standard deviation of measurement, model and surrogate; and the share of
+    the posterior in points that are denser than it: below 0.95 it belongs to the family.
     """
     deviations = {
-        name: float((mean[index] - measured[name].value) / np.sqrt(measured[name].deviation ** 2 + variance[index]))
+        name: float((mean[index] - measured[name].value) / np.sqrt(measured[name].variance + variance[index]))
         for name, (mean, variance) in predicted.items()
         if name in measured
     }

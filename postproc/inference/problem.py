@@ -19,12 +19,26 @@ class Parameter:
     high: float
 
 
+MODEL_DISCREPANCY = 2.0  # -, of the model over the deviation of a measurement, where nothing is known
+
+
 @dataclass(frozen=True)
 class Measured:
-    """A measured response and its standard uncertainty, in the unit of the simulated one."""
+    """A measured response, its standard uncertainty, and that of the model, in the unit of the simulated one.
+
+    discrepancy: standard deviation of what the model is off by even with the right parameters; None for
+    MODEL_DISCREPANCY deviations, 0 for a model that is right
+    """
 
     value: float
     deviation: float
+    discrepancy: float | None = None
+
+    @property
+    def variance(self) -> float:
+        """Variance of the measured about the simulated response: of the measurement and of the model, independent."""
+        unknown = self.discrepancy is None
+        return self.deviation**2 + (MODEL_DISCREPANCY * self.deviation if unknown else self.discrepancy) ** 2
 
 
 @dataclass(frozen=True)

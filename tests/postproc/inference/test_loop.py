@@ -105,9 +105,9 @@ def test_it_stops_when_the_measurement_is_what_blurs():
     """The stopping rule: with a coarse measurement the initial simulations are enough, with a fine one all are used."""
     tests = (Experiment("box", ("angle",), 8, 12),)
     coarse = problem(2, tests=tests)
-    coarse = Problem(coarse.parameters, tests, {"angle": Measured(coarse.measured["angle"].value, 5.0)}, seed=2)
+    coarse = Problem(coarse.parameters, tests, {"angle": Measured(coarse.measured["angle"].value, 5.0, 0.0)}, seed=2)
     assert len(calibrate(coarse, simulate).simulations) == 8
-    fine = Problem(coarse.parameters, tests, {"angle": Measured(coarse.measured["angle"].value, 0.01)}, seed=2)
+    fine = Problem(coarse.parameters, tests, {"angle": Measured(coarse.measured["angle"].value, 0.01, 0.0)}, seed=2)
     assert len(calibrate(fine, simulate).simulations) == 12
 
 
@@ -160,9 +160,9 @@ def test_unit_of_a_response_does_not_matter():
 
 def test_variance_of_the_likelihood_is_that_of_draws():
     """The closed form of the acquisition rule is the variance of the likelihood over drawn responses."""
-    mean, variance, measured = np.array([34.0, 36.2]), np.array([1.5, 0.3]), Measured(36.0, 0.4)
+    mean, variance, measured = np.array([34.0, 36.2]), np.array([1.5, 0.3]), Measured(36.0, 0.3, 0.2)
     draws = mean + np.sqrt(variance) * np.random.default_rng(1).standard_normal((400_000, 2))
-    expected = np.exp(log_normal(measured.value, draws, measured.deviation**2)).var(axis=0)
+    expected = np.exp(log_normal(measured.value, draws, 0.3**2 + 0.2**2)).var(axis=0)
     found = np.exp(log_likelihood_variance({"angle": (mean, variance)}, {"angle": measured}))
     np.testing.assert_allclose(found, expected, rtol=0.02)  # of so many draws
 
@@ -178,8 +178,8 @@ def test_next_points_are_where_doubt_is_and_differ():
 
 
 def test_share_of_the_surrogate():
-    """Equal variances of surrogate and measurement make a share of one half, none makes none."""
-    weights, measured = np.full(4, 0.25), {"angle": Measured(36.0, 0.5)}
+    """A surrogate with the variance of measurement and model together has a share of one half, one without has none."""
+    weights, measured = np.full(4, 0.25), {"angle": Measured(36.0, 0.3, 0.4)}
     half = {"angle": (np.full(4, 36.0), np.full(4, 0.25))}
     assert surrogate_share(weights, half, measured, ["angle"]) == pytest.approx(0.5)
     assert surrogate_share(weights, {"angle": (np.full(4, 36.0), np.zeros(4))}, measured, ["angle"]) == 0.0
@@ -190,7 +190,7 @@ def test_information_of_a_response_that_halves_the_family():
     """A response that is the same all over the family tells nothing; one that splits it in two tells one bit."""
     weights, none = np.full(200, 1.0 / 200.0), np.zeros(200)
     predicted = {"same": (np.full(200, 36.0), none), "split": (np.repeat([30.0, 40.0], 100), none)}
-    bits = expected_information(weights, predicted, {name: Measured(36.0, 0.4) for name in predicted}, seed=1)
+    bits = expected_information(weights, predicted, {name: Measured(36.0, 0.4, 0.0) for name in predicted}, seed=1)
     assert bits["same"] == pytest.approx(0.0, abs=1e-9)
     assert bits["split"] == pytest.approx(1.0, abs=0.05)  # of 1500 draws
 
@@ -207,7 +207,7 @@ def test_recommendation_lies_in_the_family():
 def test_distance_of_a_pair():
     """A pair two deviations off is said to be so, and nearly all of the posterior is denser than it."""
     mean = np.linspace(30.0, 40.0, 501)
-    predicted, measured = {"angle": (mean, np.zeros(501))}, {"angle": Measured(35.0, 0.5)}
+    predicted, measured = {"angle": (mean, np.zeros(501))}, {"angle": Measured(35.0, 0.3, 0.4)}
     weights = posterior_weights(predicted, measured)
     away = distance_from(weights, predicted, measured, int(np.argmin(np.abs(mean - 36.0))))
     assert away["deviations"]["angle"] == pytest.approx(2.0)

@@ -36,7 +36,7 @@ def problem_of(parameters: Parameters, measured: str | Path) -> Problem:
         tests=tuple(
             Experiment(kind, RESPONSES[kind], asked["initial"][kind], asked["most"][kind]) for kind in asked["tests"]
         ),
-        measured=read_measured(measured),
+        measured=read_measured(measured, asked["model_discrepancy"]),
         parallel=asked["batch"],
         surrogate_share=asked["surrogate_share"],
         seed=asked["seed"],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -43,10 +44,18 @@ def parameter_name(parameter: str) -> str:
     return PARAMETER_NAMES.get(parameter, parameter.rpartition(".")[2].replace("_", " "))
 
 
-def read_measured(path: str) -> dict[str, Measured]:
-    """Return the measured responses of a table with the columns response, value, deviation."""
+def read_measured(path: str | Path, model_discrepancy: float) -> dict[str, Measured]:
+    """Return the measured responses of a table with the columns response, value, deviation.
+
+    model_discrepancy: -, of the model over a measurement's deviation; a column model_discrepancy, in the response's
+    unit, takes its place in the rows that have a value there
+    """
     table = pd.read_csv(path)
-    return {row.response: Measured(float(row.value), float(row.deviation)) for row in table.itertuples()}
+    given = table.get("model_discrepancy", pd.Series(np.nan, table.index)).fillna(
+        model_discrepancy * table["deviation"]
+    )
+    rows = zip(table["response"], table["value"], table["deviation"], given, strict=True)
+    return {name: Measured(float(value), float(deviation), float(own)) for name, value, deviation, own in rows}
 
 
 def response_grid(problem: Problem, known: Posterior) -> pd.DataFrame:
