@@ -115,7 +115,7 @@ def provenance(folder: Path, study: Study) -> str:
     simulations = study.case.simulation_folders(folder, [run.name for run in study.runs])
     states = [path for simulation in simulations for path in cycle_files(simulation, "state.json")]
     solver = solver_words(states[0].parent / "log.liggghts")
-    number = f"{len(simulations)} {'runs' if study.case.wears else 'simulations'} of {len(study.design_rows)} rows"
+    number = f"{len(simulations)} {'runs' if study.case.wears else 'simulations'} of {len(study.chosen_settings)} rows"
     said = f"Simulated {simulated_between(states)} with {solver}, page written by {package_version()}: {number}."
     if remarks := figure_remarks(study):
         said += f" {'; '.join(remarks)}."
@@ -150,8 +150,9 @@ def main() -> None:
     given = parser.parse_args()
     work_here()
     given.docs.mkdir(parents=True, exist_ok=True)
-    rows = pd.read_csv(given.folder / "design.csv", dtype={"row": str})["row"].unique().tolist()
-    study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, "rows": rows})
+    runs = pd.read_csv(given.folder / "design.csv", dtype={"row": str})
+    chosen = {"rows": runs["row"].unique().tolist(), "packings": int(runs["packing"].max())}
+    study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, **chosen})
     print(write_results(given.folder, given.docs, study))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -123,10 +124,11 @@ def remarks(study: Study) -> list[str]:
         lengths = sorted({f"{1000.0 * run.parameters['derived']['bed_length_m']:.0f}" for run in study.runs})
         ends = " to ".join(lengths[:: max(len(lengths) - 1, 1)])
         said.append(f"bed in a window of {ends} mm that travels with the sample")
-    layers = {run.row: run.parameters["derived"]["layers"] for run in study.runs}
+    of_settings = {study.setting_of[run.row]: run.parameters for run in study.runs}
+    layers = {setting: parameters["derived"]["layers"] for setting, parameters in of_settings.items()}
     if varies_scale(study):
         said.append(f"layers of particles in the bed: {', '.join(f'{row} {each:.1f}' for row, each in layers.items())}")
-    elif thin := {run.row: layers[run.row] for run in study.runs if run.parameters["derived"]["thin_bed"]}:
+    elif thin := {setting: layers[setting] for setting in of_settings if of_settings[setting]["derived"]["thin_bed"]}:
         rows = ", ".join(f"{row} ({each:.1f})" for row, each in thin.items())
         said.append(f"fewer than three layers of particles in the bed: {rows}")
     if larger := _beyond_bumps(study):
@@ -139,12 +141,12 @@ def remarks(study: Study) -> list[str]:
 
 
 def _beyond_bumps(study: Study) -> dict[str, tuple[float, float]]:
-    """Return {row: (particle scale, largest scale)} of patterns whose bumps only scaled particles are larger than."""
+    """Return {setting: (particle scale, largest one)} of patterns whose bumps only scaled particles are larger than."""
     found = {}
     for run in study.runs:
         ratio, scale = run.parameters["derived"]["equivalent_size_ratio"], run.parameters["particle"]["scale"]
         if ratio is not None and ratio >= LARGEST_RATIO > ratio / scale:
-            found[run.row] = (scale, LARGEST_RATIO * scale / ratio)
+            found[study.setting_of[run.row]] = (scale, LARGEST_RATIO * scale / ratio)
     return found
 
 
@@ -171,6 +173,7 @@ def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than on a machine, besides scale, wear and comparison."""
     settings = study["settings"]
+    packings = range_text(list(Counter(study["told"]["replicates"].values()).values()))
     return [
         ("Particles", _particles(study)),
         *_sampling(study),
@@ -180,10 +183,9 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             "worn and its wear is not counted, but it carries part of the bed: forces include it, wear does not.",
         ),
         (
-            "One packing",
-            f"Each bed is one random packing (seed {settings['bed']['seed']}), periodic across the travel"
-            f"{ALONG.get(settings['bed']['ends'], '')}. "
-            "Runs of equal bed share it. Ranges in the tables are over the cycles of one run, not over repetitions.",
+            "Random packings",
+            f"Beds of each setting: {packings}. They differ in their seed alone, and are periodic across the travel"
+            f"{ALONG.get(settings['bed']['ends'], '')}. Runs of equal bed share it.",
         ),
     ]
 
