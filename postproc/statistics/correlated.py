@@ -16,18 +16,20 @@ How often the intervals miss, by simulation: benchmarks/series_rates.py.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from scipy import special, stats
 
-from bulkwear.postproc.statistics.intervals import Estimate
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
 
 LARGEST_CORRELATION = 0.98  # -, of neighbours
 NODES = 16  # of the correlation, between 0 and its largest
 MATCHED = (0.90, 0.95)  # -, two-sided confidences at which error and freedom are those of the mixture
 ROUNDING = 1e-12  # -, of the sum of squares: what is left below it has no scatter
+REFINEMENTS, BRACKETS = 3, 16  # of quantiles
 SPARE = 2  # degrees of freedom that must be left
 
 
@@ -58,6 +60,32 @@ class CorrelatedFit:
         """
         shares = np.einsum("i,mij,j->m", contrast, self.covariances, contrast) + further
         return _as_t(self.coefficients @ contrast + offset, np.sqrt(self.variances * shares), self)
+
+    def ratio(self, upper: np.ndarray, lower: np.ndarray) -> Estimate:
+        """Return upper . coefficients over lower . coefficients, its error to first order; unknown where that is 0."""
+        below = self.mean(lower)
+        if not below:
+            return Estimate(math.nan, math.nan, 0, 1)
+        found = self.mean(upper) / below
+        error = self.of((upper - found * lower) / below)
+        return Estimate(found, error.error, error.freedom, 1)
+
+    def deviation(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
+        """Return the interval of the standard deviation of a value; both ends 0 where nothing is left of the series."""
+        if not self.variances.max() > 0.0:
+            return 0.0, 0.0
+        squares = self.variances * self.freedom
+        tails = 0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence
+        least, most = (
+            np.sqrt(squares.min() / special.chdtri(self.freedom, tails[0])),
+            np.sqrt(squares.max() / special.chdtri(self.freedom, tails[1])),
+        )
+
+        def below(tried: np.ndarray) -> np.ndarray:
+            return special.chdtrc(self.freedom, squares / tried[:, None] ** 2) @ self.weights
+
+        low, high = (_where(below, share, float(least), float(most)) for share in tails)
+        return low, high
 
 
 def correlated_fit(places: np.ndarray, values: np.ndarray, columns: np.ndarray, sizes: np.ndarray | None = None):
@@ -101,7 +129,7 @@ def _as_t(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> Estimate
     value = float(fit.weights @ means)
     if not errors.max() > 0.0:
         return Estimate(value, 0.0, float(fit.freedom), 1)
-    nearer, farther = (_reach(means - value, errors, fit, share) for share in MATCHED)
+    nearer, farther = _reaches(means - value, errors, fit)
     freedoms, ratios, quantiles = _ratio_table()
     freedom = float(np.exp(np.interp(farther / nearer, ratios[::-1], np.log(freedoms)[::-1])))
     return Estimate(
@@ -109,16 +137,25 @@ def _as_t(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> Estimate
     )
 
 
-def _reach(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit, share: float) -> float:
-    """Return how far from 0 a share of a mixture reaches to both sides, by bisection."""
-    low, high = 0.0, float(np.abs(means).max() + errors.max() * stats.t.ppf(0.5 + 0.5 * share, fit.freedom))
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        inside = special.stdtr(fit.freedom, (middle - means) / errors) - special.stdtr(
-            fit.freedom, (-middle - means) / errors
-        )
-        low, high = (middle, high) if fit.weights @ inside < share else (low, middle)
-    return high
+def _reaches(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> list[float]:
+    """Return how far from 0 the shares MATCHED of a mixture reach to both sides."""
+
+    def inside(tried: np.ndarray) -> np.ndarray:
+        outer, inner = (special.stdtr(fit.freedom, (end[:, None] - means) / errors) for end in (tried, -tried))
+        return (outer - inner) @ fit.weights
+
+    most = float(np.abs(means).max() + errors.max() * stats.t.ppf(0.5 + 0.5 * MATCHED[-1], fit.freedom))
+    return [_where(inside, share, 0.0, most) for share in MATCHED]
+
+
+def _where(rising: Callable[[np.ndarray], np.ndarray], share: float, low: float, high: float) -> float:
+    """Return where a function that rises reaches a share between two places: brackets made finer, then a line."""
+    for _ in range(REFINEMENTS):
+        tried = np.linspace(low, high, BRACKETS + 1)
+        found = rising(tried)
+        place = int(np.clip(np.searchsorted(found, share), 1, BRACKETS))
+        low, high = tried[place - 1], tried[place]
+    return float(np.interp(share, found[place - 1 : place + 1], (low, high)))
 
 
 @cache

@@ -136,12 +136,8 @@ def _of_one(one: pd.DataFrame) -> RateTrend:
     fit = _fit(one, order=1)
     if fit is None:
         return RateTrend(*(Estimate(each, math.nan, 0, 1) for each in (rate, slope, change)), len(one))
-    span, mean = _span(one), fit.mean(np.array([1.0, 0.0]))
-    found = fit.mean(np.array([0.0, 1.0])) * span / mean if mean else math.nan
-    slope, rate = fit.of(np.array([0.0, 1.0])), fit.of(np.array([1.0, 0.0]))
-    # error of a ratio to first order: d(slope span / mean) = (span d slope - change d mean) / mean
-    ratio = fit.of(np.array([-found, span]) / mean) if mean else Estimate(math.nan, math.nan, 0, 1)
-    return RateTrend(rate, slope, Estimate(found, ratio.error, ratio.freedom, 1), len(one))
+    mean, slope = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    return RateTrend(fit.of(mean), fit.of(slope), fit.ratio(_span(one) * slope, mean), len(one))
 
 
 def _columns(one: pd.DataFrame, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from bulkwear.postproc.statistics.correlated import correlated_fit
+from bulkwear.postproc.statistics.intervals import Estimate
+
 FEWEST_VALUES = 6  # in a series: fewer show neither a transient nor a fluctuation
 LARGEST_START = 0.5  # -, of the series: what is cut off as transient
 LARGEST_DRIFT = 0.05  # -, of the mean: what a steady window may rise or fall from its start to its end
-SURE = 2.0  # standard errors: a drift below is not told from fluctuation
+ERROR_RATE = 0.05  # -, of windows that drift by more and are called steady, and of those by less called drifting
+STEADY, DRIFTING, UNSAID = "steady", "drifting", "cannot be said"
+BELOW, ABOVE = "below", "above"
 
 
 @dataclass(frozen=True)
 class Window:
     """A window of travel and what a measure does in it.
 
-    start, end: of the travel; mean, deviation: of the measure, in its unit
-    drift: -, rise of its straight line from start to end over the mean
-    values: how many there are; steady: whether the criterion holds
+    start, end: of the travel; mean, deviation: of the measure, in its unit; values: how many there are
+    drift, drift_low, drift_high: -, rise of its straight line from start to end over the mean, and its interval
+    variation_low, variation_high: -, interval of the deviation over the mean
+    answer: STEADY, DRIFTING or UNSAID
+    Intervals are at 95 %, for values that are correlated with their neighbours, see `correlated`.
     """
 
     start: float
@@ -27,8 +35,23 @@ class Window:
     mean: float
     deviation: float
     drift: float
+    drift_low: float
+    drift_high: float
+    variation_low: float
+    variation_high: float
     values: int
-    steady: bool
+    answer: str
+
+    @property
+    def steady(self) -> bool:
+        """Return whether the window is shown to be steady."""
+        return self.answer == STEADY
+
+    def fluctuates(self, limit: float) -> str:
+        """Return whether the deviation over the mean is BELOW or ABOVE a limit (-) with all of its interval."""
+        if self.variation_high < limit:
+            return BELOW
+        return ABOVE if self.variation_low > limit else UNSAID
 
 
 def steady_window(travel: np.ndarray, measure: np.ndarray) -> Window:
@@ -36,7 +59,8 @@ def steady_window(travel: np.ndarray, measure: np.ndarray) -> Window:
 
     The start is the one that makes the mean of the rest surest: the least of the variance of the rest over its number,
     among the first half of the series (marginal standard error rule, K. P. White, Simulation 69, 1997). The window is
-    steady if its straight line drifts by at most LARGEST_DRIFT of the mean, or by less than SURE standard errors.
+    steady if its drift lies within LARGEST_DRIFT to both sides for sure (two one-sided tests at ERROR_RATE), drifting
+    if it lies beyond for sure, and nothing can be said else: of a long window with little scatter there is an answer.
 
     travel: (k,) increasing, at even distances; measure: (k,). NaN values are left out.
     Raises ValueError for fewer than FEWEST_VALUES values.
@@ -70,7 +94,7 @@ def window_between(travel: np.ndarray, measure: np.ndarray, start: float, end: f
 
 
 def common_start(windows: Iterable[Window]) -> float:
-    """Return where all measures are steady: the latest start; NaN when one of them is not, or there is none."""
+    """Return where all measures are steady: the latest start; NaN where one is not shown to be, or there is none."""
     found = list(windows)
     if not found or not all(window.steady for window in found):
         return float("nan")
@@ -78,20 +102,41 @@ def common_start(windows: Iterable[Window]) -> float:
 
 
 def _window(travel: np.ndarray, measure: np.ndarray) -> Window:
-    mean, count = float(measure.mean()), len(measure)
-    away = travel - travel.mean()
-    spread = float(away @ away)
-    slope = float(away @ (measure - mean)) / spread
-    rest = measure - mean - slope * away
-    error = np.sqrt(float(rest @ rest) / max(count - 2, 1) / spread)
-    rise = slope * (travel[-1] - travel[0])
-    steady = abs(rise) <= LARGEST_DRIFT * abs(mean) or abs(slope) <= SURE * error
+    mean = float(measure.mean())
+    drift = _drift(travel, measure)
+    level = correlated_fit(travel, measure, np.ones((len(travel), 1)))
+    deviation = (math.nan, math.nan) if level is None or not mean else level.deviation()
+    low, high = drift.interval()
     return Window(
         start=float(travel[0]),
         end=float(travel[-1]),
         mean=mean,
         deviation=float(measure.std(ddof=1)),
-        drift=rise / mean if mean else float("nan"),
-        values=count,
-        steady=bool(steady),
+        drift=drift.value,
+        drift_low=low,
+        drift_high=high,
+        variation_low=deviation[0] / abs(mean) if mean else math.nan,
+        variation_high=deviation[1] / abs(mean) if mean else math.nan,
+        values=len(measure),
+        answer=_answer(drift),
     )
+
+
+def _drift(travel: np.ndarray, measure: np.ndarray) -> Estimate:
+    """Return the rise of the straight line over the mean (-); unknown of fewer values than a line and SPARE need."""
+    away = travel - 0.5 * (travel[0] + travel[-1])
+    fit = correlated_fit(travel, measure, np.column_stack([np.ones(len(away)), away]))
+    span, level = float(travel[-1] - travel[0]), float(measure.mean())
+    if fit is None or not level:
+        slope = float(np.polynomial.polynomial.polyfit(away, measure, 1)[1])
+        return Estimate(slope * span / level if level else math.nan, math.nan, 0, 1)
+    return fit.ratio(np.array([0.0, span]), np.array([1.0, 0.0]))
+
+
+def _answer(drift: Estimate) -> str:
+    if not drift.known:
+        return UNSAID
+    low, high = drift.bounds(ERROR_RATE)
+    if low >= -LARGEST_DRIFT and high <= LARGEST_DRIFT:
+        return STEADY
+    return DRIFTING if low > LARGEST_DRIFT or high < -LARGEST_DRIFT else UNSAID

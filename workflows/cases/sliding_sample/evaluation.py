@@ -5,12 +5,19 @@ steady, beside the window of the source.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields
 
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.statistics.steady import FEWEST_VALUES, Window, common_start, steady_window, window_between
+from bulkwear.postproc.statistics.steady import (
+    FEWEST_VALUES,
+    UNSAID,
+    Window,
+    common_start,
+    steady_window,
+    window_between,
+)
 
 RIDES_ALONG = 0.85  # -, relative velocity: half-way from the continuous runs' 70 % to 100 % (Yan 2022, section 3.5.1)
 HEAPED = 1.0  # -, surcharge above which particles have accumulated over the sample
@@ -100,9 +107,9 @@ def steady_table(along: pd.DataFrame, gradients: pd.DataFrame, window: tuple[flo
     along: run, row, surface, travel_mm and relative_velocity_percent; gradients: with relative_gradient
     window: of the source, in mm of the study's travel
 
-    Columns run, row, surface, measure, start_mm, end_mm, mean, deviation, drift (-), values and steady;
-    common_start_mm, from where on all measures of the run are steady, NaN if one is not; published_mean and
-    published_deviation in the source's window, NaN where the travel does not fill it.
+    Columns run, row, surface, measure; those of `steady.Window`, start and end in mm; steady, whether the answer is
+    that it is; common_start_mm, from where on all measures of the run are steady, NaN if one is not shown to be;
+    published_mean and published_deviation in the source's window, NaN where the travel does not fill it.
     """
     lines = []
     tables = [
@@ -119,8 +126,8 @@ def steady_table(along: pd.DataFrame, gradients: pd.DataFrame, window: tuple[flo
 def _line(travel: np.ndarray, measure: np.ndarray, window: tuple[float, float]) -> dict[str, object]:
     found = steady_window(travel, measure) if np.isfinite(measure).sum() >= FEWEST_VALUES else None
     beside = window_between(travel, measure, *window) if len(travel) else None
-    line = dict.fromkeys(("start", "end", "mean", "deviation", "drift"), float("nan")) | {"values": len(measure)}
-    line |= {"steady": False} | (asdict(found) if found else {})
+    line = {each.name: float("nan") for each in fields(Window)} | {"values": len(measure), "answer": UNSAID}
+    line |= (asdict(found) if found else {}) | {"steady": found is not None and found.steady}
     return {
         **{f"{name}_mm" if name in ("start", "end") else name: value for name, value in line.items()},
         "published_mean": beside.mean if beside else float("nan"),

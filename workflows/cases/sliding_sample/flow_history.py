@@ -22,7 +22,7 @@ from bulkwear.postproc.flow.moving_bins import (
 )
 from bulkwear.postproc.flow.spin import Segments, SpinSums, mean_spin
 from bulkwear.postproc.readers.cycle_folders import FLOW_TABLE, PACKING, SPIN_TABLE, cycle_files
-from bulkwear.postproc.statistics.steady import FEWEST_VALUES, steady_window
+from bulkwear.postproc.statistics.steady import DRIFTING, FEWEST_VALUES, STEADY, UNSAID, steady_window
 from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
 from bulkwear.workflows.cases.sliding_sample.evaluation import regime_table
 
@@ -142,20 +142,23 @@ def along_travel(bins: pd.DataFrame, run: RunFlow, particles: int) -> pd.DataFra
     return velocity.merge(surcharge_history(bins, undisturbed), on="travel_m", how="left")
 
 
-def settled_value(travel: np.ndarray, measure: np.ndarray) -> tuple[float, bool]:
-    """Return the mean of the steady window and whether it is steady; of too few values their mean, not steady."""
+def settled_value(travel: np.ndarray, measure: np.ndarray) -> tuple[float, str]:
+    """Return the mean of the window in which a measure is steadiest and what is said of it, see `steady.Window`.
+
+    Of too few values it is their mean, and nothing can be said.
+    """
     if np.isfinite(measure).sum() < FEWEST_VALUES:
-        return (float(np.nanmean(measure)) if np.isfinite(measure).any() else float("nan")), False
+        return (float(np.nanmean(measure)) if np.isfinite(measure).any() else float("nan")), UNSAID
     window = steady_window(travel, measure)
-    return window.mean, window.steady
+    return window.mean, window.answer
 
 
 def steady_start(travel: np.ndarray, measure: np.ndarray) -> float:
-    """Return from where on a measure is steady (its unit of travel), 0 where it is not: then all of it is used."""
+    """Return where the window of a measure starts (its unit of travel), 0 where it drifts: then all of it is used."""
     if np.isfinite(measure).sum() < FEWEST_VALUES:
         return 0.0
     window = steady_window(travel, measure)
-    return window.start if window.steady else 0.0
+    return 0.0 if window.answer == DRIFTING else window.start
 
 
 def row_profiles(
@@ -165,7 +168,7 @@ def row_profiles(
 
     bins: of all runs, as from `flow_tables`; along: histories, likewise; velocities: of the beds (m/s) by run
     Columns run, row, surface, window_start_mm, window_end_mm, then those of `moving_bins.velocity_profile`. The window
-    is that in which the relative velocity is steady, or else all. Bins of fewer than LEAST_PARTICLES are left out.
+    is that of the relative velocity, all where that drifts. Bins of fewer than LEAST_PARTICLES are left out.
     """
     tables = []
     for row in rows:
@@ -181,14 +184,18 @@ def row_profiles(
 
 
 def study_regimes(histories: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Return run, relative_velocity, surcharge, regime and steady of every run; histories: as from `along_travel`."""
+    """Return run, relative_velocity, surcharge, regime and answer of every run; histories: as from `along_travel`.
+
+    answer: what is said of the relative velocity, see `steady.Window`; steady: whether that is that it is.
+    """
     found = {
         run: [settled_value(table["travel_m"], table[name]) for name in ("relative_velocity", "surcharge")]
         for run, table in histories.items()
     }
     velocity = {run: values[0][0] for run, values in found.items()}
     surcharge = {run: values[1][0] for run, values in found.items()}
-    return regime_table(velocity, surcharge).assign(steady=[values[0][1] for values in found.values()])
+    answers = [values[0][1] for values in found.values()]
+    return regime_table(velocity, surcharge).assign(answer=answers, steady=[each == STEADY for each in answers])
 
 
 def undisturbed_particles(folder: Path) -> int:

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.flow.moving_bins import bin_history
+from bulkwear.postproc.statistics.steady import UNSAID
 from bulkwear.workflows.cases.sliding_sample.flow_history import (
     INTERVAL,
     RunFlow,
@@ -159,10 +160,10 @@ def test_the_undisturbed_bed_of_a_window_is_its_packing(tmp_path):
 
 def test_few_values_are_not_called_steady():
     """Of fewer values than a steady window needs there is a mean, and no claim."""
-    assert settled_value(np.arange(3.0), np.array([1.0, 2.0, 3.0])) == (2.0, False)
-    value, steady = settled_value(np.arange(3.0), np.full(3, np.nan))
+    assert settled_value(np.arange(3.0), np.array([1.0, 2.0, 3.0])) == (2.0, UNSAID)
+    value, answer = settled_value(np.arange(3.0), np.full(3, np.nan))
     assert np.isnan(value)
-    assert not steady
+    assert answer == UNSAID
 
 
 def test_riding_along_in_a_heap_is_discontinuous():
