@@ -51,7 +51,7 @@ def package_cases(case: Case) -> tuple[str, ...]:
 def code_of_cases(cases: tuple[str, ...]) -> dict[str, Any]:
     """Return `simulating_code` of the package's own cases by their names."""
     files = [file for found in part_files(cases).values() for file in found]
-    commit = commit_of(PACKAGE)
+    commit = package_commit()
     return {
         "version": package_version(),
         "wear_version": WEAR_VERSION,
@@ -92,11 +92,14 @@ def package_version() -> str | None:
         return None
 
 
-def commit_of(repository: Path) -> str | None:
-    """Return the commit of a folder that is a git repository's top, None of another one."""
-    if not (repository / ".git").exists():
-        return None
-    return git(repository, "rev-parse", f"--short={COMMIT_LETTERS}", "HEAD") or None
+def package_commit() -> str | None:
+    """Return the commit of the package; None where it is installed, and then lies in a repository of something else."""
+    return commit_of(PACKAGE) if (PACKAGE / ".git").exists() else None
+
+
+def commit_of(folder: Path) -> str | None:
+    """Return the commit of the git repository that a folder is in, None where there is none."""
+    return git(folder, "rev-parse", f"--short={COMMIT_LETTERS}", "HEAD") or None
 
 
 def git(repository: Path, *words: str | Iterable[str]) -> str | None:

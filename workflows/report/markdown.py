@@ -22,9 +22,11 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.workflows.config.design import Study, load_study
 from bulkwear.workflows.engine.project import work_here
+from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.report.page import cost_totals, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_of, page_parameters
 from bulkwear.workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Table, Text, shown
+from bulkwear.workflows.report.simulated import said_of, versions_of, warnings_of
 from bulkwear.workflows.report.text import number
 
 SECONDS_PER_MINUTE = 60.0
@@ -111,15 +113,25 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
 
 
 def provenance(folder: Path, study: Study) -> str:
-    """Return when, by which versions and at which sizes the study was simulated."""
+    """Return when, by which versions and at which sizes the study was simulated, and what of the code is newer."""
     simulations = study.case.simulation_folders(folder, [run.name for run in study.runs])
     states = [path for simulation in simulations for path in cycle_files(simulation, "state.json")]
     solver = solver_words(states[0].parent / "log.liggghts")
     number = f"{len(simulations)} {'runs' if study.case.wears else 'simulations'} of {len(study.chosen_settings)} rows"
-    said = f"Simulated {simulated_between(states)} with {solver}, page written by {package_version()}: {number}."
+    versions = versions_of(simulations, [folder / "beds" / bed for bed in study.beds])
+    said = f"Simulated {simulated_between(states)} with {solver}, {said_of(versions)}; page written by"
+    said += f" {package_version()}: {number}."
     if remarks := figure_remarks(study):
         said += f" {'; '.join(remarks)}."
-    return f"{prose(said)}\n"
+    older = warnings_of(versions, simulating_code(study.case), package_cases(study.case))
+    return "\n".join([f"{prose(said)}\n", *map(banner, older)])
+
+
+def banner(sentence: str) -> str:
+    """Return a warning that a page's numbers are older than the code, as a block of its own."""
+    return (
+        textwrap.fill(f"**Older than the code.** {sentence}", LINE, initial_indent="> ", subsequent_indent="> ") + "\n"
+    )
 
 
 def durations(folder: Path, page: Mapping[str, Any]) -> str:

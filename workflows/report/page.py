@@ -9,7 +9,6 @@ import importlib.metadata
 import json
 import os
 import platform
-import subprocess
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
@@ -23,6 +22,8 @@ from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.engine.case import find_case
 from bulkwear.workflows.engine.project import PACKAGE, current_project
+from bulkwear.workflows.engine.provenance import commit_of, git, package_cases, package_commit, simulating_code
+from bulkwear.workflows.engine.provenance import package_version as installed_version
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.report.cost import (
     BENCHMARK_SUFFIX,
@@ -33,6 +34,7 @@ from bulkwear.workflows.report.cost import (
 )
 from bulkwear.workflows.report.page_parameters import REPORT_FOLDER, page_of
 from bulkwear.workflows.report.sections import DIGITS, Block, Table, with_all_figures
+from bulkwear.workflows.report.simulated import said_of, versions_of, warnings_of
 from bulkwear.workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 
 LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
@@ -92,6 +94,7 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "runs": run_rows(study),
         "simplified": simplifications(study, summary, page),
         "versions": versions(study, folder),
+        **simulated(study, folder),
         "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
         "decks": decks_of(study, folder, page.DECKS),
         "warnings": solver_warnings(study, folder),
@@ -234,13 +237,26 @@ def simulation_folders(study: Mapping[str, Any], folder: Path) -> list[Path]:
     return find_case(study["case"]).simulation_folders(folder, list(study["runs"]))
 
 
+def simulated(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return what the template says of the versions that simulated a study, and what of the code is newer."""
+    case = find_case(study["case"])
+    found = versions_of(simulation_folders(study, folder), [folder / "beds" / bed for bed in study["beds"]])
+    days = sorted(day for version in found for day in version.dates if day)
+    return {
+        "simulated": said_of(found),
+        "simulated_on": " to ".join(dict.fromkeys([days[0], days[-1]])) if days else "",
+        "page_by": package_version(),
+        "older": warnings_of(found, simulating_code(case), package_cases(case)),
+    }
+
+
 def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
     """Return the versions of everything that made the results."""
     log = next((log for run in simulation_folders(study, folder) for log in cycle_files(run, LOG)), None)
     said = solver_version(log) if log else None
     found = {"LIGGGHTS": said.removeprefix("Version ") if said else "not reported"}
     project = current_project()
-    found["bulkwear"] = package_version()
+    found["bulkwear, which wrote this page"] = package_version()
     if not project.is_package:
         found["this project"] = commit(project.folder)
     found["Python"] = f"{platform.python_version()} on {platform.system()} {platform.machine()}, {os.cpu_count()} cores"
@@ -254,24 +270,18 @@ def versions(study: Mapping[str, Any], folder: Path) -> dict[str, str]:
 
 def package_version() -> str:
     """Return the commit of the package, or the version that was installed."""
-    try:
-        return commit(PACKAGE) if (PACKAGE / ".git").exists() else f"version {importlib.metadata.version('bulkwear')}"
-    except importlib.metadata.PackageNotFoundError:
-        return "version not known"
+    if package_commit():
+        return commit(PACKAGE)
+    version = installed_version()
+    return f"version {version}" if version else "version not known"
 
 
 def commit(repository: Path) -> str:
     """Return the commit of a repository, and whether files differ from it; what is known where git is not there."""
-
-    def git(*words: str) -> str:
-        command = ["git", "-c", f"safe.directory={repository}", *words]
-        return subprocess.run(command, cwd=repository, capture_output=True, text=True, check=True).stdout.strip()
-
-    try:
-        changed = " with changes" if git("status", "--porcelain") else ""
-        return f"commit {git('rev-parse', '--short=12', 'HEAD')}{changed}"
-    except (OSError, subprocess.CalledProcessError):
+    found = commit_of(repository)
+    if not found:
         return "commit not known"
+    return f"commit {found}{' with changes' if git(repository, 'status', '--porcelain') else ''}"
 
 
 def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, Any]]:

@@ -25,6 +25,8 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.workflows.engine.case import Case, case_module
 from bulkwear.workflows.engine.own_code import code_of_pages
 from bulkwear.workflows.engine.project import CONFIG, current_project
+from bulkwear.workflows.engine.provenance import simulating_code
+from bulkwear.workflows.report.simulated import figure_remark, versions_of
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
@@ -215,4 +217,16 @@ def _write_figure(drawn: Any, path: str) -> None:
 
 def job_of(files: Mapping[str, Any], told: Mapping[str, Any], remarks: Sequence[str]) -> Job:
     """Return a job from what a rule has."""
-    return Job(SimpleNamespace(**files), SimpleNamespace(**told), list(remarks))
+    return Job(SimpleNamespace(**files), SimpleNamespace(**told), list(filter(None, remarks)))
+
+
+def simulated_remark(case: Case, folder: Path, runs: Sequence[str]) -> str:
+    """Return what each figure of a study says of the versions that simulated its runs so far, "" where there are none.
+
+    folder: results/<study>
+    """
+    try:
+        found = versions_of(case.simulation_folders(folder, runs))
+    except FileNotFoundError:  # a case that lists its simulations has none yet
+        found = []
+    return figure_remark(found, simulating_code(case))

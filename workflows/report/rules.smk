@@ -23,6 +23,7 @@ for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
             product=PRODUCT.name,
             told=told_of(PRODUCT),
             remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
+            runs=lambda wildcards: [run.name for run in study_of(wildcards).runs],
             title=PRODUCT.title,
             caption=PRODUCT.caption,
         message:

@@ -10,7 +10,7 @@ from tests.support.finished_runs import leave_runs
 
 def test_durations_stand_beside_their_forecast(tmp_path):
     """Wall time is that of all starts, measured over forecast that of the processor."""
-    study = load_study("screening", overrides={"rows": ["R5", "R9"]})
+    study = load_study("screening", overrides={"rows": ["R5", "R9"], "packings": 1})
     leave_runs(study, tmp_path)
     said = durations(tmp_path, page_parameters(study))
     assert "| worn run R5 convex | 1 000 | 6 000 | 2.5 | 1 | 0.833 | 1.2 |" in said.replace("\u202f", " ")
@@ -19,7 +19,7 @@ def test_durations_stand_beside_their_forecast(tmp_path):
 
 def test_provenance_names_solver_rows_and_remarks(tmp_path):
     """The solver's version, how many of the design's rows were run, and what is reduced."""
-    study = load_study("screening", overrides={"rows": ["R5", "R9"]})
+    study = load_study("screening", overrides={"rows": ["R5", "R9"], "packings": 1})
     leave_runs(study, tmp_path)
     said = " ".join(provenance(tmp_path, study).split())
     assert "LIGGGHTS-PUBLIC 3.8.0" in said and "4 runs of 2 rows" in said
