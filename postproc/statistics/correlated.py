@@ -38,7 +38,7 @@ class CorrelatedFit:
     """A regression at each correlation. m correlations, p coefficients.
 
     correlations, weights: (m,), the weights sum to 1; coefficients: (m, p); covariances: (m, p, p) of the coefficients
-    over the variance; variances: (m,) of a value; freedom: values less coefficients; distance: mean one of neighbours
+    over the variance; variances: (m,) of a value; freedom: values less coefficients
     """
 
     correlations: np.ndarray
@@ -47,7 +47,6 @@ class CorrelatedFit:
     covariances: np.ndarray
     variances: np.ndarray
     freedom: int
-    distance: float
 
     def mean(self, contrast: np.ndarray) -> float:
         """Return contrast (p,) . coefficients."""
@@ -88,7 +87,9 @@ class CorrelatedFit:
         return low, high
 
 
-def correlated_fit(places: np.ndarray, values: np.ndarray, columns: np.ndarray, sizes: np.ndarray | None = None):
+def correlated_fit(
+    places: np.ndarray, values: np.ndarray, columns: np.ndarray, sizes: np.ndarray | None = None
+) -> CorrelatedFit | None:
     """Return the `CorrelatedFit` of a series, or None for fewer values than columns and SPARE.
 
     places: (k,) increasing; values: (k,); columns: (k, p) of the regression
@@ -98,16 +99,7 @@ def correlated_fit(places: np.ndarray, values: np.ndarray, columns: np.ndarray, 
     if count < terms + SPARE:
         return None
     scale = np.ones(count) if sizes is None else np.sqrt(sizes / np.mean(sizes))
-    distances = np.diff(places)
-    distance = float(distances.mean())
-    angles = math.asin(LARGEST_CORRELATION) * (np.arange(NODES) + 0.5) / NODES
-    correlations = np.sin(angles)  # even steps of the angle: the reference prior
-    next_one = correlations[:, None] ** (distances / distance)  # (m, k - 1)
-    fresh = np.sqrt(1.0 - next_one**2)
-    table = np.column_stack([columns, values]) * scale[:, None]
-    white = np.empty((NODES, *table.shape))
-    white[:, 0] = table[0]
-    white[:, 1:] = (table[None, 1:] - next_one[..., None] * table[None, :-1]) / fresh[..., None]
+    correlations, white, log = whitened(places, np.column_stack([columns, values]) * scale[:, None])
     design, response = white[..., :-1], white[..., -1:]
     normal = np.swapaxes(design, 1, 2) @ design
     covariances = np.linalg.inv(normal)
@@ -118,10 +110,31 @@ def correlated_fit(places: np.ndarray, values: np.ndarray, columns: np.ndarray, 
     if squares.min() <= ROUNDING * float((values**2).sum()):
         weights, squares = np.full(NODES, 1.0 / NODES), np.zeros(NODES)
     else:
-        log = -np.log(fresh).sum(axis=1) - 0.5 * np.linalg.slogdet(normal)[1] - 0.5 * freedom * np.log(squares)
-        weights = np.exp(log - log.max())
-        weights /= weights.sum()
-    return CorrelatedFit(correlations, weights, coefficients, covariances, squares / freedom, freedom, distance)
+        weights = weights_of(log - 0.5 * np.linalg.slogdet(normal)[1] - 0.5 * freedom * np.log(squares))
+    return CorrelatedFit(correlations, weights, coefficients, covariances, squares / freedom, freedom)
+
+
+def whitened(places: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the correlations (m,) of neighbours, a table (k, p) made white by each (m, k, p), and what making it so
+    adds to the logarithm of the likelihood (m,).
+
+    places: (k,) increasing, of the rows. The correlations have the same prior weight each.
+    """
+    distances = np.diff(places)
+    angles = math.asin(LARGEST_CORRELATION) * (np.arange(NODES) + 0.5) / NODES
+    correlations = np.sin(angles)  # even steps of the angle: the reference prior
+    next_one = correlations[:, None] ** (distances / distances.mean())
+    fresh = np.sqrt(1.0 - next_one**2)
+    white = np.empty((NODES, *table.shape))
+    white[:, 0] = table[0]
+    white[:, 1:] = (table[None, 1:] - next_one[..., None] * table[None, :-1]) / fresh[..., None]
+    return correlations, white, -np.log(fresh).sum(axis=1)
+
+
+def weights_of(log_likelihood: np.ndarray) -> np.ndarray:
+    """Return the weights (m,) of the correlations, which sum to 1."""
+    weights = np.exp(log_likelihood - log_likelihood.max())
+    return weights / weights.sum()
 
 
 def _as_t(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> Estimate:
