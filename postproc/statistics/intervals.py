@@ -86,18 +86,53 @@ class Estimate:
     def text(self, digits: int = 3, unit: str = "", factor: float = 1.0) -> str:
         """Return the mean with its interval and number of packings, or that its scatter is unknown.
 
-        digits: significant ones of the mean; the ends of the interval have the same decimals; factor: of display units
+        digits: significant ones of the mean, or of the interval's reach where that is larger; the ends of the interval
+        have the same decimals; factor: of display units
         """
         ending = f" {unit}" if unit else ""
         if not math.isfinite(self.value):
             return "no value"
-        decimals = _decimals(factor * self.value, digits)
+        low, high = (factor * end for end in self.interval())
+        decimals = _decimals(np.nanmax([abs(factor * self.value), 0.5 * abs(high - low)]), digits)
         mean = f"{factor * self.value:.{decimals}f}{ending}"
         if not self.known:
             return f"{mean} ({UNKNOWN})" if self.packings < 2 else f"{mean} (scatter unknown)"
-        low, high = (factor * end for end in self.interval())
         of = f"{self.packings} packings" if self.packings > 1 else "of this run"
         return f"{mean} ({100.0 * CONFIDENCE:.0f} % interval {low:.{decimals}f} to {high:.{decimals}f}, {of})"
+
+
+@dataclass(frozen=True)
+class Ends:
+    """An interval at CONFIDENCE that no mean over packings gives, as that of a crossing; it is judged like an estimate.
+
+    value: what it is about; low, high: its ends, NaN where the scatter is unknown; packings: behind each point of it
+    """
+
+    value: float
+    low: float
+    high: float
+    packings: int
+
+    @property
+    def known(self) -> bool:
+        """Return whether there is an interval."""
+        return not (math.isnan(self.low) or math.isnan(self.high))
+
+    def bounds(self, error_rate: float) -> tuple[float, float]:
+        """Return the ends. Raises ValueError for an error rate that they do not keep."""
+        if error_rate < 0.5 * (1.0 - CONFIDENCE):
+            raise ValueError(f"found the error rate {error_rate:g}, allowed is {0.5 * (1.0 - CONFIDENCE):g} or more")
+        return self.low, self.high
+
+    def text(self, digits: int = 3, unit: str = "") -> str:
+        """Return the value with its interval, or that its scatter is unknown."""
+        ending = f" {unit}" if unit else ""
+        if not self.known:
+            return f"{self.value:.{digits}g}{ending} ({UNKNOWN if self.packings == 1 else 'no interval'})"
+        return (
+            f"{self.value:.{digits}g}{ending}"
+            f" ({100.0 * CONFIDENCE:.0f} % interval {self.low:.{digits}g} to {self.high:.{digits}g})"
+        )
 
 
 def _decimals(value: float, digits: int) -> int:

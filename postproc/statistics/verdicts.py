@@ -22,7 +22,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate
+from bulkwear.postproc.statistics.intervals import UNKNOWN, Ends, Estimate
 
 AGREES, CONTRADICTS = "agrees", "contradicts"
 OTHER_SIZE, UNSAID = "same direction, other size", "cannot be said"
@@ -63,6 +63,20 @@ class Claim:
             return self.magnitude[0] - self.margin, self.magnitude[1] + self.margin
         return (self.reference, math.inf) if self.direction == "above" else (-math.inf, self.reference)
 
+    @property
+    def words(self) -> str:
+        """Return what is claimed: side, values that agree with the published one among them, range."""
+        side = f"{self.direction} {self.reference:g}" if self.direction else ""
+        (low, high), size, reach = self.region, "", ""
+        if self.magnitude is not None:
+            least, most = self.magnitude
+            published = f"{least:g}" if least == most else f"{least:g} to {most:g}"
+            size = f"{low:g} to {high:g} (published {published})"
+        if self.reach is not None:
+            reach = f"for {self.reach[0]:g} to {self.reach[1]:g} {self.reach_unit}"
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        return ", ".join(filter(None, (" and ".join(filter(None, (side, size))) + unit, reach)))
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -79,7 +93,7 @@ class Verdict:
 
 def judged(
     claim: Claim,
-    found: Estimate | Mapping[str, Estimate],
+    found: Estimate | Ends | Mapping[str, Estimate],
     words: str = "",
     covers: tuple[float, float] | None = None,
 ) -> Verdict:
@@ -90,7 +104,7 @@ def judged(
     covers: (low, high) of the range that the runs cover; None where the claim has no range. Outside of what is claimed
         nothing can be said.
     """
-    named = {"": found} if isinstance(found, Estimate) else dict(found)
+    named = {"": found} if isinstance(found, Estimate | Ends) else dict(found)
     words = words or "; ".join(f"{name}: {told}" if name else told for name, told in _told(named, claim.unit).items())
     if reason := _no_reach(claim, covers) or _no_interval(named):
         return Verdict(words, UNSAID, reason)

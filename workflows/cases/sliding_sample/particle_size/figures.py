@@ -47,13 +47,19 @@ def below(folder: str) -> OfStudy:
 @size_figure(
     "Wear against particle scale",
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
-    tables={"lines": "particle_size/lines.csv", "critical": "particle_size/critical_scale.csv"},
+    tables={
+        "lines": "particle_size/lines.csv",
+        "critical": "particle_size/critical_scale.csv",
+        "forms": "particle_size/critical_scale_forms.csv",
+        "ratios": "particle_size/wear_over_plain.csv",
+    },
     caption="""
     Worn volume of the plain sample, of the patterned sample, its base and its pattern, over that of the plain sample
-    with the smallest particles simulated. Full lines: least squares, with one standard error. Dotted: the source's
-    lines (Yan 2022, Eq 4.14 to 4.16, bumps as their difference), which are relative to scale 1. Dashed with grey: the
-    scale at which both samples wear alike, and its 95 % interval by Fieller's rule, from the difference of patterned
-    and plain sample row by row. The counterpart of Yan 2022, Fig 4.14.
+    with the smallest particles simulated: small marks are packings, large ones their means with 95 % intervals. Thin
+    lines: least squares, to be held against the source's straight ones (dotted; Yan 2022, Eq 4.14 to 4.16, bumps as
+    their difference), which are relative to scale 1. Dashed with grey: the scale at which both samples wear alike, and
+    its 95 % interval over all forms that the packings do not reject, from the ratio of patterned to plain sample in the
+    same bed. The counterpart of Yan 2022, Fig 4.14.
     """,
 )
 def wear_against_scale(job: Job) -> Any:
@@ -66,12 +72,13 @@ def wear_against_scale(job: Job) -> Any:
 
     wear = by_scale.wear_by_scale(read_summary(job.files.summary))
     published = by_scale.lines_beside(pd.read_csv(job.files.published), wear)
-    critical = by_scale.critical_scale(wear)
+    critical, forms = by_scale.critical_scale(wear)
     reference = f"relative to the plain sample at particle scale {wear['reference_scale'].iloc[0]:g}"
     remarks = [*job.remarks, reference, by_scale.critical_scale_text(critical)]
     lines = by_scale.beside_published(by_scale.wear_lines(wear), published)
-    told = pd.DataFrame([asdict(critical)] if critical else [], columns=["value", "low", "high", "bounded"])
-    return drawn.wear_against_scale(wear, published, critical, remarks), wear, {"lines": lines, "critical": told}
+    further = {"lines": lines, "critical": pd.DataFrame([asdict(critical)]), "forms": forms}
+    further["ratios"] = by_scale.ratio_by_scale(wear)
+    return drawn.wear_against_scale(wear, published, critical, remarks), wear, further
 
 
 @size_figure(
@@ -82,11 +89,11 @@ def wear_against_scale(job: Job) -> Any:
     tables={"guidance": "particle_size/guidance.csv"},
     caption="""
     Wear of the patterned over that of the plain sample against four ratios of the median particle to a bump (Yan 2022,
-    Eq 4.18 to 4.21). Dotted: the source's lines. With one pattern all four ratios grow together, so the figure cannot
-    tell which of them decides; the source holds that it is the equivalent radius, with wear reduced below 1. The
-    table in `particle_size/guidance.csv` has the ratios of real particles, the largest scale that they allow, and how
-    many times the wear at real size the source's line gives at the scale simulated. The counterpart of Yan 2022, Fig
-    4.17.
+    Eq 4.18 to 4.21); bars: 95 % intervals over packings. Dotted: the source's lines. With one pattern all four ratios
+    grow together, so the figure cannot tell which of them decides; the source holds that it is the equivalent radius,
+    with wear reduced below 1. The table in `particle_size/guidance.csv` has the ratios of real particles, the largest
+    scale that they allow, and how many times the wear at real size the source's line gives at the scale simulated. The
+    counterpart of Yan 2022, Fig 4.17.
     """,
 )
 def wear_against_size_ratios(job: Job) -> Any:
@@ -104,7 +111,7 @@ def wear_against_size_ratios(job: Job) -> Any:
     patterns = {row: Pattern(**given["pattern"]) for row, given in rows.items()}
     real = next((Particles(**given["particles"]) for given in rows.values()), None)
     scales = {row: given["scale"] for row, given in rows.items()}
-    ratios = {row: size_ratios(scales[row] * real.median_diameter, *patterns[row].bump) for row in rows}
+    ratios = {scales[row]: size_ratios(scales[row] * real.median_diameter, *patterns[row].bump) for row in rows}
     table = by_scale.wear_by_size_ratio(wear, ratios)
     published = by_scale.published_by_size_ratio(lines, np.linspace(*PUBLISHED_SCALES, 71))
     picture = drawn.wear_against_size_ratios(table, published, job.remarks)
@@ -378,7 +385,11 @@ def size_findings(job: Job) -> Any:
     from bulkwear.postproc.reference.size_ratios import PUBLISHED_CRITICAL_SCALE
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.particle_size import published_sizes
-    from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import read_critical_scale
+    from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+        patterned_curve,
+        ratio_by_scale,
+        read_critical_scale,
+    )
 
     files = job.files
     steady, profiles, wear = (read_summary(path) for path in (files.steady, files.profiles, files.wear))
@@ -386,8 +397,8 @@ def size_findings(job: Job) -> Any:
     ratio = next(iter(guidance["equivalent_radius"]), math.nan)  # of real particles: the pattern of all rows is one
     table = published_sizes.beside_the_source(pd.read_csv(files.published), steady, profiles, critical, ratio)
     packings = [pd.read_csv(path) for path in (files.published_packing, files.container, files.bed)]
-    unsteady = int((~steady["steady"]).sum())
-    said = published_sizes.critical_sentences(critical, PUBLISHED_CRITICAL_SCALE, wear, unsteady)
+    ratios, curve = ratio_by_scale(wear), patterned_curve(wear)
+    said = published_sizes.critical_sentences(critical, PUBLISHED_CRITICAL_SCALE, ratios, curve)
     return {
         "published": pd.concat([table, published_sizes.packing_beside_the_source(*packings)], ignore_index=True),
         "sentences": pd.DataFrame({"sentence": said}),

@@ -12,11 +12,13 @@ import pandas as pd
 from bulkwear.postproc.flow.packing import inner_means
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.reference.size_ratios import size_ratios
+from bulkwear.postproc.statistics.verdicts import VERDICTS
 from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.packings import SETTING, over_packings
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
 from bulkwear.workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
 from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Pattern
-from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT, AGREES, DIFFERS, UNSAID
+from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
 from bulkwear.workflows.report.sections import Block, Pictures, Section, Table, Text
 
@@ -61,32 +63,41 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
         Table(
             rows,
             "wear_by_row",
-            "Wear over plain is the product of two factors: of the sums of normal forces, and of how far contacts slide"
-            " under them while the sample travels as far.",
+            "Wear over plain, with its 95 % interval over packings, is the product of two factors: of the sums of"
+            " normal forces, and of how far contacts slide under them while the sample travels as far.",
             heads={name: (found[1], UNITS[found[2]]) for name in rows if (found := BRACKETS.fullmatch(name))},
         ),
         Table(
             pd.read_csv(folder / "particle_size" / "lines.csv"),
             "lines",
             "Straight lines of wear over that of the plain sample with the smallest particles simulated, against"
-            " particle scale, with one standard error; the source's are over its plain sample at scale 1.",
+            " particle scale; the source's are over its plain sample at scale 1. Lack of fit: how probable it is that"
+            " packings alone scatter the means of the scales so far off the line.",
+        ),
+        Table(
+            pd.read_csv(folder / "particle_size" / "critical_scale_forms.csv"),
+            "critical_scale_forms",
+            "Forms of that ratio against the scale. A form that misses the scales' means by more than the scatter of"
+            " packings lets expect is rejected; the interval of the critical scale is what the others leave open.",
         ),
     ]
 
 
 def wear_by_row(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame:
-    """Return a line per row with its scale, layers and sizes, and the patterned sample's wear over its plain twin's.
+    """Return a line per setting, means over its packings: its scale, layers and sizes, and patterned over plain wear.
 
     summary: in display units
     """
+    layers = {run: each["derived"]["layers"] for run, each in study["parameters"].items()}
+    sizes = {run: each["derived"]["equivalent_size_ratio"] for run, each in study["parameters"].items()}
     patterned = summary[summary["surface"] != PLAIN].set_index("row")
     plain = summary[summary["surface"] == PLAIN].set_index("row").reindex(patterned.index)
     over = patterned[[WEAR, FORCE]] / plain[[WEAR, FORCE]]
-    derived = [study["parameters"][run]["derived"] for run in patterned["run"]]
     columns = {
+        SETTING: patterned[SETTING],
         "particle_scale": patterned["particle_scale"],
-        "layers_of_particles": [each["layers"] for each in derived],
-        "equivalent_size_ratio": [each["equivalent_size_ratio"] for each in derived],
+        "layers_of_particles": patterned["run"].map(layers),
+        "equivalent_size_ratio": patterned["run"].map(sizes),
         "wear_over_plain": over[WEAR],
         "normal_force_over_plain": over[FORCE],
         "sliding_over_plain": over[WEAR] / over[FORCE],
@@ -94,25 +105,27 @@ def wear_by_row(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame
         "wear, plain (mm3/m)": plain[RATE],
         "share of the pattern (%)": 100.0 * patterned[PATTERN] / patterned[WEAR],
     }
-    return pd.DataFrame(columns, index=patterned.index).reset_index()
+    return over_packings(pd.DataFrame(columns), "wear_over_plain", by=(SETTING,))
 
 
 def beside_the_source(folder: Path) -> list[Block]:
     """Return every number of the source with ours and a verdict."""
-    table = pd.read_csv(folder / "particle_size" / "published.csv", dtype={"scales": str, "of_scales": str})
-    table["of_scales"] = table["of_scales"].fillna("")
-    counts = table["verdict"].value_counts().reindex([AGREES, DIFFERS, UNSAID], fill_value=0)
+    table = pd.read_csv(folder / "particle_size" / "published.csv", dtype={"scales": str}).fillna(
+        {"found": "", "reason": ""}
+    )
+    counts = table["verdict"].value_counts().reindex(VERDICTS, fill_value=0)
     return [
         Text(
-            f"Of {len(table)} numbers that the text of Yan 2022, chapter 4, gives ours agree with {counts[AGREES]} and"
-            f" differ from {counts[DIFFERS]}; of {counts[UNSAID]} nothing can be said."
+            f"Of {len(table)} numbers that the text of Yan 2022, chapter 4, gives: "
+            + ", ".join(f"{verdict} {count}" for verdict, count in counts.items())
+            + "."
         ),
         Table(
             table,
             "published",
-            "Low and high: range of ours over the scales simulated of those in question, of a critical value its 95 %"
-            " interval. Relative velocity and wear rate are means, or standard deviations, over steady windows."
-            f" About: within {100.0 * ABOUT:.0f} %.",
+            "A number is claimed of every scale in question, of each of which there is an estimate over packings; of"
+            " the critical scale its interval over forms counts. Relative velocity and wear rate are means, or standard"
+            f" deviations, over steady windows. About: within {100.0 * ABOUT:.0f} %. Factor: ours over the source's.",
         ),
     ]
 

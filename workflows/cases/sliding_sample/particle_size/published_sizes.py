@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.flow.packing import MEASURES, inner_means
-from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.statistics.lines import Crossing
-from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX, patterned_curve
+from bulkwear.postproc.statistics.crossing import Crossing
+from bulkwear.postproc.statistics.intervals import Ends, Estimate, estimates
+from bulkwear.postproc.statistics.verdicts import Claim, judged
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX, critical_scale_text
 
-AGREES, DIFFERS, UNSAID = "agrees", "differs", "cannot be said"
-# -, of a value told as "about": what is read off a figure's axis and told in whole tens of per cent
+# -, margin of a value told as "about": what is read off a figure's axis and told in whole tens of per cent; since
+# 2026-11-23, as in config/published/verdicts.yaml
 ABOUT = 0.15
 GRADIENT, VELOCITY = "relative_gradient", "relative_velocity_percent"
 DIFFERENCE = "difference"  # dense minus loose
 COLUMNS = [
     *("quantity", "surface", "scales", "relation", "value", "unit"),
-    *("low", "high", "of_scales", "verdict", "source"),
+    *("found", "verdict", "reason", "factor", "source"),
 ]
 
 
@@ -48,34 +49,31 @@ def steady_by_scale(steady: pd.DataFrame, scales: Mapping[str, float]) -> pd.Dat
 
 
 def beside_the_source(
-    published: pd.DataFrame, steady: pd.DataFrame, profiles: pd.DataFrame, critical: Crossing | None, ratio: float
+    published: pd.DataFrame, steady: pd.DataFrame, profiles: pd.DataFrame, critical: Crossing, ratio: float
 ) -> pd.DataFrame:
-    """Return every published number with ours: COLUMNS; low to high is the range of ours over the scales in question.
+    """Return every published number with ours and a verdict: COLUMNS.
 
     published: as in config/published/particle_size_results.csv; steady: as from `steady_by_scale`
-    profiles: of layers over the samples: surface, particle_scale, height_mm and velocity_m_per_s
-    critical: our critical scale, with its interval as low and high, or None
+    profiles: of layers over the samples: run, surface, particle_scale, height_mm and velocity_m_per_s
+    critical: our critical scale, of which the interval over forms counts
     ratio: -, alpha_ER of real particles; NaN of samples without bumps, whose critical scale is not that of the source
 
-    A number "about" agrees if our range reaches to within ABOUT of it; a bound if our whole range keeps it. Where no
-    scale in question was simulated, nothing can be said. Windows of travel are no measurement of ours and left out.
+    A number is claimed of every scale from scale_from to scale_to: of each that was simulated there is an estimate over
+    packings, see `claim_of`. Where none was, nothing can be said. Windows of travel are no measurement of ours and left
+    out.
     """
     ours = _measures(steady, profiles)
     rows = []
     for each in published[published["quantity"] != "steady"].itertuples():
         if each.quantity in ("critical_scale", "critical_size_ratio"):
             factor = 1.0 if each.quantity == "critical_scale" else ratio
-            bounded = critical is not None and critical.bounded and np.isfinite(ratio)
-            low, high = (factor * critical.low, factor * critical.high) if bounded else (np.nan, np.nan)
-            of = ""
+            found = {
+                "": Ends(*(factor * end for end in (critical.value, critical.low, critical.high)), critical.packings)
+            }
         else:
             table = ours[each.quantity]
-            inside = table["particle_scale"].between(each.scale_from, each.scale_to)
-            found = table[inside & (table["surface"] == each.surface)].dropna(subset="value")
-            low, high = (found["value"].min(), found["value"].max()) if len(found) else (np.nan, np.nan)
-            of = ", ".join(f"{scale:g}" for scale in sorted(set(found["particle_scale"])))
-        told = (each.quantity, each.surface, _scales(each), each.relation, each.value, each.unit)
-        rows.append((*told, low, high, of, verdict(each.relation, each.value, low, high), each.source))
+            found = _by_scale(table[table["surface"] == each.surface], each, "value")
+        rows.append(_row(each, each.surface, found))
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
@@ -97,30 +95,49 @@ def packing_beside_the_source(published: pd.DataFrame, container: pd.DataFrame, 
     ours = pd.concat(parts, ignore_index=True)
     rows = []
     for each in published.itertuples():
-        chosen = (ours["case"] == each.case) & (ours["state"] == each.state)
-        found = ours[chosen & ours["particle_scale"].between(each.scale_from, each.scale_to)]
-        low, high = (found[each.quantity].min(), found[each.quantity].max()) if len(found) else (np.nan, np.nan)
-        of = ", ".join(f"{scale:g}" for scale in sorted(set(found["particle_scale"])))
-        told = (each.quantity, f"{each.case}, {each.state}", _scales(each), each.relation, each.value, each.unit)
-        rows.append((*told, low, high, of, verdict(each.relation, each.value, low, high), each.source))
+        chosen = ours[(ours["case"] == each.case) & (ours["state"] == each.state)]
+        rows.append(_row(each, f"{each.case}, {each.state}", _by_scale(chosen, each, each.quantity)))
     return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _by_scale(table: pd.DataFrame, each: Any, column: str) -> dict[float, Estimate]:
+    """Return the estimate over packings of every scale that a published number is of."""
+    inside = table[table["particle_scale"].between(each.scale_from, each.scale_to)].dropna(subset=column)
+    return dict(sorted(estimates(inside["particle_scale"], inside[column]).items()))
+
+
+def _row(each: Any, surface: str, found: Mapping[Any, Estimate | Ends]) -> tuple:
+    """Return a published number with what was found and the verdict, in the order of COLUMNS."""
+    verdict = judged(claim_of(each), found, _words(found))
+    told = (each.quantity, surface, _scales(each), each.relation, each.value, each.unit)
+    return (*told, verdict.found, verdict.verdict, verdict.reason, verdict.factor, each.source)
+
+
+def claim_of(each: Any) -> Claim:
+    """Return a published number as a claim: "about" with the margin ABOUT to both sides, "above" and "below" as sides.
+
+    each: a row of a table of published numbers: quantity, relation, value, unit and source
+    """
+    told = {"key": each.quantity, "finding": f"{each.relation} {each.value:g}", "source": each.source}
+    told |= {"quantity": each.quantity, "unit": each.unit}
+    if each.relation == "about":
+        return Claim(**told, direction="above", magnitude=(each.value, each.value), margin=ABOUT * each.value)
+    return Claim(**told, direction=each.relation, reference=each.value)
+
+
+def _words(found: Mapping[Any, Estimate | Ends]) -> str:
+    """Return what was found: the estimate, or the range of the means over several scales."""
+    if len(found) == 1:
+        scale, one = next(iter(found.items()))
+        return f"scale {scale:g}: {one.text()}" if scale != "" else one.text()
+    values = [one.value for one in found.values()]
+    scales = ", ".join(f"{scale:g}" for scale in found)
+    return f"{min(values):.3g} to {max(values):.3g} at scales {scales}" if found else ""
 
 
 def _scales(each: Any) -> str:
     """Return the scales that a published number is of."""
     return " to ".join(dict.fromkeys((f"{each.scale_from:g}", f"{each.scale_to:g}")))
-
-
-def verdict(relation: str, value: float, low: float, high: float) -> str:
-    """Return whether a range from low to high agrees with a published value; UNSAID where there is none (NaN)."""
-    if not (np.isfinite(low) or np.isfinite(high)):
-        return UNSAID
-    agrees: dict[str, Callable[[], bool]] = {
-        "about": lambda: low <= value * (1.0 + ABOUT) and high >= value * (1.0 - ABOUT),
-        "above": lambda: low >= value,
-        "below": lambda: high <= value,
-    }
-    return AGREES if agrees[relation]() else DIFFERS
 
 
 def _measures(steady: pd.DataFrame, profiles: pd.DataFrame) -> dict[str, pd.DataFrame]:
@@ -130,46 +147,41 @@ def _measures(steady: pd.DataFrame, profiles: pd.DataFrame) -> dict[str, pd.Data
         for column, ending in (("mean_percent", ""), ("deviation_percent", "_deviation")):
             found[f"{measure}{ending}"] = one[["surface", "particle_scale"]].assign(value=one[column])
     velocity = profiles.rename(columns={"velocity_m_per_s": "value"})
-    found["velocity_every_layer"] = velocity[["surface", "particle_scale", "value"]]
-    lowest = velocity.loc[velocity.groupby(["surface", "particle_scale"])["height_mm"].idxmin()]
+    fastest = velocity.groupby(["run", "surface", "particle_scale"], as_index=False)["value"].max()
+    found["velocity_every_layer"] = fastest[["surface", "particle_scale", "value"]]
+    lowest = velocity.loc[velocity.groupby("run")["height_mm"].idxmin()]
     found["velocity_lowest_layer"] = lowest[["surface", "particle_scale", "value"]]
     return found
 
 
-def critical_sentences(critical: Crossing | None, published: float, wear: pd.DataFrame, unsteady: int) -> list[str]:
+def critical_sentences(critical: Crossing, published: float, ratios: pd.DataFrame, curve: str) -> list[str]:
     """Return what a study tells of the critical scale beside the published one, with the reasons for a difference.
 
-    published: scale; wear: as from `wear_by_scale.wear_by_scale`; unsteady: runs whose flow or wear is not steady
+    published: scale; ratios: as from `wear_by_scale.ratio_by_scale`; curve: name of the patterned sample
     """
-    scales = sorted(set(wear["particle_scale"]))
-    table = wear.pivot(index="row", columns="curve", values="relative_wear")
-    name = patterned_curve(wear)
-    theirs = "" if name == CONVEX else f", for a {CONVEX} sample,"
-    over = table[name] / table[PLAIN]
-    less, more = (list(over.index[chosen]) for chosen in (over < 1.0, over >= 1.0))
-    said = [f"The {name} sample wears less than the plain one in {_listed(less)}, and not less in {_listed(more)}."]
-    if critical is None or not critical.bounded:
-        crossing = "" if critical is None else f", whose straight lines cross at {critical.value:.2g},"
-        few = f"{len(table)} rows{crossing} do not bound a critical scale; the source's{theirs} is about {published:g}."
-        return [*said, few]
-    interval = f"{critical.value:.2g} (95 % interval {critical.low:.2g} to {critical.high:.2g})"
-    inside = critical.low <= published <= critical.high
-    word = "holds" if inside else "does not hold"
-    said.append(f"Critical scale: {interval}, which {word} the source's{theirs} of about {published:g}.")
-    if scales[0] > critical.value or scales[-1] < critical.value:
+    theirs = "" if curve == CONVEX else f", for a {CONVEX} sample,"
+    less, more = (
+        _listed(ratios.loc[chosen, "particle_scale"])
+        for chosen in (ratios["interval_high"] < 1.0, ratios["interval_low"] > 1.0)
+    )
+    said = [
+        f"By the intervals of its packings the {curve} sample wears less than the plain one at {less}, more at {more}."
+    ]
+    said.append(f"{critical_scale_text(critical).capitalize()}; the source's{theirs} is about {published:g}.")
+    if np.isfinite(critical.below) and np.isfinite(critical.above):
         said.append(
-            f"It lies outside the scales simulated ({scales[0]:g} to {scales[-1]:g}): the line is extended to it."
+            "Whatever the form, the side changes between the scales"
+            f" {critical.below:g} and {critical.above:g}, each told by its own packings."
         )
-    if not inside and name == CONVEX:
+    outside = not critical.reason and not critical.low <= published <= critical.high
+    if outside and curve == CONVEX:
         said.append(
             "What differs from the source, and a difference may come from: the size distribution, of which the source"
-            " gives the median only; how bumps are turned and rows staggered, which its text leaves open; the ramp"
-            " round the sample; and one packing per scale, so that the interval knows the scatter about the line only."
+            " gives the median only; how bumps are turned and rows staggered, which its text leaves open; and the ramp"
+            " round the sample."
         )
-    if unsteady:
-        said.append(f"In {unsteady} of the windows behind it flow or wear is not steady by the study's own criterion.")
     return said
 
 
-def _listed(rows: list[str]) -> str:
-    return ", ".join(rows) if rows else "none of the rows"
+def _listed(scales: pd.Series) -> str:
+    return f"scale {', '.join(f'{scale:g}' for scale in scales)}" if len(scales) else "none"

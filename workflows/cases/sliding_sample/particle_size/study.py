@@ -43,9 +43,9 @@ def bed_floors(study: Study) -> list[float]:
 
 
 def bumps_and_particles(study: Study) -> dict[str, dict[str, Any]]:
-    """Return by row pattern, real particles and scale of its run with bumps, see `guidance`."""
+    """Return by setting pattern, real particles and scale of its runs with bumps, see `guidance`."""
     return {
-        run.row: _bumps_and_particles(run.parameters)
+        study.setting_of[run.row]: _bumps_and_particles(run.parameters)
         for run in study.runs
         if run.parameters["derived"]["equivalent_size_ratio"] is not None
     }

@@ -11,13 +11,14 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, SizeRatios, size_ratios
-from bulkwear.postproc.statistics.lines import FEWEST_POINTS, Crossing, crossing, fitted_line
+from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing, crossing, form_table, lack_of_fit
+from bulkwear.postproc.statistics.intervals import estimates, interval_table
 from bulkwear.postproc.tables.summary import patterned_name
 
 CONVEX = "convex"  # the source's pattern
 PARTS = {"base": "base_worn_volume_m3", "bumps": "pattern_worn_volume_m3"}  # curves of patterned samples' parts
 RATIOS = ("equivalent_radius", "projected_area", "surface_area", "volume")
-LINE_COLUMNS = ("intercept", "intercept_error", "slope", "slope_error", "r_squared")
+LINE_COLUMNS = ("intercept", "slope", "lack_of_fit_p_value")
 
 
 def wear_by_scale(summary: pd.DataFrame) -> pd.DataFrame:
@@ -45,44 +46,63 @@ def patterned_curve(wear: pd.DataFrame) -> str:
 
 
 def wear_lines(wear: pd.DataFrame) -> pd.DataFrame:
-    """Return the least-squares line of every curve: curve, points and LINE_COLUMNS, NaN for fewer than three points."""
+    """Return the least-squares line of every curve: curve, points and LINE_COLUMNS, NaN for fewer than three scales.
+
+    lack_of_fit_p_value: -, how probable it is that packings alone scatter the means of the scales so far off the line;
+    NaN where no scale is repeated. A line that does not fit is a drawing aid; its slope has no interval.
+    """
     rows = []
     for curve, one in wear.groupby("curve", sort=False):
         found = dict.fromkeys(LINE_COLUMNS, np.nan)
-        if len(one) >= FEWEST_POINTS and one["particle_scale"].nunique() > 1:
-            line = fitted_line(one["particle_scale"], one["relative_wear"])
-            found = {name: getattr(line, name) for name in LINE_COLUMNS}
+        if one["particle_scale"].nunique() >= FEWEST_PLACES:
+            scale, wears = one["particle_scale"].to_numpy(), one["relative_wear"].to_numpy()
+            intercept, slope = np.polynomial.polynomial.polyfit(scale, wears, 1)
+            p_value = lack_of_fit(scale, wears, intercept + slope * scale, 2)["p_value"]
+            found = dict(zip(LINE_COLUMNS, (intercept, slope, p_value), strict=True))
         rows.append({"curve": curve, "points": len(one), **found})
     return pd.DataFrame(rows)
 
 
-def critical_scale(wear: pd.DataFrame) -> Crossing | None:
-    """Return the particle scale at which patterned and plain samples wear alike, None from fewer than three rows.
+def wear_over_plain(wear: pd.DataFrame) -> pd.DataFrame:
+    """Return row, particle_scale and wear_over_plain (-), the ratio of both samples in the same bed, of every row."""
+    table = wear.pivot(index=["row", "particle_scale"], columns="curve", values="relative_wear").reset_index()
+    over = table[patterned_curve(wear)] / table[PLAIN]
+    return table[["row", "particle_scale"]].assign(wear_over_plain=over.to_numpy()).dropna().reset_index(drop=True)
 
-    Both samples of a row have the same bed, so what is fitted is their difference, row by row.
+
+def ratio_by_scale(wear: pd.DataFrame) -> pd.DataFrame:
+    """Return particle_scale, wear_over_plain (geometric mean over packings), packings, interval_low, interval_high."""
+    over = wear_over_plain(wear)
+    found = interval_table(estimates(over["particle_scale"], over["wear_over_plain"], log=True))
+    found = found.rename(columns={"setting": "particle_scale", "mean": "wear_over_plain"})
+    return found.sort_values("particle_scale", ignore_index=True)
+
+
+def critical_scale(wear: pd.DataFrame) -> tuple[Crossing, pd.DataFrame]:
+    """Return the particle scale at which patterned and plain samples wear alike, and the forms that tell it.
+
+    See `postproc.statistics.crossing`: replicates are packings, and nothing is extended beyond the scales simulated.
     """
-    table = wear.pivot(index="row", columns="curve", values="relative_wear")
-    scale = wear.drop_duplicates("row").set_index("row")["particle_scale"].loc[table.index]
-    both = [patterned_curve(wear), PLAIN]
-    table, scale = table.dropna(subset=both), scale[table[both].notna().all(axis=1)]
-    if len(table) < FEWEST_POINTS or scale.nunique() < 2:
-        return None
-    return crossing(scale.to_numpy(), *(table[curve].to_numpy() for curve in both))
+    over = wear_over_plain(wear)
+    places = over["particle_scale"].to_numpy(), over["wear_over_plain"].to_numpy()
+    return crossing(*places), form_table(*places)
 
 
-def critical_scale_text(found: Crossing | None) -> str:
-    """Return a phrase about the critical scale for figures."""
-    if found is None:
-        return "too few scales for a critical one"
-    if not found.bounded:
-        return "the scales simulated do not tell a critical one: patterned and plain wear may be parallel"
-    return f"critical scale {found.value:.2g}, 95 % interval {found.low:.2g} to {found.high:.2g}"
+def critical_scale_text(found: Crossing) -> str:
+    """Return a phrase about the critical scale, with its interval or why there is none."""
+    if found.reason:
+        value = f" {found.value:.2g}" if np.isfinite(found.value) else ""
+        return f"critical scale{value}: {found.reason}"
+    ends = [f"{end:.3g}" if np.isfinite(end) else "beyond the scales simulated" for end in (found.low, found.high)]
+    value = f"{found.value:.3g}" if np.isfinite(found.value) else "not between the scales simulated"
+    return f"critical scale {value}, 95 % interval over {found.forms} forms {' to '.join(ends)}"
 
 
-def read_critical_scale(path: str | Path) -> Crossing | None:
-    """Return the critical scale from critical_scale.csv, which is empty where too few scales tell one."""
-    table = pd.read_csv(path)
-    return None if table.empty else Crossing(**table.iloc[0].to_dict())
+def read_critical_scale(path: str | Path) -> Crossing:
+    """Return the critical scale from critical_scale.csv."""
+    told = pd.read_csv(path, keep_default_na=True).iloc[0].to_dict()
+    reason = told.pop("reason")
+    return Crossing(**told, reason=reason if isinstance(reason, str) else "")
 
 
 def smallest_and_largest(summary: pd.DataFrame) -> pd.DataFrame:
@@ -117,17 +137,16 @@ def velocity_bounds(published: pd.DataFrame, table: pd.DataFrame) -> pd.DataFram
     return found[["surface", "relation", "value"]].assign(place_to=found["quantity"].map(reach))
 
 
-def wear_by_size_ratio(wear: pd.DataFrame, ratios: Mapping[str, SizeRatios]) -> pd.DataFrame:
+def wear_by_size_ratio(wear: pd.DataFrame, ratios: Mapping[float, SizeRatios]) -> pd.DataFrame:
     """Return the patterned sample's wear over its plain twin's beside the four ratios of size (Yan 2022, Fig 4.17).
 
-    ratios: of the scaled particles, by row; rows without are left out. Columns row, particle_scale, wear_over_plain and
+    ratios: of the scaled particles, by particle scale; scales without are left out. Columns as of `ratio_by_scale`, and
     RATIOS.
     """
-    table = wear.pivot(index=["row", "particle_scale"], columns="curve", values="relative_wear").reset_index()
-    table = table[table["row"].isin(ratios)].reset_index(drop=True)
-    rows = [asdict(ratios[row]) for row in table["row"]]
-    over = (table[patterned_curve(wear)] / table[PLAIN]).rename("wear_over_plain")
-    return pd.concat([table[["row", "particle_scale"]], over, pd.DataFrame(rows, columns=list(RATIOS))], axis=1)
+    table = ratio_by_scale(wear)
+    table = table[table["particle_scale"].isin(ratios)].reset_index(drop=True)
+    rows = [asdict(ratios[scale]) for scale in table["particle_scale"]]
+    return pd.concat([table, pd.DataFrame(rows, columns=list(RATIOS))], axis=1)
 
 
 def published_by_size_ratio(lines: pd.DataFrame, scales: np.ndarray) -> pd.DataFrame:

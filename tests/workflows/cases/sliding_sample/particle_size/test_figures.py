@@ -68,7 +68,7 @@ def test_beds_are_looked_at_under_the_plain_samples(study):
     """Runs, tables of wear, settled beds and the heights of their floors in one order."""
     product = products_of_study(study)["bed_packing"]
     told, files = told_to(product, study), {key: paths_of(source, study) for key, source in product.inputs.items()}
-    assert list(told["runs"]) == ["S4_plain", "S6_plain", "S8_plain"]
+    assert list(told["runs"])[:4] == ["S4_plain", "S4-2_plain", "S4-3_plain", "S6_plain"]
     assert files["wear"] == [f"results/particle_size/{run}/wear.csv" for run in told["runs"]]
     beds = [study.bed_of(run) for run in told["runs"]]
     assert files["beds"] == [f"results/particle_size/beds/{bed}/bed.restart" for bed in beds]

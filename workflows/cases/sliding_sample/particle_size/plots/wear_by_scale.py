@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.plots.style import BLUE, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
-from bulkwear.postproc.statistics.lines import FEWEST_POINTS, Crossing, fitted_line
+from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing
+from bulkwear.postproc.statistics.intervals import estimates, interval_table
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import MARKERS, PUBLISHED_MARKS, scale_colours
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS, patterned_curve
 
@@ -33,12 +34,12 @@ MOST_TICKS = 8  # round a spider chart
 
 
 def wear_against_scale(
-    wear: pd.DataFrame, published: pd.DataFrame, critical: Crossing | None, remarks: Sequence[str]
+    wear: pd.DataFrame, published: pd.DataFrame, critical: Crossing, remarks: Sequence[str]
 ) -> Figure:
     """Draw relative wear (-) against particle scale with fitted lines, and the published lines beside them.
 
     wear: as from `wear_by_scale.wear_by_scale`; published: curve, intercept, slope, source
-    critical: where patterned and plain meet, with its interval as a bar at the bottom; None where too few scales tell
+    critical: where patterned and plain meet, with its interval as a grey field
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes = figure.subplots()
@@ -48,12 +49,10 @@ def wear_against_scale(
     looks = {name: _of_surface(name) for name in (PLAIN, patterned_curve(wear))} | PARTS
     for curve, (shade, mark, _) in looks.items():
         one = wear[wear["curve"] == curve]
-        axes.plot(one["particle_scale"], one["relative_wear"], mark, color=shade, markersize=6, label=curve)
-        if len(one) >= FEWEST_POINTS and one["particle_scale"].nunique() > 1:
-            line = fitted_line(one["particle_scale"], one["relative_wear"])
-            axes.plot(places, line.at(places), color=shade, label=f"{curve} line")
-            error = line.error_at(places)
-            axes.fill_between(places, line.at(places) - error, line.at(places) + error, color=shade, alpha=0.15)
+        _packings(axes, one, (shade, mark), curve)
+        if one["particle_scale"].nunique() >= FEWEST_PLACES:
+            line = np.polynomial.Polynomial.fit(one["particle_scale"], one["relative_wear"], 1)
+            axes.plot(places, line(places), color=shade, linewidth=0.7, label=f"{curve} line")
         for _, line in published[published["curve"] == curve].iterrows():
             drawn = {"color": shade, "linestyle": ":", "label": f"{curve} published"}
             axes.plot(places, line["intercept"] + line["slope"] * places, **drawn)
@@ -61,7 +60,7 @@ def wear_against_scale(
     axes.axhline(0.0, color="#888888", linewidth=0.6)
     axes.set(xlabel="Particle scale (-)", ylabel="Wear over the plain sample's\nwith the smallest particles (-)")
     axes.set_xlim(places[0], places[-1])
-    _scale_legend(figure, looks, published, critical is not None and critical.bounded)
+    _scale_legend(figure, looks, published, not critical.reason)
     return figure
 
 
@@ -70,9 +69,24 @@ def _of_surface(surface: str) -> tuple[str, str, str]:
     return colour(surface), marker(surface), f"{surface} sample"
 
 
-def _critical(axes: Axes, critical: Crossing | None, ends: tuple[float, float]) -> None:
+def _packings(axes: Axes, one: pd.DataFrame, look: tuple[str, str], curve: str) -> None:
+    """Draw the packings of a curve, and where there are several the mean of each scale with its interval."""
+    shade, mark = look
+    repeated = one["particle_scale"].duplicated().any()
+    axes.plot(
+        one["particle_scale"], one["relative_wear"], mark, color=shade, markersize=2 if repeated else 6, label=curve
+    )
+    if not repeated:
+        return
+    table = interval_table(estimates(one["particle_scale"], one["relative_wear"]))
+    reach = np.abs(table[["interval_low", "interval_high"]].to_numpy().T - table["mean"].to_numpy())
+    drawn = {"fmt": mark, "color": shade, "markersize": 6, "capsize": 3, "linewidth": 1.0, "label": f"{curve} mean"}
+    axes.errorbar(table["setting"], table["mean"], reach, **drawn)
+
+
+def _critical(axes: Axes, critical: Crossing, ends: tuple[float, float]) -> None:
     """Mark the critical scale and its interval, as far as the axis shows them."""
-    if critical is None or not critical.bounded:
+    if critical.reason:
         return
     axes.axvline(critical.value, color="black", linewidth=0.8, linestyle="--", label="critical")
     axes.axvspan(max(critical.low, ends[0]), min(critical.high, ends[1]), color="#e5e5e5", zorder=0)
@@ -99,7 +113,8 @@ def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remar
     panels = figure.subplots(1, len(RATIOS), sharey=True)
     for axes, ratio in zip(panels, RATIOS, strict=True):
         axes.plot(published[ratio], published["wear_over_plain"], ":", color="black", label="published")
-        axes.plot(table[ratio], table["wear_over_plain"], "o", color=BLUE, label="ours")
+        reach = np.abs(table[["interval_low", "interval_high"]].to_numpy().T - table["wear_over_plain"].to_numpy())
+        axes.errorbar(table[ratio], table["wear_over_plain"], reach, fmt="o", color=BLUE, capsize=2, label="ours")
         axes.axhline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
         axes.axvline(1.0, color=OTHER_COLOUR, linewidth=0.8, linestyle="--")
         axes.set_xscale("log")
@@ -163,7 +178,8 @@ def spider_charts(
     """Draw a quantity round a circle of places, a chart per surface, a curve per particle scale.
 
     table: surface, particle_scale, `value` (the radius) and `place`, which begins at the top and runs clockwise; the
-    places of all scales share one circle, which ends short of its beginning. Negative values lie inside the zero circle
+    places of all scales share one circle, which ends short of its beginning; packings are averaged. Negative values lie
+    inside the zero circle
     labels: of value and place, with their units
     bounds: published ones of the value: surface, relation, value and place_to, as far as it holds; dotted
     """
@@ -178,7 +194,8 @@ def spider_charts(
         axes.set_theta_zero_location("N")
         axes.set_theta_direction(-1)
         for k, scale in enumerate(scales):
-            one = table[(table["surface"] == surface) & (table["particle_scale"] == scale)].sort_values(place)
+            packings = table[(table["surface"] == surface) & (table["particle_scale"] == scale)]
+            one = packings.groupby(place, as_index=False)[value].mean()
             angle = 2.0 * np.pi * one[place] / whole
             drawn = {"color": colours[scale], "marker": MARKERS[k % len(MARKERS)], "markersize": 3, "linewidth": 1.0}
             axes.plot(angle, one[value], label=f"scale {scale:g}", **drawn)

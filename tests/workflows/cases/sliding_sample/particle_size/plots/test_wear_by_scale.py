@@ -6,7 +6,7 @@ import pytest
 
 from bulkwear.postproc.plots.style import remarks_of
 from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
-from bulkwear.postproc.statistics.lines import Crossing
+from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import (
     spider_charts,
     steady_by_scale,
@@ -14,6 +14,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale i
     wear_against_size_ratios,
 )
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+    PARTS,
     critical_scale,
     published_by_size_ratio,
     velocity_bounds,
@@ -30,11 +31,12 @@ def labels_of(axes):
 
 def test_wear_has_points_lines_and_published_lines_for_every_curve():
     """Four curves, each with its points, its line and the published line; the critical scale is marked."""
-    wear = wear_by_scale(summary(noise=0.02))
-    figure = wear_against_scale(wear, LINES, critical_scale(wear), ["shrunk"])
+    wear = wear_by_scale(summary(noise=0.02, packings=3))
+    figure = wear_against_scale(wear, LINES, critical_scale(wear)[0], ["shrunk"])
     axes = figure.axes[0]
     for curve in ("plain", "convex", "base", "bumps"):
         assert {curve, f"{curve} line", f"{curve} published"} <= set(labels_of(axes))
+    assert {bars.get_label() for bars in axes.containers} == {f"{name} mean" for name in ("plain", "convex", *PARTS)}
     critical = next(line for line in axes.lines if line.get_label() == "critical")
     assert critical.get_xdata()[0] == pytest.approx(TRUTH, rel=0.05)
     assert "shrunk" in remarks_of(figure)
@@ -42,7 +44,8 @@ def test_wear_has_points_lines_and_published_lines_for_every_curve():
 
 def test_two_scales_show_points_only():
     """No line and no critical scale is drawn through two points; the published lines stay."""
-    figure = wear_against_scale(wear_by_scale(summary([4.0, 8.0])), LINES, None, [])
+    wear = wear_by_scale(summary([4.0, 8.0]))
+    figure = wear_against_scale(wear, LINES, critical_scale(wear)[0], [])
     names = labels_of(figure.axes[0])
     assert "convex" in names and "convex line" not in names and "critical" not in names and "convex published" in names
 
@@ -50,13 +53,13 @@ def test_two_scales_show_points_only():
 def test_an_interval_beyond_the_axis_is_cut():
     """An interval that reaches further than the scales does not stretch the axis."""
     wear = wear_by_scale(summary([4.0, 6.0, 8.0]))
-    figure = wear_against_scale(wear, LINES, Crossing(4.2, -30.0, 90.0, True), [])
+    figure = wear_against_scale(wear, LINES, Crossing(4.2, -np.inf, 90.0, np.nan, np.nan, 1, 1, 3), [])
     assert figure.axes[0].get_xlim() == pytest.approx((3.68, 8.32))
 
 
 def test_wear_is_shown_against_four_ratios():
     """A panel per ratio with our points on the published curve, where the study follows it."""
-    ratios = {f"S{scale:g}": size_ratios(scale * PUBLISHED_DIAMETER, *PUBLISHED_PATTERN) for scale in SCALES}
+    ratios = {scale: size_ratios(scale * PUBLISHED_DIAMETER, *PUBLISHED_PATTERN) for scale in SCALES}
     table = wear_by_size_ratio(wear_by_scale(summary()), ratios)
     figure = wear_against_size_ratios(table, published_by_size_ratio(LINES, SCALES), [])
     assert len(figure.axes) == 4
