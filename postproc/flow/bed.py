@@ -33,8 +33,8 @@ def last_snapshot(run_folder: str | Path) -> Path:
 
 def read_snapshot(path: str | Path) -> pd.DataFrame:
     """Return one frame of particles in SI: id, x_m, y_m, z_m, radius_m, speed_m_per_s, velocity_x_m_per_s and
-    velocity_y_m_per_s (relative to the sample), angular_speed_rad_per_s, and contacts (of each with other particles)
-    where the solver counted them.
+    velocity_y_m_per_s (relative to the sample), angular_velocity_x_rad_per_s and so on, angular_speed_rad_per_s (their
+    magnitude), and contacts (of each with other particles) where the solver counted them.
 
     Raises ValueError when the file is no dump of one frame or is cut short.
     """
@@ -58,6 +58,7 @@ def read_snapshot(path: str | Path) -> pd.DataFrame:
             "speed_m_per_s": np.linalg.norm(table[["vx", "vy", "vz"]], axis=1),
             "velocity_x_m_per_s": table["vx"],
             "velocity_y_m_per_s": table["vy"],
+            **{f"angular_velocity_{axis}_rad_per_s": table[f"omega{axis}"] for axis in "xyz"},
             "angular_speed_rad_per_s": np.linalg.norm(table[["omegax", "omegay", "omegaz"]], axis=1),
             **counted,
         }

@@ -17,7 +17,10 @@ import pandas as pd
 from bulkwear.postproc.readers.dump_text import BLOCK_BYTES, FrameBatch, read_frames
 
 ZONES = ("central", "side", "ahead", "behind")
-QUANTITIES = ("velocity_x_m_per_s", "velocity_y_m_per_s", "velocity_z_m_per_s", "angular_speed_rad_per_s")
+VELOCITY = tuple(f"velocity_{axis}_m_per_s" for axis in "xyz")
+ANGULAR_VELOCITY = tuple(f"angular_velocity_{axis}_rad_per_s" for axis in "xyz")
+AVERAGED_ANGULAR_VELOCITY, MEAN_ANGULAR_SPEED = "averaged_angular_velocity_rad_per_s", "mean_angular_speed_rad_per_s"
+QUANTITIES = (*VELOCITY, *ANGULAR_VELOCITY, MEAN_ANGULAR_SPEED)
 NEEDED = ("x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz")
 BETWEEN = 1e-6  # -, of an interval: a frame so near to its start belongs to the one before
 
@@ -75,9 +78,10 @@ def bin_history(
         frames, and the sums of bins times intervals.
 
     Columns travel_start_m and travel_end_m of the interval, zone, layer, height_m (its middle above the floor), frames,
-    particles (mean number in a frame) and means over all particles of all frames: velocity_x_m_per_s (in side bins
-    outwards, away from the sample), velocity_y_m_per_s and velocity_z_m_per_s in the deck's axes, and
-    angular_speed_rad_per_s (magnitude). NaN in a bin that stayed empty. Intervals without a frame are left out.
+    particles (mean number in a frame) and means over all particles of all frames, in the deck's axes: VELOCITY,
+    ANGULAR_VELOCITY and mean_angular_speed_rad_per_s, of the magnitudes. Side bins at -x are mirrored before they are
+    put together with those at +x, so that x is outwards, away from the sample, and what turns alike on both sides does
+    not cancel. NaN in a bin that stayed empty. Intervals without a frame are left out.
 
     Raises ContactDumpError for a damaged dump, ValueError for one without the columns that are needed.
     """
@@ -151,9 +155,10 @@ def _add(batch: FrameBatch, which: np.ndarray, bins: MovingBins, sums: dict[int,
     numbers, position = np.unique(which, return_inverse=True)
     slot = np.repeat(position, np.diff(batch.starts))[inside] * bins.count + place[inside]
     side = place // bins.layers == ZONES.index("side")
-    outwards = np.where(side, np.sign(column["x"]), 1.0) * column["vx"]
-    spin = np.sqrt(column["omegax"] ** 2 + column["omegay"] ** 2 + column["omegaz"] ** 2)
-    values = (outwards, column["vy"], column["vz"], spin, np.ones(len(place)))
+    mirrored = np.where(side, np.sign(column["x"]), 1.0)  # in x = 0: vx, and of an axial vector what is not along x
+    omega = np.stack([column["omegax"], mirrored * column["omegay"], mirrored * column["omegaz"]])
+    values = (mirrored * column["vx"], column["vy"], column["vz"], *omega)
+    values = (*values, np.linalg.norm(omega, axis=0), np.ones(len(place)))
     size = len(numbers) * bins.count
     added = np.stack([np.bincount(slot, value[inside], size) for value in values])
     added = added.reshape(len(values), len(numbers), bins.count)
@@ -213,6 +218,17 @@ def _means(sums: pd.DataFrame, frames: pd.Series) -> pd.DataFrame:
     return means
 
 
+def averaged_angular_velocity(means: pd.DataFrame) -> np.ndarray:
+    """Return the magnitude (rad/s) of the averaged angular velocity: components are averaged first.
+
+    means: ANGULAR_VELOCITY, averaged over particles. This is what the source draws: "the magnitude of the averaged
+    angular velocity" (Yan 2022, section 3.5.3.3). It tells how fast a bed rolls as a whole; particles that turn about
+    all axes alike have none, however fast they turn, which is what the mean of the magnitudes tells. It is at most that
+    mean. Over n particles with independent spins it is by chance about their root mean square over the root of n.
+    """
+    return np.linalg.norm(means[list(ANGULAR_VELOCITY)].to_numpy(dtype=float), axis=1)
+
+
 def relative_velocity_history(history: pd.DataFrame, bed_velocity: float, bed_thickness: float) -> pd.DataFrame:
     """Return travel_m (middle of the interval) and relative_velocity (-) of the particles over the sample.
 
@@ -250,8 +266,9 @@ def velocity_profile(history: pd.DataFrame, bed_velocity: float, start: float, e
     """Return the profile of the motion by layer over a window of travel (m), seen from the bed at rest.
 
     Columns zone, layer, height_m, particles, velocity_m_per_s (v_y of Yan 2022: with the sample), sideways_ratio
-    (v_x / v_y, outwards in side bins), upward_ratio (v_z / v_y) and angular_speed_rad_per_s (Yan 2022, Fig 3.19 to
-    3.22). Intervals count that lie inside the window; raises ValueError when there is none.
+    (v_x / v_y, outwards in side bins), upward_ratio (v_z / v_y), averaged_angular_velocity_rad_per_s (Yan 2022, Fig
+    3.19 to 3.22), see `averaged_angular_velocity`, and mean_angular_speed_rad_per_s. Averages are over the particles of
+    all frames of the window. Intervals count that lie inside it; raises ValueError when there is none.
     """
     slack = BETWEEN * max(abs(end), 1.0)
     inside = history[(history["travel_start_m"] >= start - slack) & (history["travel_end_m"] <= end + slack)]
@@ -265,6 +282,7 @@ def velocity_profile(history: pd.DataFrame, bed_velocity: float, start: float, e
             "velocity_m_per_s": with_sample,
             "sideways_ratio": table["velocity_x_m_per_s"] / with_sample,
             "upward_ratio": table["velocity_z_m_per_s"] / with_sample,
-            "angular_speed_rad_per_s": table["angular_speed_rad_per_s"],
+            AVERAGED_ANGULAR_VELOCITY: averaged_angular_velocity(table),
+            MEAN_ANGULAR_SPEED: table[MEAN_ANGULAR_SPEED],
         }
     )

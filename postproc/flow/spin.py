@@ -1,4 +1,4 @@
-"""How fast particles of the lowest layer turn along the sample, from front to back (Yan 2022, Fig 4.21 and 4.22)."""
+"""How particles of the lowest layer turn along the sample, from front to back (Yan 2022, Fig 4.21 and 4.22)."""
 
 from __future__ import annotations
 
@@ -9,10 +9,19 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.flow.moving_bins import BETWEEN, add_dumps, interval_numbers
+from bulkwear.postproc.flow.moving_bins import (
+    ANGULAR_VELOCITY,
+    AVERAGED_ANGULAR_VELOCITY,
+    BETWEEN,
+    MEAN_ANGULAR_SPEED,
+    add_dumps,
+    averaged_angular_velocity,
+    interval_numbers,
+)
 from bulkwear.postproc.readers.dump_text import BLOCK_BYTES, FrameBatch
 
 NEEDED = ("x", "y", "z", "omegax", "omegay", "omegaz")
+MEANS = [*ANGULAR_VELOCITY, MEAN_ANGULAR_SPEED]  # of a piece, over its particles
 
 
 @dataclass(frozen=True)
@@ -46,10 +55,10 @@ def spin_along_sample(
     interval: float,
     block_bytes: int = BLOCK_BYTES,
 ) -> pd.DataFrame:
-    """Return the mean angular speed in every piece, by intervals of travel.
+    """Return how particles turn in every piece, by intervals of travel.
 
     Arguments as those of `moving_bins.bin_history`. Columns travel_end_m, segment (from 1, the front), along_m (of its
-    middle behind the front edge), particles (sum over frames) and angular_speed_rad_per_s, NaN in an empty piece.
+    middle behind the front edge), particles (sum over frames) and MEANS over them, NaN in an empty piece.
     """
     sums = SpinSums(segments, travel_per_step, interval)
     add_dumps(dumps, [sums], block_bytes)
@@ -68,12 +77,13 @@ class SpinSums:
     def add(self, batch: FrameBatch, offset: float) -> None:
         """Add frames whose step 0 is at a travel of offset (m)."""
         x, y, z, *omega = (batch.table[:, batch.columns.index(name)] for name in NEEDED)
-        place, speed = self._segments.place(x, y, z), np.linalg.norm(omega, axis=0)
+        place, turning = self._segments.place(x, y, z), [*omega, np.linalg.norm(omega, axis=0)]
         numbers = interval_numbers(batch.steps, offset, self._travel_per_step, self._interval)
         interval = np.repeat(numbers, np.diff(batch.starts))
         for number in np.unique(numbers):
             chosen = (interval == number) & (place >= 0)
-            counted = [np.bincount(place[chosen], weight, self._segments.count) for weight in (speed[chosen], None)]
+            weights = [*(each[chosen] for each in turning), None]
+            counted = [np.bincount(place[chosen], weight, self._segments.count) for weight in weights]
             self._sums[int(number)] = self._sums.get(int(number), 0.0) + np.array(counted, dtype=float)
 
     def table(self) -> pd.DataFrame:
@@ -82,23 +92,27 @@ class SpinSums:
         along = (np.arange(count) + 0.5) * self._segments.length / count
         tables = []
         for number in sorted(self._sums):
-            speed, particles = self._sums[number]
-            mean = speed / np.where(particles > 0.0, particles, np.nan)
+            *turning, particles = self._sums[number]
+            means = turning / np.where(particles > 0.0, particles, np.nan)
             table = {"segment": np.arange(1, count + 1), "along_m": along, "particles": particles}
             end = (number + 1) * self._interval
-            tables.append(pd.DataFrame({"travel_end_m": end, **table, "angular_speed_rad_per_s": mean}))
+            tables.append(pd.DataFrame({"travel_end_m": end, **table, **dict(zip(MEANS, means, strict=True))}))
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
 
 
 def mean_spin(history: pd.DataFrame, start: float) -> pd.DataFrame:
-    """Return the mean over all travel from `start` (m) on, by piece: segment, along_m, particles and angular speed.
+    """Return how particles turn, averaged over all travel from `start` (m) on, by piece.
 
+    Columns segment, along_m, particles, averaged_angular_velocity_rad_per_s, see `averaged_angular_velocity`, and
+    mean_angular_speed_rad_per_s, of the magnitudes.
     history: as from `spin_along_sample`, of one run or several cycles of it. Raises ValueError when nothing is left.
     """
     later = history[history["travel_end_m"] > start * (1.0 + BETWEEN)]
     if later.empty:
         raise ValueError(f"no interval after {start:g} m of travel, allowed is a start before the end of the travel")
-    weighted = later.assign(sum=later["angular_speed_rad_per_s"].fillna(0.0) * later["particles"])
-    sums = weighted.groupby(["segment", "along_m"])[["sum", "particles"]].sum().reset_index()
-    mean = sums.pop("sum") / sums["particles"].where(sums["particles"] > 0.0)
-    return sums.assign(angular_speed_rad_per_s=mean)
+    weighted = later[MEANS].mul(later["particles"], axis=0).fillna(0.0).join(later[["segment", "along_m", "particles"]])
+    sums = weighted.groupby(["segment", "along_m"]).sum().reset_index()
+    means = sums[MEANS].div(sums["particles"].where(sums["particles"] > 0.0), axis=0)
+    return sums[["segment", "along_m", "particles"]].assign(
+        **{AVERAGED_ANGULAR_VELOCITY: averaged_angular_velocity(means), MEAN_ANGULAR_SPEED: means[MEAN_ANGULAR_SPEED]}
+    )

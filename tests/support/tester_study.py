@@ -44,7 +44,8 @@ def series(revolutions=10, instants=40, settled_after=3.0, variation=0.05):
     parts = []
     for surface, velocity in (("plain", 0.52), ("convex", 0.24)):
         table = {"velocity_m_per_s": velocity, "bed_height_m": 0.12, "wear_rate_m3_per_s": 2e-8}
-        table |= {"bottom_angular_speed_rad_per_s": 1.5, "bottom_velocity_m_per_s": velocity, "normal_force_N": 16.0}
+        table |= {"bottom_averaged_angular_velocity_rad_per_s": 1.5, "bottom_mean_angular_speed_rad_per_s": 2.0}
+        table |= {"bottom_velocity_m_per_s": velocity, "normal_force_N": 16.0}
         columns = {name: value * wave * start for name, value in table.items()}
         parts.append(pd.DataFrame({"run": surface, "surface": surface, "revolution": x, **columns}))
     return pd.concat(parts, ignore_index=True)

@@ -67,7 +67,8 @@ def test_shear_flow(tmp_path):
     history = bin_history(write(tmp_path / "bed_0.dump", shear), BINS, STEP, 0.01)
     expected = 0.4 + 80.0 * history["height_m"]
     np.testing.assert_allclose(history["velocity_y_m_per_s"], expected, rtol=SIX_DIGITS)
-    np.testing.assert_allclose(history["angular_speed_rad_per_s"], 40.0, rtol=SIX_DIGITS)
+    np.testing.assert_allclose(history["angular_velocity_x_rad_per_s"], -40.0, rtol=SIX_DIGITS)
+    np.testing.assert_allclose(history["mean_angular_speed_rad_per_s"], 40.0, rtol=SIX_DIGITS)
     relative = relative_velocity_history(history, BED, 0.02)
     np.testing.assert_allclose(relative["relative_velocity"], 1.0 - (0.4 + 80.0 * 0.01) / BED, rtol=SIX_DIGITS)
     lower = relative_velocity_history(history, BED, 0.01)
@@ -75,7 +76,9 @@ def test_shear_flow(tmp_path):
 
 
 def test_rigid_rotation(tmp_path):
-    """Mean velocities are those at the middle of each zone, the angular speed is that of the rotation."""
+    """Mean velocities are those at the middle of each zone; averaged angular velocity and mean angular speed are both
+    that of the rotation. On the two sides of the sample it is no mirror image of itself, and cancels like vx.
+    """
     history = bin_history(write(tmp_path / "bed_0.dump", rotation), BINS, STEP, 0.01)
     middles = {"central": (0.0, 0.0), "ahead": (0.0, -0.08), "behind": (0.0, 0.08)}
     for zone, (x, y) in middles.items():
@@ -84,7 +87,43 @@ def test_rigid_rotation(tmp_path):
         np.testing.assert_allclose(found["velocity_y_m_per_s"], 3.0 * (x - 0.3), rtol=SIX_DIGITS)
     side = history[history["zone"] == "side"]
     np.testing.assert_allclose(side["velocity_x_m_per_s"], 0.0, atol=SIX_DIGITS)  # out on one side, in on the other
-    np.testing.assert_allclose(history["angular_speed_rad_per_s"], 3.0, rtol=SIX_DIGITS)
+    np.testing.assert_allclose(history["mean_angular_speed_rad_per_s"], 3.0, rtol=SIX_DIGITS)
+    averaged = velocity_profile(history, BED, 0.0, 0.01).set_index("zone")["averaged_angular_velocity_rad_per_s"]
+    np.testing.assert_allclose(averaged.drop("side"), 3.0, rtol=SIX_DIGITS)
+    np.testing.assert_allclose(averaged["side"], 0.0, atol=SIX_DIGITS)
+
+
+def rolling_in(places, _step=0):
+    """Particles that roll to the middle plane on both sides of it, mirror images of each other: spin along y."""
+    zero = np.zeros(len(places))
+    return np.zeros((len(places), 3)), np.column_stack([zero, -7.0 * np.sign(places[:, 0]), zero])
+
+
+def test_mirror_images_add_up_beside_the_sample_and_cancel_over_it(tmp_path):
+    """Side bins are one bin and its mirror image; the central bins are one bin, in which the two halves cancel."""
+    history = bin_history(write(tmp_path / "bed_0.dump", rolling_in), BINS, STEP, 0.01)
+    profile = velocity_profile(history, BED, 0.0, 0.01).set_index("zone")
+    np.testing.assert_allclose(profile["mean_angular_speed_rad_per_s"], 7.0, rtol=SIX_DIGITS)
+    averaged = profile["averaged_angular_velocity_rad_per_s"]
+    np.testing.assert_allclose(averaged["side"], 7.0, rtol=SIX_DIGITS)
+    np.testing.assert_allclose(averaged["central"], 0.0, atol=SIX_DIGITS)
+
+
+def test_spins_in_all_directions_average_to_nothing(tmp_path):
+    """Magnitude 5 rad/s about random axes: the mean speed is 5, the averaged vector falls with the root of the number
+    of particles that it is averaged over, frames included.
+    """
+    generator = np.random.default_rng(20220317)
+
+    def turning(places, _step):
+        axes = generator.normal(size=places.shape)
+        return np.zeros(places.shape), 5.0 * axes / np.linalg.norm(axes, axis=1, keepdims=True)
+
+    history = bin_history(write(tmp_path / "bed.dump", turning, (25, 50, 75, 100)), BINS, STEP, 0.01)
+    profile = velocity_profile(history, BED, 0.0, 0.01)
+    np.testing.assert_allclose(profile["mean_angular_speed_rad_per_s"], 5.0, rtol=SIX_DIGITS)
+    by_chance = 5.0 / np.sqrt(4 * profile["particles"])
+    assert (profile["averaged_angular_velocity_rad_per_s"] < 3.0 * by_chance).all()  # 6e-6 of bins have more
 
 
 def test_side_bins_count_outwards(tmp_path):

@@ -1,4 +1,4 @@
-"""Angular speed along the sample: every particle in its piece, every interval in its mean."""
+"""How particles turn along the sample: every particle in its piece, every interval in its mean."""
 
 import numpy as np
 import pytest
@@ -43,7 +43,7 @@ def test_pieces_grow_with_the_layer(height, count):
 
 
 def test_means_are_over_particles_and_their_pieces(tmp_path):
-    """Magnitudes of spin, averaged within a piece; an empty piece has none."""
+    """Components and magnitudes of spin, averaged within a piece; an empty piece has none."""
     rows = [
         (0.0, -0.015, 0.002, 3.0, 4.0, 0.0),  # 5 rad/s, piece 1
         (0.005, -0.012, 0.004, 0.0, 0.0, -7.0),  # 7 rad/s, piece 1
@@ -52,21 +52,28 @@ def test_means_are_over_particles_and_their_pieces(tmp_path):
     ]
     dump = write_dump(tmp_path / "bed_10.dump", {10: rows})
     table = spin_along_sample([(dump, 0.0)], SEGMENTS, 1e-3, 0.01)
-    assert list(table["angular_speed_rad_per_s"].fillna(-1.0)) == pytest.approx([6.0, -1.0, -1.0, 2.0], rel=PRINTED)
+    means = {"mean_angular_speed_rad_per_s": [6.0, -1.0, -1.0, 2.0], "angular_velocity_x_rad_per_s": [1.5, -1, -1, 2]}
+    means["angular_velocity_z_rad_per_s"] = [-3.5, -1.0, -1.0, 0.0]
+    for name, expected in means.items():
+        assert list(table[name].fillna(-1.0)) == pytest.approx(expected, rel=PRINTED)
     assert list(table["particles"]) == [2.0, 0.0, 0.0, 1.0]
     assert list(table["along_m"]) == pytest.approx([0.005, 0.015, 0.025, 0.035])
     assert set(table["travel_end_m"]) == {0.01}
 
 
 def test_intervals_and_start_of_the_mean(tmp_path):
-    """Frames fall into intervals of travel, dumps of later cycles further on; the mean leaves out what is before."""
-    one = [(0.0, -0.015, 0.002, 2.0, 0.0, 0.0)]
+    """Frames fall into intervals of travel, dumps of later cycles further on; the mean leaves out what is before.
+
+    Components are averaged over all of them first: what turns to and fro has a mean speed and no averaged velocity.
+    """
+    one = [(0.0, -0.015, 0.002, -12.0, 0.0, 0.0)]
     two = [(0.0, -0.015, 0.002, 4.0, 0.0, 0.0), (0.0, -0.011, 0.002, 6.0, 0.0, 0.0)]
     first = write_dump(tmp_path / "a.dump", {5: one, 10: two})
     second = write_dump(tmp_path / "b.dump", {10: [(0.0, -0.015, 0.002, 10.0, 0.0, 0.0)]})
     table = spin_along_sample([(first, 0.0), (second, 0.01)], SEGMENTS, 1e-3, 0.01)
     assert sorted(set(table["travel_end_m"])) == pytest.approx([0.01, 0.02])
-    assert mean_spin(table, 0.0)["angular_speed_rad_per_s"].iloc[0] == pytest.approx((2 + 4 + 6 + 10) / 4, rel=PRINTED)
-    assert mean_spin(table, 0.01)["angular_speed_rad_per_s"].iloc[0] == pytest.approx(10.0, rel=PRINTED)
+    both = ["averaged_angular_velocity_rad_per_s", "mean_angular_speed_rad_per_s"]
+    assert list(mean_spin(table, 0.0)[both].iloc[0]) == pytest.approx([(-12 + 4 + 6 + 10) / 4, 8.0], rel=PRINTED)
+    assert list(mean_spin(table, 0.01)[both].iloc[0]) == pytest.approx([10.0, 10.0], rel=PRINTED)
     with pytest.raises(ValueError, match=r"no interval after 0\.02 m of travel"):
         mean_spin(table, 0.02)

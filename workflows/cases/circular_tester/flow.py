@@ -20,7 +20,8 @@ STEADINESS = ("velocity_m_per_s", "bed_height_m", "wear_rate_m3_per_s")  # the t
 WHOLE = 1e-6  # revolutions that an instant may lie before a whole one and belong to the next
 FEWEST_INSTANTS = 3  # in a revolution, for a standard deviation that says anything
 # measures of Fig 6.17, 6.18 and 6.21
-SPIN, VELOCITY, FORCE = "bottom_angular_speed_rad_per_s", "bottom_velocity_m_per_s", "normal_force_N"
+SPIN, VELOCITY, FORCE = "bottom_averaged_angular_velocity_rad_per_s", "bottom_velocity_m_per_s", "normal_force_N"
+MEAN_SPIN = "bottom_mean_angular_speed_rad_per_s"  # of the particles' own magnitudes; stands beside it in tables
 
 
 def revolution_numbers(revolution: np.ndarray) -> np.ndarray:
@@ -71,7 +72,7 @@ def series_of(run: TesterRun) -> pd.DataFrame:
 
     Columns: run, surface, revolution (of the bed), worn_revolution (of wear, below 0 before), and measures, each in
     rows of its own: velocity_m_per_s and bed_height_m of the particles over the sample, wear_rate_m3_per_s,
-    normal_force_N, bottom_velocity_m_per_s, bottom_angular_speed_rad_per_s.
+    normal_force_N, bottom_velocity_m_per_s, SPIN and MEAN_SPIN, see `layer.reduce_layer`.
     """
     parts = [_logged(run.bed_folder / LOG, run.bed_revolution_steps)]
     folders = cycle_folders(run.folder)
@@ -87,7 +88,7 @@ def series_of(run: TesterRun) -> pd.DataFrame:
     wear["normal_force_N"] = history["mean_normal_force_N"]
     parts.append(_after(wear, run.before))
     layer = _rows(run.folder, LAYER_TABLE)
-    bottom = {name: f"bottom_{name}" for name in ("velocity_m_per_s", "angular_speed_rad_per_s")}
+    bottom = {name.removeprefix("bottom_"): name for name in (VELOCITY, SPIN, MEAN_SPIN)}
     parts.append(_after(layer.rename(columns=bottom)[["revolution", *bottom.values()]], run.before))
     table = pd.concat(parts, ignore_index=True)
     table.insert(0, "run", run.name)
@@ -120,4 +121,4 @@ def _rows(folder: Path, name: str) -> pd.DataFrame:
 def flow_means(flow: pd.DataFrame) -> pd.DataFrame:
     """Spin and velocity of the lowest layer and normal force per revolution of wear, as from `revolution_means`."""
     worn = flow[flow["worn_revolution"] > 0.0]
-    return revolution_means(worn.assign(revolution=worn["worn_revolution"]), (SPIN, VELOCITY, FORCE))
+    return revolution_means(worn.assign(revolution=worn["worn_revolution"]), (SPIN, MEAN_SPIN, VELOCITY, FORCE))

@@ -38,16 +38,17 @@ def tester_steadiness(job: Job) -> Any:
     "Flow",
     "Spin of the lowest layer",
     caption="""
-    Counterpart of Fig 6.17 (Yan 2022): angular speed of particles whose centres are within a median diameter of the
+    Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity, and in the table mean of the
+    magnitudes, of particles whose centres are within a median diameter of the
     sample's plane, mean and standard deviation over the snapshots of a revolution of wear.
     """,
     **OF_SERIES,
 )
 def tester_spin(job: Job) -> Any:
     """Draw the spin of the lowest layer by revolution (Fig 6.17)."""
-    from bulkwear.workflows.cases.circular_tester.flow import SPIN
+    from bulkwear.workflows.cases.circular_tester.flow import MEAN_SPIN, SPIN
 
-    return _by_revolution(job, SPIN)
+    return _by_revolution(job, SPIN, MEAN_SPIN)
 
 
 @figure(
@@ -79,15 +80,15 @@ def tester_force(job: Job) -> Any:
     return _by_revolution(job, FORCE)
 
 
-def _by_revolution(job: Job, measure: str) -> Any:
-    """Draw a measure of the lowest layer by revolution."""
+def _by_revolution(job: Job, measure: str, *beside: str) -> Any:
+    """Draw a measure of the lowest layer by revolution; beside: more measures, for the table alone."""
     from bulkwear.workflows.cases.circular_tester.flow import flow_means
     from bulkwear.workflows.cases.circular_tester.plots.flow import by_revolution
 
     series, published = read(job, "series", "published")
     means = flow_means(series)
-    means = means[means["measure"] == measure]
-    return by_revolution(means, measure, published, job.remarks), means
+    drawn = means[means["measure"] == measure]
+    return by_revolution(drawn, measure, published, job.remarks), means[means["measure"].isin([measure, *beside])]
 
 
 @figure(

@@ -10,6 +10,11 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.flow.bed import read_snapshot, snapshots
+from bulkwear.postproc.flow.moving_bins import (
+    AVERAGED_ANGULAR_VELOCITY,
+    MEAN_ANGULAR_SPEED,
+    averaged_angular_velocity,
+)
 from bulkwear.postproc.mesh import PLAIN, SurfaceMesh
 from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE
 from bulkwear.workflows.cases.circular_tester.runs import TesterRun
@@ -45,8 +50,10 @@ def reduce_layer(
 ) -> list[Path]:
     """Write what the layer does in each snapshot of a wear cycle; return those of no use then, all but the last.
 
-    start: revolutions before the cycle. Columns: revolution, particles, velocity_m_per_s (along the travel),
-    angular_speed_rad_per_s, means over the particles. Raises FileNotFoundError without a snapshot.
+    start: revolutions before the cycle. Columns: revolution, particles, and over these velocity_m_per_s (mean, along
+    the travel), averaged_angular_velocity_rad_per_s (components averaged, then the magnitude, as Yan 2022 has it in
+    section 3.5.3.3; Fig 6.17 is taken to have the same) and mean_angular_speed_rad_per_s (magnitudes averaged).
+    Raises FileNotFoundError without a snapshot.
     """
     dumps = [path for path in snapshots(cycle_folder) if path.name != FIRST_SNAPSHOT]
     if not dumps:
@@ -59,7 +66,8 @@ def reduce_layer(
                 "revolution": start + revolutions_per_step * int(path.stem.removeprefix("bed_")),
                 "particles": len(found),
                 "velocity_m_per_s": found["velocity_y_m_per_s"].mean(),
-                "angular_speed_rad_per_s": found["angular_speed_rad_per_s"].mean(),
+                AVERAGED_ANGULAR_VELOCITY: averaged_angular_velocity(found.mean().to_frame().T).item(),
+                MEAN_ANGULAR_SPEED: found["angular_speed_rad_per_s"].mean(),
             }
         )
     pd.DataFrame(rows).to_csv(Path(cycle_folder) / LAYER_TABLE, index=False)
@@ -87,7 +95,8 @@ def relative_motion(particles: pd.DataFrame) -> pd.DataFrame:
     """Speeds of the particles of a layer over the mean of the plain sample's (Fig 6.19 and 6.20).
 
     particles: surface, x_m, y_m, radius_m, vx_m_per_s, vy_m_per_s, angular_speed_rad_per_s. Added: relative_speed and
-    relative_angular_speed, -. Raises ValueError without a plain sample's particles.
+    relative_angular_speed, -, both of each particle's own magnitude over the mean of these over the plain sample: the
+    source says "based on the average value for the plain sample". Raises ValueError without such particles.
     """
     speed = np.hypot(particles["vx_m_per_s"], particles["vy_m_per_s"])
     plain = particles["surface"] == PLAIN

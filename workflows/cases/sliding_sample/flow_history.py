@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.flow.bed import snapshots
 from bulkwear.postproc.flow.moving_bins import (
+    QUANTITIES,
     BinSums,
     MovingBins,
     add_dumps,
@@ -20,7 +22,7 @@ from bulkwear.postproc.flow.moving_bins import (
     surcharge_history,
     velocity_profile,
 )
-from bulkwear.postproc.flow.spin import Segments, SpinSums, mean_spin
+from bulkwear.postproc.flow.spin import MEANS, Segments, SpinSums, mean_spin
 from bulkwear.postproc.readers.cycle_folders import FLOW_TABLE, PACKING, SPIN_TABLE, cycle_files
 from bulkwear.postproc.statistics.steady import DRIFTING, FEWEST_VALUES, STEADY, UNSAID, steady_window
 from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
@@ -56,9 +58,9 @@ class RunFlow:
         return MovingBins(self.width, self.length, side, height, int(np.ceil(HIGHEST * self.bed_thickness / height)))
 
     @property
-    def definition(self) -> dict[str, float]:
+    def definition(self) -> dict[str, Any]:
         """Return what tells bins of this run from others; stored with them."""
-        return {**asdict(self.bins), **self._intervals}
+        return {**asdict(self.bins), **self._intervals, "means": list(QUANTITIES)}
 
     @property
     def segments(self) -> Segments:
@@ -66,9 +68,9 @@ class RunFlow:
         return Segments(self.width, self.length, LAYER_HEIGHT * self.particle_scale)
 
     @property
-    def spin_definition(self) -> dict[str, float]:
+    def spin_definition(self) -> dict[str, Any]:
         """Return what tells the pieces along the sample from others; stored with them."""
-        return {**asdict(self.segments), **self._intervals}
+        return {**asdict(self.segments), **self._intervals, "means": MEANS}
 
     @property
     def _intervals(self) -> dict[str, float]:
@@ -78,7 +80,7 @@ class RunFlow:
 def reduce_snapshots(cycle_folder: str | Path, run: RunFlow, start: float) -> list[Path]:
     """Write the bins of a wear cycle from its snapshots and return those of no use from then on, all but the last.
 
-    Beside the bins the angular speed along the sample (`spin.SpinSums`); both from one reading.
+    Beside the bins how particles turn along the sample (`spin.SpinSums`); both from one reading.
     start: m, travel at step 0 of the cycle; the snapshot of that step is the last one of the cycle before, and left
     out. Disk is then bounded by a snapshot and bins times intervals per cycle.
     Raises FileNotFoundError when there is no snapshot, and the errors of `moving_bins.bin_history`.
@@ -104,7 +106,7 @@ def run_bins(folder: str | Path, run: RunFlow) -> pd.DataFrame:
     return joined(_cycle_tables(folder, FLOW_TABLE, run.definition))
 
 
-def _cycle_tables(folder: str | Path, name: str, definition: Mapping[str, float]) -> list[pd.DataFrame]:
+def _cycle_tables(folder: str | Path, name: str, definition: Mapping[str, Any]) -> list[pd.DataFrame]:
     """Return the tables of that name of a run's wear cycles; errors as of `run_bins`."""
     tables = []
     for path in cycle_files(folder, name):
@@ -123,7 +125,7 @@ def _cycle_tables(folder: str | Path, name: str, definition: Mapping[str, float]
 def spin_profiles(
     folders: Mapping[str, Path], runs: Mapping[str, RunFlow], starts: Mapping[str, float]
 ) -> pd.DataFrame:
-    """Return the mean angular speed along the sample of every run, as from `spin.mean_spin`, with a column run.
+    """Return how particles turn along the sample of every run, as from `spin.mean_spin`, with a column run.
 
     starts: m, by run, travel from which on is averaged. Raises the errors of `run_bins`; cycles that were simulated
     before these tables were kept have none.

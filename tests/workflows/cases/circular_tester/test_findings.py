@@ -23,7 +23,7 @@ THESIS = {  # surface, particle scale -> mm3 per revolution, per revolution2: th
 }
 BUMPS = [(row, number) for row in range(1, 6) for number in range(1, 6 - (row + 1) % 2)]
 FLOW = {  # measure -> plain, convex at first, convex at last
-    "bottom_angular_speed_rad_per_s": (1.5, 3.5, 1.7),
+    "bottom_averaged_angular_velocity_rad_per_s": (1.5, 3.5, 1.7),
     "bottom_velocity_m_per_s": (0.5, 0.2, 0.25),
     "normal_force_N": (16.0, 28.0, 18.0),
 }

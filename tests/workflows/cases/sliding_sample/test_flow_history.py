@@ -93,7 +93,8 @@ def test_a_cycle_keeps_the_spin_along_its_sample(tmp_path):
     folder = write_run(tmp_path / "R1_convex", [2.0, 1.0])
     table = spin_profiles({"R1_convex": folder}, {"R1_convex": RUN}, {"R1_convex": 0.02})
     assert table["along_m"].tolist() == pytest.approx([0.0025 + 0.005 * k for k in range(8)])
-    np.testing.assert_allclose(table["angular_speed_rad_per_s"], 3.0, rtol=SIX_DIGITS)
+    for name in ("averaged_angular_velocity_rad_per_s", "mean_angular_speed_rad_per_s"):
+        np.testing.assert_allclose(table[name], 3.0, rtol=SIX_DIGITS)
     whole = spin_profiles({"R1_convex": folder}, {"R1_convex": RUN}, {"R1_convex": 0.0})
     assert whole["particles"].sum() == 4 * 2 * 8 * 8  # four frames, two sheets of the lattice, 40 x 40 mm
     assert table["particles"].sum() == 0.5 * whole["particles"].sum()
@@ -143,7 +144,8 @@ def test_tables_of_a_study(tmp_path):
     profiles = row_profiles(bins, along, dict.fromkeys(speeds, RUN.velocity), ["R1"])
     plain = profiles[(profiles["surface"] == "plain") & (profiles["zone"] == "central")]
     np.testing.assert_allclose(plain["velocity_m_per_s"], 1.98, rtol=SIX_DIGITS)  # 2 m/s less that of the bed, 0.02
-    np.testing.assert_allclose(plain["angular_speed_deg_per_s"], np.degrees(3.0), rtol=SIX_DIGITS)  # of (1, 2, 2) rad/s
+    spin = np.degrees(3.0)  # of (1, 2, 2) rad/s
+    np.testing.assert_allclose(plain["averaged_angular_velocity_deg_per_s"], spin, rtol=SIX_DIGITS)
     assert plain["height_mm"].tolist() == [2.5, 7.5]
     assert plain["window_end_mm"].unique().tolist() == pytest.approx([160.0])
 

@@ -27,8 +27,8 @@ NAMES = {
 TOP_SHARE = 0.98  # of the particles lie inside the colours
 SHIFT = 0.1  # revolutions that two surfaces stand apart
 MEASURES = {  # measure -> axis, factor from SI, published values (quantity, on which side of it ours are to lie)
-    "bottom_angular_speed_rad_per_s": (
-        "Angular speed of the bottom layer (°/s)",
+    "bottom_averaged_angular_velocity_rad_per_s": (
+        "Averaged angular velocity\nof the bottom layer (°/s)",
         DEGREES,
         (
             "convex_first_angular_speed",

@@ -237,15 +237,16 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
     inputs={"summary": SUMMARY, "profiles": PROFILES, "wear": every_run("wear.csv")},
     told={"runs": flow_runs},
     caption="""
-    Mean angular speed of the particles in the lowest layer over the sample, from its front edge, which the bed meets
-    first and which is at the top of the circle, clockwise to its rear edge. Pieces are as long as the layer is high, 5
-    mm times the particle scale, as nearly as whole ones fill the sample; means over the steady window of the relative
-    velocity, or over all of the travel where there is none. The source's text: it falls with the scale, is much higher
-    over the convex sample, and there higher at the front than at the back. The counterpart of Yan 2022, Fig 4.22.
+    Magnitude of the averaged angular velocity of the lowest layer over the sample, from its front edge, which the bed
+    meets first and which is at the top of the circle, clockwise to its rear edge. Pieces are as long as the layer is
+    high, 5 mm times the particle scale, as nearly as whole ones fill the sample; means over the steady window of the
+    relative velocity, or over all of the travel where there is none. The source's text: it falls with the scale, is
+    much higher over the convex sample, and there higher at the front than at the back. The counterpart of Yan 2022, Fig
+    4.22.
     """,
 )
 def angular_velocity_along_sample(job: Job) -> Any:
-    """Draw the angular speed of the lowest layer along the samples round a circle, a curve per particle scale."""
+    """Draw the averaged angular velocity of the lowest layer along the samples round a circle, a curve per scale."""
     from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.flow_history import RunFlow, spin_profiles
@@ -256,8 +257,8 @@ def angular_velocity_along_sample(job: Job) -> Any:
     runs = {run: RunFlow(**values) for run, values in job.told.runs.items()}
     folders = dict(zip(summary["run"], [Path(path).parent for path in job.files.wear], strict=True))
     table = in_display_units(summary.merge(spin_profiles(folders, runs, starts.to_dict()), on="run"))
-    labels = ("angular speed of the lowest layer (°/s)", "distance behind the front edge (mm)")
-    return spider_charts(table, "angular_speed_deg_per_s", "along_mm", labels, job.remarks), table
+    labels = ("averaged angular velocity of the lowest layer (°/s)", "distance behind the front edge (mm)")
+    return spider_charts(table, "averaged_angular_velocity_deg_per_s", "along_mm", labels, job.remarks), table
 
 
 # ---------------------------------------------------------------- packings and single collisions

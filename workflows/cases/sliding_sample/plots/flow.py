@@ -18,9 +18,9 @@ PANELS = {  # column of a profile -> its quantity in the published table and the
     "velocity_m_per_s": ("velocity", "Velocity with\nthe sample (m/s)"),
     "sideways_ratio": ("sideways_ratio", "Sideways velocity over\nthat with the sample (-)"),
     "upward_ratio": ("upward_ratio", "Upward velocity over\nthat with the sample (-)"),
-    "angular_speed_deg_per_s": ("angular_speed", "Angular speed (°/s)"),
+    "averaged_angular_velocity_deg_per_s": ("averaged_angular_velocity", "Averaged angular velocity (°/s)"),
 }
-ANGULAR = "angular_speed_deg_per_s"
+ANGULAR = "averaged_angular_velocity_deg_per_s"
 VELOCITIES = tuple(name for name in PANELS if name != ANGULAR)
 STYLES = {"central": ("-", "o"), "side": ("--", "^")}
 FILLS = {"central": "white", "side": "#c9c9c9"}  # of published marks
@@ -120,7 +120,10 @@ def velocity_profiles(table: pd.DataFrame, published: pd.DataFrame, remarks: Seq
 
 
 def angular_velocity_profiles(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw angular speed (degrees per second) against height (mm), a panel per design row; arguments as above."""
+    """Draw the magnitude of the averaged angular velocity (degrees per second) against height (mm), a panel per row.
+
+    Arguments as above.
+    """
     rows = list(dict.fromkeys(table["row"]))
     figure = new_figure(remarks)
     panels = figure.subplots(1, len(rows), squeeze=False)[0]

@@ -198,18 +198,20 @@ def velocity_profiles(job: Job) -> Any:
 
 @figure(
     "Bed",
-    "Profiles of the angular speed",
+    "Profiles of the angular velocity",
     **OF_PROFILES,
     caption="""
-    Mean angular speed of the particles by layer, over the sample and beside it, in the same windows and layers as the
-    velocity profiles. Rolling instead of sliding next to the surface is the source's explanation of the lower wear.
+    Magnitude of the averaged angular velocity by layer, over the sample and beside it, in the same windows and layers
+    as the velocity profiles. As in the source, components are averaged first; the table has the mean of the particles'
+    own angular speeds as well, which is higher where they do not turn alike. Rolling instead of
+    sliding next to the surface is the source's explanation of the lower wear.
     Coarse-grained particles turn more slowly than real ones at the same difference of velocity, in inverse proportion
     to their size: speeds compare within a row only. Hollow marks: single values of the source's text; its "top layer"
     of R5 is read as the layer next to the sample. The counterpart of Yan 2022, Fig 3.21 and 3.22.
     """,
 )
 def angular_velocity_profiles(job: Job) -> Any:
-    """Draw the angular speed by layers over the rows that are shown in detail."""
+    """Draw the averaged angular velocity by layers over the rows that are shown in detail."""
     from bulkwear.workflows.cases.sliding_sample.plots import flow
 
     table, published = _profiles_in_detail(job)

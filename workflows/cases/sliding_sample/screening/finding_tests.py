@@ -223,7 +223,9 @@ def _rolling_falls(evidence: Evidence) -> Verdict:
         return Verdict("", UNSAID, reason)
     profile = evidence.profiles
     shown = profile[(profile["row"] == BEST) & (profile["surface"] != PLAIN)]
-    mean = shown.groupby(["zone", "layer"])["angular_speed_deg_per_s"].mean().dropna()  # replicates are one row
+    mean = (
+        shown.groupby(["zone", "layer"])["averaged_angular_velocity_deg_per_s"].mean().dropna()
+    )  # replicates are one row
     if not {CENTRAL, SIDE} <= set(mean.index.get_level_values("zone")):
         return Verdict("", UNSAID, "R5 has no profile")
     over, beside = mean[CENTRAL], mean[SIDE]

@@ -32,7 +32,7 @@ class Evidence:
     """What the simulations found, by the source's names of the rows.
 
     rows: index row; see `rows_of_study`. gradients: row, surface, regime and relative_gradient along the travel
-    profiles: row, surface, zone, layer, velocity_m_per_s and angular_speed_deg_per_s
+    profiles: row, surface, zone, layer, velocity_m_per_s and averaged_angular_velocity_deg_per_s
     steady: run, row, surface, measure, mean, deviation and steady of every window, see `steady_table`
     terms: coefficients of the best model, columns term, coefficient, p_value_permutation; None without a regression
     models: models as good, each a set of terms; model_p: p value of the best by permutation
@@ -130,7 +130,8 @@ def rows_of_study(
             "base_share": patterned["base_worn_volume_m3"] / wear,
             "bump_share": patterned["pattern_worn_volume_m3"] / wear,
             "relative_velocity": patterned["relative_velocity"],
-            "spin_over_plain": over["angular_speed_deg_per_s"] / beside["angular_speed_deg_per_s"],
+            "spin_over_plain": over["averaged_angular_velocity_deg_per_s"]
+            / beside["averaged_angular_velocity_deg_per_s"],
             "velocity_share": over["velocity_m_per_s"] / patterned["velocity_m_per_s"],
             "plain_velocity_share": beside["velocity_m_per_s"] / patterned["velocity_m_per_s"],
             "regime": patterned["regime"],

@@ -39,7 +39,7 @@ def profile():
                 "velocity_m_per_s": [1.0, 0.5],
                 "sideways_ratio": [0.1, 0.2],
                 "upward_ratio": [0.0, 0.3],
-                "angular_speed_deg_per_s": [300.0, 100.0],
+                "averaged_angular_velocity_deg_per_s": [300.0, 100.0],
             }
         )
         for surface in ("convex", "plain")
@@ -107,7 +107,7 @@ def test_profiles_over_and_beside(profile):
     assert remarks_of(figure) == "; ".join(REMARKS)
     angular = flow.angular_velocity_profiles(profile, NOTHING, REMARKS)
     np.testing.assert_array_equal(angular.axes[0].lines[0].get_xydata(), [[300.0, 5.0], [100.0, 15.0]])
-    assert angular.axes[0].get_xlabel() == "Angular speed (°/s)"
+    assert angular.axes[0].get_xlabel() == "Averaged angular velocity (°/s)"
 
 
 def test_published_profiles_are_overlaid(profile):

@@ -86,7 +86,7 @@ def profiles_of(summary):
                     zone=zone,
                     layer=layer,
                     velocity_m_per_s=share * summary["velocity_m_per_s"],
-                    angular_speed_deg_per_s=spin,
+                    averaged_angular_velocity_deg_per_s=spin,
                 )
             )
     return pd.concat(parts, ignore_index=True)
@@ -115,7 +115,7 @@ def test_what_disagrees_is_not_confirmed(tables):
     summary["wear_over_plain"] = summary["wear_over_plain"].mask(summary["run"] == "R12_convex", 0.7)
     summary["wear_over_plain"] = summary["wear_over_plain"].mask(summary["run"] == "R3_convex", 1.3)
     summary[["base_worn_volume_m3", "pattern_worn_volume_m3"]] = summary[["pattern_worn_volume_m3"] * 2].to_numpy()
-    profiles = tables["profiles"].assign(angular_speed_deg_per_s=lambda each: 10.0 * each["layer"])
+    profiles = tables["profiles"].assign(averaged_angular_velocity_deg_per_s=lambda each: 10.0 * each["layer"])
     table = verdicts({**tables, "summary": summary, "profiles": profiles})
     keys = ["convex_wears_less", "r12_wears_more", "base_wears_most", "normal_force_up", "force_up_wear_down"]
     assert table.loc[[*keys, "rolling_at_surface", "rolling_falls"], "verdict"].unique().tolist() == [REFUTED]
@@ -234,7 +234,9 @@ def test_layers_of_replicates_are_averaged(tables):
     """Two packings whose layers fall alike confirm that speeds fall, though one lies above the other everywhere."""
     study = screen_summary(tables["summary"], FACTORS)
     evidence = gather(tables, study, 1000.0, SELF, SELF)
-    other = evidence.profiles.assign(angular_speed_deg_per_s=1.02 * evidence.profiles["angular_speed_deg_per_s"])
+    other = evidence.profiles.assign(
+        averaged_angular_velocity_deg_per_s=1.02 * evidence.profiles["averaged_angular_velocity_deg_per_s"]
+    )
     evidence = replace(evidence, profiles=pd.concat([evidence.profiles, other], ignore_index=True))
     table = findings_table(evidence, read("findings"), read("regimes")).set_index("key")
     assert table.loc["rolling_falls", "verdict"] == CONFIRMED

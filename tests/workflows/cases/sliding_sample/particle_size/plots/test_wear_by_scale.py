@@ -75,14 +75,14 @@ def spins():
             count = round(200.0 / (5.0 * scale))
             along = (np.arange(count) + 0.5) * 200.0 / count
             table = {"surface": surface, "particle_scale": scale, "along_mm": along}
-            tables.append(pd.DataFrame({**table, "angular_speed_deg_per_s": level / np.sqrt(scale)}))
+            tables.append(pd.DataFrame({**table, "averaged_angular_velocity_deg_per_s": level / np.sqrt(scale)}))
     return pd.concat(tables, ignore_index=True)
 
 
 def test_spider_charts_share_circle_and_radius():
     """A chart per surface, a curve per scale; the same place has the same angle at every scale, and no curve closes."""
     labels = ("angular speed (°/s)", "distance behind the front edge (mm)")
-    figure = spider_charts(spins(), "angular_speed_deg_per_s", "along_mm", labels, ["a remark"])
+    figure = spider_charts(spins(), "averaged_angular_velocity_deg_per_s", "along_mm", labels, ["a remark"])
     assert len(figure.axes) == 2
     assert [len(axes.lines) for axes in figure.axes] == [3, 3]
     assert len({axes.get_rmax() for axes in figure.axes}) == 1
