@@ -64,7 +64,7 @@ def test_no_mesh_of_a_run_has_the_fix_id_of_its_bed(tmp_path):
 
 def test_one_bed_serves_all_samples():
     """Plain and convex samples and other elements start from one bed, whose block is as high as the highest bump."""
-    study = load_study("circular_tester", overrides={"fidelity": "quick"})
+    study = load_study("circular_tester", overrides={"fidelity": "quick", "packings": 1})
     of_scale = {}
     for run in study.runs:
         key = run.parameters["particle"]["scale"], run.parameters["tester"]["shape"]

@@ -170,6 +170,6 @@ def test_collisions_of_the_study_are_alike_and_thinned_out(tmp_path):
 def test_collisions_are_of_the_studys_particles():
     """Each rolling type collides at each scale, and the deck says which."""
     tests = collision_tests(packed_runs(load_study("particle_size")))
-    assert [each["particle"]["scale"] for each in tests] == 2 * [4.0, 6.0, 8.0]
+    assert [each["particle"]["scale"] for each in tests] == 2 * [4.0, 6.0, 8.0, 9.0, 10.0, 12.0]
     models = [collision_deck(each)["solver"]["rolling_friction"] for each in tests]
-    assert models == [model for model in MODELS for _ in range(3)]
+    assert models == [model for model in MODELS for _ in range(6)]

@@ -34,12 +34,16 @@ DIGITS = 0.02  # -, of the contacts: positions printed with six digits lose or i
 EXACT = 1e-12  # relative: the same formula
 ROUNDING = 1e-9  # relative
 CONTAINER = 0.25  # relative, of the forecast of the narrowest container: fewer fit between its sides. Measured: 0.19
-ROWS = {"quick": [4, 6, 8], "standard": [2, 3, 4, 6, 8], "paper": [1, 2, 3, 4, 5, 6, 7, 8]}
+ROWS = {
+    "quick": [4, 6, 8, 9, 10, 12],
+    "standard": [2, 3, 4, 6, 8, 9, 10, 12],
+    "paper": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12],
+}
 
 
 def study(fidelity="quick", **overrides):
     """The study of particle size."""
-    return load_study("particle_size", overrides={"fidelity": fidelity, **overrides})
+    return load_study("particle_size", overrides={"fidelity": fidelity, "packings": 1, **overrides})
 
 
 def gravel_container(axis="y", seconds=0.1):

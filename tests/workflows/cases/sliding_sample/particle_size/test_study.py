@@ -9,11 +9,15 @@ from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.text import number, setting_rows
 
 ROUNDING = 1e-9  # relative
-ROWS = {"quick": [4, 6, 8], "standard": [2, 3, 4, 6, 8], "paper": [1, 2, 3, 4, 5, 6, 7, 8]}
+ROWS = {
+    "quick": [4, 6, 8, 9, 10, 12],
+    "standard": [2, 3, 4, 6, 8, 9, 10, 12],
+    "paper": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12],
+}
 
 
 def study(fidelity="quick", **overrides):
-    return load_study("particle_size", overrides={"fidelity": fidelity, **overrides})
+    return load_study("particle_size", overrides={"fidelity": fidelity, "packings": 1, **overrides})
 
 
 @pytest.mark.parametrize("fidelity", ROWS)
