@@ -107,3 +107,15 @@ def obeys(choices: np.ndarray, terms: Sequence[Term], heredity: Heredity) -> np.
             parents = [chosen[:, mains[k]] if k in mains else absent for k in term]
             allowed &= ~chosen[:, position] | enough(*parents)
     return allowed
+
+
+def parents_of(terms: Sequence[Term], heredity: Heredity) -> tuple[np.ndarray, np.ndarray]:
+    """Return (T, T) which main effects are parents of each term, and (T,) how many of them it needs by a heredity.
+
+    A term of second order whose parents are no candidates can never be taken where it needs them.
+    """
+    parents = np.array([[len(t) == 2 and len(p) == 1 and p[0] in t for p in terms] for t in terms], dtype=bool)
+    second = np.array([len(term) == 2 for term in terms], dtype=bool)
+    factors = np.array([len(set(term)) for term in terms])
+    least = {"strong": factors, "weak": np.ones(len(terms), dtype=int), "none": np.zeros(len(terms), dtype=int)}
+    return parents.reshape(len(terms), len(terms)), np.where(second, least[heredity], 0)

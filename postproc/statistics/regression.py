@@ -112,17 +112,36 @@ def press(model: Fit) -> float:
     return float(((model.residuals / left) ** 2).sum())
 
 
-def aicc(residual_sum: np.ndarray | float, total_sum: np.ndarray | float, runs: int, terms: int) -> np.ndarray:
+def aicc(
+    residual_sum: np.ndarray | float, total_sum: np.ndarray | float, runs: int, terms: np.ndarray | int
+) -> np.ndarray:
     """Return Akaike's criterion corrected for few runs (C. M. Hurvich and C.-L. Tsai, 1989), up to a constant.
 
     The parameters are the terms, the constant and the error's variance. Infinite when they are too many for the runs.
     """
-    parameters = terms + 2
-    if runs - parameters - 1 <= 0:
-        return np.full(np.shape(residual_sum), np.inf)
+    parameters = np.asarray(terms) + 2.0
+    return _deviance(residual_sum, total_sum, runs) + _corrected(2.0 * parameters, runs, terms)
+
+
+def bic_corrected(
+    residual_sum: np.ndarray | float, total_sum: np.ndarray | float, runs: int, terms: np.ndarray | int
+) -> np.ndarray:
+    """Return the Bayesian criterion corrected for few runs (A. D. McQuarrie, Stat. Probab. Lett. 44, 1999, 79-86).
+
+    Up to a constant; the parameters are the terms and the constant. Infinite when they are too many for the runs.
+    """
+    return _deviance(residual_sum, total_sum, runs) + _corrected(np.log(runs) * (np.asarray(terms) + 1.0), runs, terms)
+
+
+def _deviance(residual_sum: np.ndarray | float, total_sum: np.ndarray | float, runs: int) -> np.ndarray:
     least = LEAST_RESIDUAL * np.asarray(total_sum, dtype=float) + np.finfo(float).tiny
-    deviance = runs * np.log(np.maximum(residual_sum, least) / runs)
-    return deviance + 2.0 * parameters + 2.0 * parameters * (parameters + 1) / (runs - parameters - 1)
+    return runs * np.log(np.maximum(residual_sum, least) / runs)
+
+
+def _corrected(penalty: np.ndarray, runs: int, terms: np.ndarray | int) -> np.ndarray:
+    """Return the penalty of a criterion for large samples, corrected for few runs; infinite where they are too few."""
+    left = runs - np.asarray(terms, dtype=float) - 3.0
+    return np.where(left > 0.0, penalty * runs / np.where(left > 0.0, left, 1.0), np.inf)
 
 
 def fit_measures(model: Fit) -> dict[str, float]:

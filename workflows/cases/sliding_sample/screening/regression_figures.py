@@ -71,6 +71,7 @@ def confirmation(job: Job) -> Any:
         for name in (
             "coefficients",
             "models",
+            "methods",
             "residuals",
             "effects",
             "surface",
@@ -102,12 +103,13 @@ def regression(job: Job) -> dict[str, pd.DataFrame]:
     **OF_REGRESSION,
     caption="""
     Least-squares coefficients of ln(wear / largest wear) of the patterned samples on the factors in coded units, where
-    -1, 0 and 1 are the low, middle and high level, with one standard error. The terms are those of the best model by
-    AICc of all models of up to four main effects, squares and two-factor interactions, without heredity. The first p
-    value is computed as if these terms had been given beforehand and is therefore too small; the one by permutation is
-    the share of random assignments of the results to the runs in which the same search finds a term with as large a t
-    value. Hollow: the published regression (Yan 2022, Table 3.10), of other runs. Models as good as this one stand in
-    the table of the page.
+    -1, 0 and 1 are the low, middle and high level, with one standard error. The terms are those of the best model of
+    main effects, squares and two-factor interactions in which every square and interaction has the main effects of its
+    factors (strong heredity), by the Bayesian criterion corrected for few runs and many models. The first p value is
+    computed as if these terms had been given beforehand and is therefore too small; the one by permutation is the
+    share of random assignments of the results to the runs in which the same search finds a term with as large a t
+    value. Hollow: the published regression (Yan 2022, Table 3.10), of other runs. Models as good as this one, and what
+    other methods choose, stand in the tables of the page.
     """,
 )
 def regression_coefficients(job: Job) -> Any:

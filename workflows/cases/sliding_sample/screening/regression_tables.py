@@ -18,6 +18,7 @@ from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     chance_test,
     chosen_coefficients,
     effects,
+    method_table,
     model_table,
     pairs_to_show,
     residuals,
@@ -97,8 +98,8 @@ def contour_table(study: Screening, coefficients: pd.DataFrame, pairs: pd.DataFr
 
 
 def regression_tables(study: Screening, coefficients: pd.DataFrame, pairs: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """Return all tables by name: coefficients, models (with the p value by permutation of the best), residuals,
-    effects, surface, aliasing, best_designs and warnings. coefficients, pairs: published, as for `contour_table`.
+    """Return all tables by name: coefficients, models (with the p value by permutation of the best), methods,
+    residuals, effects, surface, aliasing, best_designs, warnings. coefficients, pairs: published, see `contour_table`.
     """
     chance = chance_test(study)
     models = model_table(study).assign(p_value_permutation=float("nan"))
@@ -107,6 +108,7 @@ def regression_tables(study: Screening, coefficients: pd.DataFrame, pairs: pd.Da
     return {
         "coefficients": chosen_coefficients(study, chance),
         "models": models,
+        "methods": method_table(study),
         "residuals": residuals(study),
         "effects": effects(study),
         "surface": contour_table(study, coefficients, pairs),

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bulkwear.postproc.statistics.model_terms import aliased_pairs, aliasing, obeys, term_name
+from bulkwear.postproc.statistics.model_terms import aliased_pairs, aliasing, term_name
 from bulkwear.postproc.statistics.regression import SINGULAR, press
-from bulkwear.postproc.statistics.selection import largest_size
+from bulkwear.postproc.statistics.selection import AS_GOOD, largest_size
 from bulkwear.workflows.cases.sliding_sample.screening.study_regression import Screening
 
 FEW_FREEDOM = 4  # degrees of freedom of the error; Student's t at 95 % is 2.8 there, and grows fast below
@@ -27,7 +27,7 @@ def screening_warnings(study: Screening) -> list[str]:
         _few_runs,
         _equals,
         _neighbours,
-        _heredity,
+        _two_steps,
         _no_replicates,
     )
     return [sentence for part in parts for sentence in part(study)]
@@ -102,9 +102,9 @@ def _nuisances(study: Screening) -> Iterator[str]:
 
 def _few_runs(study: Screening) -> Iterator[str]:
     runs, count = len(study.response), len(study.candidates)
-    judged = largest_size(count, runs, study.most)
-    if judged < min(study.most, count):
-        yield f"{runs} runs are too few for {study.most} terms, models of up to {judged} are compared"
+    judged = largest_size(count, runs)
+    if judged < len(study.factors):
+        yield f"{runs} runs are few for {len(study.factors)} factors, models of up to {judged} terms are compared"
     if count > runs - 2:
         yield (
             f"{count} candidate terms compete for {runs} runs: p values of chosen terms are too small,"
@@ -118,9 +118,9 @@ def _few_runs(study: Screening) -> Iterator[str]:
 
 
 def _equals(study: Screening) -> Iterator[str]:
-    count = len(study.choices["none"])
+    count = len(study.choices["strong"])
     if count > 1:
-        yield f"{count} models are as good as the best within 2 of AICc, see the table of models"
+        yield f"{count} models are as good as the best within {AS_GOOD:g} of the criterion, see the table of models"
 
 
 def _neighbours(study: Screening) -> Iterator[str]:
@@ -137,10 +137,20 @@ def _neighbours(study: Screening) -> Iterator[str]:
             yield f"{name} looks much like {_listed(others)}: one may stand for another"
 
 
-def _heredity(study: Screening) -> Iterator[str]:
-    positions = np.arange(len(study.model.terms))[None]
-    if not obeys(positions, study.model.terms, "strong")[0]:
-        yield "the model is not hierarchical: it holds for coded units only, other levels would need other terms"
+def _two_steps(study: Screening) -> Iterator[str]:
+    found = study.by_two_steps
+    if isinstance(found, str):
+        yield f"the two-step method cannot be used: {found}"
+        return
+    both = (_listed(term_name(term, study.names) for term in terms) for terms in (found.terms, study.model.terms))
+    theirs, ours = (words or "none" for words in both)
+    if set(found.terms) != set(study.model.terms):
+        yield f"the two-step method finds other terms ({theirs}) than the search ({ours}), see the table of methods"
+    if not found.own_freedom:
+        yield (
+            "no fake factor and no repeated row tells the error: the two-step method takes it from main effects that"
+            " it counts as none"
+        )
 
 
 def _no_replicates(study: Screening) -> Iterator[str]:

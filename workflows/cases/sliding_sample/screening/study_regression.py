@@ -14,6 +14,7 @@ import pandas as pd
 
 from bulkwear.postproc.statistics.factors import Factor, half_normal_table
 from bulkwear.postproc.statistics.model_terms import Heredity, Term, candidate_terms, parse_term, term_name, told_apart
+from bulkwear.postproc.statistics.optimum import best_design
 from bulkwear.postproc.statistics.regression import (
     CONSTANT,
     Fit,
@@ -24,18 +25,17 @@ from bulkwear.postproc.statistics.regression import (
     residual_table,
 )
 from bulkwear.postproc.statistics.selection import (
-    MOST_TERMS,
     PERMUTATIONS,
     Choice,
     PermutationTest,
     Search,
-    best_design,
     best_models,
     permutation_test,
 )
+from bulkwear.postproc.statistics.two_steps import TwoSteps, two_steps
 
-HEREDITIES: tuple[Heredity, ...] = ("none", "weak", "strong")
-FEWEST_RUNS = 4  # with four only the mean can be judged: AICc needs four more than a model has terms
+HEREDITIES: tuple[Heredity, ...] = ("strong", "weak", "none")
+FEWEST_RUNS = 4  # with four only the mean can be judged: the criterion needs four more than a model has terms
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +47,9 @@ class Screening:
     used: (runs,) True where there is a result
     response: (n,) of the used runs, ln of wear over the largest wear; largest_wear: in the unit that was given
     candidates: terms that the used runs tell apart; lost: others, each with the term it cannot be told from, or None
-    most: terms that a model may have
     choices: {heredity: models as good as the best of it, best first}
-    model: fit of the best model without heredity
+    model: fit of the best model of strong heredity
+    by_aicc: best model of strong heredity by AICc; by_two_steps: what the two-step method finds, or why it cannot
     nuisances: {what: (n,) values of the used runs} that ought to be the same in all runs
     """
 
@@ -61,9 +61,10 @@ class Screening:
     largest_wear: float
     candidates: tuple[Term, ...]
     lost: tuple[tuple[Term, Term | None], ...]
-    most: int
     choices: dict[Heredity, list[Choice]]
     model: Fit
+    by_aicc: Choice
+    by_two_steps: TwoSteps | str
     nuisances: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
@@ -94,7 +95,6 @@ def screen(
     factors: Mapping[str, Factor],
     wear: np.ndarray,
     nuisances: Mapping[str, np.ndarray] | None = None,
-    most: int = MOST_TERMS,
 ) -> Screening:
     """Return the regression of a screening study.
 
@@ -102,7 +102,6 @@ def screen(
     factors: {column of the design: factor, whose name is the short one}
     wear: (runs,) in any one unit; runs where it is NaN or not above zero have no result and are left out
     nuisances: {what: (runs,) values} that ought to be the same in all runs, such as the particle scale
-    most: terms of a model
 
     Raises ValueError when fewer than four runs have a result.
     """
@@ -112,7 +111,7 @@ def screen(
     if used.sum() < FEWEST_RUNS:
         raise ValueError(f"found {used.sum()} runs with wear above zero, allowed are {FEWEST_RUNS} or more")
     candidates, lost = told_apart(candidate_terms(len(factors)), coded[used])
-    searches = {each: Search(candidates, coded[used], response[used], most, each) for each in HEREDITIES}
+    searches = {each: Search(candidates, coded[used], response[used], heredity=each) for each in HEREDITIES}
     choices = {each: best_models(search) for each, search in searches.items()}
     return Screening(
         factors=tuple(factors.values()),
@@ -123,27 +122,54 @@ def screen(
         largest_wear=float(np.asarray(wear, dtype=float)[used].max()),
         candidates=tuple(candidates),
         lost=tuple(lost),
-        most=most,
         choices=choices,
-        model=fit(choices["none"][0].terms, coded[used], response[used]),
+        model=fit(choices["strong"][0].terms, coded[used], response[used]),
+        by_aicc=best_models(Search(candidates, coded[used], response[used], criterion="aicc"), within=0.0)[0],
+        by_two_steps=_two_steps(coded[used], response[used]),
         nuisances={what: np.asarray(values, dtype=float)[used] for what, values in (nuisances or {}).items()},
     )
 
 
+def _two_steps(coded: np.ndarray, response: np.ndarray) -> TwoSteps | str:
+    try:
+        return two_steps(coded, response)
+    except ValueError as error:
+        return str(error)
+
+
 def model_table(study: Screening) -> pd.DataFrame:
-    """Return every model as good as the best of its heredity: heredity, model, above_best (AICc), fit measures."""
+    """Return every model as good as the best of its heredity: heredity, model, above_best (criterion), measures."""
     rows = []
     for heredity, choices in study.choices.items():
         for choice in choices:
             terms = " + ".join(term_name(term, study.names) for term in choice.terms)
-            head = {"heredity": heredity, "model": terms or CONSTANT, "above_best": choice.aicc - choices[0].aicc}
+            head = {"heredity": heredity, "model": terms or CONSTANT, "above_best": choice.score - choices[0].score}
             rows.append({**head, **fit_measures(study.fit_of(choice.terms))})
     return pd.DataFrame(rows)
 
 
+def method_table(study: Screening) -> pd.DataFrame:
+    """Return which terms each method of selection finds, one line per term that one of them finds.
+
+    Columns term, search, aicc and two_steps ("yes", "no"; "-" where the method cannot be used), found_by.
+    """
+    found = {"search": set(study.model.terms), "aicc": set(study.by_aicc.terms)}
+    if isinstance(study.by_two_steps, TwoSteps):
+        found["two_steps"] = set(study.by_two_steps.terms)
+    lines = []
+    for term in candidate_terms(len(study.factors)):
+        methods = [name for name, terms in found.items() if term in terms]
+        if not methods:
+            continue
+        told = {name: "yes" if name in methods else "no" for name in found}
+        by = "all" if len(methods) == len(found) else ", ".join(methods)
+        lines.append({"term": term_name(term, study.names), "two_steps": "-", **told, "found_by": by})
+    return pd.DataFrame(lines, columns=["term", "search", "aicc", "two_steps", "found_by"])
+
+
 def chance_test(study: Screening, permutations: int = PERMUTATIONS, seed: int = 0) -> PermutationTest:
     """Return how often the whole search finds in shuffled responses what it found here."""
-    search = Search(study.candidates, study.coded, study.response, study.most)
+    search = Search(study.candidates, study.coded, study.response)
     return permutation_test(search, permutations, seed)
 
 

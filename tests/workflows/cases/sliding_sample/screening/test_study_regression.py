@@ -12,6 +12,7 @@ from bulkwear.workflows.cases.sliding_sample.screening.study_regression import (
     chosen_coefficients,
     effects,
     log_normalised,
+    method_table,
     model_table,
     residuals,
     screen,
@@ -62,21 +63,37 @@ def test_the_response_is_the_logarithm_of_normalised_wear():
 
 
 def test_the_known_terms_come_back(study):
-    """The best model has the four terms, its coefficients are near, and its chance is the least there can be."""
+    """The best model has the four terms and the parents of b*d; coefficients are near, its chance is the least."""
     table = chosen_coefficients(study, chance_test(study, 49))
-    assert table["term"].tolist() == ["Constant", "a", "v", "t", "b*d"]
-    np.testing.assert_allclose(table["coefficient"][1:], [0.5, 0.6, 1.4, -0.6], atol=4 * NOISE / np.sqrt(8))
+    assert table["term"].tolist() == ["Constant", "a", "b", "d", "v", "t", "b*d"]
+    np.testing.assert_allclose(table["coefficient"][1:], [0.5, 0, 0, 0.6, 1.4, -0.6], atol=4 * NOISE / np.sqrt(8))
     assert np.isnan(table["p_value_permutation"][0])
     assert (table["p_value_permutation"][1:] >= 0.02).all()
-    assert (table["p_value_after_selection"] < 1e-4).all()
+    assert (table.set_index("term")["p_value_after_selection"][["a", "v", "t", "b*d"]] < 1e-4).all()
 
 
 def test_models_are_listed_by_heredity(study):
-    """Each heredity has its best first, with all measures; the best without heredity is the best of all."""
+    """Each heredity has its best first, with all measures; strong heredity comes first, none needs no parents."""
     table = model_table(study)
-    assert table.groupby("heredity", sort=False)["above_best"].first().to_dict() == {"none": 0, "weak": 0, "strong": 0}
-    assert table["model"][0] == "a + v + t + b*d"
-    assert table["aicc"].min() == table["aicc"][0]
+    assert list(table.groupby("heredity", sort=False)["above_best"].first().items()) == [
+        ("strong", 0.0),
+        ("weak", 0.0),
+        ("none", 0.0),
+    ]
+    assert table["model"][0] == "a + b + d + v + t + b*d"
+    assert table.loc[table["heredity"] == "none", "model"].iloc[0] == "a + v + t + b*d"
+
+
+def test_methods_stand_beside_each_other(design, factors, wear, coded):
+    """A strong model is found by all three; without all mirror images there are no two steps, and it is said."""
+    _, b, d, *_ = coded.T
+    clear = wear * np.exp(0.8 * b + 0.7 * d)
+    table = method_table(screen(design, factors, clear)).set_index("term")
+    assert set(table.index[table["found_by"] == "all"]) == {"a", "b", "d", "v", "t", "b*d"}
+    lost = screen(design, factors, np.where(np.arange(13) == 3, np.nan, clear))
+    assert set(method_table(lost)["two_steps"]) == {"-"}
+    words = "the two-step method cannot be used: run 4 has no mirror image"
+    assert any(sentence.startswith(words) for sentence in screening_warnings(lost))
 
 
 def test_residuals_name_their_runs(study, design):
@@ -148,7 +165,7 @@ def test_few_runs_say_so(design, factors, wear):
     gappy = np.where(np.arange(13) < 6, wear, np.nan)
     study = screen(design, factors, gappy)
     sentences = screening_warnings(study)
-    assert "6 runs are too few for 4 terms, models of up to 2 are compared" in sentences
+    assert "6 runs are few for 6 factors, models of up to 2 terms are compared" in sentences
     assert any("cannot be told from" in sentence for sentence in sentences)
     assert len(study.model.terms) <= 2
 
@@ -167,10 +184,11 @@ def test_three_runs_are_refused(design, factors, wear):
         screen(design, factors, np.where(np.arange(13) < 3, wear, np.nan))
 
 
-def test_a_model_without_parents_is_called_not_hierarchical(study):
-    """b*d without b and d holds for coded units only, and its neighbours among the candidates are named."""
+def test_what_looks_alike_is_named(study):
+    """The neighbours of b*d are named, where the error of the two steps comes from, and what else they find."""
     sentences = screening_warnings(study)
-    assert any(sentence.startswith("the model is not hierarchical") for sentence in sentences)
+    assert any(sentence.startswith("no fake factor and no repeated row tells the error") for sentence in sentences)
+    assert any(sentence.startswith("the two-step method finds other terms") for sentence in sentences)
     assert any(sentence.startswith("b*d looks much like") for sentence in sentences)
     assert any("27 candidate terms compete for 13 runs" in sentence for sentence in sentences)
 
