@@ -24,6 +24,7 @@ from bulkwear.postproc.statistics.conference_matrix import conference_matrix, ne
 from bulkwear.postproc.statistics.factors import Factor
 
 FEWEST_FACTORS = 3
+FAKE = 2  # fake factors of a new design: four runs more, and an error that no factor has a part in
 FIRST_SEED, SEED_STEP = 20220317, 1000  # the solver takes the first few primes above a seed
 DIGITS = 10  # significant, of a level in a table
 FACTOR = re.compile(r"(?P<name>\w+)=(?P<low>[^:]+):(?P<high>[^:]+?)(?P<log>:log)?")
@@ -54,7 +55,7 @@ def coded_design(factors: int, fake: int = 0, centres: int = 1) -> np.ndarray:
 def design_rows(
     factors: Sequence[Factor],
     constants: Sequence[tuple[str, float]] = (),
-    fake: int = 0,
+    fake: int = FAKE,
     centres: int = 1,
     replicates: int = 1,
     coded: bool = False,
@@ -63,6 +64,7 @@ def design_rows(
     """Return the rows of a design table as text: row, one column per factor, then the constants.
 
     constants: names and values of columns that do not change
+    fake: see `coded_design`; 0 for the fewest runs
     replicates: how often the whole design is run; from 2 on rows are called R1-1, R1-2, ... and have a `seed`
     seed: of the first repetition; the others have their own, far enough to share none of the solver's
     coded: levels -1, 0, 1 instead of real ones. Raises ValueError as `coded_design`, and for a name that comes twice.
@@ -133,7 +135,8 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     add = parser.add_argument
     add("--factor", action="append", required=True, metavar="NAME=LOW:HIGH[:log]", help="a factor; give several")
     add("--constant", action="append", default=[], metavar="NAME=VALUE", help="a column that does not change")
-    add("--fake", type=int, default=0, help="fake factors: more runs, for an estimate of the error (default 0)")
+    told = f"fake factors, two runs each, which estimate the error (default {FAKE}; 0: fewest runs)"
+    add("--fake", type=int, default=FAKE, help=told)
     add("--centres", type=int, default=1, help="centre runs (default 1)")
     add("--replicates", type=int, default=1, help="how often the whole design is run (default 1)")
     add("--seed", type=int, default=FIRST_SEED, help=f"seed of the first repetition (default {FIRST_SEED})")

@@ -139,7 +139,7 @@ def test_aliasing_of_the_table_of_yan(table_of_yan):
 def test_the_generated_design_is_like_the_table_of_yan(table_of_yan):
     """For its six factors the generator gives runs, levels and correlations in size as Table 3.8 has them."""
     design, table = table_of_yan
-    rows = pd.read_csv(pd.io.common.StringIO(design_text(design_rows([parse_factor(text) for text in SIX]))))
+    rows = pd.read_csv(pd.io.common.StringIO(design_text(design_rows([parse_factor(text) for text in SIX], fake=0))))
     assert list(rows.columns) == list(table.columns)
     for column in table.columns[1:]:
         np.testing.assert_allclose(np.unique(rows[column]), np.unique(table[column]), rtol=LEVELS)
@@ -150,11 +150,19 @@ def test_the_generated_design_is_like_the_table_of_yan(table_of_yan):
 # --- tables
 
 
+def test_a_new_design_has_two_fake_factors():
+    """Unless it is asked for fewer runs, a table has those of two columns more, which it leaves out."""
+    factors = [Factor(name, 0.0, 1.0) for name in "abcdef"]
+    assert len(design_rows(factors)) == len(coded_design(6)) + 4 == 17
+    assert len(design_rows(factors, fake=0)) == 13
+    assert list(design_rows(factors)[0]) == ["row", *"abcdef"]
+
+
 def test_table_passes_the_checks_of_a_study(tmp_path):
     """What the command writes is read as a study reads a design of its own."""
     path = tmp_path / "mine.csv"
     words = [word for text in SIX[:5] for word in ("--factor", text)]
-    assert main([*words, "--constant", "bed_thickness_mm=40", "--output", str(path)]) == 0
+    assert main([*words, "--constant", "bed_thickness_mm=40", "--fake", "0", "--output", str(path)]) == 0
     rows = read_design(path, tmp_path, load_schema("cases/sliding_sample/design"))
     assert len(rows) == 13
     assert {row.values["bed_thickness_mm"] for row in rows} == {40.0}
@@ -216,9 +224,9 @@ def test_a_file_is_never_overwritten(tmp_path, capsys):
 
 
 def test_command_prints_a_table():
-    """Without --output the table goes to stdout, and nothing else does."""
+    """Without --output the table goes to stdout, with two fake factors, and nothing else does."""
     words = [word for text in SIX for word in ("--factor", text)]
     command = [sys.executable, "-m", "bulkwear.postproc.statistics.screening_design", *words]
     done = subprocess.run(command, cwd=REPOSITORY, env=dict(os.environ), capture_output=True, text=True, check=True)
-    assert len(list(csv.DictReader(done.stdout.splitlines()))) == 13
+    assert len(list(csv.DictReader(done.stdout.splitlines()))) == 17
     assert done.stderr == ""
