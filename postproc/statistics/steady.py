@@ -103,7 +103,7 @@ def common_start(windows: Iterable[Window]) -> float:
 
 def _window(travel: np.ndarray, measure: np.ndarray) -> Window:
     mean = float(measure.mean())
-    drift = _drift(travel, measure)
+    drift = relative_drift(travel, measure)
     level = correlated_fit(travel, measure, np.ones((len(travel), 1)))
     deviation = (math.nan, math.nan) if level is None or not mean else level.deviation()
     low, high = drift.interval()
@@ -122,8 +122,11 @@ def _window(travel: np.ndarray, measure: np.ndarray) -> Window:
     )
 
 
-def _drift(travel: np.ndarray, measure: np.ndarray) -> Estimate:
-    """Return the rise of the straight line over the mean (-); unknown of fewer values than a line and SPARE need."""
+def relative_drift(travel: np.ndarray, measure: np.ndarray) -> Estimate:
+    """Return the rise of a series' straight line from its first place to its last, over its mean (-), of this series.
+
+    travel: (k,) increasing; measure: (k,). Unknown of fewer than four values.
+    """
     away = travel - 0.5 * (travel[0] + travel[-1])
     fit = correlated_fit(travel, measure, np.column_stack([np.ones(len(away)), away]))
     span, level = float(travel[-1] - travel[0]), float(measure.mean())

@@ -28,7 +28,7 @@ DECKS = (
 SECTIONS = (  # title, its figures, the first of which a study must have, and what makes its other blocks
     ("Depth, width and volume", ("pin_comparison", "laboratory_contour"), findings.comparison_blocks),
     ("What exceeds alpha F L", ("excess_volume", "force_rise", "normal_force"), findings.excess_blocks),
-    ("Fits of volume against revolutions", ("wear_volume",), findings.fit_blocks),
+    ("Growth of the volume with the revolutions", ("wear_volume",), findings.fit_blocks),
     ("Wear coefficient", ("calibration",), findings.coefficient_blocks),
     ("Run-in", ("run_in", "contour_distribution", "contour_examples"), findings.run_in_blocks),
     ("Dependence on the mesh", ("mesh_series", "mesh_contours"), findings.mesh_blocks),
@@ -67,6 +67,8 @@ def told(study: Study) -> dict[str, Any]:
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a study's page: its key numbers, then those of which the study has the figures."""
     found = [Section("Key numbers", key_numbers(read_summary(folder / "summary.csv")))]
+    if set(findings.NEEDED_OF_VERDICTS) <= set(study["figures"]):
+        found.append(Section("Findings of the source", findings.verdict_blocks(folder)))
     for title, figures, blocks in SECTIONS:
         if figures[0] in study["figures"]:
             found.append(Section(title, [*blocks(folder), Pictures(figures)]))

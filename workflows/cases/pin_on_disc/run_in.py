@@ -14,7 +14,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import read_surface
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
-from bulkwear.workflows.cases.pin_on_disc.contours import contour_table
+from bulkwear.workflows.cases.pin_on_disc.contours import CONTOURS, contour_table
 from bulkwear.workflows.cases.pin_on_disc.runs import whole_revolutions
 
 SIGNIFICANCE = 0.05  # -, a p value above passes (Yan 2022, section 5.4.3)
@@ -22,6 +22,7 @@ FITTED_PARAMETERS = 2  # of the normal distribution: mean and standard deviation
 SIZES = {"depth": "depth_m", "opening width": "opening_width_m", "width of 95 % of the area": "area_width_m"}
 TESTED = {"depth": "depth_p_value", "opening width": "width_p_value"}  # size -> column of Table 5.3
 HISTOGRAM_CLASSES = 20
+VOLUME_SERIES = "volume removed per revolution"
 
 
 def contours_of_run(folder: str | Path, track_radius: float) -> pd.DataFrame:
@@ -56,15 +57,22 @@ def chi_squared_normality(values: np.ndarray) -> float:
     `equiprobable_bins` says; degrees of freedom: classes - 1 - 2. NaN for values that are all the same.
     Yan (2022) gives no classes.
     """
-    from scipy import stats  # slow to import, and every job reads the page of its study's case
-
     spread = values.std(ddof=1) if len(values) > 1 else 0.0
-    if not spread > 0.0:
-        return float("nan")
-    bins = equiprobable_bins(len(values))
-    probability = stats.norm.cdf(values, values.mean(), spread)
-    counts = np.bincount(np.minimum((bins * probability).astype(int), bins - 1), minlength=bins)
-    return float(stats.chisquare(counts, ddof=FITTED_PARAMETERS).pvalue)
+    return float(normality_p_values(values[None])[0]) if spread > 0.0 else float("nan")
+
+
+def normality_p_values(samples: np.ndarray) -> np.ndarray:
+    """Return the p values (m,) of `chi_squared_normality` of samples (m, n) that all have a spread."""
+    from scipy import special  # slow to import, and every job reads the page of its study's case
+
+    count, size = samples.shape
+    bins = equiprobable_bins(size)
+    scores = (samples - samples.mean(axis=1, keepdims=True)) / samples.std(axis=1, ddof=1, keepdims=True)
+    classes = np.minimum((bins * special.ndtr(scores)).astype(int), bins - 1)
+    of_all = (classes + bins * np.arange(count)[:, None]).ravel()
+    counts = np.bincount(of_all, minlength=bins * count).reshape(count, bins)
+    expected = size / bins
+    return special.chdtrc(bins - 1 - FITTED_PARAMETERS, ((counts - expected) ** 2).sum(axis=1) / expected)
 
 
 def neighbour_correlation(values: np.ndarray) -> float:
@@ -103,33 +111,97 @@ def statistics_of(runs: pd.DataFrame, contours: pd.DataFrame) -> pd.DataFrame:
     return revolution_statistics(contours).merge(runs[["run", "scheme"]], on="run")
 
 
-def run_in_revolution(revolution: Sequence[int], *p_values: Sequence[float]) -> int | None:
-    """First revolution from which on all p values stay above `SIGNIFICANCE`; None when the last one does not pass.
+def run_in_revolution(
+    revolution: Sequence[int], *p_values: Sequence[float], significance: float = SIGNIFICANCE
+) -> int | None:
+    """First revolution from which on all p values stay above a significance; None when the last one does not pass.
 
-    revolution : increasing; p_values : one sequence per tested size. Table 5.3 of Yan (2022) gives 8.
+    revolution : increasing; p_values : one sequence per tested size. Table 5.3 of Yan (2022) gives 8. With the source's
+    significance for each single test, contours that are normal all along fail somewhere more often than not
+    (`rate_of_no_run_in`): the more revolutions, the later the run-in ends by chance.
     """
-    passed = np.all(np.asarray(p_values, dtype=float) > SIGNIFICANCE, axis=0)
+    passed = np.all(np.asarray(p_values, dtype=float) > significance, axis=0)
     failures = np.flatnonzero(~passed)
     first = failures[-1] + 1 if failures.size else 0
     return int(np.asarray(revolution)[first]) if first < len(passed) else None
 
 
-def run_in_table(statistics: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
-    """Run-in by the same rule for every run and for the published p values: `run`, `run_in_revolution` (NaN: not yet),
-    `revolutions`.
-
-    statistics : as from `revolution_statistics`; published : `revolution`, `depth_p_value`, `width_p_value`.
+def corrected_significance(tests: int) -> float:
+    """Significance (-) of each of some independent tests of which all are passed by chance as often as one at
+    `SIGNIFICANCE` (Z. Sidak, J. Am. Stat. Assoc. 62, 1967).
     """
+    return 1.0 - (1.0 - SIGNIFICANCE) ** (1.0 / tests)
+
+
+def rate_of_no_run_in(
+    revolutions: int, trials: int, rng: np.random.Generator, corrected: bool, contours: int = CONTOURS
+) -> float:
+    """Share (-) of discs, normal in both sizes from the start, whose run-in the rule ends with revolution 1.
+
+    corrected : whether by `corrected_significance`, or with the source's for each test
+    """
+    sizes = len(TESTED)
+    significance = corrected_significance(sizes * revolutions) if corrected else SIGNIFICANCE
+    numbers, found = np.arange(1, revolutions + 1), 0
+    for _ in range(trials):
+        p_values = normality_p_values(rng.standard_normal((sizes * revolutions, contours))).reshape(sizes, -1)
+        found += run_in_revolution(numbers, *p_values, significance=significance) == 1
+    return found / trials
+
+
+def run_in_table(statistics: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Run-in by the same rules for every run and for the published p values.
+
+    statistics : as from `revolution_statistics`; published : `revolution`, `depth_p_value`, `width_p_value`. Columns:
+    `run`, `run_in_revolution` by the source's rule, `corrected_run_in_revolution` with `corrected_significance` (NaN:
+    not yet), `revolutions`.
+    """
+    cases = {
+        run: of_run.pivot(index="revolution", columns="size", values="p_value")[list(TESTED)]
+        for run, of_run in statistics.groupby("run", sort=False)
+    }
+    cases["Yan 2022, Table 5.3"] = published.set_index("revolution")[list(TESTED.values())]
+    rows = []
+    for run, p_values in cases.items():
+        columns = p_values.to_numpy(float).T
+        corrected = corrected_significance(columns.size)
+        found = [run_in_revolution(p_values.index, *columns, significance=each) for each in (SIGNIFICANCE, corrected)]
+        rows.append((run, *found, p_values.index.max()))
+    return pd.DataFrame(rows, columns=["run", "run_in_revolution", "corrected_run_in_revolution", "revolutions"])
+
+
+def revolution_series(of_run: pd.DataFrame, volume: pd.DataFrame) -> dict[str, tuple[pd.Series, np.ndarray]]:
+    """What a run does from revolution to revolution, by name: revolutions, and volume removed in each (if the run has
+    volumes) or the deviation of a size over its mean.
+
+    of_run : of one run, as from `revolution_statistics`; volume : `revolution` and `removed_volume_m3` of the run
+    """
+    volume, found = volume.sort_values("revolution"), {}
+    if len(volume):
+        found[VOLUME_SERIES] = (volume["revolution"], np.diff(volume["removed_volume_m3"], prepend=0.0))
+    for size, rows in of_run[of_run["size"].isin(TESTED)].groupby("size", sort=False):
+        ratio = (rows["deviation_m"] / rows["mean_m"]).to_numpy(float)
+        found[f"deviation of {size} over its mean"] = (rows["revolution"], ratio)
+    return found
+
+
+def change_points(statistics: pd.DataFrame, volumes: pd.DataFrame) -> pd.DataFrame:
+    """Where what a run does from revolution to revolution becomes level, by `postproc.statistics.change_point`.
+
+    statistics : as from `revolution_statistics`, which says the runs; volumes : `run`, `revolution`,
+    `removed_volume_m3`. The volume removed in each revolution, and the deviation of the contours over their mean.
+    Columns: run, series, answer, end_revolution, least_end_revolution, last_end_revolution (95 %), p_value (of a run-in
+    as clear by chance).
+    """
+    from bulkwear.postproc.statistics.change_point import run_in
+
     rows = []
     for run, of_run in statistics.groupby("run", sort=False):
-        p_values = of_run.pivot(index="revolution", columns="size", values="p_value")
-        found = run_in_revolution(p_values.index, p_values["depth"], p_values["opening width"])
-        rows.append({"run": run, "run_in_revolution": found, "revolutions": p_values.index.max()})
-    found = run_in_revolution(published["revolution"], published["depth_p_value"], published["width_p_value"])
-    rows.append(
-        {"run": "Yan 2022, Table 5.3", "run_in_revolution": found, "revolutions": published["revolution"].max()}
-    )
-    return pd.DataFrame(rows)
+        for name, (revolution, values) in revolution_series(of_run, volumes[volumes["run"] == run]).items():
+            found = run_in(revolution, values)
+            rows.append((run, name, found.answer, found.end, found.low, found.high, found.p_value))
+    ends = ["end_revolution", "least_end_revolution", "last_end_revolution"]
+    return pd.DataFrame(rows, columns=["run", "series", "answer", *ends, "p_value"])
 
 
 def run_in_words(statistics: pd.DataFrame, normality: pd.DataFrame) -> dict[str, str]:

@@ -1,9 +1,10 @@
-"""Volume worn by a pin on a disc, by revolution and by size: fits, and what a volume above alpha F L is made of."""
+"""Volume worn by a pin on a disc, by revolution and by size: how it grows, and what exceeds alpha F L."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -19,6 +20,9 @@ from bulkwear.workflows.cases.pin_on_disc.runs import (
     whole_revolutions,
 )
 
+if TYPE_CHECKING:
+    from bulkwear.postproc.statistics.increments import RateTrend
+
 VOLUMES = {
     "removed": "removed_volume_m3",
     "Eq 5.9": "centroid_path_volume_m3",
@@ -27,7 +31,14 @@ VOLUMES = {
 }
 SUMMED = ("centroid_path_volume_m3", "touched_centroid_path_volume_m3")  # per cycle in wear.csv
 PERCENT = 100.0
-ORDERS = {"linear": 1, "quadratic": 2}
+LARGEST_CHANGE = 0.1  # -, of what a revolution adds over a run that still counts as linear growth
+LINEAR, FASTER, SLOWER, UNSAID = "linear", "faster than linear", "slower than linear", "cannot be said"
+QUADRATIC = "quadratic_mm3_per_revolution2"
+TREND = [
+    *("run", "scheme", "wear_coefficient_per_pa", "volume", "revolutions", "linear_mm3_per_revolution", QUADRATIC),
+    *(f"{end}_{QUADRATIC}" for end in ("least", "largest")),
+    *("change_percent", "least_change_percent", "largest_change_percent", "growth"),
+]
 CONSERVING = "conserving"  # its patch moves triangles that nothing touches: Eq 5.9 can only be summed over all
 FIXED = ("wear_coefficient_per_pa", "load_n", "track_radius_m")  # of a run
 AVERAGED = ("mean_normal_force_N", "mean_vertical_force_N", "contacts_per_step")
@@ -103,38 +114,51 @@ def law_volume(coefficient: float, load: float, track_radius: float, revolutions
     return coefficient * load * 2.0 * np.pi * track_radius * np.asarray(revolutions, dtype=float)
 
 
-def polynomial_fit(x: np.ndarray, y: np.ndarray, order: int) -> tuple[np.ndarray, float]:
-    """Least-squares coefficients, constant first (order + 1,), and the share R2 (-) of the variance that they explain.
+def volume_trends(volumes: pd.DataFrame) -> pd.DataFrame:
+    """How the volume of every run grows: the trend of what each revolution adds, one row per run and volume.
 
-    NaN where there are fewer points than coefficients. R2 is 1 for y without variance that is met.
-    """
-    if len(x) <= order:
-        return np.full(order + 1, np.nan), float("nan")
-    coefficients = np.polynomial.polynomial.polyfit(x, y, order)
-    left = y - np.polynomial.polynomial.polyval(x, coefficients)
-    variance = float(((y - y.mean()) ** 2).sum())
-    return coefficients, 1.0 - float(left @ left) / variance if variance > 0.0 else 1.0
-
-
-def volume_fits(volumes: pd.DataFrame) -> pd.DataFrame:
-    """Linear and quadratic fits of volume (mm3) against revolutions, one row per run, volume and order.
-
-    volumes : `run`, `scheme`, `wear_coefficient_per_pa` and as from `volumes_of_run`. Columns as in the published
-    table (`constant_mm3`, `linear_mm3_per_revolution`, `quadratic_mm3_per_revolution2`, `r_squared`).
+    volumes : `run`, `scheme`, `wear_coefficient_per_pa` and as from `volumes_of_run`. A fit of the volumes themselves
+    would take sums for independent values; increments are tested, see `postproc.statistics.increments`. Columns: those
+    of TREND. The linear and quadratic term are those of the volume over revolutions, as in the published table;
+    change: of the increment over the run, by a straight line, over its mean; intervals at 95 %, of this run: what is
+    simulated once says nothing of other discs. growth: LINEAR (the change is within LARGEST_CHANGE for sure), FASTER,
+    SLOWER (its interval is on one side of 0, and it is not LINEAR) or UNSAID.
     """
     rows = []
     for (run, scheme, coefficient), of_run in volumes.groupby(["run", "scheme", "wear_coefficient_per_pa"], sort=False):
-        for volume, column in VOLUMES.items():
-            for name, order in ORDERS.items():
-                found, r_squared = polynomial_fit(
-                    of_run["revolution"].to_numpy(float), CUBIC_MILLIMETRES * of_run[column].to_numpy(), order
-                )
-                rows.append(
-                    {"run": run, "scheme": scheme, "wear_coefficient_per_pa": coefficient, "volume": volume}
-                    | {"fit": name, "constant_mm3": found[0], "linear_mm3_per_revolution": found[1]}
-                    | {"quadratic_mm3_per_revolution2": found[2] if order > 1 else 0.0, "r_squared": r_squared}
-                )
-    return pd.DataFrame(rows)
+        for volume in VOLUMES:
+            trend, last = volume_trend(of_run, volume), of_run["revolution"].max()
+            start = trend.rate.value - 0.5 * last * trend.slope.value
+            terms = (start, trend.quadratic.value, *trend.quadratic.interval())
+            change = (PERCENT * each for each in (trend.change.value, *trend.change.interval()))
+            rows.append((run, scheme, coefficient, volume, last, *terms, *change, growth(trend)))
+    return pd.DataFrame(rows, columns=TREND)
+
+
+def volume_trend(of_run: pd.DataFrame, volume: str) -> RateTrend:
+    """Trend of one of VOLUMES (mm3) of a run over its whole revolutions, from none at revolution 0 on."""
+    from bulkwear.postproc.statistics.increments import blocks_of, rate_trend  # slow to import, see `run_in`
+
+    ordered = of_run.sort_values("revolution")
+    found = CUBIC_MILLIMETRES * ordered[VOLUMES[volume]].to_numpy(float)
+    return rate_trend(blocks_of(np.append(0.0, ordered["revolution"]), np.append(0.0, found)))
+
+
+def growth(trend: RateTrend) -> str:
+    """LINEAR, FASTER, SLOWER or UNSAID, see `volume_trends`."""
+    if trend.constant_within(LARGEST_CHANGE):
+        return LINEAR
+    if not trend.curved:
+        return UNSAID
+    return FASTER if trend.change.value > 0.0 else SLOWER
+
+
+def trend_words(row: Any) -> str:
+    """A row of `volume_trends` in words: how what a revolution adds changes over the run, with its interval."""
+    change = f"{row.change_percent:+.1f} %"
+    if np.isnan(row.least_change_percent):
+        return f"{change} over the run, scatter unknown"
+    return f"{change} over the run ({row.least_change_percent:+.1f} to {row.largest_change_percent:+.1f}), {row.growth}"
 
 
 def published_volume(published: pd.DataFrame, coefficient: float, revolutions: np.ndarray) -> np.ndarray:

@@ -85,27 +85,29 @@ def excess_volume(job: Job) -> Any:
     "Volume",
     "Volume against revolutions",
     inputs={"design": DESIGN, "fits": FITS, "volumes": VOLUMES},
-    tables={"fits": "figures/wear_volume_fits.csv"},
+    tables={"trends": "figures/wear_volume_trends.csv"},
     caption="""
     Counterpart of Fig 5.15 (Yan 2022). Volume that the surface has lost, by wear coefficient and displacement scheme,
     beside the published fits (dashed, drawn as printed from the first revolution on) and the volume alpha F L of
     Archard's law with the load F. For the per-triangle rule the volume is also summed as the thesis does (Eq 5.9:
-    absolute paths of the centroids times areas). Linear and quadratic fits of all of them with their R2 stand in a
-    table beside the figure.
+    absolute paths of the centroids times areas). The title says how what each revolution adds changes over the run,
+    with its 95 % interval, of that rule and coefficient; a table beside the figure holds all of them. Intervals are of
+    the run that is shown, for increments correlated with their neighbours; no run is repeated.
     """,
 )
 def wear_volume(job: Job) -> Any:
-    """Draw volume against revolutions, and fit it as the published volumes are."""
+    """Draw volume against revolutions, and test what revolutions add for being all the same."""
     import pandas as pd
 
     from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
     from bulkwear.workflows.cases.pin_on_disc.runs import of_runs, pin_runs
-    from bulkwear.workflows.cases.pin_on_disc.volume import volume_fits
+    from bulkwear.workflows.cases.pin_on_disc.volume import volume_trends
 
     volumes = of_runs(pin_runs(job.files.design), job.files.volumes)
     volumes = volumes[volumes["series"] == "coefficient"]
-    drawn = plots.wear_volume(volumes, pd.read_csv(job.files.fits), job.remarks)
-    return drawn, volumes, {"fits": volume_fits(volumes)}
+    trends = volume_trends(volumes)
+    drawn = plots.wear_volume(volumes, pd.read_csv(job.files.fits), trends, job.remarks)
+    return drawn, volumes, {"trends": trends}
 
 
 @figure(

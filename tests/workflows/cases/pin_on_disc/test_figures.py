@@ -44,7 +44,7 @@ def test_the_comparison_comes_first():
 def test_every_figure_is_drawn_and_leaves_its_table(figures, pins):
     """Seventeen figures, a table beside each, and the tables that go with them."""
     folder = pins[0] / "figures"
-    further = {"wear_volume_fits", "scaling_limits", "mesh_stability"}
+    further = {"wear_volume_trends", "run_in_change_points", "scaling_limits", "mesh_stability"}
     assert {path.stem for path in folder.glob("*.csv")} == {*figures, *further} and len(figures) == 17
 
 

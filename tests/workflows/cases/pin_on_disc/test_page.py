@@ -69,7 +69,7 @@ def test_only_sections_with_a_figure_are_there(pins, tmp_path):
     (tmp_path / "figures" / "summary.csv").rename(tmp_path / "summary.csv")
     found = page.sections({"figures": figures}, folder)
     titles = [section.title for section in found]
-    assert titles[:3] == ["Key numbers", "Depth, width and volume", "What exceeds alpha F L"]
+    assert titles[:3] == ["Key numbers", "Findings of the source", "Depth, width and volume"]
     assert {"Dependence on the mesh", "Size invariance"}.isdisjoint(titles) and "Run-in" in titles
     pictures = [block for section in found for block in section.blocks if isinstance(block, Pictures)]
     assert {name for block in pictures for name in block.names} == set(figures)

@@ -6,14 +6,19 @@ import pytest
 
 from bulkwear.meshes.disc import track_disc
 from bulkwear.postproc.mesh import SurfaceMesh, write_surface
+from bulkwear.postproc.statistics.change_point import ENDED, NONE_FOUND
 from bulkwear.workflows.cases.pin_on_disc.contours import CONTOURS
 from bulkwear.workflows.cases.pin_on_disc.run_in import (
     SIGNIFICANCE,
+    VOLUME_SERIES,
+    change_points,
     chi_squared_normality,
     contours_of_run,
+    corrected_significance,
     equiprobable_bins,
     neighbour_correlation,
     published_ranges,
+    rate_of_no_run_in,
     revolution_statistics,
     run_in_revolution,
     run_in_table,
@@ -29,6 +34,7 @@ NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
 REPEATS = 400  # samples of a distribution
 # of 400 samples 5 % fail by chance; parameters fitted to the values, not the classes, make it a little more
 FEWEST_FAILURES, MOST_FAILURES = 0.01, 0.11
+SHARE_ERROR = 0.08  # -, of a share of REPEATS near a third: three deviations, and a little for fitted parameters
 ROUNDING = 1e-12  # -, of sums of 360 values
 
 
@@ -70,6 +76,31 @@ def test_p_value_by_hand():
     """
     assert equiprobable_bins(4) == 4
     assert chi_squared_normality(np.array([-0.75, -0.75, 0.25, 1.25])) == pytest.approx(0.1573, abs=1e-4)
+
+
+def test_the_sources_rule_finds_a_run_in_where_there_is_none():
+    """Of discs that are normal from the start 0.95^24 = 29 % pass all tests of twelve revolutions at 5 % each; with the
+    corrected significance 95 % do, but for the parameters that are fitted to the values.
+    """
+    rng = np.random.default_rng(11)
+    sources, corrected = (rate_of_no_run_in(12, REPEATS, rng, each) for each in (False, True))
+    assert abs(sources - 0.95**24) < SHARE_ERROR
+    assert abs(corrected - 0.95) < SHARE_ERROR
+    assert (1.0 - corrected_significance(24)) ** 24 == pytest.approx(0.95)
+
+
+def test_a_volume_that_settles_has_its_change_point():
+    """Volume per revolution falls to its level with revolution 5; what scatters about its mean has no run-in."""
+    rng, revolution = np.random.default_rng(12), np.arange(1, 13)
+    rate = 1.0 + 0.2 * np.maximum(5 - revolution, 0) + 0.01 * rng.standard_normal(12)
+    volumes = pd.DataFrame({"run": "a", "revolution": revolution, "removed_volume_m3": np.cumsum(rate)})
+    depth = {"size": "depth", "mean_m": 1.0, "deviation_m": 0.1 + 0.01 * rng.standard_normal(12)}
+    statistics = pd.DataFrame({"run": "a", "revolution": revolution, **depth})
+    found = change_points(statistics, volumes).set_index("series")
+    volume, scatter = found.loc[VOLUME_SERIES], found.loc["deviation of depth over its mean"]
+    assert volume["answer"] == ENDED
+    assert volume["least_end_revolution"] <= 5 <= volume["last_end_revolution"] <= 6
+    assert scatter["answer"] == NONE_FOUND and np.isnan(scatter["end_revolution"])
 
 
 def test_equal_values_have_no_p_value():
@@ -134,6 +165,7 @@ def test_statistics_and_run_in_of_a_run():
     assert (last["mean_m"], last["least_m"], last["largest_m"]) == (depth.mean(), depth.min(), depth.max())
     found = run_in_table(statistics, NORMALITY)
     assert found["run_in_revolution"].tolist() == [2, 8]
+    assert found["corrected_run_in_revolution"].tolist() == [2, 7]  # 0.02 and 0.01 of 20 tests are no surprise
     assert found["revolutions"].tolist() == [2, 10]
 
 

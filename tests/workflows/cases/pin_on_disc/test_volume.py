@@ -1,4 +1,4 @@
-"""Volumes of a pin on a disc: exact fits, factors that multiply to the whole, published fits as printed."""
+"""Volumes of a pin on a disc: how they grow, factors that multiply to the whole, published fits as printed."""
 
 import numpy as np
 import pandas as pd
@@ -6,17 +6,21 @@ import pytest
 
 from bulkwear.workflows.cases.pin_on_disc.volume import (
     CANDIDATES,
+    FASTER,
+    LINEAR,
+    SLOWER,
+    UNSAID,
+    VOLUMES,
     excess_factors,
     groove_remark,
     groove_volume,
     law_volume,
-    polynomial_fit,
     published_groove,
     published_volume,
     shown_factors,
     size_cases,
     size_invariance,
-    volume_fits,
+    volume_trends,
     volumes_of_run,
 )
 from tests import PUBLISHED
@@ -25,7 +29,7 @@ from tests.support import pin_study
 VALUES = pd.read_csv(PUBLISHED / "pin_on_disc.csv")
 FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
 LOAD, TRACK = 5.0, 22e-3  # N, m
-ROUNDING = 1e-9  # -, of a least-squares fit of ten points
+ROUNDING = 1e-9  # -, of a least-squares fit of a dozen points
 
 
 def test_law_volume_of_one_revolution():
@@ -33,27 +37,58 @@ def test_law_volume_of_one_revolution():
     np.testing.assert_allclose(law_volume(1e-11, LOAD, TRACK, [1, 2]), [6.9115e-12, 13.823e-12], rtol=1e-4)
 
 
-def test_fit_of_a_parabola_is_the_parabola():
-    """A quadratic fit of exact values gives them back with R2 = 1; the linear one explains less."""
-    x = np.arange(1.0, 11.0)
-    y = 0.006 + 0.03 * x + 0.001 * x**2
-    found, r_squared = polynomial_fit(x, y, 2)
-    np.testing.assert_allclose(found, [0.006, 0.03, 0.001], rtol=ROUNDING)
-    assert r_squared == pytest.approx(1.0, abs=ROUNDING)
-    assert 0.9 < polynomial_fit(x, y, 1)[1] < 1.0 - 1e-4
+def run_of(increments, scheme="per_triangle"):
+    """Volumes of a run of which each revolution removes so much (mm3); the other volumes grow by 1 mm3."""
+    revolution = np.arange(1, len(increments) + 1)
+    volumes = dict.fromkeys(VOLUMES.values(), 1e-9 * revolution)
+    return pd.DataFrame(
+        {"run": "a", "scheme": scheme, "wear_coefficient_per_pa": 1e-11, "revolution": revolution, **volumes}
+        | {VOLUMES["removed"]: 1e-9 * np.cumsum(increments)}
+    )
 
 
-def test_r_squared_by_hand():
-    """y = 0, 1, 0, 1 over x = 0..3: slope 0.2, residual sum 0.8 of a variance of 1: R2 = 0.2."""
-    found, r_squared = polynomial_fit(np.arange(4.0), np.array([0.0, 1.0, 0.0, 1.0]), 1)
-    np.testing.assert_allclose(found, [0.2, 0.2])
-    assert r_squared == pytest.approx(0.2)
+def removed(increments):
+    """The row of what such a run removes."""
+    table = volume_trends(run_of(increments)).set_index("volume")
+    return table.loc["removed"]
 
 
-def test_too_few_points_have_no_fit():
-    found, r_squared = polynomial_fit(np.array([1.0]), np.array([2.0]), 1)
-    assert np.isnan(found).all()
-    assert np.isnan(r_squared)
+def test_terms_of_a_parabola_are_its_own():
+    """V = 0.03 x + 0.001 x2 over 12 revolutions: both terms come back; the increments rise by 24/42 of their mean."""
+    x = np.arange(13.0)
+    row = removed(np.diff(0.03 * x + 0.001 * x**2))
+    assert row["linear_mm3_per_revolution"] == pytest.approx(0.03, rel=ROUNDING)
+    assert row["quadratic_mm3_per_revolution2"] == pytest.approx(0.001, rel=ROUNDING)
+    assert row["change_percent"] == pytest.approx(100.0 * 24.0 / 42.0, rel=ROUNDING)
+    assert row["growth"] == FASTER
+
+
+@pytest.mark.parametrize(
+    ("scatter", "change", "growth"),
+    [(0.01, 0.0, LINEAR), (0.01, 0.5, FASTER), (0.01, -0.5, SLOWER), (0.3, 0.5, UNSAID)],
+)
+def test_growth_is_told_where_it_is_sure(scatter, change, growth):
+    """Increments that change by half are told from linear growth at a scatter of 1 %, and at 30 % nothing is said."""
+    noise = scatter * np.random.default_rng(4).standard_normal(12)
+    row = removed(1.0 + change * ((np.arange(12) + 0.5) / 12.0 - 0.5) + noise)
+    assert row["growth"] == growth
+    assert row["least_change_percent"] < 100.0 * change < row["largest_change_percent"]
+
+
+def test_a_rate_that_grows_by_half_is_not_linear_for_its_r_squared():
+    """A straight line through volumes whose increments grow by half has R2 above 0.99, and they are called curved."""
+    increments = 1.0 + 0.5 * ((np.arange(12) + 0.5) / 12.0 - 0.5)
+    x, volume = np.arange(13.0), np.append(0.0, np.cumsum(increments))
+    assert np.corrcoef(x, volume)[0, 1] ** 2 > 0.99
+    assert removed(increments)["growth"] == FASTER
+
+
+def test_few_revolutions_say_nothing():
+    """Of three revolutions that scatter there is a change, and no interval."""
+    row = removed([1.0, 1.1, 0.9])
+    assert np.isfinite(row["change_percent"])
+    assert np.isnan(row[["least_change_percent", "largest_change_percent"]].astype(float)).all()
+    assert row["growth"] == UNSAID
 
 
 @pytest.mark.parametrize(
@@ -140,12 +175,11 @@ def test_carried_wear_is_a_factor_of_its_own(tmp_path):
     np.testing.assert_allclose(factors["product"], without["product"], rtol=1e-12)
 
 
-def test_fits_of_every_volume(tmp_path):
-    """One row per volume and order; three points are too few for nothing, two for a parabola."""
-    fits = volume_fits(two_revolutions(tmp_path)).set_index(["volume", "fit"])
-    assert len(fits) == 4 * 2
-    assert fits.loc[("removed", "linear"), "linear_mm3_per_revolution"] == pytest.approx(1.8e-3)
-    assert np.isnan(fits.loc[("removed", "quadratic"), "r_squared"])
+def test_every_volume_has_a_trend(tmp_path):
+    """One row per volume; the increment of two equal ones is the linear term."""
+    trends = volume_trends(two_revolutions(tmp_path)).set_index("volume")
+    assert list(trends.index) == list(VOLUMES)
+    assert trends.loc["removed", "linear_mm3_per_revolution"] == pytest.approx(1.8e-3)
 
 
 def test_volume_of_a_published_groove():

@@ -31,7 +31,14 @@ from bulkwear.workflows.cases.pin_on_disc.plots.contours import (
     SCHEME_NAMES,
     coefficient_name,
 )
-from bulkwear.workflows.cases.pin_on_disc.volume import CANDIDATES, VOLUMES, law_volume, published_volume
+from bulkwear.workflows.cases.pin_on_disc.runs import same_coefficient
+from bulkwear.workflows.cases.pin_on_disc.volume import (
+    CANDIDATES,
+    VOLUMES,
+    law_volume,
+    published_volume,
+    trend_words,
+)
 
 CANDIDATE_COLOURS = dict(zip(CANDIDATES, ("#56B4E9", "#999999", "#F0E442", "#E69F00", "#CC79A7"), strict=True))
 UNEXPLAINED_LOOK = {"color": "white", "edgecolor": "black", "hatch": "////", "linewidth": 0.6}
@@ -44,11 +51,11 @@ VOLUME_LOOKS = {  # volume, line and what it is called
 }
 
 
-def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, trends: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw volume (mm3) against revolutions, a panel per wear coefficient: both schemes, the published fit, alpha F L.
 
     volumes : as from `volume.volumes_of_run` with `scheme`, `wear_coefficient_per_pa`, `load_n`,
-    `track_radius_m`; published : coefficients of Eq 5.11-5.15.
+    `track_radius_m`; published : coefficients of Eq 5.11-5.15; trends : as from `volume.volume_trends`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     coefficients = sorted(volumes["wear_coefficient_per_pa"].unique())
@@ -56,12 +63,22 @@ def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
     for coefficient, axes in panels.items():
         chosen = volumes[volumes["wear_coefficient_per_pa"] == coefficient]
         _volume_panel(axes, chosen, coefficient, published)
-        axes.set_title(coefficient_name(coefficient), loc="left", fontsize=SMALLEST_FONT)
+        said = [coefficient_name(coefficient), *_changes(same_coefficient(trends, coefficient))]
+        axes.set_title("\n".join(said), loc="left", fontsize=SMALLEST_FONT)
         axes.set_xlim(0.0, volumes["revolution"].max() + 0.5)
         axes.set_ylim(bottom=0.0)
     label_all(figure, len(coefficients) > 1, "Revolutions", "Volume (mm³)")
     figure.legend(*named_once(panels.values()), loc="outside upper center", ncols=2)
     return figure
+
+
+def _changes(trends: pd.DataFrame) -> list[str]:
+    """Return what is drawn of a coefficient's volumes in words: the change of what a revolution adds."""
+    return [
+        f"{row.scheme.replace('_', ' ')}, {row.volume}: {trend_words(row)}"
+        for row in trends.itertuples()
+        if row.volume in VOLUME_LOOKS and (row.volume == "removed" or row.scheme == "per_triangle")
+    ]
 
 
 def _volume_panel(axes: Axes, chosen: pd.DataFrame, coefficient: float, published: pd.DataFrame) -> None:
