@@ -14,16 +14,19 @@ import pandas as pd
 from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, centroids, read_surface, worn_faces
 from bulkwear.postproc.readers.cycle_folders import cycle_folders
 from bulkwear.postproc.scans.comparison import bump_names, bump_sections, largest_losses
+from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.postproc.tables.depths import WORN_VOLUME
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
+from bulkwear.workflows.cases.circular_tester.packings import PACKING, over_packings
 from bulkwear.workflows.cases.circular_tester.runs import MESH, SIZE, SURFACE, VOLUME, TesterRun
-from bulkwear.workflows.cases.circular_tester.volume import chosen
+from bulkwear.workflows.cases.circular_tester.volume import PATTERNED, chosen, of_surface
 
 COLUMNS = 5  # of the sample of 100 x 100 mm (Fig 6.1)
 NOTHING = np.empty((0, 3))  # no scan
 SHOWN_BUMPS = ["C11", "C13", "C15"]  # of Fig 6.5 and 6.16
 MESH_BUMP = "C15"  # of Fig 6.9
 LEDGER = "ledger.parquet"
+PLACE = ["surface", "column"]
 CHOSEN_SURFACES = 4  # revolutions of which contours are drawn, evenly spaced up to the last one
 
 
@@ -66,17 +69,43 @@ def wear_by_column(meshes: Mapping[str, SurfaceMesh], columns: int = COLUMNS) ->
     return table.rename(columns={"base": "base_mm3", "bumps": "bumps_mm3"})[["run", "column", "base_mm3", "bumps_mm3"]]
 
 
-def share_of_bumps(by_column: pd.DataFrame) -> pd.Series:
-    """Share (-) of the wear of each run that its bumps bear."""
-    sums = by_column.groupby("run", sort=False)[["base_mm3", "bumps_mm3"]].sum()
-    return sums["bumps_mm3"] / sums.sum(axis=1)
+def of_runs(table: pd.DataFrame, runs: Sequence[TesterRun]) -> pd.DataFrame:
+    """A table with a column run, with the surface and the packing of each run."""
+    names = {run.name: run for run in runs}
+    columns = {name: [getattr(names[run], name) for run in table["run"]] for name in ("surface", PACKING)}
+    return table.assign(**columns)
 
 
-def wear_by_bump(mesh: SurfaceMesh) -> pd.DataFrame:
-    """Worn volume of every bump (Fig 6.14): bump (C11, C12, ...), part, row (the column of Fig 6.1), volume_mm3."""
-    volume = np.bincount(np.maximum(mesh.cell_data["part"], 0), CUBIC_MILLIMETRES * mesh.cell_data[WORN_VOLUME])
-    names = bump_names(mesh)[["bump", "part", "row"]]
-    return names.assign(volume_mm3=volume[names["part"].to_numpy(dtype=np.int64)])
+def columns_over_packings(by_column: pd.DataFrame, unit: str) -> pd.DataFrame:
+    """Means over packings by column of the sample: surface, column, base_<unit>, bumps_<unit>, total_<unit>, and those
+    of `over_packings` of the total.
+
+    by_column: as from `wear_by_column` or `mean_force_by_column`, with surface and packing
+    """
+    parts, total = [f"base_{unit}", f"bumps_{unit}"], f"total_{unit}"
+    means = by_column.groupby(PLACE, sort=False)[parts].mean().reset_index()
+    return means.merge(over_packings(by_column.assign(**{total: by_column[parts].sum(axis=1)}), PLACE, total))
+
+
+def share_of_bumps(by_column: pd.DataFrame) -> Estimate:
+    """Share (-) of the wear of patterned samples that their bumps bear, over packings."""
+    sums = of_surface(by_column, PATTERNED).groupby(PACKING)[["base_mm3", "bumps_mm3"]].sum()
+    return estimate(sums["bumps_mm3"] / sums.sum(axis=1))
+
+
+def wear_by_bump(meshes: Mapping[int, SurfaceMesh]) -> pd.DataFrame:
+    """Worn volume of every bump in every packing (Fig 6.14): bump (C11, C12, ...), part, row (the column of Fig 6.1),
+    volume_mm3, packing.
+
+    meshes: worn surfaces by packing, with `worn_volume_m3`.
+    """
+    parts = []
+    for packing, mesh in meshes.items():
+        volume = np.bincount(np.maximum(mesh.cell_data["part"], 0), CUBIC_MILLIMETRES * mesh.cell_data[WORN_VOLUME])
+        names = bump_names(mesh)[["bump", "part", "row"]]
+        lost = volume[names["part"].to_numpy(dtype=np.int64)]
+        parts.append(names.assign(volume_mm3=lost, **{PACKING: packing}))
+    return pd.concat(parts, ignore_index=True)
 
 
 def force_by_column(mesh: SurfaceMesh, impulse: np.ndarray, duration: float, columns: int = COLUMNS) -> pd.DataFrame:
@@ -89,30 +118,42 @@ def force_by_column(mesh: SurfaceMesh, impulse: np.ndarray, duration: float, col
 
 
 def volumes_of_meshes(lost: pd.DataFrame) -> pd.DataFrame | None:
-    """Volumes after equal revolutions of runs that differ in their elements, finest first; None without any."""
+    """Volumes after equal revolutions of runs of one packing that differ in their elements, finest first; None without
+    any.
+    """
     of_meshes = chosen(lost, MESH)
     if of_meshes.empty:
         return None
     same = of_meshes.groupby("run")["revolution"].max().min()
     at = chosen(lost, MESH, VOLUME, SIZE)
-    at = at[np.isclose(at["revolution"], same) & at["particle_scale"].isin(of_meshes["particle_scale"])]
-    return at.sort_values("element_size_mm")
+    for name in ("shape", "particle_scale", PACKING):
+        at = at[at[name].isin(of_meshes[name])]
+    return at[np.isclose(at["revolution"], same)].sort_values("element_size_mm")
 
 
 def mesh_size_effect(volumes: pd.DataFrame) -> pd.DataFrame:
-    """Volume against mesh size, over that of the plain sample on the finest mesh (Fig 6.8).
+    """Volume against mesh size, over that of the plain sample on the finest mesh in the same packing (Fig 6.8).
 
-    volumes: surface, element_size_mm, volume_m3 after the same revolutions. Columns: surface, element_size_mm,
-    relative_percent; per surface also mean_percent and deviation_percent over the meshes. Raises ValueError without a
-    plain sample.
+    volumes: as from `volumes_of_meshes`. Columns: surface, element_size_mm, relative_percent, and those of
+    `over_packings`. Raises ValueError without a plain sample.
     """
-    plain = volumes[volumes["surface"] == PLAIN]
+    plain = volumes[volumes["surface"] == PLAIN].sort_values("element_size_mm")
     if plain.empty:
         raise ValueError("the effect of mesh size needs a plain sample, found none")
-    finest = plain.loc[plain["element_size_mm"].idxmin(), "volume_m3"]
-    table = volumes[["surface", "element_size_mm"]].assign(relative_percent=100.0 * volumes["volume_m3"] / finest)
-    grouped = table.groupby("surface", sort=False)["relative_percent"]
-    return table.assign(mean_percent=grouped.transform("mean"), deviation_percent=grouped.transform("std"))
+    finest = volumes[PACKING].map(plain.groupby(PACKING)["volume_m3"].first())
+    table = volumes.assign(relative_percent=100.0 * volumes["volume_m3"] / finest)
+    return over_packings(table, ["surface", "element_size_mm"], "relative_percent")
+
+
+def on_finest_mesh(volumes: pd.DataFrame) -> pd.DataFrame:
+    """Volume over that on the finest mesh of the same surface and packing: surface, packing, element_size_mm, ratio.
+
+    volumes: as from `volumes_of_meshes`; the finest meshes themselves are left out.
+    """
+    ordered = volumes.sort_values("element_size_mm")
+    finest = ordered.groupby(["surface", PACKING])[["volume_m3", "element_size_mm"]].transform("first")
+    table = ordered[["surface", PACKING, "element_size_mm"]].assign(ratio=ordered["volume_m3"] / finest["volume_m3"])
+    return table[ordered["element_size_mm"] > finest["element_size_mm"]]
 
 
 def worn_contours(pristine: SurfaceMesh, worn: Mapping[str, SurfaceMesh], bumps: list[str]) -> pd.DataFrame:
@@ -163,14 +204,11 @@ def surfaces_alike(runs: Sequence[TesterRun]) -> tuple[float, dict[str, SurfaceM
 
 
 def mean_force_by_column(run: TesterRun, columns: int = COLUMNS) -> pd.DataFrame:
-    """Normal force by column, mean over the wear cycles: run, column, base_N, bumps_N, deviation_N (of the cycles)."""
+    """Normal force by column, mean over the wear cycles: run, column, base_N, bumps_N."""
     before, parts = run.folder / SURFACE, []
     durations = np.diff(pd.read_csv(run.folder / "wear.csv")["time_s"], prepend=0.0)
     for folder, duration in zip(cycle_folders(run.folder)[1:], durations, strict=True):
         impulse = pd.read_parquet(folder / LEDGER, columns=["normal_impulse_N_s"])["normal_impulse_N_s"]
         parts.append(force_by_column(read_surface(before), impulse, duration, columns))
         before = folder / SURFACE
-    table = pd.concat(parts).assign(total=lambda rows: rows["base_N"] + rows["bumps_N"])
-    grouped = table.groupby("column")
-    mean = grouped[["base_N", "bumps_N"]].mean()
-    return mean.assign(deviation_N=grouped["total"].std().fillna(0.0)).reset_index().assign(run=run.name)
+    return pd.concat(parts).groupby("column")[["base_N", "bumps_N"]].mean().reset_index().assign(run=run.name)

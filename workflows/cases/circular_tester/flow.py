@@ -13,12 +13,14 @@ import pandas as pd
 
 from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE, cycle_files, cycle_folders
 from bulkwear.postproc.readers.solver_log import thermo_table
-from bulkwear.postproc.statistics.steady import FEWEST_VALUES, common_start, steady_window
+from bulkwear.postproc.statistics.steady import FEWEST_VALUES, STEADY, UNSAID, Window, common_start, steady_window
+from bulkwear.workflows.cases.circular_tester.packings import PACKING, over_packings
 from bulkwear.workflows.cases.circular_tester.runs import LOG, TesterRun
 
 STEADINESS = ("velocity_m_per_s", "bed_height_m", "wear_rate_m3_per_s")  # the three criteria of Fig 6.7
 WHOLE = 1e-6  # revolutions that an instant may lie before a whole one and belong to the next
 FEWEST_INSTANTS = 3  # in a revolution, for a standard deviation that says anything
+OF_RUN = ["run", "surface", PACKING]
 # measures of Fig 6.17, 6.18 and 6.21
 SPIN, VELOCITY, FORCE = "bottom_averaged_angular_velocity_rad_per_s", "bottom_velocity_m_per_s", "normal_force_N"
 MEAN_SPIN = "bottom_mean_angular_speed_rad_per_s"  # of the particles' own magnitudes; stands beside it in tables
@@ -30,48 +32,58 @@ def revolution_numbers(revolution: np.ndarray) -> np.ndarray:
 
 
 def revolution_means(series: pd.DataFrame, measures: Sequence[str]) -> pd.DataFrame:
-    """Mean, standard deviation and coefficient of variation of measures in each revolution of each run.
+    """Mean and coefficient of variation of measures in each revolution of each run.
 
-    Columns: run, surface, revolution (its number), measure, mean, deviation, variation (deviation over mean, Yan 2022,
-    Eq 6.1), instants. Revolutions of fewer than FEWEST_INSTANTS instants are left out.
+    Columns: run, surface, packing, revolution (its number), measure, mean, variation (standard deviation over mean, Yan
+    2022, Eq 6.1), instants. Revolutions of fewer than FEWEST_INSTANTS instants are left out.
     """
     number = pd.Series(revolution_numbers(series["revolution"]), index=series.index)
-    long = series.assign(revolution=number).melt(["run", "surface", "revolution"], list(measures), "measure")
-    grouped = long.dropna(subset="value").groupby(["run", "surface", "revolution", "measure"], sort=False)["value"]
-    table = pd.DataFrame({"mean": grouped.mean(), "deviation": grouped.std(ddof=1), "instants": grouped.size()})
-    table = table[table["instants"] >= FEWEST_INSTANTS]
-    table.insert(2, "variation", table["deviation"] / table["mean"].abs())
-    return table.reset_index()
+    keys = [*OF_RUN, "revolution"]
+    long = series.assign(revolution=number).melt(keys, list(measures), "measure")
+    grouped = long.dropna(subset="value").groupby([*keys, "measure"], sort=False)["value"]
+    table = pd.DataFrame({"mean": grouped.mean(), "variation": grouped.std(ddof=1) / grouped.mean().abs()})
+    table = table.assign(instants=grouped.size())
+    return table[table["instants"] >= FEWEST_INSTANTS].reset_index()
+
+
+def revolutions_over_packings(means: pd.DataFrame, value: str) -> pd.DataFrame:
+    """Mean or variation of each revolution over the packings: surface, measure, revolution, value, and those of
+    `over_packings`. means: as from `revolution_means`.
+    """
+    return over_packings(means, ["surface", "measure", "revolution"], value)
 
 
 def steady_revolutions(series: pd.DataFrame, measures: Sequence[str] = STEADINESS) -> pd.DataFrame:
     """From which revolution on each measure of each run is steady, by the rule of `postproc.statistics.steady`.
 
-    Columns: run, surface, measure, start (revolutions), mean, drift (-), steady; measure "all" has the latest start,
-    NaN where one is not steady. Raises ValueError for a run of fewer instants than FEWEST_VALUES.
+    Columns: run, surface, packing, measure, start (revolutions), mean, drift_percent with drift_low and drift_high,
+    answer; measure "all" has the latest start, NaN where one is not steady. Raises ValueError for a run of fewer
+    instants than FEWEST_VALUES.
     """
     rows = []
-    for (run, surface), of_run in series.groupby(["run", "surface"], sort=False):
+    for key, of_run in series.groupby(OF_RUN, sort=False):
         ordered = of_run.sort_values("revolution")
         if len(ordered) < FEWEST_VALUES:
-            raise ValueError(f"run {run} has {len(ordered)} instants, allowed are {FEWEST_VALUES} or more")
+            raise ValueError(f"run {key[0]} has {len(ordered)} instants, allowed are {FEWEST_VALUES} or more")
+        same = dict(zip(OF_RUN, key, strict=True))
         windows = {name: steady_window(ordered["revolution"], ordered[name]) for name in measures}
-        rows += [
-            {"run": run, "surface": surface, "measure": name, "start": window.start, "mean": window.mean}
-            | {"drift": window.drift, "steady": window.steady}
-            for name, window in windows.items()
-        ]
+        rows += [same | {"measure": name} | _told(window) for name, window in windows.items()]
         start = common_start(windows.values())
-        common = {"start": start, "mean": np.nan, "drift": np.nan, "steady": bool(np.isfinite(start))}
-        rows.append({"run": run, "surface": surface, "measure": "all"} | common)
+        rows.append(same | {"measure": "all", "start": start, "answer": STEADY if np.isfinite(start) else UNSAID})
     return pd.DataFrame(rows)
+
+
+def _told(window: Window) -> dict[str, float | str]:
+    ends = {f"drift_{end}": 100.0 * getattr(window, f"drift_{end}") for end in ("low", "high")}
+    numbers = {"start": window.start, "mean": window.mean, "drift_percent": 100.0 * window.drift}
+    return numbers | ends | {"answer": window.answer}
 
 
 def series_of(run: TesterRun) -> pd.DataFrame:
     """What a run does from instant to instant; the bed before it with a block in its place.
 
-    Columns: run, surface, revolution (of the bed), worn_revolution (of wear, below 0 before), and measures, each in
-    rows of its own: velocity_m_per_s and bed_height_m of the particles over the sample, wear_rate_m3_per_s,
+    Columns: run, surface, packing, revolution (of the bed), worn_revolution (of wear, below 0 before), and measures,
+    each in rows of its own: velocity_m_per_s and bed_height_m of the particles over the sample, wear_rate_m3_per_s,
     normal_force_N, bottom_velocity_m_per_s, SPIN and MEAN_SPIN, see `layer.reduce_layer`.
     """
     parts = [_logged(run.bed_folder / LOG, run.bed_revolution_steps)]
@@ -93,6 +105,7 @@ def series_of(run: TesterRun) -> pd.DataFrame:
     table = pd.concat(parts, ignore_index=True)
     table.insert(0, "run", run.name)
     table.insert(1, "surface", run.surface)
+    table.insert(2, PACKING, run.packing)
     return table.assign(worn_revolution=table["revolution"] - run.before)
 
 

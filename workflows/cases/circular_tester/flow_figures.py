@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from bulkwear.workflows.cases.circular_tester.figures import DIGITS, PAIR, PUBLISHED, WEAR, of_study, read, runs_of
-from bulkwear.workflows.cases.circular_tester.runs import SURFACE
+from bulkwear.workflows.cases.circular_tester.figures import OF_PAIRS, PAIRS, PUBLISHED, WEAR, of_study, read, runs_of
+from bulkwear.workflows.cases.circular_tester.runs import SURFACE, shown_pair
 from bulkwear.workflows.report.products import Job, figure
 
-OF_SERIES = {"inputs": {**of_study("series"), **PUBLISHED}, "digits": DIGITS}
-OF_PARTICLES = {"inputs": WEAR, "told": PAIR, "digits": DIGITS}
+OF_SERIES = {"inputs": {**of_study("series"), **PUBLISHED}, **OF_PAIRS}
+OF_PARTICLES = {"inputs": WEAR, "told": PAIRS, **OF_PAIRS}
 SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
 
 
@@ -18,29 +18,31 @@ SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
     "Steadiness",
     caption="""
     Counterpart of Fig 6.7 (Yan 2022): standard deviation over mean (Eq 6.1) of each revolution since the trough began
-    to turn. Velocity and height are those of the particles over the sample, height twice their centre of mass over it.
-    At first a block stands in the sample's place; wear is known from where its curve begins. Steady from: by the rule
-    of all studies (marginal standard error).
+    to turn, mean over packings with its 95 % interval. Velocity and height are those of the particles over the sample,
+    height twice their centre of mass over it. At first a block stands in the sample's place; wear is known from where
+    its curve begins. Steady from: of each packing, by the rule of all studies (postproc/statistics/steady.py), which
+    says steady, drifting or neither.
     """,
     **OF_SERIES,
 )
 def tester_steadiness(job: Job) -> Any:
     """Draw how much velocity, bed height and wear rate vary in each revolution (Fig 6.7)."""
-    from bulkwear.workflows.cases.circular_tester.flow import STEADINESS, revolution_means, steady_revolutions
+    from bulkwear.workflows.cases.circular_tester import flow
     from bulkwear.workflows.cases.circular_tester.plots.flow import steadiness
 
     series, published = read(job, "series", "published")
-    means = revolution_means(series, STEADINESS)
-    return steadiness(means, steady_revolutions(series), published, job.remarks), means
+    variations = flow.revolutions_over_packings(flow.revolution_means(series, flow.STEADINESS), "variation")
+    return steadiness(variations, flow.steady_revolutions(series), published, job.remarks), variations
 
 
 @figure(
     "Flow",
     "Spin of the lowest layer",
     caption="""
-    Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity, and in the table mean of the
-    magnitudes, of particles whose centres are within a median diameter of the
-    sample's plane, mean and standard deviation over the snapshots of a revolution of wear.
+    Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity of particles whose centres are within
+    a median diameter of the sample's plane, by revolution of wear; the table has the mean of their own angular speeds
+    as well; mean over packings with its 95 % interval. Bands: the source's standard
+    deviations.
     """,
     **OF_SERIES,
 )
@@ -54,7 +56,10 @@ def tester_spin(job: Job) -> Any:
 @figure(
     "Flow",
     "Velocity of the lowest layer",
-    caption="Counterpart of Fig 6.18 (Yan 2022): velocity along the travel of the same particles.",
+    caption="""
+    Counterpart of Fig 6.18 (Yan 2022): velocity along the travel of the same particles, mean over packings with its
+    95 % interval.
+    """,
     **OF_SERIES,
 )
 def tester_velocity(job: Job) -> Any:
@@ -68,8 +73,8 @@ def tester_velocity(job: Job) -> Any:
     "Flow",
     "Normal force by revolution",
     caption="""
-    Counterpart of Fig 6.21 (Yan 2022): sum of the normal forces on the faces that wear, mean and standard deviation
-    over the looks within a revolution of wear.
+    Counterpart of Fig 6.21 (Yan 2022): sum of the normal forces on the faces that wear, by revolution of wear;
+    mean over packings with its 95 % interval. Bands: the source's standard deviations.
     """,
     **OF_SERIES,
 )
@@ -82,11 +87,11 @@ def tester_force(job: Job) -> Any:
 
 def _by_revolution(job: Job, measure: str, *beside: str) -> Any:
     """Draw a measure of the lowest layer by revolution; beside: more measures, for the table alone."""
-    from bulkwear.workflows.cases.circular_tester.flow import flow_means
+    from bulkwear.workflows.cases.circular_tester.flow import flow_means, revolutions_over_packings
     from bulkwear.workflows.cases.circular_tester.plots.flow import by_revolution
 
     series, published = read(job, "series", "published")
-    means = flow_means(series)
+    means = revolutions_over_packings(flow_means(series), "mean")
     drawn = means[means["measure"] == measure]
     return by_revolution(drawn, measure, published, job.remarks), means[means["measure"].isin([measure, *beside])]
 
@@ -96,7 +101,7 @@ def _by_revolution(job: Job, measure: str, *beside: str) -> Any:
     "Map of spin",
     caption="""
     Counterpart of Fig 6.19 (Yan 2022): the particles of the lowest layer at the end of the wear cycle nearest to
-    revolution 5, coloured by their angular speed over the plain sample's mean.
+    revolution 5, coloured by their angular speed over the plain sample's mean; of the first packing.
     """,
     **OF_PARTICLES,
 )
@@ -125,7 +130,7 @@ def _motion(job: Job, quantity: str, label: str) -> Any:
     from bulkwear.workflows.cases.circular_tester.layer import layer_particles, outlines, relative_motion
     from bulkwear.workflows.cases.circular_tester.plots.flow import relative_motion as draw
 
-    runs = runs_of(job)
+    runs = shown_pair(runs_of(job))
     particles = relative_motion(pd.concat([layer_particles(run, SHOWN_REVOLUTION) for run in runs], ignore_index=True))
     lines = {run.surface: outlines(top_of(read_surface(run.folder / SURFACE))) for run in runs}
     return draw(particles, quantity, label, lines, job.remarks), particles

@@ -9,29 +9,41 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
 from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
-from bulkwear.workflows.cases.circular_tester.distribution import share_of_bumps
 from bulkwear.workflows.cases.circular_tester.flow import steady_revolutions
+from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW
 from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from bulkwear.workflows.cases.circular_tester.volume import TERMS
+from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
-from bulkwear.workflows.report.text import UNDEFINED
 
 PUBLISHED_FITS = PACKAGE / "config" / "published" / "circular_tester_volume.csv"
 FIT_DIGITS = 5
 FIT_HEADS = {
     TERMS[0]: ("linear", "mm³ per revolution"),
     TERMS[1]: ("quadratic", "mm³ per revolution²"),
-    f"{TERMS[0]}_error": ("error of linear", "mm³ per revolution"),
-    f"{TERMS[1]}_error": ("error of quadratic", "mm³ per revolution²"),
     "r_squared": ("R²", "-"),
 }
-CROSSING_HEADS = {"rate_crossing": ("faster from", "revolution"), "crossing": ("more in sum from", "revolution")}
-STEADY_HEADS = {"start": ("start", "revolution"), "mean": ("mean", "of the measure"), "drift": ("drift", "-")}
-REDUCED = "At the reduced scale told at the top of the page: a finding that is not confirmed here is not thereby wrong."
+INTERVAL_HEADS = {"": "", "_low": ", interval from", "_high": ", to"}
+RATE = {"rate_mm3_per_revolution": ("lost per revolution", "mm³"), "change_percent": ("its change over the run", "%")}
+RATIO = {
+    "ratio": ("patterned over plain", "-"),
+    "reduction_percent": ("reduction", "%"),
+    "change_percent": ("change of the ratio over the run", "%"),
+}
+STEADY_HEADS = {
+    "start": ("start", "revolution"),
+    "mean": ("mean", "of the measure"),
+    "drift_percent": ("drift", "%"),
+    "drift_low": ("drift, interval from", "%"),
+    "drift_high": ("to", "%"),
+}
+INTERVALS = "Intervals: 95 %, over packings; of one packing the scatter is unknown."
+REDUCED = "At the reduced scale told at the top of the page: a finding that is contradicted here is not thereby wrong."
 RESULTS_NOTE = (
     "Lost: removed from the sample; per revolution: what the law takes. Normal force: on the faces that wear. Sliding: "
     "of contacts on them, over the travel of the trough; wear is the product of both. Carried: worn by the law, not "
@@ -45,7 +57,6 @@ RESULT_HEADS = {
     "mean_normal_force_N": ("mean normal force", "N"),
     "sliding_over_travel": ("sliding over travel", "-"),
     "bed_over_floor_velocity": ("velocity of bed over trough", "-"),
-    "linear_r_squared": ("linear fit", "R²"),
     "carried_share_percent": ("carried", "%"),
 }
 
@@ -55,40 +66,68 @@ def of_study(folder: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(folder / "tester" / f"{name}.csv")
 
 
+def heads_of(columns: Mapping[str, tuple[str, str]]) -> dict[str, tuple[str, str]]:
+    """Return names and units of columns with intervals."""
+    return {
+        f"{column}{ending}": (f"{name}{words}", unit)
+        for column, (name, unit) in columns.items()
+        for ending, words in INTERVAL_HEADS.items()
+    }
+
+
 def beside_the_experiment(folder: Path) -> list[Block]:
     """Return the reductions, what sets the scale of time, and the comparison with the source."""
     compared = of_study(folder, "comparison")
     compared["note"] = compared["note"].fillna("")
     scale = of_study(folder, "time_scale").iloc[0]
+    heads = {LOW: ("interval of ours, from", ""), HIGH: ("to", "")}
+    digits = dict.fromkeys((LABORATORY, THESIS, THESIS_ALIKE, OURS, LOW, HIGH), 4)
+    note = "Interval of ours: in which one further packing falls, at 95 %; of losses of bumps that of their mean."
     return [
-        Cards(cards(compared, of_study(folder, "crossings"), _patterned(folder))),
-        Text(
-            "The plain sample's volume after 56 h sets the scale, all else is predicted: a revolution stands for "
-            f"{scale['hours_per_revolution']:.3g} h. The coefficient that makes the source's two revolutions stand for "
-            f"56 h would be {scale['wear_coefficient']:.3g} 1/Pa (simulated {scale['simulated_coefficient']:.3g}), the "
-            f"laboratory's own, by its pressure and 121 km, is {scale['laboratory_coefficient']:.3g} 1/Pa. Distance of "
-            f"the test over that of the revolutions: {scale['distance_scale']:.3g}."
-        ),
-        Table(compared, "comparison", digits=dict.fromkeys((LABORATORY, THESIS, THESIS_ALIKE, OURS), 4)),
+        Cards(cards(compared, of_study(folder, "mean_ratios"), _patterned(folder))),
+        Text(time_words(scale)),
+        Table(compared, "comparison", note, digits, heads),
     ]
 
 
-def cards(compared: pd.DataFrame, crossings: pd.DataFrame, name: str) -> list[tuple[str, str]]:
-    """Return the few numbers that answer the question: the reductions beside the measured ones, and their future.
+def time_words(scale: pd.Series) -> str:
+    """Return what the plain sample's short test says of hours and coefficients."""
+    needed = _with_interval(scale, "revolutions_of_short_test")
+    beyond = scale["revolutions_of_short_test"] > scale["simulated_revolutions"]
+    mean_rate = f", by the mean rate of the {scale['simulated_revolutions']:g} simulated" if beyond else ""
+    return (
+        f"The plain sample's volume after 56 h sets the scale, all else is predicted: it takes {needed} revolutions"
+        f"{mean_rate}, so one stands for {scale['hours_per_revolution']:.3g} h. The coefficient that makes the "
+        f"source's two revolutions stand for 56 h would be {_with_interval(scale, 'wear_coefficient')} 1/Pa (simulated "
+        f"{scale['simulated_coefficient']:.3g}), the laboratory's own, by its pressure and 121 km, is "
+        f"{scale['laboratory_coefficient']:.3g} 1/Pa. Distance of the test over that of the revolutions: "
+        f"{scale['distance_scale']:.3g}."
+    )
 
-    name: the surface of the patterned samples
+
+def _with_interval(row: pd.Series, name: str) -> str:
+    low, high = row[f"{name}_low"], row[f"{name}_high"]
+    if not np.isfinite(low):
+        return f"{row[name]:.3g} ({UNKNOWN})"
+    return f"{row[name]:.3g} ({low:.3g} to {high:.3g})"
+
+
+def cards(compared: pd.DataFrame, ratios: pd.DataFrame, name: str) -> list[tuple[str, str]]:
+    """Return the few numbers that answer the question: reductions beside the measured ones, and patterned over plain.
+
+    ratios: as from `comparison.mean_ratios`; name: the surface of the patterned samples
     """
-    found = [
-        (
-            f"{row[OURS]:.3g} %",
-            f"less wear of the {name} sample after {row['hours']:g} h{_beside(row)}",
+    found = []
+    for _, row in compared[compared["quantity"] == "reduction"].dropna(subset=OURS).iterrows():
+        interval = f"one further packing: {row[LOW]:.3g} to {row[HIGH]:.3g} %" if np.isfinite(row[LOW]) else UNKNOWN
+        words = f"less wear of the {name} sample after {row['hours']:g} h, {interval}{_beside(row)}"
+        found.append((f"{row[OURS]:.3g} %", words))
+    for _, row in ratios.iterrows():
+        words = (
+            f"{name} over plain, {row['shape']}, scale {row['particle_scale']:g}, {row['revolutions']:g} revolutions"
         )
-        for _, row in compared[compared["quantity"] == "reduction"].iterrows()
-    ]
-    for row in crossings.itertuples():
-        never = not np.isfinite(row.crossing)
-        words = f"{name} never loses more" if never else f"revolutions until the {name} sample has lost more"
-        found.append((UNDEFINED if never else f"{row.crossing:.3g}", f"{words}, scale {row.particle_scale:g}"))
+        interval = f"{row['ratio_low']:.3g} to {row['ratio_high']:.3g}" if np.isfinite(row["ratio_low"]) else UNKNOWN
+        found.append((f"{row['ratio']:.3g}", f"{words}: {interval}"))
     return found
 
 
@@ -101,54 +140,52 @@ def _beside(row: pd.Series) -> str:
 
 def _patterned(folder: Path) -> str:
     """Return the name of the surfaces of a study that are not plain."""
-    return patterned_name(of_study(folder, "fits")["surface"])
+    return patterned_name(of_study(folder, "rates")["surface"])
 
 
 def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
-    """Return the source's findings with their verdicts, words all of them."""
-    table = pd.read_csv(folder / "tester" / "findings.csv", keep_default_na=False)
-    said = [*([REDUCED] if study["remarks"] else []), "A reason with a verdict is a reserve."]
-    return [Text(" ".join(said)), Table(table[["verdict", "finding", "found", "reason", "source"]], "findings")]
+    """Return the source's findings with their verdicts."""
+    table = of_study(folder, "findings").fillna({"reason": "", "found": ""})
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in table["verdict"].value_counts().items())
+    said = [
+        f"Of {len(table)} claims: {counts}. Margins and rules are those of {date_of_rules()}; both, and why, stand in "
+        "config/published/verdicts.yaml. Factor: found over published size.",
+        *([REDUCED] if study["remarks"] else []),
+    ]
+    shown = ["verdict", "finding", "claim", "found", "reason", "factor", "source"]
+    return [Text(" ".join(said)), Table(table[shown], "findings")]
 
 
-def fits(folder: Path) -> list[Block]:
-    """Return the fits of every run beside those of the source, and when patterned overtakes plain."""
-    columns, errors = ["surface", "particle_scale", *TERMS, "r_squared"], [f"{term}_error" for term in TERMS]
-    ours = of_study(folder, "fits")[["run", "fit", *columns, *errors, "curved"]]
-    theirs = pd.read_csv(PUBLISHED_FITS)[[*columns, "source"]]
-    digits = dict.fromkeys([*TERMS, *errors, "r_squared"], FIT_DIGITS)
-    crossings = of_study(folder, "crossings")
-    name, never = _patterned(folder), np.isinf(crossings[["rate_crossing", "crossing"]]).any(axis=None)
-    words = f"; no crossing ({UNDEFINED}) means never by the fits" if never else ""
+def rates(folder: Path) -> list[Block]:
+    """Return what each setting loses per revolution and how that changes, beside the fits of the source."""
+    theirs = pd.read_csv(PUBLISHED_FITS)[["surface", "particle_scale", *TERMS, "r_squared", "source"]]
+    note = f"Change: from the first to the last revolution, by a straight line through the increments. {INTERVALS}"
     return [
-        Table(ours, "fits", digits=digits, heads=FIT_HEADS),
-        Table(theirs, digits=digits, heads=FIT_HEADS),
-        Text(f"Revolution from which {name} wears faster, and from which it has lost more in sum{words}."),
-        Table(crossings, heads=CROSSING_HEADS),
+        Table(of_study(folder, "rates"), "rates", note, heads=heads_of(RATE)),
+        Table(theirs, digits=dict.fromkeys([*TERMS, "r_squared"], FIT_DIGITS), heads=FIT_HEADS),
     ]
 
 
 def ratios(folder: Path) -> list[Block]:
-    """Return patterned over plain of each machine and particle scale with its deviation."""
-    note = "Over all revolutions of a machine; deviation and standard error are those of its revolutions."
-    return [Table(of_study(folder, "mean_ratios"), "convex_over_plain", note, {"ratio": 4})]
+    """Return patterned over plain of each machine and particle scale with its interval."""
+    note = f"Over the revolutions that all packings have; both samples of a packing share its bed. {INTERVALS}"
+    return [Table(of_study(folder, "mean_ratios"), "patterned_over_plain", note, heads=heads_of(RATIO))]
 
 
 def every_run(folder: Path) -> list[Block]:
     """Return the key numbers of every run."""
-    results = result_table(read_summary(folder / "summary.csv"), of_study(folder, "fits"))
-    digits = {"lost_volume_mm3": 4, "lost_per_revolution_mm3": 4, "linear_r_squared": FIT_DIGITS}
+    results = result_table(read_summary(folder / "summary.csv"))
+    digits = {"lost_volume_mm3": 4, "lost_per_revolution_mm3": 4}
     return [Table(results, "key_numbers", RESULTS_NOTE, digits, RESULT_HEADS)]
 
 
-def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
+def result_table(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the key numbers of each run in display units.
 
     sliding_over_travel (-): how far contacts slide over how far the trough goes, from sliding work and normal force
     """
     names = ["run", "series", "surface", "shape", "particle_scale", "element_size_mm", "wear_coefficient_per_pa"]
     volume = summary["worn_volume_m3"]
-    linear = fits[fits["fit"] == "linear"].set_index("run")["r_squared"]
     return summary[[*names, "revolutions"]].assign(
         lost_volume_mm3=summary["applied_volume_m3"] * CUBIC_MILLIMETRES,
         lost_per_revolution_mm3=volume * CUBIC_MILLIMETRES / summary["revolutions"],
@@ -156,25 +193,25 @@ def result_table(summary: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
         mean_normal_force_N=summary["mean_normal_force_N"],
         sliding_over_travel=summary["sliding_work_J"] / (summary["mean_normal_force_N"] * summary["travel_m"]),
         bed_over_floor_velocity=summary["bed_over_floor_velocity"],
-        linear_r_squared=summary["run"].map(linear),
         carried_share_percent=100.0 * (summary["carried_volume_m3"] / volume).abs(),
     )
 
 
 def steadiness(folder: Path) -> list[Block]:
-    """Return from which revolution of the bed each measure is steady."""
-    return [Table(steady_revolutions(of_study(folder, "series")), heads=STEADY_HEADS)]
+    """Return from which revolution of the bed each measure of each run is steady."""
+    words = "Interval of the drift: of that run, for values that are correlated with their neighbours."
+    return [Table(steady_revolutions(of_study(folder, "series")), "steadiness", words, heads=STEADY_HEADS)]
 
 
 def by_column(folder: Path) -> list[Block]:
-    """Return wear by column, and what the pattern bears."""
+    """Return wear by column."""
     table = pd.read_csv(folder / "figures" / "tester_columns.csv")
-    shares = "; ".join(f"{run}: {100.0 * share:.1f} % on the pattern" for run, share in share_of_bumps(table).items())
-    return [Text(f"{shares}."), Table(table)]
+    heads = {LOW: ("total, interval from", "mm³"), HIGH: ("to", "mm³")}
+    return [Table(table, "wear_by_column", INTERVALS, heads=heads)]
 
 
 def until_worn_out(folder: Path) -> list[Block]:
-    """Return when less than a twentieth of the pattern is left; nothing where no row is for that."""
+    """Return when less than a twentieth of the pattern is left, run by run; nothing where no row is for that."""
     path = folder / "figures" / "tester_worn_out.csv"
     return [Table(worn_out_at(pd.read_csv(path)))] if path.is_file() else []
 
@@ -182,4 +219,5 @@ def until_worn_out(folder: Path) -> list[Block]:
 def by_elements(folder: Path) -> list[Block]:
     """Return what the size of elements changes; nothing where no row is for that."""
     path = folder / "figures" / "tester_mesh.csv"
-    return [Table(pd.read_csv(path))] if path.is_file() else []
+    heads = {LOW: ("interval from", "%"), HIGH: ("to", "%")}
+    return [Table(pd.read_csv(path), note=INTERVALS, heads=heads)] if path.is_file() else []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import key_numbers
-from bulkwear.workflows.report.sections import Pictures, Section
+from bulkwear.workflows.report.sections import Pictures, Section, Text
 from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ RUNS_NOTE = (
     "Layers: over the sample, its depth over the median diameter of the (scaled) particles, and under it. Particles: "
     "estimate from the trough's volume; the solver's number is under Cost. Pressure: of a bed at rest of that depth."
 )
+UNPAIRED = "No packing of these rows has a plain and a patterned run of series volume: nothing is compared."
 DECKS = (  # {bed} and {run} are those of the first run
     ("Filling the trough and turning it until the flow is steady", "beds/{bed}/deck.in"),
     ("Run-in with the sample", "{run}/cycle_000/deck.in"),
@@ -31,7 +32,12 @@ def told(study: Study) -> dict[str, Any]:
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
-    """Return the sections of a study's page: the answer beside the experiment first, then how the runs come to it."""
+    """Return the sections of a study's page: the answer beside the experiment first, then how the runs come to it.
+
+    Of a choice of rows in which no packing has a plain and a patterned run there are its runs alone.
+    """
+    if not (folder / "tester").is_dir():
+        return [Section("Every run", [Text(UNPAIRED), *key_numbers.every_run(folder), Pictures(("worn_surface",))])]
     places = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
     parts = (
@@ -41,7 +47,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
             ("tester_hours", "tester_benchmark"),
         ),
         ("Findings of the source", key_numbers.findings(study, folder), ()),
-        ("Volume by revolution", key_numbers.fits(folder), ("tester_volume", "tester_increments")),
+        ("Volume by revolution", key_numbers.rates(folder), ("tester_volume", "tester_increments")),
         ("Patterned over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
         ("Every run", key_numbers.every_run(folder), ("worn_surface",)),
         ("Steadiness", key_numbers.steadiness(folder), ("tester_steadiness",)),
@@ -120,9 +126,9 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             f"otherwise. A revolution is {sliding['revolution_deg']:g} degrees, as in the source's sector.",
         ),
         (
-            "One packing",
-            "Rows of equal machine and particles start from one bed in motion. Deviations in figures are over the "
-            "revolutions of one run, not over repetitions.",
+            "Packings",
+            "Rows of equal machine, particles and packing start from one bed in motion. Intervals are over packings: "
+            "each counts as one value, however long it is. Of one packing the scatter is unknown.",
         ),
     ]
 

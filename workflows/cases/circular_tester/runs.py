@@ -1,7 +1,8 @@
 """The runs of a circular wear tester as its tables and figures know them.
 
 A revolution of wear is counted from where wear begins to be; a revolution of the bed from where it began to turn. What
-most figures show is the pair of series `volume`, one run with a pattern and one plain one in equal machines.
+most figures show is series `volume`: a setting with a pattern and a plain one in equal machines, of one packing or
+several. A pair is two such runs of one packing: they start from the same bed.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ VOLUME, SIZE, MESH, WORN_OUT, RING = "volume", "size", "mesh", "worn_out", "ring
 class TesterRun:
     """A run and how its bed has turned before wear was counted.
 
+    packing: number of its bed among those of equal machine and particles, from 1 on
     shape: channel or ring; element_size_mm: mm; folder: of the run; bed_folder: of the bed that it started from
     bed_revolution_steps, revolution_steps: time steps of a revolution of bed and run; revolution_s: s
     bed_revolutions, run_in_revolutions: of the bed alone, and with the sample before wear is counted
@@ -37,6 +39,7 @@ class TesterRun:
     name: str
     surface: str
     series: str
+    packing: int
     shape: str
     particle_scale: float
     element_size_mm: float
@@ -59,7 +62,7 @@ class TesterRun:
     def case(self) -> dict[str, object]:
         """Columns that tell a run from others in all tables."""
         return {"run": self.name, "surface": self.surface, "particle_scale": self.particle_scale} | {
-            name: getattr(self, name) for name in ("series", "shape", "element_size_mm", "coefficient")
+            name: getattr(self, name) for name in ("packing", "series", "shape", "element_size_mm", "coefficient")
         }
 
     @property
@@ -72,16 +75,30 @@ class TesterRun:
 
 
 def has_series(name: str) -> Callable[[Study], bool]:
-    """Return what says whether a study has rows of a series."""
-    return lambda study: any(row["series"] == name for row in study.design_rows)
+    """Return what says whether a study has rows of a series beside a pair."""
+    return lambda study: has_pairs(study) and any(row["series"] == name for row in study.design_rows)
+
+
+def has_pairs(study: Study) -> bool:
+    """Return whether a packing of series `volume` has a plain and a patterned run, of which most figures are made."""
+    try:
+        return bool(pairs_of(runs_of_values(values_of_pairs(study), Path())))
+    except ValueError:
+        return False
 
 
 def values_of_runs(study: Study) -> list[dict[str, Any]]:
     """Return what the analysis of every run of a study needs to know of it, JSON-able, see `TesterRun`."""
-    return [_values(study, run) for run in study.runs]
+    values = [_values(study, run) for run in study.runs]
+    beds: dict[tuple[str, float], list[str]] = {}
+    for each in values:
+        of_machine = beds.setdefault((each["shape"], each["particle_scale"]), [])
+        of_machine.extend({each["bed"]} - set(of_machine))
+        each["packing"] = of_machine.index(each["bed"]) + 1
+    return values
 
 
-def values_of_pair(study: Study) -> list[dict[str, Any]]:
+def values_of_pairs(study: Study) -> list[dict[str, Any]]:
     """Return the same of the runs of series `volume` alone."""
     return [values for values in values_of_runs(study) if values["series"] == VOLUME]
 
@@ -130,11 +147,23 @@ def _run_of_values(values: dict[str, Any], results: Path) -> TesterRun:
     return TesterRun(**values | folders | {"rotation": np.array(values["rotation"])})
 
 
-def pair_of(runs: Sequence[TesterRun]) -> tuple[TesterRun, TesterRun]:
-    """Return the run with a pattern and the plain one of which most figures are made; the plain one sets the scale of
-    time.
+def pairs_of(runs: Sequence[TesterRun]) -> list[tuple[TesterRun, TesterRun]]:
+    """Return the run with a pattern and the plain one of every packing of series `volume` that has both.
+
+    Raises ValueError where no packing has both.
     """
     from bulkwear.postproc.mesh import PLAIN  # slow to import, and Snakemake reads this module first
 
-    patterned, plain = sorted((run for run in runs if run.series == VOLUME), key=lambda run: run.surface == PLAIN)
-    return patterned, plain
+    of_packing: dict[int, dict[bool, TesterRun]] = {}
+    for run in runs:
+        if run.series == VOLUME:
+            of_packing.setdefault(run.packing, {}).setdefault(run.surface == PLAIN, run)
+    pairs = [(both[False], both[True]) for _, both in sorted(of_packing.items()) if len(both) == 2]
+    if not pairs:
+        raise ValueError(f"no packing of series {VOLUME} has a plain and a patterned run, allowed is one or more")
+    return pairs
+
+
+def shown_pair(runs: Sequence[TesterRun]) -> tuple[TesterRun, TesterRun]:
+    """Return the pair that is shown where only one can be, as in maps and sections: that of the first packing."""
+    return pairs_of(runs)[0]

@@ -8,59 +8,57 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN, read_surface
+from bulkwear.postproc.statistics.verdicts import Claim
 from bulkwear.postproc.tables.summary import patterned_name, published_value
-from bulkwear.workflows.cases.circular_tester import comparison, distribution, flow, volume
-from bulkwear.workflows.cases.circular_tester.findings import Evidence, findings_table
-from bulkwear.workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, WORN_SURFACE, TesterRun, pair_of
+from bulkwear.workflows.cases.circular_tester import comparison, distribution, flow, hours, volume
+from bulkwear.workflows.cases.circular_tester.evidence import Observed
+from bulkwear.workflows.cases.circular_tester.findings import findings_table
+from bulkwear.workflows.cases.circular_tester.hours import LONG, SHORT
+from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW, PACKING, over_packings
+from bulkwear.workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, TesterRun, pairs_of
 from bulkwear.workflows.cases.circular_tester.volume import (
     CONVEX,
-    LONG,
-    SHORT,
     chosen,
-    chosen_fit,
     of_surface,
     published_terms,
-    volume_at,
+    volume_of_terms,
     whole_revolutions,
 )
 
 LABORATORY, THESIS, OURS = "experiment", "thesis' model", "ours"
 THESIS_ALIKE = "thesis, our particle scale"
-COMPARED = ["hours", "quantity", "unit", LABORATORY, THESIS, THESIS_ALIKE, OURS, "note"]
+COMPARED = ["hours", "quantity", "unit", LABORATORY, THESIS, THESIS_ALIKE, OURS, "packings", LOW, HIGH, "note"]
 ALIKE = 0.1  # relative; of revolutions: wear cycles end at a few places only
 THESIS_SCALE = 1.0  # particle scale of Eq 6.2 and 6.3, which the thesis itself holds against its experiment
 TOLD_HOURS = (SHORT, LONG)
+ONE_PACKING, BEYOND = "one packing, scatter unknown", "ours extrapolated"
 
 
 def tables_of_runs(
-    runs: Sequence[TesterRun], published: pd.DataFrame, published_fits: pd.DataFrame, published_findings: pd.DataFrame
+    runs: Sequence[TesterRun], published: pd.DataFrame, published_fits: pd.DataFrame, claims: Mapping[str, Claim]
 ) -> dict[str, pd.DataFrame]:
-    """Return volumes, fits, time scale, predictions, comparison, crossings, ratios, series, findings of a study."""
-    lost, (patterned, plain) = volume.volumes(runs), pair_of(runs)
-    fits = volume.volume_fits(whole_revolutions(chosen(lost, VOLUME, SIZE)))
-    terms = volume.fit_up_to(fits, plain.name, published_value(published, "plain_volume_56_h", "laboratory"))
-    scale = volume.time_scale(
-        terms, plain.coefficient, published, plain.distance_per_revolution, plain.width * plain.length
-    )
-    hours = [published_value(published, name, "laboratory") for name in TOLD_HOURS]
-    predicted = volume.predictions(fits, scale, hours)
-    main = predicted[predicted["run"].isin([patterned.name, plain.name])]
+    """Return volumes, rates, time scale, predictions, comparison, ratios, series and findings of a study."""
+    lost, (patterned, plain) = volume.volumes(runs), pairs_of(runs)[0]
+    of_sizes = chosen(lost, VOLUME, SIZE)
+    scale = hours.time_scale(of_surface(chosen(lost, VOLUME), PLAIN), plain, published)
+    told = [published_value(published, name, "laboratory") for name in TOLD_HOURS]
+    predicted = hours.predictions(of_sizes, scale, told)
+    main = predicted[(predicted["shape"] == plain.shape) & (predicted["particle_scale"] == plain.particle_scale)]
     compared = [comparison_table(main, published, published_fits, plain.particle_scale)]
     if patterned.surface == CONVEX:
-        compared.append(_measured_losses(patterned, published, scale.revolutions(hours[-1])))
-    ratios = comparison.ratios_by_revolution(whole_revolutions(chosen(lost, VOLUME, SIZE, RING)))
+        compared.append(_measured_losses(runs, published, scale.revolutions(told[-1])))
     tables = {
         "lost_volumes": lost,
-        "fits": fits,
-        "time_scale": pd.DataFrame([vars(scale)]),
+        "rates": volume.rates(of_sizes),
+        "time_scale": scale.table(),
         "predictions": predicted,
         "comparison": pd.concat([table for table in compared if len(table)], ignore_index=True),
-        "crossings": crossings(fits),
-        "ratios": ratios,
-        "mean_ratios": comparison.mean_ratios(ratios, shared=False),
+        "ratios": comparison.ratios_by_revolution(whole_revolutions(chosen(lost, VOLUME, SIZE, RING))),
         "series": pd.concat([flow.series_of(run) for run in runs if run.series == VOLUME], ignore_index=True),
     }
-    return tables | {"findings": findings_table(_evidence(runs, tables, hours), published_findings)}
+    tables["mean_ratios"] = comparison.mean_ratios(tables["ratios"], shared=False)
+    seen = observed(runs, tables, scale.hours_per_revolution, told)
+    return tables | {"findings": findings_table(seen, claims)}
 
 
 def comparison_table(
@@ -68,36 +66,37 @@ def comparison_table(
 ) -> pd.DataFrame:
     """Experiment, the thesis' model and ours side by side, one row per hours and quantity.
 
-    predicted: as from `volume.predictions`; published, published_fits: config/published/circular_tester.csv and
+    predicted: as from `hours.predictions`; published, published_fits: config/published/circular_tester.csv and
     circular_tester_volume.csv; particle_scale: -, of our runs. The thesis' volumes come from its own fits at its own
     two revolutions for 56 h: of particle scale 1, which it holds against its experiment, and, where published, of ours.
-    Columns: hours, quantity, unit, <the four>, note.
+    Columns: hours, quantity, unit, <the four>, packings, interval_low and interval_high (of ours: the prediction
+    interval, in which one further packing falls), note.
     """
     per_hour = published_value(published, "revolutions_of_short_test", "simulation") / published_value(
         published, SHORT, "laboratory"
     )
     patterned = patterned_name(predicted["surface"])
     rows = []
-    for hours, of_hours in predicted[predicted["particle_scale"] == particle_scale].groupby("hours"):
-        volumes = {}
+    for test_hours, of_hours in predicted.groupby("hours"):
+        volumes, ours = {}, {surface: of_surface(of_hours, surface).iloc[0] for surface in (PLAIN, patterned)}
         for surface in (PLAIN, patterned):
             theirs = [
-                float(volume_at(published_terms(published_fits, surface, each), per_hour * hours))
+                float(volume_of_terms(published_terms(published_fits, surface, each), per_hour * test_hours))
                 for each in (THESIS_SCALE, particle_scale)
             ]
-            ours = of_surface(of_hours, surface)["volume_mm3"]
             measured = published[
-                (published["quantity"] == f"{surface}_volume_{hours:g}_h") & (published["of"] == "laboratory")
+                (published["quantity"] == f"{surface}_volume_{test_hours:g}_h") & (published["of"] == "laboratory")
             ]["value"]
             volumes[surface] = [
                 measured.iloc[0] if len(measured) else np.nan,
                 *theirs,
-                ours.iloc[0] if len(ours) else np.nan,
             ]
         reduction = 100.0 * (1.0 - np.array(volumes[patterned]) / np.array(volumes[PLAIN]))
-        beyond = "ours extrapolated" if of_hours["extrapolated"].any() else ""
-        rows += [[hours, f"{surface} volume", "mm3", *values, beyond] for surface, values in volumes.items()]
-        rows.append([hours, "reduction", "%", *reduction, beyond])
+        rows += [
+            [test_hours, f"{surface} volume", "mm3", *values, *_told(ours[surface], "volume_mm3")]
+            for surface, values in volumes.items()
+        ]
+        rows.append([test_hours, "reduction", "%", *reduction, *_told(ours[patterned], "reduction_percent")])
     table = pd.DataFrame(rows, columns=COMPARED)
     short, long = (table["hours"] == published_value(published, name, "laboratory") for name in (SHORT, LONG))
     printed = published_value(published, "reduction_56_h", "simulation")
@@ -106,61 +105,69 @@ def comparison_table(
     return table
 
 
+def _told(row: pd.Series, name: str) -> list[object]:
+    """Return ours, packings, the ends of the interval and the note of a prediction."""
+    said = [row["reason"] or (BEYOND if row["extrapolated"] else ""), ONE_PACKING if row["packings"] < 2 else ""]
+    return [row[name], row["packings"], row[f"{name}_low"], row[f"{name}_high"], "; ".join(filter(None, said))]
+
+
 def _note(table: pd.DataFrame, where: pd.Series, words: str) -> None:
     """Put words before the notes of some rows."""
     table.loc[where, "note"] = [f"{words}; {said}" if said else words for said in table.loc[where, "note"]]
 
 
-def _measured_losses(patterned: TesterRun, published: pd.DataFrame, wanted: float) -> pd.DataFrame:
+def _measured_losses(runs: Sequence[TesterRun], published: pd.DataFrame, wanted: float) -> pd.DataFrame:
     """Return rows of the comparison: the largest loss of the bumps that were scanned, after `wanted` revolutions."""
-    (revolution, worn), *_ = distribution.cycle_surfaces(patterned, [wanted]).items()
-    pristine = distribution.top_of(read_surface(patterned.folder / SURFACE))
-    losses = distribution.contour_losses(pristine, worn, distribution.SHOWN_BUMPS)
-    return loss_rows(losses, published, float(revolution), wanted)
+    parts, reached = [], np.inf
+    for patterned, _ in pairs_of(runs):
+        (revolution, worn), *_ = distribution.cycle_surfaces(patterned, [wanted]).items()
+        pristine = distribution.top_of(read_surface(patterned.folder / SURFACE))
+        losses = distribution.contour_losses(pristine, worn, distribution.SHOWN_BUMPS)
+        parts.append(losses.rename("loss_mm").rename_axis("bump").reset_index().assign(packing=patterned.packing))
+        reached = min(reached, float(revolution))
+    return loss_rows(pd.concat(parts), published, reached, wanted)
 
 
-def loss_rows(losses: pd.Series, published: pd.DataFrame, revolution: float, wanted: float) -> pd.DataFrame:
-    """Rows of a comparison table for the largest vertical loss (mm) of bumps after the long test (Fig 6.5).
+def loss_rows(losses: pd.DataFrame, published: pd.DataFrame, revolution: float, wanted: float) -> pd.DataFrame:
+    """Rows of a comparison table for the largest vertical loss of bumps after the long test (Fig 6.5).
 
-    losses: by bump, of the surface after `revolution`; wanted: revolutions that the long test stands for.
+    losses: bump, packing, loss_mm, of the surface after `revolution`; wanted: revolutions that the long test stands for
     """
-    hours = published_value(published, LONG, "laboratory")
+    test_hours = published_value(published, LONG, "laboratory")
     short = revolution < wanted * (1.0 - ALIKE)
-    note = f"ours after {revolution:.3g} revolutions, {hours:g} h are {wanted:.3g}" if short else ""
-    table = pd.DataFrame({"quantity": [f"largest loss of {bump}" for bump in losses.index], OURS: losses.to_numpy()})
-    table[LABORATORY] = [published_value(published, f"largest_loss_{bump}", "laboratory") for bump in losses.index]
-    return table.assign(hours=hours, unit="mm", note=note).reindex(columns=COMPARED)
+    notes = [f"ours after {revolution:.3g} revolutions, {test_hours:g} h are {wanted:.3g}" if short else ""]
+    notes.append(ONE_PACKING if losses[PACKING].nunique() < 2 else "")
+    table = over_packings(losses, ["bump"], "loss_mm").rename(columns={"loss_mm": OURS})
+    table["quantity"] = "largest loss of " + table["bump"]
+    table[LABORATORY] = [published_value(published, f"largest_loss_{bump}", "laboratory") for bump in table["bump"]]
+    note = "; ".join(filter(None, notes))
+    return table.assign(hours=test_hours, unit="mm", note=note).reindex(columns=COMPARED)
 
 
-def _evidence(runs: Sequence[TesterRun], tables: Mapping[str, pd.DataFrame], hours: Sequence[float]) -> Evidence:
-    """Return what findings are judged by; tables: those of `tables_of_runs`; hours: of the short and the long test."""
-    patterned, plain = pair_of(runs)
-    meshes = distribution.volumes_of_meshes(tables["lost_volumes"])
-    left = comparison.patterns_left(tables["lost_volumes"], tables["fits"], plain.coefficient)
-    _, worn = distribution.surfaces_alike([patterned, plain])
-    columns = distribution.wear_by_column({run.surface: worn[run.name] for run in (patterned, plain)})
-    return Evidence(
-        **{name: tables[name] for name in ("fits", "predictions", "crossings", "ratios")},
-        columns=columns.assign(surface=columns["run"]),
-        bumps=distribution.wear_by_bump(read_surface(patterned.folder / WORN_SURFACE)),
+def observed(
+    runs: Sequence[TesterRun], tables: Mapping[str, pd.DataFrame], hours_per_revolution: float, told: Sequence[float]
+) -> Observed:
+    """Return what findings are judged by; tables: those of `tables_of_runs`; told: hours of the short and the long
+    test.
+    """
+    pairs, lost = pairs_of(runs), tables["lost_volumes"]
+    both = [run for pair in pairs for run in pair]
+    plain = pairs[0][1]
+    left = comparison.patterns_left(lost, tables["rates"], plain.coefficient)
+    _, worn = distribution.surfaces_alike(both)
+    return Observed(
+        lost=lost,
+        increments=volume.element_increments(whole_revolutions(chosen(lost, VOLUME, SIZE, RING))),
+        ratios=tables["ratios"],
+        columns=distribution.of_runs(distribution.wear_by_column(worn), both),
+        bumps=distribution.wear_by_bump({patterned.packing: worn[patterned.name] for patterned, _ in pairs}),
         means=flow.flow_means(tables["series"]),
-        steady=flow.steady_revolutions(tables["series"]),
-        meshes=None if meshes is None else distribution.mesh_size_effect(meshes),
+        steady_means=flow.revolution_means(tables["series"], flow.STEADINESS),
+        hours_per_revolution=hours_per_revolution,
+        short=told[0],
+        long=told[-1],
+        shape=plain.shape,
+        scale=plain.particle_scale,
+        meshes=distribution.volumes_of_meshes(lost),
         worn_out=None if left is None else comparison.worn_out_at(left),
-        main=plain.particle_scale,
-        short=hours[0],
-        long=hours[-1],
     )
-
-
-def crossings(fits: pd.DataFrame) -> pd.DataFrame:
-    """Return when patterns overtake plain of equal particles: particle_scale, rate_crossing, crossing (revolutions)."""
-    rows = []
-    for scale, of_scale in fits.groupby("particle_scale"):
-        names = of_scale.drop_duplicates("run").set_index("surface")["run"]
-        patterned = names[names.index != PLAIN]
-        if PLAIN in names.index and len(patterned):
-            terms = [chosen_fit(fits, run) for run in (names[PLAIN], patterned.iloc[0])]
-            found = {"rate_crossing": volume.rate_crossing(*terms), "crossing": volume.crossing(*terms)}
-            rows.append({"particle_scale": scale} | found)
-    return pd.DataFrame(rows, columns=["particle_scale", "rate_crossing", "crossing"])

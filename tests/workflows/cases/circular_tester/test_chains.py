@@ -11,6 +11,7 @@ import pytest
 from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
 from bulkwear.postproc.mesh import read_surface, worn_faces
 from bulkwear.postproc.readers.solver_log import thermo_table
+from bulkwear.postproc.statistics.verdicts import UNSAID
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import distribution as tester_distribution
 from bulkwear.workflows.cases.circular_tester.key_numbers import result_table
@@ -169,7 +170,7 @@ def test_tables_are_made_of_the_runs(finished, tables):
         assert of_run["volume_m3"].iloc[0] == 0.0
     compared = tables["comparison"]
     plain = compared[(compared["hours"] == 56) & (compared["quantity"] == "plain volume")]
-    assert plain["ours"].iloc[0] == pytest.approx(145.2, rel=1e-6)  # it sets the scale of time
+    assert np.isnan(plain["ours"].iloc[0]) and "more than 2 times" in plain["note"].iloc[0]  # it is 5000 revolutions
     loss = compared[compared["quantity"] == "largest loss of C11"].iloc[0]
     assert loss["experiment"] == 0.34 and loss["ours"] > 0.0
     series = tables["series"]
@@ -180,7 +181,7 @@ def test_tables_are_made_of_the_runs(finished, tables):
     wear = series.dropna(subset="wear_rate_m3_per_s")
     per_revolution = wear.groupby(["run", np.floor(wear["worn_revolution"])]).size()
     assert (per_revolution == finished.study.settings["solver"]["looks_per_revolution"]).all()
-    assert (tables["findings"]["verdict"].isin(["confirmed", "not confirmed", "cannot be said"])).all()
+    assert (tables["findings"]["verdict"] == UNSAID).all()  # of one packing
 
 
 @pytest.fixture(scope="module")
@@ -205,7 +206,7 @@ def test_every_figure_has_its_table(finished, drawn):
 
 def test_contacts_never_outrun_the_trough(finished, drawn, tables):
     """Sliding over travel is between 0 and 1 for every run."""
-    told = result_table(pd.read_csv(finished.folder / "summary.csv"), tables["fits"])
+    told = result_table(pd.read_csv(finished.folder / "summary.csv"))
     assert told["sliding_over_travel"].between(0.0, 1.0, inclusive="neither").all()
 
 
@@ -224,13 +225,13 @@ def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
     shutil.copy(figures / f"{drawn[0]}.png", figures / "worn_surface.png")
     text = write_results(finished.folder, tmp_path, finished.study).read_text(encoding="utf-8")
     words = (
-        "| 56 | plain volume | mm3 | 145.2 |",
-        "less wear of the convex sample after 56 h; measured 43 %",
-        "R² over 0.99",
+        "| 56 | plain volume | mm3 | 145.2 | 147.3 |",
+        "more than 2 times the simulated revolutions; one packing, scatter unknown",
+        "convex over plain, channel, scale 4, 2 revolutions: one packing, scatter unknown",
+        "20 cannot be said",
         "Eq 6.6",
-        "| channel | 4 | 2 |",
+        "| channel | 4 | 2 | 1 |",
         "wear rate m3 per s",
-        "% on the pattern",
         "## Durations",
     )
     assert [word for word in words if word not in text] == []

@@ -11,9 +11,11 @@ from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids
 from bulkwear.postproc.tables.depths import WORN_VOLUME
 from bulkwear.workflows.cases.circular_tester.distribution import (
     column_numbers,
+    columns_over_packings,
     contour_losses,
     force_by_column,
     mesh_size_effect,
+    on_finest_mesh,
     share_of_bumps,
     wear_by_bump,
     wear_by_column,
@@ -59,7 +61,8 @@ def test_nothing_is_lost_between_columns(convex):
     per_bump = (convex.cell_data["part"] == 1).sum()
     expected = per_bump * np.array([5, 4, 5, 4, 5]) * (1.0 + np.arange(1, 6))
     assert table["bumps_mm3"].to_numpy() == pytest.approx(expected)
-    assert share_of_bumps(table)["convex"] == pytest.approx(expected.sum() / total)
+    share = share_of_bumps(table.assign(surface="convex", packing=1))
+    assert share.value == pytest.approx(expected.sum() / total) and not share.known
 
 
 def test_columns_follow_labels_on_bumps(convex):
@@ -75,9 +78,9 @@ def test_the_holder_is_in_no_column(convex):
 
 
 def test_volume_of_every_bump(convex):
-    table = wear_by_bump(convex)
+    table = wear_by_bump({1: convex, 2: convex})
     assert table["bump"].tolist()[:6] == ["C11", "C12", "C13", "C14", "C15", "C21"]
-    assert len(table) == 23
+    assert len(table) == 46 and table["packing"].value_counts().to_dict() == {1: 23, 2: 23}
     per_bump = (convex.cell_data["part"] == 1).sum()
     assert table["volume_mm3"].to_numpy() == pytest.approx(per_bump * (1.0 + table["row"].to_numpy(float)))
 
@@ -89,19 +92,31 @@ def test_force_is_impulse_over_time(convex):
     assert table[["base_N", "bumps_N"]].to_numpy().sum() == pytest.approx(impulse.sum() / 0.5, rel=ROUNDING)
 
 
+def test_columns_over_packings():
+    """Half of what two packings differ by is their mean; the interval is that of base and pattern together."""
+    table = pd.DataFrame({"surface": "convex", "column": [1, 2, 1, 2], "packing": [1, 1, 2, 2]})
+    table = columns_over_packings(table.assign(base_N=[4.0, 1.0, 6.0, 1.0], bumps_N=[1.0, 2.0, 1.0, 2.0]), "N")
+    assert table[["base_N", "bumps_N", "total_N"]].to_numpy().tolist() == [[5.0, 1.0, 6.0], [1.0, 2.0, 3.0]]
+    reach = 12.7062 * 1.0  # t of one degree of freedom at 95 %; the standard error is half of the difference
+    assert table["interval_low"].tolist() == pytest.approx([6.0 - reach, 3.0], rel=1e-5)
+
+
 def test_mesh_size_effect():
-    """Over the plain sample on the finest mesh; mean and deviation over the meshes."""
+    """Over the plain sample on the finest mesh in the same packing, and over the same surface on its finest."""
     volumes = pd.DataFrame(
         {
             "surface": ["plain"] * 3 + ["convex"] * 2,
             "element_size_mm": [1.0, 0.5, 0.1, 1.0, 0.1],
             "volume_m3": [0.96e-7, 0.98e-7, 1e-7, 0.5e-7, 0.6e-7],
+            "packing": 1,
         }
     )
-    table = mesh_size_effect(volumes)
+    other = volumes.assign(volume_m3=2.0 * volumes["volume_m3"], packing=2)
+    table = mesh_size_effect(pd.concat([volumes, other]))
     assert table["relative_percent"].tolist() == pytest.approx([96.0, 98.0, 100.0, 50.0, 60.0])
-    assert table["mean_percent"].tolist() == pytest.approx([98.0] * 3 + [55.0] * 2)
-    assert table["deviation_percent"].iloc[0] == pytest.approx(2.0)
+    assert (table["packings"] == 2).all()
+    finest = on_finest_mesh(volumes).set_index(["surface", "element_size_mm"])["ratio"].to_dict()
+    assert finest == pytest.approx({("plain", 0.5): 0.98, ("plain", 1.0): 0.96, ("convex", 1.0): 5.0 / 6.0})
     with pytest.raises(ValueError, match="plain"):
         mesh_size_effect(volumes[volumes["surface"] == "convex"])
 

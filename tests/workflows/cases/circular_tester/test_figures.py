@@ -5,7 +5,14 @@ import pytest
 
 from bulkwear.workflows.cases.circular_tester import figures
 from bulkwear.workflows.cases.circular_tester.comparison import ratios_by_revolution
-from bulkwear.workflows.cases.circular_tester.runs import pair_of, runs_of_values, values_of_pair, values_of_runs
+from bulkwear.workflows.cases.circular_tester.runs import (
+    has_pairs,
+    pairs_of,
+    runs_of_values,
+    shown_pair,
+    values_of_pairs,
+    values_of_runs,
+)
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.case import find_case
 from bulkwear.workflows.report.products import figures_of, job_of, products_of
@@ -38,17 +45,38 @@ def test_every_table_keeps_nine_digits():
 
 
 def test_runs_come_back_from_their_values(tmp_path):
-    """Folders lie below the study's; the pair is the one of series volume, the plain sample last."""
-    of = load_study("circular_tester", overrides={"fidelity": "quick"})
+    """Folders lie below the study's; a pair is of series volume and of one packing, which shares its bed."""
+    of = load_study("circular_tester", overrides={"fidelity": "quick", "packings": 3})
     runs = runs_of_values(values_of_runs(of), tmp_path)
     assert [run.name for run in runs] == [run.name for run in of.runs]
     assert {run.folder.parent for run in runs} == {tmp_path}
     assert {run.bed_folder.name for run in runs} == set(of.beds)
-    patterned, plain = pair_of(runs)
-    assert (patterned.series, plain.series) == ("volume", "volume")
-    assert plain.surface == "plain" and patterned.surface != "plain"
-    assert {values["name"] for values in values_of_pair(of)} == {patterned.name, plain.name}
+    pairs = pairs_of(runs)
+    assert [plain.packing for _, plain in pairs] == [1, 2, 3] and shown_pair(runs) == pairs[0]
+    for patterned, plain in pairs:
+        assert (patterned.series, plain.series) == ("volume", "volume")
+        assert plain.surface == "plain" and patterned.surface != "plain"
+        assert patterned.bed_folder == plain.bed_folder and patterned.packing == plain.packing
+    assert len({plain.bed_folder for _, plain in pairs}) == 3
+    assert {values["name"] for values in values_of_pairs(of)} == {run.name for pair in pairs for run in pair}
     assert next(run for run in runs if run.series == "worn_out").patch == "4 mm round it"
+
+
+@pytest.mark.parametrize(
+    ("rows", "paired"),
+    [
+        (["plain", "convex-2"], True),
+        (["convex-2", "plain-2"], True),
+        (["plain"], False),
+        (["worn-out", "mesh-plain"], False),
+    ],
+)
+def test_rows_without_a_pair_have_no_figures_of_their_own(rows, paired):
+    """The name of a setting stands for all its packings; without its other surface nothing is compared."""
+    of = load_study("circular_tester", overrides={"fidelity": "quick", "packings": 2, "rows": rows})
+    names = {product.name for product in figures_of(of)}
+    assert has_pairs(of) == paired
+    assert any(name.startswith("tester_") for name in names) == paired
 
 
 def test_channel_and_ring_are_compared_at_the_particles_of_the_ring(tmp_path):

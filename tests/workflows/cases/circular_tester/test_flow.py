@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from bulkwear.postproc.statistics.steady import DRIFTING, STEADY
 from bulkwear.workflows.cases.circular_tester.flow import (
     STEADINESS,
     revolution_means,
     revolution_numbers,
+    revolutions_over_packings,
     steady_revolutions,
 )
 from tests.support import tester_study as study
@@ -42,14 +44,28 @@ def test_a_revolution_of_few_instants_is_left_out():
 
 
 def test_steady_from():
-    """Steady where the transient has died away; a flow that drifts on is not."""
-    table = steady_revolutions(study.series(revolutions=12)).set_index(["run", "measure"])
-    assert table.loc[("plain", "all"), "steady"]
+    """Steady where the transient has died away, packing by packing; a flow that drifts on is not."""
+    table = steady_revolutions(study.series(revolutions=12, packings=2)).set_index(["run", "measure"])
+    assert set(table.index.get_level_values("run")) == {"plain", "convex", "plain-2", "convex-2"}
+    assert table.loc[("plain", "all"), "answer"] == STEADY
     assert 0.5 < table.loc[("plain", "all"), "start"] < 5.0
     drifting = study.series(revolutions=12)
     drifting["bed_height_m"] *= 1.0 + 0.05 * drifting["revolution"]
     table = steady_revolutions(drifting).set_index(["run", "measure"])
-    assert not table.loc[("plain", "bed_height_m"), "steady"]
+    assert table.loc[("plain", "bed_height_m"), "answer"] == DRIFTING
     assert np.isnan(table.loc[("plain", "all"), "start"])
     with pytest.raises(ValueError, match="5 instants"):
         steady_revolutions(drifting.groupby("run").head(5))
+
+
+def test_means_over_packings():
+    """A hundredth more in the second packing is half of that in the mean; of one packing there is no interval."""
+    one, two = (
+        revolutions_over_packings(revolution_means(study.series(packings=n), ["normal_force_N"]), "mean")
+        for n in (1, 2)
+    )
+    keys = ["surface", "revolution"]
+    one, two = one.set_index(keys), two.set_index(keys)
+    assert (two["mean"] / one["mean"]).to_numpy() == pytest.approx(np.full(len(one), 1.005))
+    assert one["interval_low"].isna().all() and (two["interval_low"] < two["mean"]).all()
+    assert (two["packings"] == 2).all()

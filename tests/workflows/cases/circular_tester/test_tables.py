@@ -1,43 +1,70 @@
 """Experiment, thesis and runs of the circular wear tester side by side: every number stands in its place."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.circular_tester.hours import predictions, time_scale
 from bulkwear.workflows.cases.circular_tester.tables import (
+    BEYOND,
     LABORATORY,
+    ONE_PACKING,
     OURS,
     THESIS,
     THESIS_ALIKE,
     comparison_table,
     loss_rows,
 )
-from bulkwear.workflows.cases.circular_tester.volume import chosen_fit, predictions, time_scale, volume_fits
 from tests.support import tester_study as study
+
+RUN = SimpleNamespace(coefficient=5e-9, width=0.1, length=0.1, distance_per_revolution=1.071)
+LAWS = {name: law for name, law in study.LAWS.items() if name[1] == 3}
+
+
+def compared(**changes):
+    lost = study.volumes(LAWS, **changes)
+    scale = time_scale(lost[lost["surface"] == "plain"], RUN, study.PUBLISHED)
+    predicted = predictions(lost, scale, [56.0, 184.0])
+    return comparison_table(predicted, study.PUBLISHED, study.PUBLISHED_FITS, 3.0).set_index(["hours", "quantity"])
 
 
 def test_comparison_table():
     """Three columns beside each other; the thesis' model from its equations at its own two revolutions per 56 h."""
-    fits = volume_fits(study.volumes())
-    scale = time_scale(chosen_fit(fits, "plain_3"), 5e-9, study.PUBLISHED, 1.071, 0.01)
-    predicted = predictions(fits, scale, [56.0, 184.0])
-    table = comparison_table(predicted, study.PUBLISHED, study.PUBLISHED_FITS, 3.0).set_index(["hours", "quantity"])
+    table = compared(packings=2)
     columns = [LABORATORY, THESIS, THESIS_ALIKE, OURS]
     assert table.loc[(56.0, "plain volume"), columns].to_list() == pytest.approx([145.2, 147.28, 154.06, 145.2])
     assert table.loc[(56.0, "convex volume"), THESIS_ALIKE] == pytest.approx(2 * 47.12 + 4 * 0.78)
     assert table.loc[(184.0, "reduction"), THESIS] == pytest.approx(56.0, abs=0.2)
     assert table.loc[(184.0, "reduction"), LABORATORY] == pytest.approx(49.4, abs=0.1)
-    assert table.loc[(56.0, "reduction"), OURS] == pytest.approx(100.0 * (1.0 - (45.0 + 0.75 * 145.2 / 75.0) / 75.0))
+    x = 145.2 / 75.0
+    convex = 45.0 + 0.75 + (45.0 + 3.0 * 0.75) * (x - 1.0)  # one revolution, and of the next what its line has
+    assert table.loc[(56.0, "reduction"), OURS] == pytest.approx(100.0 * (1.0 - convex / 145.2))
     assert "swaps" in table.loc[(184.0, "convex volume"), "note"]
     assert table.loc[(56.0, "convex volume"), "note"] == ""
     assert table.loc[(56.0, "reduction"), "note"] == "the thesis' text has 68.9 % for its model"
 
 
+def test_notes_say_what_is_extrapolated_and_what_is_not_sure():
+    """Three revolutions are beyond 56 h but not half of 184; one packing has no interval, several have."""
+    table = compared(revolutions=3, packings=3, scatter=0.02)
+    assert table.loc[(56.0, "convex volume"), "note"] == "" and table.loc[(56.0, "convex volume"), "packings"] == 3
+    row = table.loc[(56.0, "convex volume")]
+    assert row["interval_low"] < row[OURS] < row["interval_high"]
+    assert "more than 2 times" in table.loc[(184.0, "reduction"), "note"]
+    assert np.isnan(table.loc[(184.0, "reduction"), OURS])
+    assert BEYOND in compared(revolutions=5, packings=3).loc[(184.0, "reduction"), "note"]
+    alone = compared()
+    assert alone["note"].str.contains(ONE_PACKING).all() and alone["interval_low"].isna().all()
+
+
 def test_losses_stand_beside_the_scanned_ones():
-    """Largest loss of each bump in mm after 184 h; a run that ends earlier says where."""
-    losses = pd.Series({"C11": 0.5, "C15": 0.6})
+    """Largest loss of each bump in mm after 184 h over packings; runs that end earlier say where."""
+    losses = pd.DataFrame({"bump": ["C11", "C15"] * 2, "loss_mm": [0.4, 0.6, 0.6, 0.6], "packing": [1, 1, 2, 2]})
     table = loss_rows(losses, study.PUBLISHED, 6.5, 6.57).set_index("quantity")
     assert table[LABORATORY].to_dict() == {"largest loss of C11": 0.34, "largest loss of C15": 0.35}
-    assert table[OURS].to_list() == [0.5, 0.6] and (table["note"] == "").all()
-    assert (table["hours"] == 184.0).all() and table[THESIS].isna().all()
-    short = loss_rows(losses, study.PUBLISHED, 4.0, 6.57)
-    assert short["note"].iloc[0] == "ours after 4 revolutions, 184 h are 6.57"
+    assert table[OURS].to_list() == pytest.approx([0.5, 0.6]) and (table["note"] == "").all()
+    assert (table["hours"] == 184.0).all() and table[THESIS].isna().all() and (table["packings"] == 2).all()
+    short = loss_rows(losses.head(2), study.PUBLISHED, 4.0, 6.57)
+    assert short["note"].iloc[0] == f"ours after 4 revolutions, 184 h are 6.57; {ONE_PACKING}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -21,65 +22,41 @@ from bulkwear.postproc.plots.style import (
     new_figure,
 )
 from bulkwear.postproc.tables.summary import published_value
-from bulkwear.workflows.cases.circular_tester.distribution import share_of_bumps
+from bulkwear.workflows.cases.circular_tester.packings import errorbars
 from bulkwear.workflows.cases.circular_tester.plots.flow import BAND_COLOUR, BANDS
 
 
-def by_column(table: pd.DataFrame, unit: str, quantity: str, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw a quantity on base and pattern per column of the sample, a panel per run (Fig 6.13, 6.22).
+def by_column(table: pd.DataFrame, unit: str, quantity: str, pattern_words: str, remarks: Sequence[str]) -> Figure:
+    """Draw a quantity on base and pattern per column of the sample, a panel per surface (Fig 6.13, 6.22).
 
-    table: run, column, base_<unit>, bumps_<unit>, as from `distribution`; with deviation_<unit> where
-    several revolutions were averaged; quantity: what the axis says, with its unit.
+    table: as from `distribution.columns_over_packings`; quantity: what the axis says, with its unit; pattern_words:
+    what the pattern bears, ours and published.
     """
     figure = new_figure(remarks)
-    runs = list(dict.fromkeys(table["run"]))
-    grid = figure.subplots(1, len(runs), sharey=True, squeeze=False)[0]
-    base, bumps, deviation = (f"{name}_{unit}" for name in ("base", "bumps", "deviation"))
-    for axes, run in zip(grid, runs, strict=True):
-        of_run = table[table["run"] == run]
-        axes.bar(of_run["column"], of_run[base], color=BASE_COLOUR, label="base")
-        axes.bar(
-            of_run["column"],
-            of_run[bumps],
-            bottom=of_run[base],
-            color=PATTERN_COLOUR,
-            hatch="//",
-            edgecolor="white",
-            label="pattern",
-        )
-        if deviation in table:
-            total = of_run[base] + of_run[bumps]
-            axes.errorbar(of_run["column"], total, of_run[deviation], fmt="none", ecolor="black", capsize=3)
-        axes.set_title(
-            f"{run.replace('_', ' ')}{_share_words(of_run, base, bumps, unit, published)}",
-            loc="left",
-            fontsize=SMALLEST_FONT,
-        )
+    surfaces = list(dict.fromkeys(table["surface"]))
+    grid = figure.subplots(1, len(surfaces), sharey=True, squeeze=False)[0]
+    base, bumps, total = (f"{name}_{unit}" for name in ("base", "bumps", "total"))
+    for axes, surface in zip(grid, surfaces, strict=True):
+        rows = table[table["surface"] == surface]
+        axes.bar(rows["column"], rows[base], color=BASE_COLOUR, label="base")
+        look = {"color": PATTERN_COLOUR, "hatch": "//", "edgecolor": "white", "label": "pattern"}
+        axes.bar(rows["column"], rows[bumps], bottom=rows[base], **look)
+        reach = errorbars(rows, total)
+        if np.isfinite(reach).any():
+            axes.errorbar(rows["column"], rows[total], reach, fmt="none", ecolor="black", capsize=3)
+        words = f": {pattern_words}" if rows[bumps].any() else ""
+        axes.set_title("\n".join(textwrap.wrap(f"{surface}{words}", 60)), loc="left", fontsize=SMALLEST_FONT)
         axes.set_xlabel("Column, 1 where the bed arrives")
-        axes.set_xticks(of_run["column"])
+        axes.set_xticks(rows["column"])
     grid[0].set_ylabel(quantity)
     figure.legend(*named_once(grid), loc="outside upper center", ncols=2)
     return figure
 
 
-def _share_words(of_run: pd.DataFrame, base: str, bumps: str, unit: str, published: pd.DataFrame) -> str:
-    """What the pattern bears, beside what the source says of that quantity; nothing for a plain sample."""
-    if not of_run[bumps].any():
-        return ""
-    if unit == "mm3":
-        share = share_of_bumps(of_run).iloc[0]
-        theirs = published_value(published, "share_of_bumps", "simulation")
-        return f": pattern {100.0 * share:.0f} % (Yan 2022: {theirs:g} %)"
-    first = of_run.iloc[0]
-    theirs = published_value(published, "first_column_force_share", "simulation")
-    ours = first[bumps] / (first[base] + first[bumps])
-    return f": pattern in column 1 {100.0 * ours:.0f} % (Yan 2022: over {theirs:g} %)"
-
-
 def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, remarks: Sequence[str]) -> Figure:
     """Draw the worn volume (mm3) of every shape of a pattern, columns apart, on the published ranges (Fig 6.14).
 
-    table: as from `distribution.wear_by_bump`; scale_remark: to which revolution both belong.
+    table: bump, row, volume_mm3, and the interval over packings; scale_remark: to which revolution both belong.
     """
     figure = new_figure(remarks)
     axes = figure.subplots()
@@ -95,7 +72,9 @@ def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, rem
             zorder=0,
             label="range of the column's bumps, Yan 2022",
         )
-        axes.bar(there, of_row["volume_mm3"], color=PATTERN_COLOUR)
+        reach = errorbars(of_row, "volume_mm3")
+        bars = {"yerr": reach, "capsize": 2.0} if np.isfinite(reach).any() else {}
+        axes.bar(there, of_row["volume_mm3"], color=PATTERN_COLOUR, **bars)
     axes.set_xticks(places, table["bump"], rotation=90)
     axes.set_title(scale_remark, loc="left", fontsize=SMALLEST_FONT)
     axes.set_ylabel("Worn volume of a shape of the pattern (mm³)")
@@ -111,14 +90,16 @@ def mesh_size(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[st
     figure = new_figure(remarks)
     axes = figure.subplots()
     for surface, rows in table.groupby("surface", sort=False):
-        mean, deviation = rows["mean_percent"].iloc[0], rows["deviation_percent"].iloc[0]
-        name = f"{surface}, {mean:.3g} ± {deviation:.2g} %"
+        ends = rows["relative_percent"].min(), rows["relative_percent"].max()
+        name = f"{surface}, {ends[0]:.3g} to {ends[1]:.3g} % over the meshes"
         look = {"color": colour(surface), "marker": marker(surface), "markersize": 5, "linewidth": 1.0}
-        axes.plot(rows["element_size_mm"], rows["relative_percent"], label=name, **look)
+        reach = errorbars(rows, "relative_percent")
+        bars = {"yerr": reach, "capsize": 2.5} if np.isfinite(reach).any() else {}
+        axes.errorbar(rows["element_size_mm"], rows["relative_percent"], label=name, **look, **bars)
         theirs = published[published["quantity"] == f"{surface}_relative_volume"]
         for each in theirs.itertuples():
             low, high = each.value - each.uncertainty, each.value + each.uncertainty
-            words = f"{surface}, Yan 2022: {each.value:g} ± {each.uncertainty:g} %"
+            words = f"{surface}, Yan 2022: {each.value:g} %, deviation {each.uncertainty:g} %"
             axes.axhspan(low, high, color=colour(surface), alpha=BANDS, linewidth=0.0, label=words)
     axes.set(
         xlabel="Element size (mm)", ylabel="Volume over the finest plain mesh's (%)", ylim=(0.0, None), xlim=(0.0, None)

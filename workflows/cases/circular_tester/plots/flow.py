@@ -13,9 +13,11 @@ from matplotlib.figure import Figure
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.plots.style import MAP, SMALLEST_FONT, colour, draw_circles, marker, named_once, new_figure
+from bulkwear.postproc.statistics.steady import STEADY
 from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
 from bulkwear.workflows.cases.circular_tester.flow import STEADINESS
+from bulkwear.workflows.cases.circular_tester.packings import errorbars
 
 BAND_COLOUR = "#dddddd"  # of published ranges, behind what is simulated
 BANDS = 0.25  # opacity of published ranges in the colour of their surface
@@ -55,10 +57,12 @@ MEASURES = {  # measure -> axis, factor from SI, published values (quantity, on 
 }
 
 
-def steadiness(means: pd.DataFrame, steady: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+def steadiness(
+    variations: pd.DataFrame, steady: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
+) -> Figure:
     """Draw the coefficient of variation (%) of velocity, bed height and wear rate per revolution (Fig 6.7).
 
-    means: as from `flow.revolution_means`; steady: as from `steady_revolutions`; published:
+    variations: as from `flow.revolutions_over_packings`; steady: as from `steady_revolutions`; published:
     circular_tester.csv.
     """
     figure = new_figure(remarks, 4.2)
@@ -66,17 +70,16 @@ def steadiness(means: pd.DataFrame, steady: pd.DataFrame, published: pd.DataFram
     ends = [published_value(published, f"{end}_wear_variation", "simulation") for end in ("least", "largest")]
     start = published_value(published, "steady_from", "simulation")
     for axes, measure in zip(grid, STEADINESS, strict=True):
-        of_measure = means[means["measure"] == measure]
-        for (_, surface), of_run in of_measure.groupby(["run", "surface"], sort=False):
-            look = {"color": colour(surface), "marker": marker(surface), "markersize": 3.5, "linewidth": 1.0}
-            axes.plot(of_run["revolution"], 100.0 * of_run["variation"], label=surface, **look)
+        of_measure = variations[variations["measure"] == measure]
+        for surface, rows in of_measure.groupby("surface", sort=False):
+            _with_intervals(axes, rows, "variation", 100.0, surface)
         axes.axvline(start, label="steady from here on, Yan 2022", color="black", linestyle="--", linewidth=1.0)
         if measure == "wear_rate_m3_per_s":
             words = "convex from there on, Yan 2022"
             last = max(of_measure["revolution"].max(), start + 1.0)
             axes.fill_between([start, last], *ends, color=BAND_COLOUR, label=words, zorder=0)
         found = steady[steady["measure"] == measure]
-        said = "\n".join(f"{row.surface}: {_steady_words(row)}" for row in found.itertuples())
+        said = "\n".join(f"{surface}: {steady_words(rows)}" for surface, rows in found.groupby("surface", sort=False))
         axes.set_title(f"{NAMES[measure]}\n{said}", loc="left", fontsize=SMALLEST_FONT)
         axes.set(xlabel="Revolution", ylim=(0.0, None))
     grid[0].set_ylabel("Coefficient of variation (%)")
@@ -84,26 +87,38 @@ def steadiness(means: pd.DataFrame, steady: pd.DataFrame, published: pd.DataFram
     return figure
 
 
-def _steady_words(row: tuple) -> str:
-    return f"steady from {row.start:.2g}" if row.steady else "not steady"
+def _with_intervals(
+    axes: Axes, rows: pd.DataFrame, value: str, factor: float, surface: str, shift: float = 0.0
+) -> None:
+    """Draw means over packings by revolution with their intervals, where these are known."""
+    reach = errorbars(rows, value, factor)
+    look = {"color": colour(surface), "fmt": f"{marker(surface)}-", "markersize": 3.5, "capsize": 2.5, "linewidth": 1.0}
+    bars = reach if np.isfinite(reach).any() else None
+    axes.errorbar(rows["revolution"] + shift, factor * rows[value], bars, label=surface, **look)
+
+
+def steady_words(rows: pd.DataFrame) -> str:
+    """Say of the packings of a measure from where on they are steady; rows: of `steady_revolutions`."""
+    steady = rows.loc[rows["answer"] == STEADY, "start"]
+    others = rows.loc[rows["answer"] != STEADY, "answer"].value_counts()
+    told = [f"{count} x {answer}" for answer, count in others.items()]
+    if len(steady):
+        told.insert(0, f"steady from {', '.join(f'{start:.2g}' for start in steady)}")
+    return "; ".join(told)
 
 
 def by_revolution(means: pd.DataFrame, measure: str, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw mean and standard deviation of a measure of MEASURES per revolution (Fig 6.17, 6.18, 6.21).
+    """Draw the mean of a measure of MEASURES per revolution with its interval over packings (Fig 6.17, 6.18, 6.21).
 
-    means: as from `flow.revolution_means`. Published values are drawn as lines in the colour of their
+    means: as from `flow.revolutions_over_packings`. Published values are drawn as lines in the colour of their
     surface: what the source gives as first and last at these ends, the others right across.
     """
     label, factor, quantities = MEASURES[measure]
     figure = new_figure(remarks)
     axes = figure.subplots()
     of_measure = means[means["measure"] == measure]
-    for shift, ((_, surface), of_run) in zip(
-        (-SHIFT, SHIFT, 0.0), of_measure.groupby(["run", "surface"], sort=False), strict=False
-    ):
-        mean, deviation = factor * of_run["mean"], factor * of_run["deviation"]
-        look = {"color": colour(surface), "fmt": f"{marker(surface)}-", "markersize": 4, "capsize": 2.5}
-        axes.errorbar(of_run["revolution"] + shift, mean, deviation, linewidth=1.0, label=surface, **look)
+    for shift, (surface, rows) in zip((-SHIFT, SHIFT, 0.0), of_measure.groupby("surface", sort=False), strict=False):
+        _with_intervals(axes, rows, "mean", factor, surface, shift)
     ends = of_measure["revolution"].min(), of_measure["revolution"].max()
     for quantity in quantities:
         _published_line(axes, published[published["quantity"] == quantity].iloc[0], ends)

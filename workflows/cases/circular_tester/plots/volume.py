@@ -23,18 +23,19 @@ from bulkwear.postproc.plots.style import (
     new_figure,
     printed_table,
 )
-from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
+from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW, errorbars
 from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from bulkwear.workflows.cases.circular_tester.volume import (
     CONVEX,
     TERMS,
-    chosen_fit,
-    fit_at,
+    change_of_terms,
     of_surface,
     published_terms,
-    volume_at,
+    settings_of,
+    volume_of_terms,
 )
 
 CURVE_POINTS = 101
@@ -51,87 +52,90 @@ def _case_name(surface: str, scale: float) -> str:
 
 
 def volume_by_revolution(
-    volumes: pd.DataFrame, fits: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
+    volumes: pd.DataFrame, rates: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
 ) -> Figure:
-    """Draw lost volume (mm3) against revolutions with fits, the published ones beside, numbers below (Fig 6.11).
+    """Draw lost volume (mm3) against revolutions, the published fits beside, rates and their changes below (Fig 6.11).
 
-    volumes, fits: as from `volume`; published: Eq 6.2 to 6.6. Published cases that no run has are drawn
-    thin and grey.
+    volumes, rates: as from `volume.mean_volumes` and `volume.rates`; published: Eq 6.2 to 6.6. Published cases that no
+    run has are drawn thin and grey.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes, printed = figure.subplots(2, 1)
     x = np.linspace(0.0, volumes["revolution"].max(), CURVE_POINTS)
     ours = set()
-    for (run, surface, scale), of_run in volumes.groupby(["run", "surface", "particle_scale"], sort=False):
+    for setting, rows in settings_of(volumes):
+        surface, scale = setting["surface"], setting["particle_scale"]
         ours.add((surface, scale))
-        look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
-        mark, look["linewidth"] = {"marker": marker(surface), "markersize": 4}, 1.0
-        axes.plot(of_run["revolution"], CUBIC_MILLIMETRES * of_run["volume_m3"], **mark, **look | {"linestyle": "none"})
-        axes.plot(x, volume_at(chosen_fit(fits, run), x), **look)
-        axes.plot([], [], label=_case_name(surface, scale), **mark, **look)  # points and fit together in the legend
+        _with_intervals(axes, rows, "volume_mm3", _case_name(surface, scale), _look(surface, scale))
     for row in published.itertuples():
         same = (row.surface, row.particle_scale) in ours
         look = PUBLISHED if same else PUBLISHED | {"color": "#999999", "linewidth": 0.7}
         name = row.source.partition(" (")[0] if same else "Yan 2022, other cases"
-        axes.plot(x, volume_at(np.array([getattr(row, term) for term in TERMS]), x), label=name, **look)
+        axes.plot(x, volume_of_terms(np.array([getattr(row, term) for term in TERMS]), x), label=name, **look)
     axes.set(xlabel="Revolutions", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
     figure.legend(*named_once([axes]), loc="outside upper center", ncols=3)
-    _fit_table(printed, fits, published)
+    _rate_table(printed, rates, published)
     return figure
 
 
-def _fit_table(axes: Axes, fits: pd.DataFrame, published: pd.DataFrame) -> None:
-    """Print a line per run: its linear and its quadratic fit, and the published one of its case."""
-    head = ["", "a x: a (mm³)", "R²", "a x + b x²: a (mm³)", "b (mm³)", "R²", "Yan 2022: a, b (mm³)"]
+def _look(surface: str, scale: float) -> dict[str, object]:
+    return {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-"), "marker": marker(surface)}
+
+
+def _with_intervals(axes: Axes, rows: pd.DataFrame, value: str, label: str, look: dict[str, object]) -> None:
+    """Draw means over packings against revolutions with their intervals, where these are known."""
+    reach = errorbars(rows, value)
+    bars = {"capsize": 2.0, "elinewidth": 0.7, "markersize": 3.5, "linewidth": 1.0}
+    axes.errorbar(
+        rows["revolution"], rows[value], reach if np.isfinite(reach).any() else None, label=label, **look, **bars
+    )
+
+
+def _rate_table(axes: Axes, rates: pd.DataFrame, published: pd.DataFrame) -> None:
+    """Print a line per setting: what it loses per revolution and how that changes, ours and published."""
+    head = ["", "per revolution (mm³)", "its change (%)", "over revolutions", "Yan 2022 (mm³)", "its change (%)"]
     cells = []
-    for _, of_run in fits.groupby("run", sort=False):
-        rows = of_run.set_index("fit")
-        line, curve = rows.loc["linear"], rows.loc["quadratic"]
-        shown = [_with_error(line, TERMS[0]), f"{line['r_squared']:.5f}"]
-        shown += [*(_with_error(curve, term) for term in TERMS), f"{curve['r_squared']:.5f}"]
-        theirs = published_terms(published, line["surface"], line["particle_scale"])
-        known = "" if np.isnan(theirs).any() else ", ".join(f"{term:g}" for term in theirs)
-        cells.append([f"{line['surface']}, scale {line['particle_scale']:g}", *shown, known])
+    for row in rates.itertuples():
+        theirs = published_terms(published, row.surface, row.particle_scale)
+        there = not np.isnan(theirs).any()
+        beside = [f"{volume_of_terms(theirs, row.revolutions) / row.revolutions:.3g}" if there else ""]
+        beside.append(f"{change_of_terms(theirs, row.revolutions):+.3g}" if there else "")
+        name = f"{row.surface}, scale {row.particle_scale:g}"
+        change = interval_text(row, "change_percent", 2)
+        cells.append([name, interval_text(row, "rate_mm3_per_revolution"), change, f"{row.revolutions:g}", *beside])
     printed_table(axes, head, cells)
 
 
-def _with_error(row: pd.Series, term: str) -> str:
-    return f"{row[term]:.3g} ± {row[f'{term}_error']:.2g}"
+def interval_text(row: tuple, name: str, digits: int = 3) -> str:
+    """Return a mean with its interval from a row with <name>, <name>_low and <name>_high, in few words."""
+    value, low, high = (getattr(row, f"{name}{ending}") for ending in ("", "_low", "_high"))
+    if not np.isfinite(low):
+        return f"{value:.{digits}g}, {UNKNOWN}"
+    return f"{value:.{digits}g} ({low:.{digits}g} to {high:.{digits}g})"
 
 
 def element_increments(
-    increments: pd.DataFrame, crossings: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
+    increments: pd.DataFrame, ratios: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
 ) -> Figure:
     """Draw what an element and what the sample lose per revolution (Eq 6.7, Fig 6.12).
 
-    increments: as from `volume.element_increments`; crossings: particle_scale, rate_crossing and
-    crossing (revolutions), drawn as lines where they are inside; published: circular_tester.csv.
+    increments: as from `volume.mean_increments`; ratios: as from `comparison.mean_ratios`; published:
+    circular_tester.csv.
     """
     figure = new_figure(remarks, 4.4)
     left, right = figure.subplots(1, 2)
-    for (_, surface, scale), of_run in increments.groupby(["run", "surface", "particle_scale"], sort=False):
-        look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
-        look |= {"marker": marker(surface), "markersize": 3.5, "linewidth": 1.0}
-        name = _case_name(surface, scale)
-        left.plot(of_run["revolution"], of_run["element_increment_mm3"], label=name, **look)
-        right.plot(of_run["revolution"], of_run["increment_mm3"], label=name, **look)
+    for setting, rows in settings_of(increments):
+        surface, scale = setting["surface"], setting["particle_scale"]
+        look, name = _look(surface, scale), _case_name(surface, scale)
+        left.plot(rows["revolution"], rows["element_increment_mm3"], label=name, markersize=3.5, linewidth=1.0, **look)
+        _with_intervals(right, rows, "increment_mm3", name, look)
     ends = [published_value(published, f"plain_{which}_increment", "simulation") for which in ("first", "last")]
     last = published_value(published, "last_revolution", "simulation")
     left.plot([1.0, last], ends, label="Yan 2022, Fig 6.12, plain", **PUBLISHED)
     theirs = published_value(published, "increments_cross_at", "simulation")
     words = "Yan 2022, convex of scale 4 overtakes plain"
     left.axvline(theirs, color="black", linewidth=0.8, linestyle=SCALE_STYLES[4], label=words)
-    largest = increments["revolution"].max()
-    for row in crossings.itertuples():
-        if row.rate_crossing <= largest:
-            right.axvline(
-                row.rate_crossing,
-                color=OTHER_COLOUR,
-                linewidth=0.8,
-                linestyle=SCALE_STYLES.get(round(row.particle_scale), "-"),
-            )
-    name = patterned_name(increments["surface"])
-    said = "\n".join(crossing_words(row, name) for row in crossings.itertuples())
+    said = "\n".join(ratio_words(row) for row in ratios.itertuples())
     right.set_title(said, loc="left", fontsize=SMALLEST_FONT)
     left.set(xlabel="Revolution", ylabel="Lost per revolution by an element (mm³)", ylim=(0.0, None))
     right.set(xlabel="Revolution", ylabel="Lost per revolution by the sample (mm³)", ylim=(0.0, None))
@@ -139,12 +143,10 @@ def element_increments(
     return figure
 
 
-def crossing_words(row: tuple, patterned: str) -> str:
-    """Say when a patterned surface overtakes plain, in rate and in sum."""
-    if not np.isfinite(row.rate_crossing):
-        return f"scale {row.particle_scale:g}: {patterned} never wears faster"
-    words = f"{patterned} faster from {row.rate_crossing:.3g}, more in sum from {row.crossing:.3g}"
-    return f"scale {row.particle_scale:g}: {words}"
+def ratio_words(row: tuple) -> str:
+    """Say what patterned loses over plain, and how that changes over the run; row: of `comparison.mean_ratios`."""
+    words = f"scale {row.particle_scale:g}: patterned over plain {interval_text(row, 'ratio')}"
+    return f"{words},\nchange over {row.revolutions:g} revolutions {interval_text(row, 'change_percent', 2)} %"
 
 
 def benchmark(
@@ -152,7 +154,7 @@ def benchmark(
 ) -> Figure:
     """Draw volumes (mm3) after 56 hours: experiment, thesis and ours by particle scale (Fig 6.10).
 
-    predicted: as from `volume.predictions`; published: circular_tester.csv; published_fits: Eq 6.2 to
+    predicted: as from `hours.predictions`; published: circular_tester.csv; published_fits: Eq 6.2 to
     6.6 at the thesis' two revolutions.
     """
     hours = published_value(published, "short_test", "laboratory")
@@ -164,14 +166,18 @@ def benchmark(
     patterned = patterned_name(chosen["surface"])
     kinds = [(THESIS, PLAIN), (THESIS, CONVEX), (OURS, PLAIN), (OURS, patterned)]
     for index, (source, surface) in enumerate(kinds):
-        values = []
-        for scale in scales:
-            ours = of_surface(chosen[chosen["particle_scale"] == scale], surface)["volume_mm3"]
-            theirs = volume_at(published_terms(published_fits, surface, scale), theirs_at)
-            values.append(theirs if source == THESIS else (ours.mean() if len(ours) else np.nan))
+        if source == THESIS:
+            terms = [published_terms(published_fits, surface, scale) for scale in scales]
+            values, reach = [float(volume_of_terms(each, theirs_at)) for each in terms], None
+        else:
+            ours = of_surface(chosen, surface).drop_duplicates("particle_scale").set_index("particle_scale")
+            ours = ours.reindex(scales)
+            values = ours["volume_mm3"]
+            reach = np.abs(ours[["volume_mm3_low", "volume_mm3_high"]].to_numpy(float).T - values.to_numpy(float))
         places = np.arange(1, len(scales) + 1) + BARS * ((index + 0.5) / len(kinds) - 0.5)
         look = {"color": colour(surface), "hatch": "///" if source == THESIS else None, "edgecolor": "white"}
-        axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look)
+        bars = {"yerr": reach, "capsize": 2.5} if reach is not None and np.isfinite(reach).any() else {}
+        axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look, **bars)
     for place, surface in zip((-0.2, 0.2), (PLAIN, CONVEX), strict=True):
         value = published_value(published, f"{surface}_volume_56_h", "laboratory")
         axes.bar(place, value, 0.35, color=colour(surface), alpha=0.5)
@@ -183,15 +189,15 @@ def benchmark(
 
 
 def volume_by_hours(
-    fits: pd.DataFrame,
+    curves: pd.DataFrame,
     hours_per_revolution: float,
     table: pd.DataFrame,
     published: pd.DataFrame,
     remarks: Sequence[str],
 ) -> Figure:
-    """Draw lost volume (mm3) against hours: measured points and rates, our fits, and the table below (Fig 6.4).
+    """Draw lost volume (mm3) against hours: measured points and rates, our runs, and the table below (Fig 6.4).
 
-    fits: of the runs to draw, as from `volume.volume_fits`; table: as from `tables.comparison_table`.
+    curves: as from `volume.mean_volumes`; table: as from `tables.comparison_table`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     axes, printed = figure.subplots(2, 1, height_ratios=(3, 2))
@@ -217,10 +223,12 @@ def volume_by_hours(
                 markersize=7,
                 label=f"{surface}, measured" if length == "short" else None,
             )
-    for (run, surface, scale), _ in fits.groupby(["run", "surface", "particle_scale"], sort=False):
-        curve = [volume_at(fit_at(fits, run, each), each) for each in hours / hours_per_revolution]
+    for setting, rows in settings_of(curves):
+        surface, scale = setting["surface"], setting["particle_scale"]
         look = {"color": colour(surface), "linestyle": SCALE_STYLES.get(round(scale), "-")}
-        axes.plot(hours, curve, label=f"{_case_name(surface, scale)}, ours", **look)
+        told = rows["revolution"] * hours_per_revolution
+        axes.plot(told, rows["volume_mm3"], label=f"{_case_name(surface, scale)}, ours", **look)
+        axes.fill_between(told, rows[LOW], rows[HIGH], color=colour(surface), alpha=0.35, linewidth=0.0)
     axes.set_title(
         "open mark: extrapolated, plain was tested for 56 h; the plain sample sets our hours",
         loc="left",
@@ -242,6 +250,8 @@ def _numbers(axes: Axes, table: pd.DataFrame) -> None:
         marks = ", ".join(str(notes.index(note) + 1) for note in row["note"].split("; ") if note)
         words = f"{row['quantity']} ({row['unit'].replace('mm3', 'mm³')}){f' [{marks}]' if marks else ''}"
         values = ["" if np.isnan(row[name]) else f"{row[name]:.4g}" for name in columns]
+        if np.isfinite(row[LOW]):
+            values[-1] += f" ({row[LOW]:.4g} to {row[HIGH]:.4g})"
         cells.append([f"{row['hours']:g} h", words, *values])
     said = "\n".join(
         textwrap.wrap("; ".join(f"[{k}] {note}" for k, note in enumerate(notes, start=1)), NOTE_CHARACTERS)
@@ -255,23 +265,25 @@ def channel_and_ring(
 ) -> Figure:
     """Draw volumes (mm3) and the ratio of patterned to plain in channel and ring by revolution.
 
-    volumes: as from `volume.volumes`; ratios, means: as from `comparison`.
+    volumes: as from `volume.mean_volumes`; means: as from `comparison.mean_ratios`; ratios: over packings, by machine
+    and revolution.
     """
     figure = new_figure(remarks, 4.4)
     left, right = figure.subplots(1, 2)
-    for (_, surface, shape, scale), rows in volumes.groupby(["run", "surface", "shape", "particle_scale"], sort=False):
+    for setting, rows in settings_of(volumes):
+        surface, shape, scale = (setting[name] for name in ("surface", "shape", "particle_scale"))
         look = {"color": colour(surface), "linestyle": MACHINE_STYLES[shape], "marker": marker(surface)}
-        name, volume = f"{surface}, {shape}, scale {scale:g}", CUBIC_MILLIMETRES * rows["volume_m3"]
-        left.plot(rows["revolution"], volume, markersize=3, linewidth=1.0, label=name, **look)
+        _with_intervals(left, rows, "volume_mm3", f"{surface}, {shape}, scale {scale:g}", look)
     said = []
-    for place, ((shape, scale), rows) in enumerate(ratios.groupby(["shape", "particle_scale"], sort=False)):
-        mean = means[(means["shape"] == shape) & (means["particle_scale"] == scale)].iloc[0]
-        said.append(f"{shape}, scale {scale:g}: {mean['ratio']:.3f} ± {mean['standard_error']:.2g}")
-        look = {"color": OTHER_COLOUR, "linestyle": MACHINE_STYLES[shape], "marker": "o^sD"[place % 4], "markersize": 4}
-        right.plot(rows["revolution"] + 0.5 + SHIFT * place, rows["ratio"], linewidth=1.0, label=said[-1], **look)
+    for place, row in enumerate(means.itertuples()):
+        rows = ratios[(ratios["shape"] == row.shape) & (ratios["particle_scale"] == row.particle_scale)]
+        said.append(f"{row.shape}, scale {row.particle_scale:g}: {interval_text(row, 'ratio')}")
+        look = {"color": OTHER_COLOUR, "linestyle": MACHINE_STYLES[row.shape], "marker": "o^sD"[place % 4]}
+        shifted = rows.assign(revolution=rows["revolution"] + 0.5 + SHIFT * place)
+        _with_intervals(right, shifted, "ratio", said[-1], look)
     right.axhline(1.0, color="black", linewidth=0.8)
     shared, own = int(means["revolutions"].iloc[0]), patterned_name(volumes["surface"]).capitalize()
-    words = f"Mean ± standard error of the first {shared} revolution{'s' * (shared > 1)}"
+    words = f"Over the first {shared} revolution{'s' * (shared > 1)}, 95 % interval over packings"
     right.set_title("\n".join([words, *said]), loc="left", fontsize=SMALLEST_FONT)
     left.set(xlabel="Revolutions", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
     right.set(xlabel="Revolution", ylabel=f"{own} over plain, lost in a revolution (-)", ylim=(0.0, None))

@@ -2,48 +2,54 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.container import ErrorbarContainer
 
 from bulkwear.workflows.cases.circular_tester.plots import distribution as tester
 from tests.support import tester_study as study
 from tests.support.tester_study import REMARKS, missing_words
 
 
-def test_by_column(tmp_path):
-    table = pd.DataFrame({"run": np.repeat(["convex", "plain"], 5), "column": [1, 2, 3, 4, 5] * 2})
-    table["base_mm3"], table["bumps_mm3"] = 44.0, [56.0] * 5 + [0.0] * 5
-    figure = tester.by_column(table, "mm3", "Worn volume (mm³)", study.PUBLISHED, REMARKS)
-    assert missing_words(figure, tmp_path / "a.png", ["pattern 56 % (Yan 2022: 56 %)", "base"]) == []
-    forces = table.rename(columns={"base_mm3": "base_N", "bumps_mm3": "bumps_N"}).assign(deviation_N=5.0)
-    assert (
-        missing_words(
-            tester.by_column(forces, "N", "Normal force (N)", study.PUBLISHED, REMARKS),
-            tmp_path / "b.png",
-            ["over 65 %"],
-        )
-        == []
+def intervals(table, value, reach):
+    return table.assign(packings=3, interval_low=table[value] - reach, interval_high=table[value] + reach)
+
+
+def error_bars(figure):
+    """Return how many pieces of error bars a figure has."""
+    return sum(
+        len(container.lines[2][0].get_segments())
+        for axes in figure.axes
+        for container in axes.containers
+        if isinstance(container, ErrorbarContainer)
     )
+
+
+def test_by_column(tmp_path):
+    """Base and pattern on one another, a bar for each interval, and none where the scatter is unknown."""
+    table = pd.DataFrame({"surface": np.repeat(["convex", "plain"], 5), "column": [1, 2, 3, 4, 5] * 2})
+    table["base_mm3"], table["bumps_mm3"] = 44.0, [56.0] * 5 + [0.0] * 5
+    table["total_mm3"] = table["base_mm3"] + table["bumps_mm3"]
+    known = intervals(table, "total_mm3", 5.0)
+    figure = tester.by_column(known, "mm3", "Worn volume (mm³)", "pattern 56 %; Yan 2022: 56 %", REMARKS)
+    assert missing_words(figure, tmp_path / "a.png", ["convex: pattern 56 %; Yan 2022: 56 %", "base"]) == []
+    assert error_bars(figure) == 10
+    alone = intervals(table, "total_mm3", np.nan)
+    assert error_bars(tester.by_column(alone, "mm3", "Worn volume (mm³)", "", REMARKS)) == 0
 
 
 def test_by_bump(tmp_path):
     names = [f"C{row}{number}" for row in range(1, 6) for number in range(1, 6 - (row + 1) % 2)]
     rows = [int(name[1]) for name in names]
     table = pd.DataFrame({"bump": names, "row": rows, "volume_mm3": np.linspace(7.0, 30.0, len(names))})
-    assert (
-        missing_words(
-            tester.by_bump(table, study.PUBLISHED, "after 17 revolutions", REMARKS), tmp_path / "a.png", ["after 17"]
-        )
-        == []
-    )
+    figure = tester.by_bump(intervals(table, "volume_mm3", 2.0), study.PUBLISHED, "after 17 revolutions", REMARKS)
+    assert missing_words(figure, tmp_path / "a.png", ["after 17"]) == [] and error_bars(figure) == len(names)
 
 
 def test_mesh_size(tmp_path):
     table = pd.DataFrame({"surface": np.repeat(["plain", "convex"], 3), "element_size_mm": [0.1, 0.5, 1.0] * 2})
     table["relative_percent"] = [100.0, 99.0, 98.0, 56.0, 57.0, 58.0]
-    table["mean_percent"], table["deviation_percent"] = [99.0] * 3 + [57.0] * 3, 1.0
-    assert (
-        missing_words(tester.mesh_size(table, study.PUBLISHED, REMARKS), tmp_path / "a.png", ["97.9 ± 1.8", "99 ± 1 %"])
-        == []
-    )
+    figure = tester.mesh_size(intervals(table, "relative_percent", 1.0), study.PUBLISHED, REMARKS)
+    words = ["97.9 %, deviation 1.8", "plain, 98 to 100 % over the meshes"]
+    assert missing_words(figure, tmp_path / "a.png", words) == [] and error_bars(figure) == 6
 
 
 def test_worn_contours(tmp_path):

@@ -5,7 +5,12 @@ import pandas as pd
 import pytest
 
 from bulkwear.meshes.plate import flat_plate
-from bulkwear.workflows.cases.circular_tester.flow import STEADINESS, revolution_means, steady_revolutions
+from bulkwear.workflows.cases.circular_tester.flow import (
+    STEADINESS,
+    revolution_means,
+    revolutions_over_packings,
+    steady_revolutions,
+)
 from bulkwear.workflows.cases.circular_tester.layer import relative_motion
 from bulkwear.workflows.cases.circular_tester.plots import flow as tester
 from tests.support import tester_study as study
@@ -13,15 +18,31 @@ from tests.support.tester_study import REMARKS, missing_words
 
 
 def test_steadiness(tmp_path):
-    series = study.series()
-    means, steady = revolution_means(series, STEADINESS), steady_revolutions(series)
-    figure = tester.steadiness(means, steady, study.PUBLISHED, REMARKS)
-    assert missing_words(figure, tmp_path / "a.png", ["steady from", "Yan 2022"]) == []
+    """Where each packing is steady stands over its measure."""
+    series = study.series(packings=2)
+    variations = revolutions_over_packings(revolution_means(series, STEADINESS), "variation")
+    figure = tester.steadiness(variations, steady_revolutions(series), study.PUBLISHED, REMARKS)
+    assert missing_words(figure, tmp_path / "a.png", ["plain: steady from", "Yan 2022"]) == []
 
 
+@pytest.mark.parametrize(
+    ("answers", "words"),
+    [
+        ([("steady", 3.0), ("steady", 4.5)], "steady from 3, 4.5"),
+        ([("steady", 3.0), ("cannot be said", 1.0)], "steady from 3; 1 x cannot be said"),
+        ([("drifting", 1.0), ("drifting", 2.0)], "2 x drifting"),
+    ],
+)
+def test_words_on_steadiness(answers, words):
+    """No packing is left out, whatever is said of it."""
+    assert tester.steady_words(pd.DataFrame(answers, columns=["answer", "start"])) == words
+
+
+@pytest.mark.parametrize("packings", [1, 3])
 @pytest.mark.parametrize("measure", tester.MEASURES)
-def test_by_revolution(tmp_path, measure):
-    figure = tester.by_revolution(revolution_means(study.series(), [measure]), measure, study.PUBLISHED, REMARKS)
+def test_by_revolution(tmp_path, measure, packings):
+    means = revolutions_over_packings(revolution_means(study.series(packings=packings), [measure]), "mean")
+    figure = tester.by_revolution(means, measure, study.PUBLISHED, REMARKS)
     assert missing_words(figure, tmp_path / "a.png", ["plain, Yan 2022", "convex"]) == []
 
 
