@@ -1,7 +1,8 @@
-"""What a bulk test is measured by: angles of its slopes and its discharge time, each with an uncertainty.
+"""What a bulk test is measured by: angles of its slopes, discharge time, wall friction, each with an uncertainty.
 
 Responses carry their units, as table headers do: `shear_angle_deg` of a shear box; `draw_down_shear_angle_deg` (upper
-slopes), `repose_angle_deg` (lower heap) and `discharge_time_s` of a draw-down test.
+slopes), `repose_angle_deg` (lower heap) and `discharge_time_s` of a draw-down test; `wall_friction_angle_deg` of a wall
+shear test.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import pandas as pd
 from bulkwear.postproc.flow.bed import read_snapshot
 from bulkwear.postproc.flow.free_surface import Slope, fitted_slope, surface_points
 from bulkwear.postproc.flow.outflow import check_count, check_not_blocked, discharge_time, outflow_curve
+from bulkwear.postproc.flow.wall_shear import wall_friction_angle
 
 HEAP, LOG = "heap.dump", "log.liggghts"
 
@@ -76,11 +78,23 @@ def measured_draw_down(folder: Path, boxes: Boxes, time_step: float) -> Measurem
     return _of_slopes(slopes, {"discharge_time_s": seconds}, {"discharge_time_s": uncertainty})
 
 
+def measured_wall_shear(folder: Path, boxes: Boxes, time_step: float) -> Measurement:
+    """Return the wall friction angle of a finished wall shear test. Raises WallShearError."""
+    angle, uncertainty = wall_friction_angle(folder / LOG)
+    name = "wall_friction_angle_deg"
+    return Measurement({name: math.degrees(angle)}, {name: math.degrees(uncertainty)}, {})
+
+
 # Kind of test -> its measurement, and the responses it gives.
-MEASUREMENTS = {"shear_box": measured_shear_box, "draw_down": measured_draw_down}
+MEASUREMENTS = {
+    "shear_box": measured_shear_box,
+    "draw_down": measured_draw_down,
+    "wall_shear": measured_wall_shear,
+}
 RESPONSES = {
     "shear_box": ("shear_angle_deg",),
     "draw_down": ("draw_down_shear_angle_deg", "repose_angle_deg", "discharge_time_s"),
+    "wall_shear": ("wall_friction_angle_deg",),
 }
 
 

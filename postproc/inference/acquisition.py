@@ -78,7 +78,8 @@ def expected_information(
     """Return {response: bits} that measuring it once more is expected to tell about the parameters.
 
     The mutual information between parameters, distributed as the posterior, and a response measured and modelled with
-    its standard deviations: 0 where all of the family give the same, 1 bit where it halves the family. Nested Monte Carlo, seeded.
+    its standard deviations: 0 where all of the family give the same, 1 bit where it halves the family. Nested Monte
+    Carlo, seeded.
     """
     random = np.random.default_rng(seed)
     drawn = random.choice(len(weights), DRAWS, p=weights)

@@ -4,9 +4,9 @@ The model (in the spirit of M. C. Kennedy and A. O'Hagan, Journal of the Royal S
 
     measured = simulated + discrepancy + error of the measurement
 
-Simulated is the mean over packings, known up to the surrogate's variance; the discrepancy, what the model is off by even
-with the right parameters, is normal about 0 with a standard deviation that is given per response. It is given, not found:
-there are about as many responses as parameters, and these say nothing of its size. Scales that are marginalised
+Simulated is the mean over packings, known up to the surrogate's variance; the discrepancy, what the model is off by
+even with the right parameters, is normal about 0 with a standard deviation that is given per response. It is given, not
+found: there are about as many responses as parameters, and these say nothing of its size. Scales that are marginalised
 (half-normal, half-Cauchy) widen the region as much and hold the truth less often (docs/calibration_coverage.md).
 
 All functions take the posterior as weights (n,) of evenly spread points (n, p), which sum to 1.

@@ -1,78 +1,131 @@
 """Surrogate of a response: a Gaussian process over the parameters, with the scatter between seeds as noise.
 
-C. E. Rasmussen and C. K. I. Williams, Gaussian Processes for Machine Learning, MIT Press 2006, chapters 2 and 5.
+C. E. Rasmussen and C. K. I. Williams, Gaussian Processes for Machine Learning, MIT Press 2006, chapters 2 and 5. With a
+dozen simulations nobody knows the kernel's lengths, its amplitude and the scatter between seeds; taken at their most
+likely values the process is too sure of itself. So predictions are means over draws from their posterior.
 """
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from sklearn.exceptions import ConvergenceWarning
-from sklearn.gaussian_process import GaussianProcessRegressor
-from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+from scipy.linalg import cho_solve, solve_triangular
+from scipy.stats import norm, qmc
 
 from bulkwear.postproc.inference.problem import Problem
 
-SMOOTHNESS = 2.5  # of the Matern kernel: twice differentiable, as responses of friction are
-LENGTH_BOUNDS = (0.15, 5.0)  # -, of the parameter's range: neither shorter than the spacing of points nor a plane
-AMPLITUDE_BOUNDS = (0.1, 30.0)  # -, variance of the process over that of the responses
-NOISE_BOUNDS = (1e-4, 0.5)  # -, variance between seeds over that of the responses
-RESTARTS = 4  # of the search for the kernel's parameters
+# Prior of the logarithms of a kernel's lengths (of the parameter's range), amplitude and noise (variances over that of
+# the responses): median and standard deviation of each, log-normal.
+LENGTH = (1.0, 1.0)
+AMPLITUDE = (4.0, 1.5)
+NOISE = (0.02, 1.7)
+MEAN_VARIANCE = 4.0  # -, of the process' unknown mean over that of the responses
+DRAWS_POWER = 10  # 1024 draws from the prior, and as many near the ones that fit
+KERNELS = 24  # draws from the posterior that predictions are means over
+JITTER = 1e-9  # -, of the diagonal over the variance of the responses
 
 
 @dataclass(frozen=True, eq=False)
 class Surrogate:
-    """A fitted response. centre, scale: of the responses, which the process sees standardised."""
+    """A response of which simulations are known.
 
-    process: GaussianProcessRegressor
+    points (n, p) in the unit cube; values, errors (n,), standardised: of the simulations, and the variances of their
+    measurement; kernels (k, p + 2): lengths, amplitude and noise of each draw; centre, scale: of the responses
+    """
+
+    points: np.ndarray
+    values: np.ndarray
+    errors: np.ndarray
+    kernels: np.ndarray
     centre: float
     scale: float
 
     def predict(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return mean and variance (n,) of the response itself, scatter between seeds left out, at (n, p) points."""
-        mean, deviation = self.process.predict(points, return_std=True)
-        variance = np.maximum(deviation**2 - self._noise, 0.0)
-        return self.centre + self.scale * mean, self.scale**2 * variance
+        means, variances = (np.array(found) for found in zip(*self._of_kernels(points), strict=True))
+        variance = variances.mean(axis=0) + means.var(axis=0)
+        return self.centre + self.scale * means.mean(axis=0), self.scale**2 * variance
 
     @property
     def seed_deviation(self) -> float:
-        """Standard deviation between simulations that differ in their seed only, as fitted."""
-        return self.scale * float(np.sqrt(self._noise))
-
-    @property
-    def _noise(self) -> float:
-        return float(self.process.kernel_.k2.noise_level)
+        """Standard deviation between simulations that differ in their seed only: the median of the draws."""
+        return self.scale * float(np.sqrt(np.median(self.kernels[:, -1])))
 
     def with_point(self, point: np.ndarray) -> Surrogate:
         """Return the surrogate as if its own mean had been simulated at a point (p,): its doubt shrinks there."""
-        points = np.vstack([self.process.X_train_, point])
-        values = np.append(self.process.y_train_, self.process.predict(point[None])[0])
-        alpha = np.append(self.process.alpha, np.median(self.process.alpha))
-        process = GaussianProcessRegressor(self.process.kernel_, alpha=alpha, optimizer=None).fit(points, values)
-        return Surrogate(process, self.centre, self.scale)
+        mean = (self.predict(point[None])[0] - self.centre) / self.scale
+        points, errors = np.vstack([self.points, point]), np.append(self.errors, np.median(self.errors))
+        return replace(self, points=points, values=np.append(self.values, mean), errors=errors)
+
+    def _of_kernels(self, points: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield standardised mean and variance (n,) at points by each kernel."""
+        for kernel, factor, weights in zip(self.kernels, *self._solved, strict=True):
+            across = _covariance(points, self.points, kernel[None])[0]
+            rest = solve_triangular(factor, across.T, lower=True, check_finite=False)
+            yield across @ weights, np.maximum(kernel[-2] + MEAN_VARIANCE - (rest**2).sum(axis=0), 0.0)
+
+    @cached_property
+    def _solved(self) -> tuple[np.ndarray, np.ndarray]:
+        """Cholesky factors (k, n, n) of the simulations' covariance by each kernel; its inverse times the values."""
+        factors = np.linalg.cholesky(_of_simulations(self.points, self.errors, self.kernels))
+        return factors, np.array([cho_solve((factor, True), self.values) for factor in factors])
+
+
+def _covariance(first: np.ndarray, second: np.ndarray, kernels: np.ndarray) -> np.ndarray:
+    """Return the covariance (k, n, m) of the response between (n, p) and (m, p) points: Matern 5/2, and its mean's."""
+    lengths, amplitude = kernels[:, None, None, :-2], kernels[:, -2, None, None]
+    distance = np.sqrt(5.0 * (((first[:, None] - second[None])[None] / lengths) ** 2).sum(axis=-1))
+    return amplitude * (1.0 + distance + distance**2 / 3.0) * np.exp(-distance) + MEAN_VARIANCE
+
+
+def _of_simulations(points: np.ndarray, errors: np.ndarray, kernels: np.ndarray) -> np.ndarray:
+    """Return the covariance (k, n, n) of simulations: of the response, between seeds, and of the measurement."""
+    noise = kernels[:, -1, None] + errors + JITTER
+    return _covariance(points, points, kernels) + noise[:, :, None] * np.eye(len(points))
+
+
+# ---------------------------------------------------------------- fit
 
 
 def fit_surrogate(points: np.ndarray, values: np.ndarray, uncertainties: np.ndarray, seed: int) -> Surrogate:
     """Return the surrogate of a response from simulations.
 
-    points: (n, p) in the unit cube; values, uncertainties: (n,) of the measurement on each simulation. The scatter
-    between seeds is found by maximum likelihood, with the kernel's amplitude and lengths.
+    points: (n, p) in the unit cube; values, uncertainties: (n,) of the measurement on each simulation. Kernels are
+    drawn from their posterior by importance sampling, first from the prior, then from a normal about what fits; seeded.
     """
-    centre, scale = float(np.mean(values)), max(float(np.std(values)), np.finfo(float).tiny)
-    kernel = ConstantKernel(1.0, AMPLITUDE_BOUNDS) * Matern(
-        [0.7] * points.shape[1], LENGTH_BOUNDS, nu=SMOOTHNESS
-    ) + WhiteKernel(0.02, NOISE_BOUNDS)
-    process = GaussianProcessRegressor(
-        kernel, alpha=(uncertainties / scale) ** 2 + 1e-10, n_restarts_optimizer=RESTARTS, random_state=seed
-    )
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)  # a parameter at its bound: the bounds are meant
-        process.fit(points, (values - centre) / scale)
-    return Surrogate(process, centre, scale)
+    centre, doubt = float(np.mean(values)), float(np.sqrt(np.mean(uncertainties**2)))
+    scale = max(float(np.std(values)), doubt, np.finfo(float).tiny)
+    standardised, errors = (values - centre) / scale, (uncertainties / scale) ** 2
+    dimensions = points.shape[1] + 2
+    middle = np.log([*(LENGTH[0] for _ in range(dimensions - 2)), AMPLITUDE[0], NOISE[0]])
+    spread = np.diag([*(LENGTH[1] for _ in range(dimensions - 2)), AMPLITUDE[1], NOISE[1]])
+    normal = norm.ppf(qmc.Sobol(dimensions, scramble=True, seed=seed).random_base2(DRAWS_POWER))
+
+    def weighted(draws: np.ndarray, log_proposal: np.ndarray) -> np.ndarray:
+        log_prior = -0.5 * (((draws - middle) / spread.diagonal()) ** 2).sum(axis=1)
+        logs = log_prior - log_proposal + _log_evidence(points, standardised, errors, np.exp(draws))
+        weights = np.exp(logs - logs.max())
+        return weights / weights.sum()
+
+    draws, log_proposal = middle + normal @ spread, -0.5 * (normal**2).sum(axis=1)
+    weights = weighted(draws, log_proposal)
+    found = weights @ draws
+    covariance = (draws - found).T @ ((draws - found) * weights[:, None]) + 0.05 * spread**2
+    draws = found + normal @ np.linalg.cholesky(covariance).T
+    weights = weighted(draws, log_proposal)
+    chosen = np.searchsorted(np.cumsum(weights), (np.arange(KERNELS) + 0.5) / KERNELS)
+    return Surrogate(points, standardised, errors, np.exp(draws[np.minimum(chosen, len(draws) - 1)]), centre, scale)
+
+
+def _log_evidence(points: np.ndarray, values: np.ndarray, errors: np.ndarray, kernels: np.ndarray) -> np.ndarray:
+    """Return the logarithm (k,) of the density of standardised values (n,) under each kernel, but for a constant."""
+    factors = np.linalg.cholesky(_of_simulations(points, errors, kernels))
+    rest = np.linalg.solve(factors, np.broadcast_to(values[:, None], (len(kernels), len(values), 1)))[..., 0]
+    return -0.5 * (rest**2).sum(axis=1) - np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1)
 
 
 def fit_surrogates(problem: Problem, simulations: pd.DataFrame) -> dict[str, Surrogate]:

@@ -1,7 +1,8 @@
-"""Shear box and draw-down test: from a study's parameters to a bulk test, its deck and meshes, and what it will cost.
+"""Bulk tests of a calibration: from a study's parameters to a test, its deck and meshes, and what it will cost.
 
 Tests are as in `workflows.engine.bulk_tests`; the box of a draw-down test has opening_m, lower_height_m and
-front_and_back besides, and its floor_material is that of its front and back walls.
+front_and_back besides, and its floor_material is that of its front and back walls. That of a wall shear test has
+drag_speed_m_per_s and drag_m, its wall_material is that of its plate, and its floor_material that of its side walls.
 
 How long a test takes until rest is not known before it is simulated. Times are scaled from fourteen shear boxes
 that were: 0.2 m long and high, particles five times as large, sliding friction 0.15 to 0.66, rolling 0.16 to 0.63.
@@ -25,7 +26,8 @@ from bulkwear.workflows.engine.derived import PERIODIC, WALLS
 from bulkwear.workflows.engine.templates import used_sections
 from bulkwear.workflows.engine.work import Stage
 
-SHEAR_BOX, DRAW_DOWN = "shear_box", "draw_down"
+SHEAR_BOX, DRAW_DOWN, WALL_SHEAR = "shear_box", "draw_down", "wall_shear"
+SECOND_WALL = {SHEAR_BOX: "floor_material", DRAW_DOWN: "front_material", WALL_SHEAR: "side_material"}
 SIMULATIONS = "simulations"  # folder of a study's
 PIT_DIAMETERS = 10.0  # -, domain below the floor of a shear box, where what flows out is taken out
 EMPTY_ANNULUS = 1.4  # -, of a slot no particle's centre passes, in particle diameters; Beverloo et al. 1961
@@ -35,7 +37,12 @@ FILLING_FREE_FALLS = 1.3  # -, until the poured box rests, in free falls through
 FLOWING_FREE_FALLS = 11.8  # -, until the heap rests, in free falls of the box's height; measured 9.3 to 14.7
 SLOT_FLOW = 0.73  # -, of the flow from a slot, (D - k d)^1.5 sqrt(g); gives the 5.6 s that the slot was chosen for
 OUTFLOW_SHARE = 0.75  # -, of the content that a draw-down test's slot lets out: two slopes of some 30 degrees stay
-STAYING = {SHEAR_BOX: 0.54, DRAW_DOWN: 1.0}  # -, particles that the solver has while it flows, mean over those filled
+FORCE_MEANS = 200  # means of a plate's forces over a drag
+STAYING = {
+    SHEAR_BOX: 0.54,
+    DRAW_DOWN: 1.0,
+    WALL_SHEAR: 1.0,
+}  # -, particles that the solver has while it flows, mean over those filled
 
 
 # ---------------------------------------------------------------- tests
@@ -44,7 +51,7 @@ STAYING = {SHEAR_BOX: 0.54, DRAW_DOWN: 1.0}  # -, particles that the solver has 
 def test_of(parameters: Parameters, kind: str, values: Mapping[str, float], seed: int) -> dict[str, Any]:
     """Return a bulk test with values of the calibrated parameters, by dotted name."""
     box, walls = dict(parameters[kind]), parameters["walls"]
-    second = box.pop("floor_material" if kind == SHEAR_BOX else "front_material")
+    second = box.pop(SECOND_WALL[kind])
     test = {
         "kind": kind,
         "wall_material": walls[box.pop("wall_material")],
@@ -96,6 +103,8 @@ def walls_of(test: Mapping[str, Any]) -> list[tuple[tuple[float, float], tuple[f
     length, height = test["box"]["length_m"], test["box"]["fill_height_m"]
     if test["kind"] == SHEAR_BOX:
         return [((0.0, 0.0), (0.0, height)), ((0.0, 0.0), (length, 0.0))]
+    if test["kind"] == WALL_SHEAR:
+        return [((0.0, 0.0), (0.0, height)), ((length, 0.0), (length, height)), ((0.0, 0.0), (length, 0.0))]
     low, slot = -test["box"]["lower_height_m"], slot_length(test)
     return [
         ((0.0, low), (0.0, height)),
@@ -123,6 +132,28 @@ def draw_down(test: Mapping[str, Any]) -> dict[str, Any]:
         "lower_floor_m": -test["box"]["lower_height_m"],
         "front_and_back": test["box"]["front_and_back"],
     }
+
+
+def wall_shear(test: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of the deck of a wall shear test."""
+    box, margin = test["box"], margin_of(test)
+    every = deck.steps(drag_time(test) / FORCE_MEANS, time_step(test))
+    return {
+        **filled_box(test, ("particle", "plate", "side walls")),
+        "outflow": "none",
+        "domain_back_m": -margin,
+        "domain_front_m": box["length_m"] + margin,
+        "domain_bottom_m": -margin,
+        "domain_top_m": fill_top(test) + margin,
+        "drag_speed_m_per_s": box["drag_speed_m_per_s"],
+        "drag_steps": FORCE_MEANS * every,
+        "force_interval_steps": every,
+    }
+
+
+def drag_time(test: Mapping[str, Any]) -> float:
+    """Return how long (s) the plate of a wall shear test is drawn."""
+    return test["box"]["drag_m"] / test["box"]["drag_speed_m_per_s"]
 
 
 def _shear_box_domain(test: Mapping[str, Any]) -> dict[str, float]:
@@ -170,6 +201,11 @@ def draw_down_surfaces(test: Mapping[str, Any]) -> Meshes:
     }
 
 
+def wall_shear_surfaces(test: Mapping[str, Any]) -> Meshes:
+    """Return the flat mesh that the deck of a wall shear test reads."""
+    return {"plate": _rectangle(_half_domain(test), 0.0, test["box"]["length_m"], 0.0)}
+
+
 def _outflow(test: Mapping[str, Any], domain: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
     """Return the mesh below the floor, over the whole domain, that what flows out passes."""
     start, end = domain["domain_back_m"] + MESH_CLEARANCE, domain["domain_front_m"] - MESH_CLEARANCE
@@ -181,7 +217,11 @@ def _rectangle(half_width: float, start: float, end: float, height: float) -> tu
     return np.array([(x, y, height) for x, y in points]), np.array([[0, 1, 2], [0, 2, 3]])
 
 
-KINDS = {SHEAR_BOX: Kind(shear_box, shear_box_surfaces), DRAW_DOWN: Kind(draw_down, draw_down_surfaces)}
+KINDS = {
+    SHEAR_BOX: Kind(shear_box, shear_box_surfaces),
+    DRAW_DOWN: Kind(draw_down, draw_down_surfaces),
+    WALL_SHEAR: Kind(wall_shear, wall_shear_surfaces),
+}
 for NAME, KIND in KINDS.items():
     register(NAME, KIND)
 
@@ -190,16 +230,21 @@ for NAME, KIND in KINDS.items():
 
 
 def stages_of(test: Mapping[str, Any], number: int) -> tuple[Stage, ...]:
-    """Return the stages of that many simulations of a bulk test: filling, then flowing until rest."""
+    """Return the stages of that many simulations of a bulk test: filling, then flowing until rest, or the drag."""
     step, particles, kind = time_step(test), filled_particles(test), KINDS[test["kind"]]
     filling = FILLING_FREE_FALLS * math.sqrt(2.0 * fill_top(test) / GRAVITY)
-    flowing = FLOWING_FREE_FALLS * math.sqrt(2.0 * test["box"]["fill_height_m"] / GRAVITY) + discharge_time(test)
+    flowing = drag_time(test) if test["kind"] == WALL_SHEAR else _flowing_time(test)
     triangles = sum(len(faces) for _, faces in kind.surfaces(test).values())
     left = STAYING[test["kind"]] * particles
     return (
         Stage(number, number * deck.steps(filling, step), POURED * particles, triangles),
         Stage(0, number * deck.steps(flowing, step), left, triangles, moving=True),
     )
+
+
+def _flowing_time(test: Mapping[str, Any]) -> float:
+    """Return about how long (s) an opened box flows until all rests."""
+    return FLOWING_FREE_FALLS * math.sqrt(2.0 * test["box"]["fill_height_m"] / GRAVITY) + discharge_time(test)
 
 
 def discharge_time(test: Mapping[str, Any]) -> float:

@@ -1,4 +1,4 @@
-"""Contact parameters calibrated on a shear box and a draw-down test (Yan 2022, section 3.3)."""
+"""Contact parameters from bulk tests: shear box and draw-down test (Yan 2022, section 3.3), wall shear test."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 PUBLISHED = "config/published"
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
+LEAST_DRAG_DIAMETERS = 6.0  # -, of a plate's way. Measured: with friction 0.7 the bed slides after 2.8
 LEAST_SLOT_DIAMETERS = 5.0  # -, of a slot as simulated. Measured: at 4.0 an arch blocked it, friction 0.32 and 0.37
 
 
@@ -77,6 +78,28 @@ def slot_lets_particles_pass(run: CheckedRun) -> Fault | None:
     return None
 
 
+def drag_makes_it_slide(run: CheckedRun) -> Fault | None:
+    """A plate is drawn at least six median diameters: the bed slides on it in the second half, which is measured."""
+    least = LEAST_DRAG_DIAMETERS * run.parameters["particle"]["median_diameter_m"]
+    asked = boxes.WALL_SHEAR in run.parameters["calibration"]["tests"]
+    if asked and run.parameters["wall_shear"]["drag_m"] < least:
+        return "wall_shear.drag_mm", f"at least {1e3 * least:.4g}, six particle diameters"
+    return None
+
+
+def one_wall_is_looked_for(run: CheckedRun) -> Fault | None:
+    """Where friction of a wall is looked for, all tests have that wall."""
+    calibration = run.settings["calibration"]
+    if not any(each["name"].startswith("wall_material.") for each in calibration["parameters"]):
+        return None
+    walls = {test: run.settings[test]["wall_material"] for test in calibration["tests"]}
+    last = calibration["tests"][-1]
+    for test, wall in walls.items():
+        if wall != walls[last]:
+            return f"{test}.wall_material", f"{walls[last]}, as of {last}: the friction of one wall is looked for"
+    return None
+
+
 def ranges_in_order(run: CheckedRun) -> Fault | None:
     """A parameter's low is below its high, and each parameter stands once."""
     parameters = run.settings["calibration"]["parameters"]
@@ -120,10 +143,14 @@ class Calibration(Case):
         ("shear_box", "floor_material", "walls"),
         ("draw_down", "wall_material", "walls"),
         ("draw_down", "front_material", "walls"),
+        ("wall_shear", "wall_material", "walls"),
+        ("wall_shear", "side_material", "walls"),
     )
     checks: tuple[Check, ...] = (
         box_holds_particles,
         slot_lets_particles_pass,
+        drag_makes_it_slide,
+        one_wall_is_looked_for,
         ranges_in_order,
         pairs_are_known,
         initial_below_most,
@@ -137,7 +164,7 @@ class Calibration(Case):
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str
     ) -> dict[str, Any]:
         """Return the settings of a box size with its materials: all that its simulations depend on besides the pair."""
-        sections = ("shear_box", "draw_down", "rest", "calibration")
+        sections = (*boxes.KINDS, "rest", "calibration")
         return {
             **{name: settings[name] for name in sections},
             **template_sections(settings),
@@ -159,7 +186,7 @@ class Calibration(Case):
         }
 
     def deck_files(self, runs: Sequence[str], beds: Sequence[str]) -> list[str]:
-        """Return the decks of both tests."""
+        """Return the decks of all tests."""
         return [f"{test}/deck.in" for test in self.run_templates]
 
     def simulation_folders(self, folder: Path, runs: Sequence[str]) -> list[Path]:

@@ -20,7 +20,7 @@ from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, interval
 from bulkwear.workflows.cases.calibration.simulations import flowing
 from bulkwear.workflows.engine.case import Parameters
 
-TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test"}
+TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test", "wall_shear": "Wall shear test"}
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,6 +23,7 @@ RESPONSE_NAMES = {
     "draw_down_shear_angle_deg": "Shear angle, draw-down (°)",
     "repose_angle_deg": "Angle of repose (°)",
     "discharge_time_s": "Discharge time (s)",
+    "wall_friction_angle_deg": "Wall friction angle (°)",
 }
 PARAMETER_NAMES = {
     "particle.contact.sliding_friction": "Sliding friction, particles (-)",
@@ -51,11 +52,10 @@ def read_measured(path: str | Path, model_discrepancy: float) -> dict[str, Measu
     unit, takes its place in the rows that have a value there
     """
     table = pd.read_csv(path)
-    given = table.get("model_discrepancy", pd.Series(np.nan, table.index)).fillna(
-        model_discrepancy * table["deviation"]
-    )
-    rows = zip(table["response"], table["value"], table["deviation"], given, strict=True)
-    return {name: Measured(float(value), float(deviation), float(own)) for name, value, deviation, own in rows}
+    given = table.get("model_discrepancy", pd.Series(np.nan, table.index))
+    own = given.fillna(model_discrepancy * table["deviation"])
+    rows = zip(table["response"], table["value"], table["deviation"], own, strict=True)
+    return {name: Measured(float(value), float(deviation), float(off)) for name, value, deviation, off in rows}
 
 
 def response_grid(problem: Problem, known: Posterior) -> pd.DataFrame:

@@ -21,7 +21,7 @@ rule calibrated_parameters:
         mem_mb=asked("calibrated_parameters", 1),
     params:
         run=lambda wildcards: calibration_box(study_of(wildcards)),
-        templates=templates_digest("shear_box", "draw_down"),
+        templates=templates_digest("shear_box", "draw_down", "wall_shear"),
     message:
         "Calibration of {wildcards.study}"
     script:
@@ -56,11 +56,11 @@ rule bulk_test_deck:
     log:
         "results/{study}/logs/bulk_test_deck_{test}.log",
     wildcard_constraints:
-        test="shear_box|draw_down",
+        test="shear_box|draw_down|wall_shear",
     localrule: True
     params:
         run=lambda wildcards: calibration_box(study_of(wildcards)),
-        templates=templates_digest("shear_box", "draw_down"),
+        templates=templates_digest("shear_box", "draw_down", "wall_shear"),
     message:
         "Deck of the {wildcards.test}"
     script:

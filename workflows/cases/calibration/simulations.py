@@ -20,6 +20,7 @@ import pandas as pd
 from bulkwear.postproc.flow.bulk_test import MEASUREMENTS, Boxes, Measurement
 from bulkwear.postproc.flow.free_surface import FreeSurfaceError
 from bulkwear.postproc.flow.outflow import BlockedError, OutflowError
+from bulkwear.postproc.flow.wall_shear import WallShearError
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, slot_length
 from bulkwear.workflows.engine import state
@@ -41,13 +42,13 @@ def boxes_of(test: Mapping[str, Any]) -> Boxes:
 def measured(test: Mapping[str, Any], folder: Path) -> Measurement:
     """Return the measurement on a finished simulation.
 
-    Raises BlockedError where an arch stands over the slot, SolverError naming the folder where there is no slope.
+    Raises BlockedError where an arch stands over the slot, SolverError naming the folder where nothing can be measured.
     """
     try:
         return MEASUREMENTS[test["kind"]](folder, boxes_of(test), time_step(test))
     except BlockedError:
         raise
-    except (FreeSurfaceError, OutflowError) as fault:
+    except (FreeSurfaceError, OutflowError, WallShearError) as fault:
         raise SolverError(f"{folder}: {fault}") from fault
 
 

@@ -1,4 +1,4 @@
-"""Shear box and draw-down test are what they say: decks and meshes of the boxes asked for."""
+"""Bulk tests are what they say: decks and meshes of the boxes asked for."""
 
 import pytest
 
@@ -9,6 +9,8 @@ from bulkwear.workflows.cases.calibration.boxes import (
     shear_box_surfaces,
     simulated_width,
     slot_length,
+    wall_shear,
+    wall_shear_surfaces,
     with_values,
 )
 from bulkwear.workflows.engine.bulk_tests import deck_text
@@ -17,7 +19,7 @@ from tests.support.bulk_boxes import PAIR, ROLLING, SLIDING, asked
 EXACT = 1e-12  # relative: the same formula
 
 
-@pytest.mark.parametrize("kind", ["shear_box", "draw_down"])
+@pytest.mark.parametrize("kind", ["shear_box", "draw_down", "wall_shear"])
 @pytest.mark.parametrize("front_and_back", ["periodic", "walls"])
 def test_decks_render_with_what_they_say(kind, front_and_back):
     """The friction asked for stands in the deck, doubled for the solver's radius where it rolls; so do its walls."""
@@ -25,7 +27,20 @@ def test_decks_render_with_what_they_say(kind, front_and_back):
     table = text[text.index("coefficientRollingFriction") :].splitlines()[1]
     assert float(table.split()[0]) == pytest.approx(2.0 * PAIR[ROLLING], rel=EXACT)
     assert ("front_wall" in text) == (kind == "draw_down" and front_and_back == "walls")
-    assert text.count("label ") == 4  # two loops until rest, each with a beginning and an end
+    loops = 1 if kind == "wall_shear" else 2  # until rest, each with a beginning and an end; a drag needs none
+    assert text.count("label ") == 2 * loops
+
+
+def test_a_plate_is_drawn_as_far_and_as_fast_as_asked():
+    """Steps of the drag are its way over its speed, in whole means of the forces; its friction is the wall's."""
+    test = with_values(asked("wall_shear"), {"wall_material.contact.sliding_friction": 0.77})
+    given, box = wall_shear(test), test["box"]
+    way = given["drag_steps"] * given["time_step_s"] * given["drag_speed_m_per_s"]
+    assert way == pytest.approx(box["drag_m"], rel=1.0 / given["force_interval_steps"])  # a step of each mean
+    assert given["drag_steps"] % given["force_interval_steps"] == 0
+    text = deck_text(test)
+    table = text[text.index("coefficientFriction") :].splitlines()[1:4]
+    assert [float(line.split()[0]) for line in table] == pytest.approx([0.3, 0.77, 0.36], rel=EXACT)
 
 
 def test_reduced_convention_is_not_converted():
@@ -37,7 +52,11 @@ def test_reduced_convention_is_not_converted():
 
 @pytest.mark.parametrize(
     ("kind", "domain", "surfaces"),
-    [("shear_box", shear_box, shear_box_surfaces), ("draw_down", draw_down, draw_down_surfaces)],
+    [
+        ("shear_box", shear_box, shear_box_surfaces),
+        ("draw_down", draw_down, draw_down_surfaces),
+        ("wall_shear", wall_shear, wall_shear_surfaces),
+    ],
 )
 def test_meshes_lie_in_the_domain(kind, domain, surfaces):
     """LIGGGHTS drops what lies outside the domain: every mesh lies inside, and floors end where the walls stand."""

@@ -7,6 +7,11 @@ from bulkwear.workflows.cases.calibration.driver import pair_of
 from bulkwear.workflows.config.design import ConfigError, load_study
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
 
+WALL = [
+    {"name": SLIDING, "low": 0.1, "high": 0.7},
+    {"name": "wall_material.contact.sliding_friction", "low": 0.1, "high": 0.7},
+]
+
 
 @pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
 def test_every_fidelity_loads(fidelity):
@@ -28,6 +33,14 @@ def test_every_fidelity_loads(fidelity):
             r"calibration\.compared_pair is 'nobody'.*allowed is one of size-test",
         ),
         ({"calibration": {"most": {"shear_box": 3}}}, r"calibration\.most is .*allowed is for shear_box at least"),
+        (
+            {"wall_shear": {"drag_mm": 30}, "calibration": {"tests": ["shear_box", "wall_shear"]}},
+            r"wall_shear\.drag_mm is 30.*allowed is at least 63\.6, six particle diameters",
+        ),
+        (
+            {"calibration": {"parameters": WALL}},
+            r"shear_box\.wall_material is 'perspex'.*allowed is steel, as of draw_down",
+        ),
         ({"calibration": {"measured": "none.txt"}}, r"the name of a \.csv file in config/published"),
     ],
 )
@@ -56,10 +69,10 @@ def test_published_data_are_those_of_the_source():
 
 
 def test_a_calibration_has_the_decks_of_its_tests_and_no_runs(tmp_path):
-    """Decks are those of both tests; simulations are the folders of bulk tests, not those of design rows."""
+    """Decks are those of all tests; simulations are the folders of bulk tests, not those of design rows."""
     found = study()
     runs = [run.name for run in found.runs]
-    assert found.case.deck_files(runs, []) == ["shear_box/deck.in", "draw_down/deck.in"]
+    assert found.case.deck_files(runs, []) == [f"{test}/deck.in" for test in ("shear_box", "draw_down", "wall_shear")]
     assert not found.case.wears and found.beds == {}
     for name in ("shear_box_0", "draw_down_1"):
         (tmp_path / "simulations" / name).mkdir(parents=True)
