@@ -25,13 +25,14 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.plots.figures import ratio_by_candidate
+from benchmarks.ratios import ASSUMED, ratio_intervals
 from benchmarks.runs import simulated_run, with_bed
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
 from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
 from bulkwear.postproc.plots.style import save
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import run_summary
-from bulkwear.workflows.cases.sliding_sample.comparison import ratio_intervals
 from bulkwear.workflows.cases.sliding_sample.flow_history import (
     RunFlow,
     along_travel,
@@ -136,8 +137,8 @@ def finished(wanted: Sequence[Case], folder: Path) -> pd.DataFrame:
 def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per particle scale and candidate: wear, convex over plain, its interval, and over the reference's.
 
-    runs: as from `run_row`. A packing is what is repeated, convex and plain sample together; its scatter is pooled over
-    the candidates of a scale (`ratio_intervals`) and NaN where nothing is repeated. Columns in the order of the page.
+    runs: as from `run_row`. A packing is what is repeated, convex and plain sample together; one scatter is assumed for
+    the candidates of a scale (`ratio_intervals`), and one packing has no interval. Columns in the order of the page.
     """
     pairs = pd.merge(
         *(runs[runs["surface"] == name].drop(columns="surface") for name in ("convex", "plain")),
@@ -159,8 +160,8 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     for scale, of in pairs.groupby("particle_scale", sort=False):
         told = ratio_intervals(of["candidate"].to_numpy(), of["wear_over_plain"].to_numpy(), REFERENCE, LEVEL)
         names = {"ratio": "over_reference", "ratio_low": "over_reference_low", "ratio_high": "over_reference_high"}
-        ends = {"setting": "candidate", "runs": "packings", "mean": "wear_over_plain"}
-        told = told.rename(columns=names | ends | {"low": "ratio_low", "high": "ratio_high", "deviation": "scatter"})
+        ends = {"setting": "candidate", "mean": "wear_over_plain", "low": "ratio_low", "high": "ratio_high"}
+        told = told.rename(columns=names | ends)
         means = of.groupby("candidate", sort=False)[kept].mean().reset_index()
         parts.append(told.merge(means, on="candidate").assign(particle_scale=scale))
     table = pd.concat(parts, ignore_index=True)
@@ -183,9 +184,9 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
         "green line: the source's lines, whose reading of the pattern and whose code are not known",
         f"{packings[REFERENCE].max()} packings of the study's runs, {others.max() if len(others) else 0} of the others;"
         + (
-            f" bars: {PERCENT * LEVEL:g} % intervals from the scatter of packings of all candidates together"
+            f" bars: {PERCENT * LEVEL:g} % intervals, {ASSUMED} candidates; without a bar: {UNKNOWN}"
             if table["ratio_low"].notna().any()
-            else " the scatter of packings is not known"
+            else f" {UNKNOWN}"
         ),
         f"made by benchmarks/critical_scale.py, {date.today():%Y-%m-%d}",
     ]

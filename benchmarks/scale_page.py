@@ -6,12 +6,14 @@ from pathlib import Path
 
 import pandas as pd
 
+from benchmarks.ratios import ASSUMED
 from benchmarks.scale_case import CANDIDATES, REFERENCE
 from benchmarks.touched import mean_touched, mean_touched_on_flat, met_from_above, met_from_the_front
 from bulkwear.meshes.bump import bump_shell
 from bulkwear.meshes.sample import sample_top
 from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN
 from bulkwear.postproc.reference.sphere_contact import effective_modulus, hertz_overlap
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.derived import youngs_modulus
 from bulkwear.workflows.engine.project import PACKAGE
@@ -87,13 +89,13 @@ def conclusion(rows: pd.DataFrame) -> str:
 
 def scatter_words(table: pd.DataFrame) -> str:
     """Return what the intervals rest on, or why there are none."""
-    freedom = int(table["packings"].sum() - len(table))
+    freedom = table["freedom"].max()
     if not freedom:
         return "Every line is one packing, convex and plain sample in the same bed: the scatter is not known."
     return (
-        "Low and high are 95 % intervals: what is repeated is the packing, convex and plain sample in the same bed; its"
-        f" scatter, {100.0 * table['scatter'].max():.1f} % of the ratio, is pooled over all candidates ({freedom}"
-        " degrees of freedom). A candidate of one packing has its interval by the scatter of the others."
+        "Low and high are 95 % intervals: what is repeated is the packing, convex and plain sample in the same bed, and"
+        f" {ASSUMED} candidates, {100.0 * table['scatter'].max():.1f} % of the ratio ({freedom} degrees of freedom)."
+        f" Without an interval: {UNKNOWN}."
     )
 
 

@@ -26,6 +26,7 @@ import pandas as pd
 
 from benchmarks.measure import Measure, measured
 from benchmarks.plots.figures import wear_side_by_side
+from benchmarks.ratios import ratio_intervals
 from benchmarks.window_case import (
     BEDS,
     BUMPS,
@@ -43,7 +44,6 @@ from benchmarks.window_case import (
 )
 from bulkwear.postproc.plots.style import save
 from bulkwear.postproc.readers.cycle_folders import cycle_files, cycle_folders
-from bulkwear.workflows.cases.sliding_sample.comparison import ratio_intervals
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.accounting import HISTORY
@@ -135,7 +135,7 @@ def run_row(case: Case, chain: Chain) -> dict[str, Any]:
 def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per surface and bed: sliding work per metre, and over the full bed's, with intervals; and the cost.
 
-    runs: as from `run_row`. A packing is what is repeated; scatter between packings is pooled over the beds of a
+    runs: as from `run_row`. A packing is what is repeated; one scatter between packings is assumed for the beds of a
     surface (`ratio_intervals`). scatter: standard deviation of ln(work) between packings; second_half_...: the same
     ratio over the second half of the travel; force_over_full: mean normal force over the full bed's; cheaper_in_...:
     cost of the full bed over the bed's own, means over the packings
@@ -156,9 +156,7 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
         parts.append(table.assign(surface=surface, **over))
     names = {
         "setting": "bed",
-        "runs": "packings",
         "mean": "sliding_work_J_per_m",
-        "deviation": "scatter",
         "ratio": "wear_over_full",
     }
     return pd.concat(parts, ignore_index=True).rename(columns=names)
@@ -215,7 +213,7 @@ def packings_of(runs: pd.DataFrame) -> str:
 
 def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
     """Return the page of results; table: as from `comparison`, runs: what it was made from."""
-    names, freedom = ["surface", "bed"], " and ".join(f"{number:g}" for number in table["freedom"].unique())
+    names, freedom = ["surface", "bed"], " and ".join(f"{number:g}" for number in table["freedom"].unique() if number)
     wear = ["packings", "sliding_work_J_per_m", "low", "high", "scatter", "wear_over_full", "ratio_low", "ratio_high"]
     cost = ["bed_length_m", "time_step_s", "triangles", "particles", "particle_steps", "processor_s", "bed_processor_s"]
     surfaces, minutes = list(dict.fromkeys(runs["surface"])), runs["processor_s"].sum() / 60.0
@@ -234,10 +232,10 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
         "\n".join(bullet(text) for text in remarks(runs)),
         "## Wear",
         prose(
-            f"Low and high are {100 * LEVEL:g} % intervals by Student's t on {freedom} degrees of freedom: what is"
+            f"Low and high are {100 * LEVEL:g} % intervals by Student's t on {freedom or 0} degrees of freedom: what is"
             " repeated is the packing, runs of two beds are independent samples even where their seeds are equal, and"
-            " the scatter between packings (standard deviation of the logarithm) is taken to be that of all beds of a"
-            " surface together. Ratios are of geometric means."
+            " the scatter between packings (standard deviation of the logarithm) is assumed to be one for all beds of a"
+            " surface. Ratios are of geometric means."
         ),
         markdown(table[[*names, *wear]], digits),
         prose(

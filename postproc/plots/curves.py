@@ -22,23 +22,27 @@ from bulkwear.postproc.plots.style import (
     new_figure,
     scaled,
 )
+from bulkwear.postproc.tables.packings import mean_along
 
 FEW_ROWS = 2  # design rows that are drawn in full; more become small multiples or means
 
 
 def wear_against_travel(history: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw cumulative wear (mm3) against travel (mm), one small multiple per design row.
+    """Draw cumulative wear (mm3) against travel (mm), one small multiple per setting: the mean over its packings, and
+    each of them thin where there are several.
 
     history: as from `analysis.history.wear_history`. Applied volume is drawn where any was applied.
     """
-    rows = list(dict.fromkeys(history["row"]))
+    rows = list(dict.fromkeys(history["setting"]))
     figure = new_figure(remarks, 4.0 if len(rows) <= FEW_ROWS else LARGEST_HEIGHT)
     several = len(rows) > 1
     applied = bool((history["applied_volume_mm3"] > 0.0).any())
     unit, ticks = scaled("mm³", float(history["worn_volume_mm3"].max()))
     for row, axes in facets(figure, rows).items():
-        for run in _runs(history[history["row"] == row]):
-            _wear_curves(axes, run, applied)
+        for _, packings in history[history["setting"] == row].groupby("surface", sort=False):
+            _packings(axes, packings)
+            worn, lost = (mean_along(packings, "travel_mm", f"{name}_volume_mm3") for name in ("worn", "applied"))
+            _wear_curves(axes, worn.assign(applied_volume_mm3=lost["applied_volume_mm3"]), applied)
         axes.set_ylim(bottom=0.0)
         axes.set_xlim(left=0.0)
         axes.yaxis.set_major_formatter(ticks)
@@ -48,6 +52,14 @@ def wear_against_travel(history: pd.DataFrame, remarks: Sequence[str]) -> Figure
     styles = {"worn by the law": "-"} | ({"applied to the surface": "--"} if applied else {})
     _legend(figure, list(dict.fromkeys(history["surface"])), styles, marked=True)
     return figure
+
+
+def _packings(axes: Axes, packings: pd.DataFrame) -> None:
+    """Draw the volume of each packing thin; nothing of one alone, which is its own mean."""
+    runs = _runs(packings)
+    for run in runs if len(runs) > 1 else ():
+        look = {"color": colour(run["surface"].iloc[0]), "linewidth": 0.6, "alpha": 0.7}
+        axes.plot(run["travel_mm"], run["worn_volume_mm3"], label=f"{run['run'].iloc[0]} packing", **look)
 
 
 def _runs(table: pd.DataFrame) -> list[pd.DataFrame]:

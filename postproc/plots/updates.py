@@ -63,17 +63,17 @@ def wear_updates(updates: pd.DataFrame, angle_bound: float, remarks: Sequence[st
 
 
 def worst_updates(summary: pd.DataFrame, angle_bound: float, remarks: Sequence[str]) -> Figure:
-    """Draw the worst of each run's updates against the design row: points, and remeshed faces as bars.
+    """Draw the worst update of each setting and surface: points, and remeshed faces as bars.
 
     summary: as from `analysis.updates.update_summary`; angle_bound: degrees, below which faces are remeshed.
     """
     figure, panels = _panels(remarks, angle_bound)
-    rows, surfaces = (list(dict.fromkeys(summary[name])) for name in ("row", "surface"))
+    rows, surfaces = (list(dict.fromkeys(summary[name])) for name in ("setting", "surface"))
     faces = _face_axes(panels[ANGLE], summary)
     for index, surface in enumerate(surfaces):
         runs = summary[summary["surface"] == surface]
         shade, marker = _look(surface)
-        places = np.array([rows.index(row) for row in runs["row"]]) + (index - 0.5) * BAR_WIDTH
+        places = np.array([rows.index(row) for row in runs["setting"]]) + (index - 0.5) * BAR_WIDTH
         for column, (panel, style) in LINES.items():
             drawn = {"color": shade, "label": f"{surface} {column}", "markersize": 5, "clip_on": False}
             filled = {"markerfacecolor": shade if style == "-" else "white"}

@@ -10,17 +10,20 @@ import pandas as pd
 
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.packings import BY, over_packings
 
+RUN = ["run", "row", "setting", "packing", "surface"]  # what a table of runs says of each
+DIRECTIONS = {"vertical_force_N": "vertical", "drag_force_N": "drag"}
 ROWS_PER_RUN = 400  # forces drawn per run; more would not show in a figure
 
 
 def runs_of(design: str | Path) -> pd.DataFrame:
-    """Return run, row and surface of every run of a design table, as text."""
-    return pd.read_csv(design, dtype={"run": str, "row": str, "surface": str})[["run", "row", "surface"]]
+    """Return RUN of every run of a design table, names as text."""
+    return pd.read_csv(design, dtype=dict.fromkeys(RUN, str) | {"packing": int})[RUN]
 
 
 def wear_history(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
-    """Return cumulative wear after each cycle of each run, from zero: run, row, surface, cycle, travel_mm,
+    """Return cumulative wear after each cycle of each run, from zero: RUN, cycle, travel_mm,
     worn_volume_mm3 (what the law takes), applied_volume_mm3 (what the surface has lost),
     carried_volume_mm3.
 
@@ -59,7 +62,7 @@ def _rows_of_cycles(folder: Path, name: str) -> pd.DataFrame:
 
 
 def wear_within_cycles(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
-    """Return cumulative wear along the travel of each run, from zero: run, row, surface, cycle, travel_mm,
+    """Return cumulative wear along the travel of each run, from zero: RUN, cycle, travel_mm,
     worn_volume_mm3, base_worn_volume_mm3, pattern_worn_volume_mm3 (what the law takes).
 
     Finer than `wear_history` where cycles were looked into: about every solver.wear_interval_mm of travel.
@@ -79,7 +82,7 @@ def _run_stretches(run: dict[str, str], folder: Path) -> pd.DataFrame:
 
 
 def force_history(design: str | Path, run_folders: Sequence[str | Path]) -> pd.DataFrame:
-    """Return the bed's force on the whole mesh along the travel: run, row, surface, travel_mm, vertical_force_N
+    """Return the bed's force on the whole mesh along the travel: RUN, travel_mm, vertical_force_N
     (down), drag_force_N (along the bed's motion), side_force_N; at most about `ROWS_PER_RUN` evenly spaced
     rows per run, each the mean over its stretch of travel.
 
@@ -106,12 +109,7 @@ def _run_forces(run: dict[str, str], folder: Path) -> pd.DataFrame:
 
 
 def force_summary(forces: pd.DataFrame) -> pd.DataFrame:
-    """Return mean, 10th and 90th percentile of vertical and drag force (N) of each run along its travel."""
-    names = ("vertical_force_N", "drag_force_N")
-    grouped = forces.groupby(["run", "row", "surface"], sort=False)
-    columns = {}
-    for name in names:
-        columns[f"mean_{name}"] = grouped[name].mean()
-        columns[f"low_{name}"] = grouped[name].quantile(0.1)
-        columns[f"high_{name}"] = grouped[name].quantile(0.9)
-    return pd.DataFrame(columns).reset_index()
+    """Return direction (vertical or drag), setting, surface, mean_force_N, packings and the interval of the mean."""
+    runs = forces.groupby(RUN, sort=False)[list(DIRECTIONS)].mean().reset_index().rename(columns=DIRECTIONS)
+    table = runs.melt(RUN, list(DIRECTIONS.values()), "direction", "mean_force_N")
+    return over_packings(table, "mean_force_N", log=False, by=("direction", *BY))

@@ -9,8 +9,10 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.tables.packings import first_packings, relative_wear_of_settings
 
 MEANS = ("mean_normal_force_N", "bed_over_floor_velocity")  # over time; the second where friction alone moves a bed
+NAMES = dict.fromkeys(("run", "row", "setting", "surface"), str)
 THROUGH = "through_nodes"  # at the end: nodes at which the local thickness is worn away
 AT_THE_END = ("time_s", "travel_m", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
 SUMMED = (
@@ -52,7 +54,7 @@ def relative_wear(table: pd.DataFrame) -> pd.Series:
 
 def totals_of_runs(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
     """Return the design table with the totals of every run; files in the order of the design's rows."""
-    runs = pd.read_csv(design, keep_default_na=False, na_values=[""], dtype={"run": str, "row": str})
+    runs = pd.read_csv(design, keep_default_na=False, na_values=[""], dtype=NAMES)
     totals = pd.DataFrame([run_summary(pd.read_csv(path)) for path in wear_files])
     return pd.concat([runs, totals], axis=1)
 
@@ -65,12 +67,7 @@ def summary_table(design: str | Path, wear_files: Sequence[str | Path]) -> pd.Da
 
 def read_summary(path: str | Path) -> pd.DataFrame:
     """Return a study's summary.csv with names as text."""
-    return pd.read_csv(path, dtype={"run": str, "row": str, "surface": str})
-
-
-def read_history(path: str | Path) -> pd.DataFrame:
-    """Return the table of wear against travel with names as text."""
-    return pd.read_csv(path, dtype={"run": str, "row": str, "surface": str})
+    return pd.read_csv(path, dtype=NAMES)
 
 
 def patterned_name(surfaces: Iterable[str]) -> str:
@@ -80,14 +77,12 @@ def patterned_name(surfaces: Iterable[str]) -> str:
 
 
 def rows_to_show(summary: pd.DataFrame, most: int = 1) -> list[str]:
-    """Return up to `most` design rows for figures that cannot show all: lowest relative wear first.
-
-    Studies without plain runs show their first rows.
+    """Return up to `most` design rows for figures that cannot show all, each the first packing of its setting: lowest
+    relative wear first. Studies without plain runs show their first rows.
     """
-    rows = list(dict.fromkeys(summary["row"]))
-    best = summary.dropna(subset=["wear_over_plain"])
-    best = best[best["surface"] != PLAIN].sort_values("wear_over_plain", kind="stable")["row"]
-    return list(dict.fromkeys([*best, *rows]))[:most]
+    rows = dict(zip(*(first_packings(summary)[name] for name in ("setting", "row")), strict=True))
+    best = relative_wear_of_settings(summary).sort_values("wear_over_plain", kind="stable")["setting"]
+    return [rows[setting] for setting in dict.fromkeys([*best, *rows])][:most]
 
 
 def runs_of_rows(summary: pd.DataFrame, rows: Sequence[str]) -> list[str]:

@@ -9,13 +9,12 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.tables.display import in_display_units
-from bulkwear.postproc.tables.history import runs_of
-
-RUN = ["run", "row", "surface"]
+from bulkwear.postproc.tables.history import RUN, runs_of
+from bulkwear.postproc.tables.packings import BY
 
 
 def wear_updates(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:
-    """Return what each cycle's update did: run, row, surface, cycle, cycle_start_mm and travel_mm (its ends),
+    """Return what each cycle's update did: RUN, cycle, cycle_start_mm and travel_mm (its ends),
     applied_percent and carried_percent (of what the law takes in the cycle; carried: by its end), step_demand (step
     that the cycle's wear asked for over the cap of the edges, -), step_taken (largest step over the largest cap,
     -), smallest_angle_deg, remeshed_faces, bad_faces_left, balance_error (-, of the law's volume).
@@ -48,8 +47,9 @@ def _run_updates(wear: pd.DataFrame) -> pd.DataFrame:
 
 
 def update_summary(updates: pd.DataFrame) -> pd.DataFrame:
-    """Return the worst of each run's updates, for studies of many rows: lowest applied_percent and smallest angle,
-    largest carried_percent, step_demand, step_taken, bad_faces_left and balance_error, the sum of remeshed_faces.
+    """Return the worst update of all packings by setting and surface, for studies of many settings: lowest
+    applied_percent and smallest angle, largest carried_percent, step_demand, step_taken, bad_faces_left and
+    balance_error, the sum of remeshed_faces.
 
     updates: as from `wear_updates`.
     """
@@ -63,7 +63,7 @@ def update_summary(updates: pd.DataFrame) -> pd.DataFrame:
         "bad_faces_left": "max",
         "balance_error": "max",
     }
-    return updates.groupby(RUN, sort=False).agg(worst).reset_index()
+    return updates.groupby(list(BY), sort=False).agg(worst).reset_index()
 
 
 def drawn_in_log(values: pd.Series) -> np.ndarray:

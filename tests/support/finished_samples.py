@@ -95,23 +95,23 @@ def _write_costs(folder: Path, study: Study) -> None:
 
 def write_flow(folder: Path, study: Study) -> None:
     """Write the regimes of all runs, at a relative velocity of 30 %, and a steady window of each."""
-    runs = [{"run": run.name, "row": run.row, "surface": run.surface} for run in study.runs]
+    runs = pd.DataFrame(study.design_table())[["run", "row", "setting", "packing", "surface"]]
     (folder / "flow").mkdir()
-    regimes = pd.DataFrame(runs).assign(regime="continuous", steady=True, relative_velocity=0.3)
+    regimes = runs.assign(regime="continuous", steady=True, relative_velocity=0.3)
     regimes.to_csv(folder / "flow" / "regimes.csv", index=False)
-    steady = pd.DataFrame(runs).assign(measure="relative_gradient", mean=0.6, steady=True)
+    steady = runs[["run", "row", "surface"]].assign(measure="relative_gradient", mean=0.6, steady=True)
     steady.assign(published_mean=0, published_deviation=0).to_csv(folder / "flow" / "steady.csv", index=False)
 
 
 def write_findings(folder: Path) -> None:
     """Write the two tables of findings, a line each."""
     (folder / "findings").mkdir()
-    finding = {"key": "x", "finding": "R12 wears more", "source": "Yan 2022", "found": "0.98"}
-    finding |= {"verdict": "cannot be said", "reason": "too near to 1"}
+    finding = {"key": "x", "finding": "R12 wears more", "source": "Yan 2022", "claimed": "above 1", "found": "0.98"}
+    finding |= {"verdict": "cannot be said", "factor": np.nan, "reason": "the direction is open"}
     pd.DataFrame([finding]).to_csv(folder / "findings" / "findings.csv", index=False)
     run = {"row": "R5", "regime": "continuous", "published_regime": "", "steady": False}
     numbers = ("relative_velocity_percent", "wear_over_plain", "normalised_wear", "force_over_plain")
-    numbers += ("interval_low", "interval_high", "published_model", "bottom_spin_over_plain")
+    numbers += ("packings", "interval_low", "interval_high", "published_model", "bottom_spin_over_plain")
     run |= {"published_wear_over_plain": "", **dict.fromkeys(numbers, 0.5)}
     pd.DataFrame([run]).to_csv(folder / "findings" / "runs.csv", index=False)
 

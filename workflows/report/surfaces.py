@@ -32,12 +32,14 @@ def worn_surface(job: Job) -> Any:
     from bulkwear.postproc.plots import pictures
     from bulkwear.postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
     from bulkwear.postproc.tables.history import runs_of
+    from bulkwear.postproc.tables.packings import first_packings, shown_remark
 
     runs, deformed = runs_of(job.files.design), job.told.deformed
     meshes = read_worn_surfaces(runs["run"], job.files.surfaces)
     depths = depth_table(meshes, deformed)
-    remarks = [*job.remarks, carried_remark(meshes, deformed)]
-    return pictures.worn_surface(meshes, runs, deformed, depths, depth_quantity(deformed), remarks), depths
+    remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(runs)]
+    shown = first_packings(runs)
+    return pictures.worn_surface(meshes, shown, deformed, depths, depth_quantity(deformed), remarks), depths
 
 
 @figure(
@@ -83,20 +85,22 @@ def worn_surface_3d(job: Job) -> Any:
     sample can set far lower. Where a line reaches 1, wear is carried on. Smallest angle of the mesh after
     remeshing, with the bound below which faces are remeshed (dotted); the bars are the faces remeshed. Balance:
     pristine minus present volume, plus carried, against the wear law's volume of all cycles, over that volume; no
-    point where it closes exactly. Studies of more than two design rows show the worst cycle of each run, and all
-    its remeshed faces.
+    point where it closes exactly. Studies of more than two design rows show the worst cycle of all packings of each
+    row, and all remeshed faces.
     """,
 )
 def wear_updates(job: Job) -> Any:
     """Draw the updates along the travel, or the worst per run where there are many design rows."""
     from bulkwear.postproc.plots import curves, updates
+    from bulkwear.postproc.tables.packings import first_packings, shown_remark
     from bulkwear.postproc.tables.updates import update_summary
     from bulkwear.postproc.tables.updates import wear_updates as table_of
 
-    table, draw = table_of(job.files.design, job.files.wear), updates.wear_updates
-    if table["row"].nunique() > curves.FEW_ROWS:
-        table, draw = update_summary(table), updates.worst_updates
-    return draw(table, job.told.angle_bound, job.remarks), table
+    table, bound = table_of(job.files.design, job.files.wear), job.told.angle_bound
+    if table["setting"].nunique() > curves.FEW_ROWS:
+        worst = update_summary(table)
+        return updates.worst_updates(worst, bound, job.remarks), worst
+    return updates.wear_updates(first_packings(table), bound, [*job.remarks, *shown_remark(table)]), table
 
 
 @figure(

@@ -16,8 +16,10 @@ REMARKS = [
 
 
 def runs(*rows):
-    """Run, row and surface of the convex and the plain run of each row."""
-    return [{"run": f"{row}_{s}", "row": row, "surface": s} for row in rows for s in ("convex", "plain")]
+    """Names of the convex and the plain run of each row, a setting of its own."""
+    return [
+        {"run": f"{row}_{s}", "row": row, "setting": row, "surface": s} for row in rows for s in ("convex", "plain")
+    ]
 
 
 def history_of(*rows, applied=0.5):
@@ -62,6 +64,19 @@ def test_wear_is_drawn_as_tabled():
         np.testing.assert_array_equal(drawn[f"{run} applied"], rows[["travel_mm", "applied_volume_mm3"]])
     assert figure.axes[0].get_xlabel() == "Travel (mm)"
     assert "(mm³)" in figure.axes[0].get_ylabel()
+
+
+def test_packings_are_thin_and_their_mean_is_thick():
+    """Of two packings, one of them looked at elsewhere along the travel, the mean line is half of their sum."""
+    first = history_of("R9").assign(packing=1)
+    other = first.assign(packing=2, run=first["run"] + "-2", worn_volume_mm3=3.0 * first["worn_volume_mm3"])
+    other.loc[other["travel_mm"] == 10.0, ["travel_mm", "worn_volume_mm3"]] *= 1.2
+    (axes,) = curves.wear_against_travel(pd.concat([first, other], ignore_index=True), REMARKS).axes
+    drawn = {line.get_label(): line for line in axes.get_lines()}
+    np.testing.assert_allclose(drawn["R9_plain archard"].get_ydata(), [0.0, 40.0, 80.0])
+    thin, thick = (drawn[f"R9_plain {name}"] for name in ("packing", "archard"))
+    np.testing.assert_allclose(drawn["R9_plain-2 packing"].get_ydata(), [0.0, 72.0, 120.0])
+    assert thin.get_linewidth() < thick.get_linewidth()
 
 
 def test_a_rigid_study_has_no_applied_curve():

@@ -31,7 +31,7 @@ def table_of(*rows, faces=FACES):
             "bad_faces_left": 0,
             "balance_error": [0.0, 1e-12, 1e-11],
         }
-        tables.append(pd.DataFrame(columns).assign(run=f"{row}_{surface}", row=row, surface=surface))
+        tables.append(pd.DataFrame(columns).assign(run=f"{row}_{surface}", setting=row, surface=surface))
     return pd.concat(tables, ignore_index=True)
 
 

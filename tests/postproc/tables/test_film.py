@@ -43,6 +43,8 @@ def test_the_patterned_run_of_the_row_in_detail_is_filmed():
         {
             "run": ["A_plain", "A_convex", "B_plain", "B_convex"],
             "row": ["A", "A", "B", "B"],
+            "setting": ["A", "A", "B", "B"],
+            "packing": 1,
             "surface": ["plain", "convex"] * 2,
             "wear_over_plain": [1.0, 0.9, 1.0, 0.7],
         }

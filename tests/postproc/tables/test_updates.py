@@ -26,7 +26,9 @@ WEAR = {
 @pytest.fixture
 def updates(tmp_path):
     """The table of a design of one row, whose two runs have done the same."""
-    (tmp_path / "design.csv").write_text("run,row,surface,height_mm\n1_convex,1,convex,6\n1_plain,1,plain,6\n")
+    (tmp_path / "design.csv").write_text(
+        "run,row,setting,packing,surface\n1_convex,1,1,1,convex\n1_plain,1,1,1,plain\n"
+    )
     pd.DataFrame(WEAR).to_csv(tmp_path / "wear.csv", index=False)
     return wear_updates(tmp_path / "design.csv", [tmp_path / "wear.csv"] * 2)
 
@@ -56,14 +58,15 @@ def test_steps_stand_against_their_caps(updates):
 
 def test_a_rigid_cap_is_no_division(tmp_path):
     """Where no node may move there is no share of the cap."""
-    (tmp_path / "design.csv").write_text("run,row,surface\n1_plain,1,plain\n")
+    (tmp_path / "design.csv").write_text("run,row,setting,packing,surface\n1_plain,1,1,1,plain\n")
     pd.DataFrame({**WEAR, "step_limit_m": 0.0}).to_csv(tmp_path / "wear.csv", index=False)
     assert wear_updates(tmp_path / "design.csv", [tmp_path / "wear.csv"])["step_taken"].isna().all()
 
 
-def test_summary_is_the_worst_of_each_run(updates):
-    """Per run: least applied, most carried, largest steps and errors, smallest angle, all remeshed faces."""
-    summary = update_summary(updates).set_index("run").loc["1_plain"]
+def test_summary_is_the_worst_of_all_packings(updates):
+    """Of two packings: least applied, most carried, largest steps, smallest angle, all remeshed faces."""
+    calm = updates.assign(packing=2, remeshed_faces=0, step_demand=0.1, smallest_angle_deg=33.0)
+    summary = update_summary(pd.concat([updates, calm])).set_index("surface").loc["plain"]
     expected = {
         "applied_percent": 50.0,
         "carried_percent": 50.0,

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, published_rows
+from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, plain_runs, published_rows
 from bulkwear.workflows.report.page_parameters import is_deformed
-from bulkwear.workflows.report.products import Job, every_run, figure
+from bulkwear.workflows.report.products import Job, every_run, figure, tables
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DESIGN, SUMMARY = "results/{study}/design.csv", "results/{study}/summary.csv"
 SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
@@ -21,7 +24,7 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
     Cumulative wear volume of the sample, without skirt. Full line: worn by the law from the loads. Dashed line:
     what the surface has lost by then; the difference is carried to later cycles because a cycle may move a node
     only so far. A rigid study applies nothing and has no dashed line. One point per wear cycle; the run-in is not
-    counted.
+    counted. Where a setting has several packings, thin lines are theirs and the thick one is their mean.
     """,
 )
 def wear_against_travel(job: Job) -> Any:
@@ -33,23 +36,33 @@ def wear_against_travel(job: Job) -> Any:
     return curves.wear_against_travel(history, job.remarks), history
 
 
+@tables(inputs={"summary": SUMMARY}, tables={"intervals": "intervals.csv"}, when=plain_runs)
+def intervals(job: Job) -> dict[str, pd.DataFrame]:
+    """Tell the wear of every setting over its plain twin's, with its interval over the packings."""
+    from bulkwear.postproc.tables.packings import relative_wear_of_settings
+    from bulkwear.postproc.tables.summary import read_summary
+
+    return {"intervals": relative_wear_of_settings(read_summary(job.files.summary))}
+
+
 @figure(
     "Wear",
     "Wear of base and pattern",
     inputs={"summary": SUMMARY},
     caption="""
-    Worn volume on the flat base and on the pattern, over the volume of the plain sample of the same design row. The
-    plain sample is 1 by definition (dashed line).
+    Worn volume on the flat base and on the pattern, over the volume of the plain sample in the same packing, geometric
+    mean over the packings. The plain sample is 1 by definition (dashed line).
     """,
 )
 def wear_split(job: Job) -> Any:
     """Draw the wear of base and pattern."""
+    from bulkwear.postproc.tables.packings import packings_remark
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample import comparison
     from bulkwear.workflows.cases.sliding_sample.plots import bars
 
     split = comparison.wear_split(read_summary(job.files.summary))
-    return bars.wear_split(split, job.remarks), split
+    return bars.wear_split(split, [*job.remarks, packings_remark(split["packings"])]), split
 
 
 @figure(
@@ -71,10 +84,12 @@ def depth_distribution(job: Job) -> Any:
     from bulkwear.postproc.plots import curves
     from bulkwear.postproc.tables import depths
     from bulkwear.postproc.tables.history import runs_of
+    from bulkwear.postproc.tables.packings import first_packings, shown_remark
 
     shares = depths.depth_distribution(pd.read_csv(job.files.depths, usecols=["run", "depth_um", "area_mm2"]))
     table = runs_of(job.files.design).merge(shares, on="run")
-    return curves.depth_distribution(table, depths.depth_quantity(job.told.deformed), job.remarks), table
+    remarks = [*job.remarks, *shown_remark(table)]
+    return curves.depth_distribution(first_packings(table), depths.depth_quantity(job.told.deformed), remarks), table
 
 
 @figure(
@@ -85,7 +100,8 @@ def depth_distribution(job: Job) -> Any:
     caption="""
     Particles at the end of the last wear cycle, cut along the travel through the middle of the sample; the half
     towards the viewer is not drawn. Colour: speed relative to the sample. Particles are drawn at their simulated,
-    coarse-grained size. In studies of several design rows the row with the lowest relative wear is shown.
+    coarse-grained size. In studies of several design rows the row with the lowest relative wear is shown, its first
+    packing.
     """,
 )
 def bed(job: Job) -> Any:
@@ -167,20 +183,21 @@ def _views(job: Job, place: int) -> Any:
     inputs={"design": DESIGN, "wear": WEAR},
     caption="""
     Force of the bed on the sample after the run-in: vertical (downwards) and drag (along the motion of the bed).
-    The force includes the skirt. Studies of more than two design rows show mean values, with bars from the 10th to
-    the 90th percentile along the travel.
+    The force includes the skirt. Studies of more than two design rows show mean values.
     """,
 )
 def forces(job: Job) -> Any:
     """Draw the forces on the samples: along the travel, or their means where there are many design rows."""
     from bulkwear.postproc.plots import curves
     from bulkwear.postproc.tables.history import force_history, force_summary
+    from bulkwear.postproc.tables.packings import first_packings, packings_remark, shown_remark
     from bulkwear.workflows.cases.sliding_sample.plots import bars
 
-    table, draw = force_history(job.files.design, [Path(path).parent for path in job.files.wear]), curves.forces
-    if table["row"].nunique() > curves.FEW_ROWS:
-        table, draw = force_summary(table), bars.mean_forces
-    return draw(table, job.remarks), table
+    table = force_history(job.files.design, [Path(path).parent for path in job.files.wear])
+    if table["setting"].nunique() > curves.FEW_ROWS:
+        means = force_summary(table)
+        return bars.mean_forces(means, [*job.remarks, packings_remark(means["packings"])]), means
+    return curves.forces(first_packings(table), [*job.remarks, *shown_remark(table)]), table
 
 
 @figure(
@@ -197,9 +214,10 @@ def forces(job: Job) -> Any:
 )
 def wear_law_comparison(job: Job) -> Any:
     """Draw the volumes by the study's law and by the solver's Finnie model."""
+    from bulkwear.postproc.tables.packings import packings_remark
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.comparison import law_comparison
     from bulkwear.workflows.cases.sliding_sample.plots import bars
 
     table = law_comparison(read_summary(job.files.summary))
-    return bars.wear_law_comparison(table, job.remarks), table
+    return bars.wear_law_comparison(table, [*job.remarks, packings_remark(table["packings"])]), table

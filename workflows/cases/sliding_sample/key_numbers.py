@@ -9,43 +9,87 @@ from typing import Any
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN, Estimate, estimates
 from bulkwear.postproc.tables.depths import depth_summary
 from bulkwear.postproc.tables.display import in_display_units
-from bulkwear.postproc.tables.summary import read_history, read_summary
-from bulkwear.workflows.cases.sliding_sample.comparison import cycle_ratios, relative_wear_intervals
-from bulkwear.workflows.cases.sliding_sample.screening.findings import UNSURE
+from bulkwear.postproc.tables.packings import BY, over_packings
+from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
 from bulkwear.workflows.report.text import number
 
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
+DIGITS = 2  # significant ones of a ratio in words
+PERCENT = 100.0
+PER_METRE = "worn_volume_per_metre_m3_per_m"
+INTERVAL = f"{PERCENT * CONFIDENCE:g} % interval"
 
 
 def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
-    """Return the cards that answer a study's question, and the numbers of every run."""
-    summary = read_summary(folder / "summary.csv")
-    history = read_history(folder / "figures" / "wear_against_travel.csv")
-    depths = depth_summary(
-        pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=["run", "depth_um", "area_mm2"])
-    )
-    settings = study["settings"]
+    """Return the answer to a study's question in words and cards, and the numbers of every setting."""
+    summary, settings = read_summary(folder / "summary.csv"), study["settings"]
+    columns = ["run", "depth_um", "area_mm2"]
+    depths = depth_summary(pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=columns, dtype={"run": str}))
     acceleration = settings["wear"]["acceleration"]
-    results = result_table(summary, depths, history, acceleration)
-    results = results.merge(relative_wear_intervals(summary, study["told"]["replicates"]), on="run", how="left")
+    results = result_table(summary, depths, acceleration)
     needless = [
         *(["carried_share_percent"] if not settings["wear"]["deform"] else []),
         *(["real_volume_per_metre_mm3_per_m"] if acceleration == 1.0 else []),
-        *(["lowest_cycle_ratio", "highest_cycle_ratio"] if settings["sliding"]["cycles"] == 1 else []),
     ]
-    shown = results.drop(columns=["row", "surface", *needless], errors="ignore").dropna(axis="columns", how="all")
+    shown = results.drop(columns=needless).dropna(axis="columns", how="all")
     return [
-        *([Cards(found)] if (found := cards(results, acceleration)) else []),
+        *(Text(sentence) for sentence in answers(summary)),
+        *([Cards(found)] if (found := cards(summary, acceleration)) else []),
         Table(shown, "key_numbers"),
-        Text(note(settings, len(study["design_rows"]) > 1, bool(results["interval_low"].notna().any()))),
+        Text(note(settings, results["packings"])),
     ]
 
 
-def note(settings: Mapping[str, Any], compared: bool, repeated: bool) -> str:
-    """Return what must be said of the key numbers; whether there are several rows, and rows with other packings."""
+def wear_over_plain(summary: pd.DataFrame) -> dict[tuple[str, str], Estimate]:
+    """Return the wear over plain (-) by setting and surface, lowest first; those without a plain twin are left out."""
+    twins = summary[(summary["surface"] != PLAIN) & summary["wear_over_plain"].notna()]
+    keys = pd.MultiIndex.from_frame(twins[list(BY)]).to_flat_index()
+    found = estimates(keys, twins["wear_over_plain"].to_numpy(), log=True)
+    return dict(sorted(found.items(), key=lambda item: item[1].value))
+
+
+def answers(summary: pd.DataFrame) -> list[str]:
+    """Return what a study's patterns do to the wear: the lowest in numbers, and how many wear less and more.
+
+    More or less is said only where the interval excludes 1.
+    """
+    found = wear_over_plain(summary)
+    if not found:
+        return []
+    (setting, surface), best = next(iter(found.items()))
+    said = (
+        f"The {surface} sample of {setting} wears {best.text(DIGITS)} of the plain sample's volume{_reduction(best)}."
+    )
+    if len(found) == 1:
+        return [said]
+    less, more = (sum(each.known and _side(each) == side for each in found.values()) for side in (-1, 1))
+    open_ = len(found) - less - more
+    counts = (
+        f"{less} of {len(found)} patterns wear less than their plain twin, {more} more; of {open_} it cannot be said."
+    )
+    return [counts, f"Lowest: {said[0].lower()}{said[1:]}"]
+
+
+def _side(found: Estimate) -> int:
+    """Return -1 or 1 where the interval of a ratio lies below or above 1, 0 where it does neither."""
+    low, high = found.interval()
+    return int(low > 1.0) - int(high < 1.0)
+
+
+def _reduction(found: Estimate) -> str:
+    if not found.known:
+        return ""
+    if not (side := _side(found)):
+        return ": neither less nor more can be said"
+    return f": {PERCENT * abs(found.value - 1.0):.0f} % {'less' if side < 0 else 'more'}"
+
+
+def note(settings: Mapping[str, Any], packings: pd.Series) -> str:
+    """Return what must be said of the key numbers; packings: of every line."""
     acceleration = settings["wear"]["acceleration"]
     said = ["Wear by the study's law on the sample, without the skirt."]
     if acceleration != 1.0:
@@ -54,63 +98,62 @@ def note(settings: Mapping[str, Any], compared: bool, repeated: bool) -> str:
             f"{acceleration:g}."
         )
     said.append("Mean normal force: contact forces square to the faces, added up over the sample.")
-    if settings["sliding"]["cycles"] != 1:
-        said.append("Lowest and highest ratio: of a single wear cycle, no confidence interval.")
-    if repeated:
+    if (packings > 1).any():
         said.append(
-            "Interval: 95 % of the mean over rows that differ in their packing alone, from one scatter for all rows."
+            f"Means over the packings, of wear and its ratios geometric; low and high: {INTERVAL} of the mean, over "
+            "plain from ratios of the two samples in the same packing."
         )
-    elif compared:
-        said.append(
-            "No row is repeated with another packing, so how far these ratios scatter from packing to packing is not "
-            "known."
-        )
+    if (packings < 2).any():
+        said.append(f"{UNKNOWN.capitalize()}: numbers without an interval.")
     if settings["wear"]["deform"]:
         said.append("Carried share: worn by the law, not applied to the shape yet, see What is simplified.")
     return " ".join(said)
 
 
-def result_table(
-    summary: pd.DataFrame, depths: pd.DataFrame, history: pd.DataFrame, acceleration: float
-) -> pd.DataFrame:
-    """Return the key numbers of each run in display units: volumes, per metre as simulated and as accelerated
-    test, over plain with its range over the cycles, share of the pattern, carried share, forces and depths.
+def result_table(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float) -> pd.DataFrame:
+    """Return the key numbers of each setting and surface, in display units: wear over plain and per metre, as simulated
+    and as accelerated test, with intervals over the packings; means of the share of the pattern, the carried share,
+    forces and depths.
     """
     volume = summary["worn_volume_m3"]
-    table = summary[["run", "row", "surface", "travel_m", "worn_volume_m3"]].assign(
-        worn_volume_per_metre_m3_per_m=volume / summary["travel_m"],
+    table = summary[[*BY, "travel_m", "worn_volume_m3", "wear_over_plain"]].assign(
+        **{PER_METRE: volume / summary["travel_m"]},
         real_volume_per_metre_m3_per_m=volume / summary["travel_m"] / acceleration,
-        wear_over_plain=summary["wear_over_plain"],
-        pattern_share_percent=100.0 * summary["pattern_worn_volume_m3"] / volume,
-        carried_share_percent=(100.0 * summary["carried_volume_m3"] / volume).round(ROUNDING_DIGITS).abs(),
+        pattern_share_percent=PERCENT * summary["pattern_worn_volume_m3"] / volume,
+        carried_share_percent=(PERCENT * summary["carried_volume_m3"] / volume).round(ROUNDING_DIGITS).abs(),
         mean_normal_force_N=summary["mean_normal_force_N"],
+        **depths.set_index("run").reindex(summary["run"]).reset_index(drop=True),
     )
-    ranges = cycle_ratios(history)
-    return in_display_units(table).merge(ranges, on=["row", "surface"], how="left").merge(depths, on="run", how="left")
+    ends = ["interval_low", "interval_high"]
+    over_plain = over_packings(table, "wear_over_plain")
+    over_plain.loc[over_plain["surface"] == PLAIN, ends] = float("nan")  # 1 by definition
+    wear = over_packings(table, PER_METRE, parts=("worn_volume_m3", "real_volume_per_metre_m3_per_m"))
+    wear = wear.rename(columns={end: f"{PER_METRE.removesuffix('_m3_per_m')}_{end[9:]}_m3_per_m" for end in ends})
+    first = [*BY, "packings", "wear_over_plain", *ends]
+    named = wear.assign(**over_plain[["wear_over_plain", *ends]])
+    low_high = [name for name in wear if name.endswith(("low_m3_per_m", "high_m3_per_m"))]
+    others = [name for name in wear if name not in (*first, PER_METRE, *low_high)]
+    return in_display_units(named[[*first, PER_METRE, *low_high, *others]])
 
 
-def cards(results: pd.DataFrame, acceleration: float) -> list[tuple[str, str]]:
+def cards(summary: pd.DataFrame, acceleration: float) -> list[tuple[str, str]]:
     """Return (number, what it is) of the few that answer the question, lowest wear first; none without a plain twin."""
-    patterned = results[(results["surface"] != PLAIN) & results["wear_over_plain"].notna()]
-    if patterned.empty:
+    found = wear_over_plain(summary)
+    if not found:
         return []
-    best = patterned.sort_values("wear_over_plain", kind="stable").iloc[0]
-    plain = results[(results["row"] == best["row"]) & (results["surface"] == PLAIN)].iloc[0]
-    rate, unit = "worn_volume_per_metre_mm3_per_m", f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
-    several = len(patterned) > 1
-    which = f"{best['row']}, the lowest of {len(patterned)} rows" if several else best["row"]
-    found = [
-        (f"{best['wear_over_plain']:.3f}", f"{best['surface']} over plain wear, {which}"),
-        (number(best[rate], 3), f"{unit}, {best['run'].replace('_', ' ')}"),
-        (number(plain[rate], 3), f"{unit}, {plain['run'].replace('_', ' ')}"),
-    ]
-    if several:
-        ratio = patterned["wear_over_plain"]
-        near = int(((ratio < 1.0) & (ratio > 1.0 / (1.0 + UNSURE))).sum())
-        little = f", {near} of them by less than {100.0 * UNSURE:.0f} %" if near else ""
-        less = f"{(ratio < 1.0).sum()} of {len(patterned)}"
-        found.append((less, f"patterns wear less than their plain twin{little}"))
-    else:
-        share = f"{best['pattern_share_percent']:.0f} %"
-        found.append((share, f"of the {best['surface']} sample's wear is on its pattern"))
-    return found
+    (setting, surface), best = next(iter(found.items()))
+    several = len(found) > 1
+    which = f"{setting}, the lowest of {len(found)}" if several else setting
+    text, _, interval = best.text(DIGITS).partition(" (")
+    ends = f": {interval.removesuffix(')')}" if interval else ""
+    told = [(text, f"{surface} over plain wear, {which}{ends}")]
+    unit = f"mm³/m{' (accelerated)' if acceleration != 1.0 else ''}"
+    wear = in_display_units(over_packings(summary[[*BY, PER_METRE]], PER_METRE))
+    for name in (surface, PLAIN):
+        row = wear[(wear["setting"] == setting) & (wear["surface"] == name)].iloc[0]
+        told.append((number(row["worn_volume_per_metre_mm3_per_m"], 3), f"{unit}, {setting} {name}"))
+    if not several:
+        of_best = summary[(summary["setting"] == setting) & (summary["surface"] == surface)]
+        share = PERCENT * (of_best["pattern_worn_volume_m3"] / of_best["worn_volume_m3"]).mean()
+        told.append((f"{share:.0f} %", f"of the {surface} sample's wear is on its pattern"))
+    return told

@@ -47,11 +47,6 @@ def has_findings(study: Study) -> bool:
     return finds_regimes(study) and bool(published_rows(study))
 
 
-def regression_table(study: Study, name: str) -> str | list[str]:
-    """Return the path of a table of the study's regression, an empty list without one."""
-    return f"results/{study.name}/regression/{name}.csv" if study.factors else []
-
-
 def published_flow(study: Study) -> str:
     """Return the table of what the source tells of the flow: of its chapter 4 for particle size, else of chapter 3."""
     return f"config/published/{'particle_size' if varies_scale(study) else 'screening'}_results.csv"

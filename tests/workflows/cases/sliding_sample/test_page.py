@@ -1,8 +1,10 @@
 """The page of a study of sliding samples: key numbers, what is simplified, and which figures it has."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.sliding_sample.key_numbers import answers, cards
 from bulkwear.workflows.cases.sliding_sample.study import published_rows, replicate_settings
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.page_parameters import page_parameters
@@ -31,14 +33,42 @@ def page(study, tmp_path):
 
 def test_key_numbers(page, study):
     """Relative wear, wear per metre, share of the bumps and carried share follow from what the runs wear."""
-    results = embedded(page, f"{study.name}_key_numbers.csv").set_index("run")
-    convex = results.loc["R9_convex"]
+    results = embedded(page, f"{study.name}_key_numbers.csv").set_index(["setting", "surface"])
+    convex = results.loc[("R9", "convex")]
     assert convex["wear_over_plain"] == pytest.approx(0.8, rel=RELATIVE)
     assert convex["worn_volume_per_metre_mm3_per_m"] == pytest.approx(CYCLES * 0.8 / (CYCLES * 0.04), rel=RELATIVE)
     assert convex["pattern_share_percent"] == pytest.approx(25.0, rel=RELATIVE)
     assert convex["carried_share_percent"] == pytest.approx(50.0, rel=RELATIVE)
-    assert convex["lowest_cycle_ratio"] == pytest.approx(0.8, rel=RELATIVE)
-    assert results.loc["R9_plain", "wear_over_plain"] == 1.0
+    assert results.loc[("R9", "plain"), "wear_over_plain"] == 1.0
+
+
+def summary_of(**ratios):
+    """A summary of convex samples over their plain twins, one packing per ratio."""
+    runs = [
+        {"setting": setting, "packing": k, "surface": surface, "row": f"{setting}-{k}", "wear_over_plain": value}
+        | {"worn_volume_per_metre_m3_per_m": value, "worn_volume_m3": value, "pattern_worn_volume_m3": 0.5 * value}
+        for setting, values in ratios.items()
+        for k, ratio in enumerate(values)
+        for surface, value in (("convex", ratio), ("plain", 1.0))
+    ]
+    return pd.DataFrame(runs)
+
+
+def test_less_is_said_only_where_the_interval_leaves_out_one():
+    """The answer has the mean, its interval and the packings; a reduction in words only where it is one."""
+    sure = summary_of(R9=[0.6, 0.64, 0.68])
+    (said,) = answers(sure)
+    assert said.startswith("The convex sample of R9 wears 0.64 (95 % interval 0.55 to 0.75, 3 packings) of the plain")
+    assert said.endswith("volume: 36 % less.")
+    assert cards(sure, 1.0)[0] == ("0.64", "convex over plain wear, R9: 95 % interval 0.55 to 0.75, 3 packings")
+    (open_,) = answers(summary_of(R9=[0.5, 0.9, 1.1]))
+    assert open_.endswith("neither less nor more can be said.")
+    (alone,) = answers(summary_of(R9=[0.5]))
+    assert alone == "The convex sample of R9 wears 0.50 (one packing, scatter unknown) of the plain sample's volume."
+    counted, lowest = answers(summary_of(A=[0.5, 0.51, 0.52], B=[0.4], C=[1.5, 1.51, 1.52]))
+    assert counted == "1 of 3 patterns wear less than their plain twin, 1 more; of 1 it cannot be said."
+    assert lowest.startswith("Lowest: the convex sample of B wears 0.40 (one packing")
+    assert answers(summary_of(A=[0.5]).query("surface == 'convex'").assign(wear_over_plain=np.nan)) == []
 
 
 def test_real_volume_is_without_acceleration(config, tmp_path):
@@ -102,20 +132,20 @@ R5,4,8,60,6.0,2.0,30,11000
 """
 
 
-def test_rows_that_differ_in_their_seed_are_replicates(config, tmp_path, page):
-    """They share a setting, a published row and an interval on the page; without any it says what is not known."""
-    assert "scatter from packing to packing is not known" in page
-    assert "interval_low" not in embedded(page, "small_key_numbers.csv")
+def test_rows_that_differ_in_their_seed_are_packings(config, tmp_path):
+    """They share a setting, a published row and an interval on the page; one alone says that its scatter is unknown."""
+    one = finished_page(tmp_path / "one" / "small", load_study("small", config.project, {"packings": 1}))
+    assert "One packing, scatter unknown" in one and "interval_low" not in embedded(one, "small_key_numbers.csv")
     config.write("designs/small.csv", REPLICATES)
-    study = load_study("small", config.project)
+    study = load_study("small", config.project, {"packings": 1})
     assert replicate_settings(study) == {"R9-1": "R9", "R9-2": "R9", "R5": "R5"}
     assert published_rows(study) == {"R9-1": "R9", "R9-2": "R9", "R9": "R9"}
     text = finished_page(tmp_path / "small", study)
-    assert "Interval: 95 % of the mean" in text and "is not known" not in text
-    ends = (
-        embedded(text, "small_key_numbers.csv").set_index("run").loc["R9-2_convex", ["interval_low", "interval_high"]]
-    )
-    assert ends.tolist() == pytest.approx([0.8, 0.8], rel=RELATIVE)  # all convex runs wear 0.8 of plain ones
+    assert "95 % interval of the mean" in text
+    table = embedded(text, "small_key_numbers.csv").set_index(["setting", "surface"])
+    ends = table.loc[("R9", "convex"), ["packings", "interval_low", "interval_high"]]
+    assert ends.tolist() == pytest.approx([2, 0.8, 0.8], rel=RELATIVE)  # all convex runs wear 0.8 of plain ones
+    assert np.isnan(table.loc[("R5", "convex"), "interval_low"])
 
 
 def test_without_factors_there_is_no_regression(study):

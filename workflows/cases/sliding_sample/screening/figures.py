@@ -18,10 +18,9 @@ from bulkwear.workflows.cases.sliding_sample.study import (
     passing_beds,
     published_flow,
     published_rows,
-    regression_table,
-    replicate_settings,
     run_in,
 )
+from bulkwear.workflows.config.claims import CLAIMS_FILE
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
@@ -37,33 +36,31 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
     "Wear of patterned over plain samples",
     inputs={
         "summary": SUMMARY,
-        "history": "results/{study}/figures/wear_against_travel.csv",
         "published": PUBLISHED_RESULTS,
     },
-    told={"size_ratios": equivalent_size_ratios, "settings": replicate_settings, "published_rows": published_rows},
+    told={"size_ratios": equivalent_size_ratios, "published_rows": published_rows},
     when=compares_rows,
     caption="""
-    Worn volume of the patterned sample over that of the plain sample under the same conditions, lowest first. Below 1
-    (dashed line) the pattern wears less in total. Black bars: where rows are repeated with other packings, the 95 %
-    interval of the (geometric) mean over them, from one scatter for all rows; else the range over the single wear
-    cycles, which shows the scatter along the travel and is no confidence interval. Hollow marks: what the source's
-    text gives of the same rows. Above each bar: the equivalent size ratio of particle to bump (Yan 2022, Eq 4.18).
+    Worn volume of the patterned sample over that of the plain sample in the same packing, geometric mean over the
+    packings, lowest first. Below 1 (dashed line) the pattern wears less in total. Black bars: 95 % interval of the
+    mean, by Student's t from the scatter of the row's own packings. Hollow marks: what the source's text gives of the
+    same rows. Above each bar: the equivalent size ratio of particle to bump (Yan 2022, Eq 4.18).
     """,
 )
 def relative_wear(job: Job) -> Any:
     """Draw patterned over plain wear."""
     import pandas as pd
 
-    from bulkwear.postproc.tables.summary import read_history, read_summary
-    from bulkwear.workflows.cases.sliding_sample.comparison import by_setting, relative_wear_table, replicate_remark
+    from bulkwear.postproc.tables.packings import packings_remark
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.comparison import relative_wear_table
     from bulkwear.workflows.cases.sliding_sample.plots import bars
     from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import published_relative_wear
 
     files, told = job.files, job.told
-    runs = relative_wear_table(read_summary(files.summary), read_history(files.history), told.size_ratios)
-    table = by_setting(runs, told.settings)
+    table = relative_wear_table(read_summary(files.summary), told.size_ratios)
     published = published_relative_wear(pd.read_csv(files.published), told.published_rows)
-    return bars.relative_wear(table, published, [*job.remarks, replicate_remark(table)]), table
+    return bars.relative_wear(table, published, [*job.remarks, packings_remark(table["packings"])]), table
 
 
 # ---------------------------------------------------------------- the flow
@@ -83,17 +80,19 @@ def relative_wear(job: Job) -> Any:
     both seen from the bed at rest, averaged over 10 mm of travel (Yan 2022, Eq 3.7): 0 % for a bed that lets the
     sample pass, 100 % for particles that ride along. A flow is called discontinuous if the steady value is 85 % or
     more and particles have heaped up over the sample. Grey: the source's steady window, where the travel gets there.
-    There is a point only where a snapshot of the bed was taken. The counterpart of Yan 2022, Fig 3.10.
+    There is a point only where a snapshot of the bed was taken. Means over the packings; the regime is that of all of
+    them. The counterpart of Yan 2022, Fig 3.10.
     """,
 )
 def relative_velocity(job: Job) -> Any:
     """Bin the motion of the bed over every sample along its travel, and draw its relative velocity by regime."""
     import pandas as pd
 
-    from bulkwear.postproc.tables.history import runs_of
+    from bulkwear.postproc.tables.history import RUN, runs_of
+    from bulkwear.postproc.tables.packings import mean_along
     from bulkwear.workflows.cases.sliding_sample.flow_history import RunFlow, flow_tables, published_window
     from bulkwear.workflows.cases.sliding_sample.plots.flow import along_travel
-    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import regime_remarks
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import by_group, regime_remarks
 
     names = runs_of(job.files.design)
     folders = dict(zip(names["run"], [Path(path).parent for path in job.files.wear], strict=True))
@@ -104,8 +103,9 @@ def relative_velocity(job: Job) -> Any:
     window = published_window(published, job.told.run_in)
     lines = published[published["quantity"] == "relative_velocity"] if "of" in published else None
     label, remarks = "Relative velocity of the particles (%)", [*job.remarks, *regime_remarks(regimes)]
-    drawn = along_travel(along, "relative_velocity_percent", label, window, remarks, lines)
-    return drawn, along, {"bins": bins, "regimes": regimes}
+    column = "relative_velocity_percent"
+    means = mean_along(by_group(along.drop(columns="regime").merge(names[RUN]), regimes), "travel_mm", column)
+    return along_travel(means, column, label, window, remarks, lines), along, {"bins": bins, "regimes": regimes}
 
 
 @figure(
@@ -119,16 +119,17 @@ def relative_velocity(job: Job) -> Any:
     caption="""
     Wear volume per length of travel over stretches of some 10 mm (of whole cycles, where contacts are sampled), over
     the largest of all runs and stretches (Yan 2022, Eq 3.8 and 3.9). Rows stand in the panel of their patterned
-    run's flow regime, plain twins with them. Grey: the source's steady window, where the travel gets there. The
-    counterpart of Yan 2022, Fig 3.12, which gives no numbers in its text: the gradient is significantly higher where
-    the flow is continuous.
+    run's flow regime, plain twins with them; curves are means over the packings. Grey: the source's steady window,
+    where the travel gets there. The counterpart of Yan 2022, Fig 3.12, which gives no numbers in its text: the gradient
+    is significantly higher where the flow is continuous.
     """,
 )
 def wear_gradient(job: Job) -> Any:
     """Draw the relative wear gradient along the travel by regime; where flow and wear are steady, in a table."""
     import pandas as pd
 
-    from bulkwear.postproc.tables.history import wear_within_cycles
+    from bulkwear.postproc.tables.history import RUN, runs_of, wear_within_cycles
+    from bulkwear.postproc.tables.packings import mean_along
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.evaluation import steady_table
     from bulkwear.workflows.cases.sliding_sample.flow_history import published_window
@@ -140,7 +141,8 @@ def wear_gradient(job: Job) -> Any:
     window = published_window(pd.read_csv(job.files.published), job.told.run_in)
     steady = steady_table(read_summary(job.files.along), table, window)
     label, remarks = "Wear gradient over the largest of all runs (-)", [*job.remarks, *regime_remarks(regimes)]
-    return along_travel(table, "relative_gradient", label, window, remarks), table, {"steady": steady}
+    means = mean_along(table.merge(runs_of(job.files.design)[RUN]), "travel_mm", "relative_gradient")
+    return along_travel(means, "relative_gradient", label, window, remarks), table, {"steady": steady}
 
 
 @tables(
@@ -184,8 +186,8 @@ OF_PROFILES = {
     components over it, over the sample and beside it (in side bins sideways is outwards). Means over the steady window
     of the relative velocity, or over all of the travel where there is none; bins with fewer than five particles are
     left out. Layers are 5 mm times the particle scale high, the published ones 5 mm. Single values that the source's
-    text gives stand as hollow marks; triangles where it gives a bound. The counterpart of Yan 2022, Fig 3.19 and 3.20,
-    of the rows of least wear in the two flow regimes.
+    text gives stand as hollow marks; triangles where it gives a bound. Means over the packings. The counterpart of
+    Yan 2022, Fig 3.19 and 3.20, of the rows of least wear in the two flow regimes.
     """,
 )
 def velocity_profiles(job: Job) -> Any:
@@ -202,9 +204,9 @@ def velocity_profiles(job: Job) -> Any:
     **OF_PROFILES,
     caption="""
     Magnitude of the averaged angular velocity by layer, over the sample and beside it, in the same windows and layers
-    as the velocity profiles. As in the source, components are averaged first; the table has the mean of the particles'
-    own angular speeds as well, which is higher where they do not turn alike. Rolling instead of
-    sliding next to the surface is the source's explanation of the lower wear.
+    as the velocity profiles, means over the packings. As in the source, components are averaged first; the table has
+    the mean of the particles' own angular speeds as well, which is higher where they do not turn alike. Rolling instead
+    of sliding next to the surface is the source's explanation of the lower wear.
     Coarse-grained particles turn more slowly than real ones at the same difference of velocity, in inverse proportion
     to their size: speeds compare within a row only. Hollow marks: single values of the source's text; its "top layer"
     of R5 is read as the layer next to the sample. The counterpart of Yan 2022, Fig 3.21 and 3.22.
@@ -219,9 +221,10 @@ def angular_velocity_profiles(job: Job) -> Any:
 
 
 def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return the profiles of the rows that are shown in detail, and what is published of them."""
+    """Return the profiles of the rows shown in detail, means over the packings, and what is published of them."""
     import pandas as pd
 
+    from bulkwear.postproc.tables.packings import mean_profiles
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
         of_published_rows,
@@ -232,7 +235,7 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
     summary, every, regimes = (read_summary(getattr(job.files, name)) for name in ("summary", "profiles", "regimes"))
     same = job.told.published_rows
     rows = rows_in_detail(summary, regimes, published_rows_in_detail(same))
-    table = pd.concat([every[every["row"] == row] for row in rows], ignore_index=True)
+    table = mean_profiles(every, summary.drop_duplicates("row").set_index("row")["setting"], rows)
     return table, of_published_rows(pd.read_csv(job.files.published), same)
 
 
@@ -243,69 +246,59 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
     "Wear",
     "Relative wear by flow regime",
     inputs={"summary": SUMMARY, "regimes": REGIMES},
-    told={"settings": replicate_settings, "beds": passing_beds},
+    told={"beds": passing_beds},
     when=finds_regimes,
     caption="""
-    Wear per length of travel over the largest of the runs of the same flow regime, patterned and plain together
+    Wear per length of travel over the largest of the rows of the same flow regime, patterned and plain together
     (Yan 2022, Eq 3.10), least patterned wear first. Patterned samples are split into base and pattern. Rows stand in
-    the panel of their patterned run's regime, plain twins with them. Black bars: 95 % interval of the mean where rows
-    are repeated with other packings. Unlike wear over the plain twin's, this compares runs of different
+    the panel of their patterned run's regime, plain twins with them. Black bars: 95 % interval of the geometric mean
+    over the packings. Unlike wear over the plain twin's, this compares runs of different
     velocity, thickness and, where the line below the figure says so, particle scale. The counterpart of Yan 2022, Fig
     3.13. The table has the wear rate too, wear of the travel over the flow of mass (Eq 3.11).
     """,
 )
 def wear_by_regime(job: Job) -> Any:
     """Draw the relative wear of all runs by regime."""
+    from bulkwear.postproc.tables.packings import packings_remark
     from bulkwear.postproc.tables.summary import read_summary
-    from bulkwear.workflows.cases.sliding_sample.comparison import replicate_remark, with_intervals
     from bulkwear.workflows.cases.sliding_sample.screening.plots import regimes as figures
-    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
-        regime_remarks,
-        wear_by_group,
-        with_wear_rates,
-    )
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import regime_remarks, wear_by_group
 
     summary, regimes = read_summary(job.files.summary), read_summary(job.files.regimes)
-    runs = with_wear_rates(wear_by_group(summary, regimes), summary, job.told.beds)
-    table = with_intervals(runs, job.told.settings)
-    remarks = [*job.remarks, *regime_remarks(regimes), replicate_remark(table)]
+    table = wear_by_group(summary, regimes, job.told.beds)
+    remarks = [*job.remarks, *regime_remarks(regimes), packings_remark(table["packings"])]
     return figures.wear_by_regime(table, remarks), table
 
 
 @figure(
     "Bed",
     "Normal force by flow regime",
-    inputs={"summary": SUMMARY, "wear": WEAR, "regimes": REGIMES},
-    told={"settings": replicate_settings},
+    inputs={"summary": SUMMARY, "regimes": REGIMES},
     when=finds_regimes,
     caption="""
     Contact forces square to the faces, added up over the sample without its ramp, mean over the travel. Bars of error:
-    standard deviation between stretches of some 10 mm of travel, where there are three or more; from moment to moment
-    the force scatters more. On a pattern this sum holds forces that push one another, up and down the two sides of
-    each of its shapes: it exceeds the weight of the bed, which the vertical force in the figure "Forces on the
-    sample" does not. The counterpart of Yan 2022, Fig 3.16.
+    95 % interval of the geometric mean over the packings; from moment to moment the force scatters more. On a pattern
+    this sum holds forces that push one another, up and down the two sides of each of its shapes: it exceeds the weight
+    of the bed, which the vertical force in the figure "Forces on the sample" does not. The counterpart of Yan 2022, Fig
+    3.16.
     """,
 )
 def normal_force_by_regime(job: Job) -> Any:
     """Draw the normal force on all samples by regime."""
+    from bulkwear.postproc.tables.packings import packings_remark
     from bulkwear.postproc.tables.summary import read_summary
-    from bulkwear.workflows.cases.sliding_sample.comparison import mean_of_replicates
     from bulkwear.workflows.cases.sliding_sample.screening.plots import regimes as figures
-    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
-        force_by_group,
-        force_remarks,
-        regime_remarks,
-    )
+    from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import force_by_group, regime_remarks
 
-    regimes, folders = read_summary(job.files.regimes), [Path(path).parent for path in job.files.wear]
-    table = mean_of_replicates(force_by_group(read_summary(job.files.summary), folders, regimes), job.told.settings)
-    remarks = [*job.remarks, *regime_remarks(regimes), *force_remarks(table)]
+    regimes = read_summary(job.files.regimes)
+    table = force_by_group(read_summary(job.files.summary), regimes)
+    remarks = [*job.remarks, *regime_remarks(regimes), packings_remark(table["packings"])]
     return figures.normal_force_by_regime(table, remarks), table
 
 
 # ---------------------------------------------------------------- the source's findings
 
-OF_RUNS = ("summary", "regimes", "profiles", "gradients", "steady")  # tables whose names are text
+OF_RUNS = ("summary", "regimes", "profiles", "steady")  # tables whose names are text
 
 
 @tables(
@@ -313,45 +306,30 @@ OF_RUNS = ("summary", "regimes", "profiles", "gradients", "steady")  # tables wh
         "summary": SUMMARY,
         "regimes": REGIMES,
         "profiles": PROFILES,
-        "gradients": "results/{study}/figures/wear_gradient.csv",
         "steady": "results/{study}/flow/steady.csv",
-        # none of a study with too few rows for a regression
-        "coefficients": lambda study: regression_table(study, "coefficients"),
-        "models": lambda study: regression_table(study, "models"),
-        "published_findings": "config/published/screening_findings.csv",
+        "claims": CLAIMS_FILE,
         "published_regimes": "config/published/screening_regimes.csv",
         "published_results": PUBLISHED_RESULTS,
         "published_coefficients": "config/published/screening_coefficients.csv",
         "published_design": "config/designs/screening.csv",
     },
-    told={
-        "factors": lambda study: study.factors,
-        "run_in": run_in,
-        "settings": replicate_settings,
-        "published_rows": published_rows,
-    },
+    told={"factors": lambda study: study.factors, "run_in": run_in, "published_rows": published_rows},
     tables={"findings": "findings/findings.csv", "runs": "findings/runs.csv"},
     when=has_findings,
 )
 def findings(job: Job) -> dict[str, pd.DataFrame]:
-    """Tell which findings of the source the study confirms, and its rows beside what the source tells of them."""
+    """Tell the verdicts on the source's findings, and its rows beside what the source tells of them."""
     import pandas as pd
 
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.screening.finding_tests import findings_table
     from bulkwear.workflows.cases.sliding_sample.screening.findings import gather, runs_beside_source
-    from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import (
-        published_wear_by_row,
-        screen_summary,
-    )
+    from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import published_wear_by_row
+    from bulkwear.workflows.config.claims import claims_of
 
-    told, paths = job.told, {name: path for name, path in vars(job.files).items() if path}
+    told, paths = job.told, dict(vars(job.files))
+    claims = claims_of("screening", paths.pop("claims"))
     read = {name: (read_summary if name in OF_RUNS else pd.read_csv)(path) for name, path in paths.items()}
-    study = screen_summary(read["summary"], told.factors) if told.factors else None
-    evidence = gather(read, study, told.run_in, told.settings, told.published_rows)
-    regimes = read["published_regimes"]
+    evidence = gather(read, told.run_in, told.published_rows, told.factors)
     model = published_wear_by_row(read["published_design"], read["published_coefficients"], told.factors)
-    return {
-        "findings": findings_table(evidence, read["published_findings"], regimes),
-        "runs": runs_beside_source(evidence, regimes, model),
-    }
+    return {"findings": findings_table(evidence, claims), "runs": runs_beside_source(evidence, model)}

@@ -1,333 +1,282 @@
-"""Each finding of the source put to the test, see `findings`; the keys are those of config/published."""
+"""What each claim on a finding of the source is judged by; keys are those of config/published/verdicts.yaml.
+
+Each builder turns the evidence into estimates over the packings, in the unit of its claim, or says why it cannot. The
+rules that judge them, and how often they err, are those of `postproc.statistics.verdicts`: with the margins of the
+claims, at most 5 % false "agrees" and 5 % false "contradicts" each.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.statistics.verdicts import CONFIRMED, REFUTED, UNSAID, Verdict
-from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, MEASURES, RIDES_ALONG
-from bulkwear.workflows.cases.sliding_sample.screening.findings import (
-    CENTRAL,
-    PERCENT,
-    SIDE,
-    Evidence,
-    coefficient,
-    main_effects,
-    percent,
-    ratios,
-    side_of_one,
-    unsteady,
-)
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN, Estimate, estimate
+from bulkwear.postproc.statistics.verdicts import UNSAID, Claim, Verdict, judged, not_said
+from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS
+from bulkwear.workflows.cases.sliding_sample.screening.findings import CENTRAL, PERCENT, SIDE, SPIN, Evidence
 
-NO_TWIN = "no row has a plain twin with a result"
 EXCEPTION, BEST, BEST_DISCONTINUOUS = "R12", "R5", "R2"
-NEAR = 10.0  # %, of the plain twin's wear, within which a relative wear counts as the published one
-TWICE = 2.0
-ALIKE = 1.25  # -, ratio up to which two angular speeds count as hardly different
-TAKEN_ALONG, LEFT_BEHIND = 0.5, 0.1  # -, of the sample's velocity: half of it, and a tenth
-SIGNIFICANT = 0.05  # p value (Yan 2022, section 3.5.4)
-
-Test = Callable[[Evidence], Verdict]
+THICKNESS, WITHOUT_EFFECT = "t", ("h", "b")
+OF_TRAVEL = ("steady_flow",)  # claims on the travel itself, which no run covers by being steady
+DIGITS = 3  # significant ones of numbers in words
+MANY_ROWS = 4  # of which a reason names fewer
 
 
-def findings_table(evidence: Evidence, published: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
-    """Return key, finding, source, found, verdict and reason (or reserve) of every published finding.
+@dataclass(frozen=True)
+class Found:
+    """What a claim is judged by.
 
-    published: key, finding and source; regimes: row and regime as the source tells them
+    estimates: by name, each of which is claimed; rows: those that it rests on; reason: why nothing can be said, if so
     """
-    tests: Mapping[str, Test] = {
-        **TESTS,
-        "continuous_runs": lambda each: _told_regime(each, regimes, CONTINUOUS),
-        "discontinuous_runs": lambda each: _told_regime(each, regimes, DISCONTINUOUS),
-    }
-    verdicts = [_with_reserve(tests[key](evidence), evidence) for key in published["key"]]
-    return published.assign(
-        found=[each.found for each in verdicts],
-        verdict=[each.verdict for each in verdicts],
-        reason=[each.reason for each in verdicts],
+
+    estimates: Mapping[str, Estimate] = field(default_factory=dict)
+    rows: Sequence[str] = ()
+    reason: str = ""
+
+
+Builder = Callable[[Evidence], Found]
+
+
+def findings_table(evidence: Evidence, claims: Mapping[str, Claim]) -> pd.DataFrame:
+    """Return key, finding, source, claimed, found, verdict, factor and reason of every claim."""
+    verdicts = {key: verdict_on(claim, evidence) for key, claim in claims.items()}
+    return pd.DataFrame(
+        {
+            "key": key,
+            "finding": claims[key].finding,
+            "source": claims[key].source,
+            "claimed": claims[key].words,
+            "found": each.found,
+            "verdict": each.verdict,
+            "factor": each.factor,
+            "reason": each.reason,
+        }
+        for key, each in verdicts.items()
     )
 
 
-def _with_reserve(verdict: Verdict, evidence: Evidence) -> Verdict:
-    """Return a verdict with the reserve that the flow is not steady, where it gives one nevertheless."""
-    if verdict.verdict == UNSAID or not (reserve := unsteady(evidence, evidence.rows)):
-        return verdict
-    return replace(verdict, reason=reserve.partition(";")[0])
+def verdict_on(claim: Claim, evidence: Evidence) -> Verdict:
+    """Return the verdict on a claim. Rows that are shown to be steady cover the range that it is made for."""
+    found = BUILDERS[claim.key](evidence)
+    if found.reason:
+        return not_said(found.reason, words(found.estimates))
+    unsteady = evidence.unsteady(found.rows)
+    covers = evidence.travel if unsteady or claim.key in OF_TRAVEL else claim.reach
+    verdict = judged(claim, found.estimates, words(found.estimates), covers)
+    if verdict.verdict == UNSAID and covers != claim.reach and unsteady and verdict.reason.startswith("claimed of"):
+        return replace(verdict, reason=f"{verdict.reason}; {_some(unsteady)} not shown to be steady")
+    return verdict
 
 
-def _verdict(found: str, holds: bool, reason: str = "") -> Verdict:
-    """Return whether a finding holds; with a reason it cannot be said."""
-    return Verdict(found, UNSAID, reason) if reason else Verdict(found, CONFIRMED if holds else REFUTED)
+def words(found: Mapping[str, Estimate]) -> str:
+    """Return estimates with their intervals in one line, such as `R5 0.34 (0.30 to 0.39)`, and how many packings."""
+    told = [f"{name} {_short(each)}" for name, each in found.items()]
+    if not told:
+        return ""
+    known = [each.packings for each in found.values() if each.known]
+    if not known:
+        return f"{', '.join(told)}; {UNKNOWN}"
+    counts = f"{min(known)}" if min(known) == max(known) else f"{min(known)} to {max(known)}"
+    return f"{', '.join(told)}; {PERCENT * CONFIDENCE:g} % intervals, {counts} packings"
 
 
-def _missing(evidence: Evidence, row: str) -> str:
-    return "" if row in evidence.rows.index else f"{row} has no result"
+def _short(found: Estimate) -> str:
+    low, high = found.interval()
+    return f"{found.value:.{DIGITS}g}" + (f" ({low:.{DIGITS}g} to {high:.{DIGITS}g})" if found.known else "")
 
 
-def _none_of(regime: str) -> Verdict:
-    return Verdict("", UNSAID, f"no run is found to flow in the {regime} regime")
+def _some(rows: Sequence[str]) -> str:
+    return f"{', '.join(rows)} {'are' if len(rows) > 1 else 'is'}" if len(rows) < MANY_ROWS else f"{len(rows)} rows are"
+
+
+def _of_rows(evidence: Evidence, column: str, rows: Sequence[str], log: bool = True, none: str = "") -> Found:
+    """Return a column of each of some rows; `none`: why there are no such rows."""
+    if not rows:
+        return Found(reason=none)
+    found = evidence.by_row(column, rows, log)
+    return Found(found, list(found), "" if found else "none of the rows has a value")
+
+
+def _one(evidence: Evidence, row: str, column: str, log: bool = True, regime: str = "") -> Found:
+    """Return a column of one row, which must flow in a regime, if given."""
+    if row not in evidence.regimes:
+        return Found(reason=f"{row} has no result")
+    if regime and evidence.regimes[row] != regime:
+        return Found(reason=f"{row} is not found to flow in the {regime} regime")
+    return _of_rows(evidence, column, [row], log)
 
 
 # ---------------------------------------------------------------- flow
 
 
-def _told_regime(evidence: Evidence, told: pd.DataFrame, regime: str) -> Verdict:
-    rows = evidence.rows[evidence.rows.index.isin(told.loc[told["regime"] == regime, "row"])]
-    if rows.empty:
-        return Verdict("", UNSAID, "none of these rows has a result")
-    as_told = int((rows["regime"] == regime).sum())
-    found = f"{as_told} of {len(rows)}; relative velocity {percent(rows['relative_velocity'])}"
-    return _verdict(found, as_told == len(rows), unsteady(evidence, rows))
+def _told_regime(evidence: Evidence, regime: str) -> Found:
+    here = [row for row in evidence.regimes if evidence.told.get(row) == regime]
+    return _of_rows(evidence, "relative_velocity", here, False, "none of these rows has a result")
 
 
-def _continuous_range(evidence: Evidence) -> Verdict:
-    rows = evidence.continuous
-    if rows.empty:
-        return _none_of(CONTINUOUS)
-    low, high = (evidence.published["relative_velocity", CONTINUOUS, end] for end in ("from", "to"))
-    inside = (PERCENT * rows["relative_velocity"]).between(low, high)
-    found = f"{inside.sum()} of {len(rows)} inside; outside {percent(rows['relative_velocity'][~inside]) or 'none'}"
-    return _verdict(found, bool(inside.all()), unsteady(evidence, rows))
+def _in_regime(evidence: Evidence, column: str, regime: str, log: bool, without: Sequence[str] = ()) -> Found:
+    rows = evidence.rows_in(regime, without)
+    return _of_rows(evidence, column, rows, log, f"no run is found to flow in the {regime} regime")
 
 
-def _discontinuous_range(evidence: Evidence) -> Verdict:
-    rows = evidence.rows[evidence.rows["regime"] == DISCONTINUOUS]
-    if rows.empty:
-        return _none_of(DISCONTINUOUS)
-    share = rows["relative_velocity"]
-    return _verdict(percent(share), bool((share >= RIDES_ALONG).all()), unsteady(evidence, rows))
+def _fluctuation(evidence: Evidence) -> Found:
+    found = _of_rows(evidence, "fluctuation", list(evidence.regimes))
+    return Found(rows=list(evidence.regimes)) if found.reason else found
 
 
-def _steady(evidence: Evidence) -> Verdict:
-    start, end = evidence.published["relative_velocity_steady", "all", "from"], evidence.travel_end
-    both = evidence.steady.groupby("run")["steady"].all()
-    flow = evidence.steady[evidence.steady["measure"] == MEASURES[0]]
-    share = PERCENT * (flow["deviation"] / flow["mean"]).max()
-    found = (
-        f"flow and wear steady in {both.sum()} of {len(both)} runs; relative velocity scatters by up to {share:.0f} %"
-    )
-    short = f"the travel ends after {end:g} mm, the source tells from {start:g} mm on" if end <= start else ""
-    within = share < evidence.published["relative_velocity_fluctuation", "all", "below"]
-    return _verdict(found if np.isfinite(share) else "", bool(both.all() and within), short)
-
-
-def _gradient(evidence: Evidence) -> Verdict:
-    patterned = evidence.gradients[evidence.gradients["surface"] != PLAIN]
-    means = patterned.groupby("regime")["relative_gradient"].mean()
-    found = ", ".join(f"{regime} {value:.2f}" for regime, value in means.items())
-    if not {CONTINUOUS, DISCONTINUOUS} <= set(means.index):
-        return Verdict(f"mean {found}", UNSAID, "the runs are not of both regimes")
-    holds = means[CONTINUOUS] > means[DISCONTINUOUS]
-    return _verdict(f"mean {found}", bool(holds), unsteady(evidence, evidence.rows))
+def _gradient(evidence: Evidence) -> Found:
+    groups = [evidence.rows_in(regime) for regime in (CONTINUOUS, DISCONTINUOUS)]
+    if not all(groups):
+        return Found(reason="the runs are not of both regimes")
+    wear = evidence.by_packing("wear_m3_per_m", [*groups[0], *groups[1]])
+    ratio = wear[groups[0]].mean(axis=1) / wear[groups[1]].mean(axis=1)
+    return Found({"continuous over discontinuous": estimate(ratio, log=True)}, [*groups[0], *groups[1]])
 
 
 # ---------------------------------------------------------------- wear and force
 
 
-def _convex_wears_less(evidence: Evidence) -> Verdict:
-    flowing = evidence.continuous.drop(index=EXCEPTION, errors="ignore")
-    if flowing.empty:
-        return _none_of(CONTINUOUS)
-    rows = flowing.dropna(subset=["wear_over_plain"])
-    if rows.empty:
-        return Verdict("", UNSAID, NO_TWIN)
-    sides = rows.apply(side_of_one, axis=1)
-    more, open_ = rows["wear_over_plain"][sides > 0], rows["wear_over_plain"][sides == 0]
-    found = f"{(sides < 0).sum()} of {len(rows)} wear less; more: {ratios(more) or 'none'}"
-    doubt = f"too near to 1 to say: {ratios(open_)}" if len(open_) and more.empty else ""
-    return _verdict(found, more.empty, doubt)
+def _lowest(evidence: Evidence, best: str, regime: str) -> Found:
+    """Return the wear rate of each other row of a regime over that of the one said to have the lowest."""
+    rows = evidence.rows_in(regime, without=[best])
+    if best not in evidence.regimes:
+        return Found(reason=f"{best} has no result")
+    if evidence.regimes[best] != regime or not rows:
+        return Found(reason=f"{best} is not found to flow in the {regime} regime, or no other row does")
+    pairs = {row: evidence.by_packing("wear_rate", [row, best]) for row in rows}
+    return Found({row: estimate(both[row] / both[best], log=True) for row, both in pairs.items()}, [best, *rows])
 
 
-def _exception(evidence: Evidence) -> Verdict:
-    if reason := _missing(evidence, EXCEPTION):
-        return Verdict("", UNSAID, reason)
-    row = evidence.rows.loc[EXCEPTION]
-    if np.isnan(row["wear_over_plain"]):
-        return Verdict("", UNSAID, f"{EXCEPTION} has no plain twin with a result")
-    side = side_of_one(row)
-    near = "" if side else "too near to 1 to say with the replicates there are"
-    return _verdict(f"wear over plain {row['wear_over_plain']:.2f}", side > 0, near)
+def _force(evidence: Evidence) -> Found:
+    return _of_rows(evidence, "force_over_plain", list(evidence.regimes), none="no row has a result")
 
 
-def _best(evidence: Evidence) -> Verdict:
-    if reason := _missing(evidence, BEST):
-        return Verdict("", UNSAID, reason)
-    wear = evidence.continuous["wear_over_plain"].dropna()
-    if BEST not in wear.index:
-        return Verdict("", UNSAID, "R5 is not found to flow continuously, or has no plain twin with a result")
-    ours, lowest = wear[BEST], wear.idxmin()
-    found = f"R5 {PERCENT * (ours - 1.0):+.0f} %; lowest {lowest} {PERCENT * (wear.min() - 1.0):+.0f} %"
-    away = abs(PERCENT * ours - evidence.published["wear_over_plain", BEST, "about"])
-    return _verdict(found, lowest == BEST and away <= NEAR)
-
-
-def _best_discontinuous(evidence: Evidence) -> Verdict:
-    wear = evidence.rows.loc[evidence.rows["regime"] == DISCONTINUOUS, "wear_over_plain"].dropna()
-    if BEST_DISCONTINUOUS not in wear.index:
-        return Verdict("", UNSAID, "R2 is not found to flow discontinuously, or has no result beside a plain twin")
-    return _verdict(f"lowest {ratios(wear.nsmallest(1))}", wear.idxmin() == BEST_DISCONTINUOUS)
-
-
-def _base(evidence: Evidence) -> Verdict:
-    rows = evidence.continuous.dropna(subset=["base_share", "bump_share"])
-    if EXCEPTION not in rows.index:
-        return Verdict("", UNSAID, "R12 is not found to flow continuously, or has no result")
-    more = rows["base_share"] > rows["bump_share"]
-    others = more.drop(index=EXCEPTION)
-    found = f"base above bumps in {others.sum()} of {len(others)}; share of the base on R12"
-    found += f" {PERCENT * rows.loc[EXCEPTION, 'base_share']:.0f} %"
-    return _verdict(found, bool(others.all() and not more[EXCEPTION]))
-
-
-def _force(evidence: Evidence) -> Verdict:
-    force = evidence.rows["force_over_plain"].dropna()
-    if force.empty:
-        return Verdict("", UNSAID, NO_TWIN)
-    found = f"higher in {(force > 1.0).sum()} of {len(force)}; convex over plain {force.min():.2f} to {force.max():.2f}"
-    return _verdict(found, bool((force > 1.0).all()))
-
-
-def _force_and_wear(evidence: Evidence) -> Verdict:
-    rows = evidence.rows.dropna(subset=["force_over_plain", "wear_over_plain"]).drop(index=EXCEPTION, errors="ignore")
-    if rows.empty:
-        return Verdict("", UNSAID, NO_TWIN)
-    less = rows.apply(side_of_one, axis=1)
-    both = (rows["force_over_plain"] > 1.0) & (less < 0)
-    against = (rows["force_over_plain"] <= 1.0) | (less > 0)
-    found = f"{both.sum()} of {len(rows)}; not {ratios(rows['wear_over_plain'][against]) or 'any'} (wear over plain)"
-    open_ = rows["wear_over_plain"][~both & ~against]
-    doubt = f"too near to 1 to say: {ratios(open_)}" if len(open_) and not against.any() else ""
-    return _verdict(found, not against.any(), doubt)
+def _force_and_wear(evidence: Evidence) -> Found:
+    rows = [row for row in evidence.regimes if row != EXCEPTION]
+    force, wear = (evidence.by_row(name, rows) for name in ("force_over_plain", "wear_over_plain"))
+    inverse = {
+        row: replace(each, value=1.0 / each.value) for row, each in wear.items()
+    }  # the logarithm changes its sign
+    both = [row for row in rows if row in force and row in wear]
+    if not both:
+        return Found(reason="no row has a plain twin with a result")
+    named = {f"{row} {what}": each[row] for row in both for what, each in (("force", force), ("wear", inverse))}
+    return Found(named, both)
 
 
 # ---------------------------------------------------------------- motion of the particles
 
 
-def _rolling(evidence: Evidence) -> Verdict:
-    if reason := _missing(evidence, BEST):
-        return Verdict("", UNSAID, reason)
-    spin = evidence.rows["spin_over_plain"].dropna()
-    if BEST not in spin.index:
-        return Verdict("", UNSAID, "too few particles next to R5 or its twin")
-    found = f"R5 {spin[BEST]:.1f} times; all rows {spin.min():.1f} to {spin.max():.1f}"
-    return _verdict(found, spin[BEST] > TWICE)
+def _rolling_falls(evidence: Evidence) -> Found:
+    if BEST not in evidence.regimes:
+        return Found(reason=f"{BEST} has no result")
+    shown = evidence.profiles[(evidence.profiles["row"] == BEST) & (evidence.profiles["surface"] != PLAIN)]
+    over, beside = (
+        shown[shown["zone"] == zone].pivot(index="packing", columns="layer", values=SPIN).dropna(axis="columns")
+        for zone in (CENTRAL, SIDE)
+    )
+    both = over.columns.intersection(beside.columns)
+    if not {1, 2} <= set(over.columns) or both.empty:
+        return Found(reason=f"{BEST} has too few layers to compare")
+    top = max(over.columns)
+    ratios = {"bottom over second layer": over[1] / over[2], "bottom over top layer": over[1] / over[top]}
+    ratios["over the sample over beside it"] = over[both].mean(axis=1) / beside[both].mean(axis=1)
+    return Found({name: estimate(values, log=True) for name, values in ratios.items()}, [BEST])
 
 
-def _rolling_falls(evidence: Evidence) -> Verdict:
-    if reason := _missing(evidence, BEST):
-        return Verdict("", UNSAID, reason)
-    profile = evidence.profiles
-    shown = profile[(profile["row"] == BEST) & (profile["surface"] != PLAIN)]
-    mean = (
-        shown.groupby(["zone", "layer"])["averaged_angular_velocity_deg_per_s"].mean().dropna()
-    )  # replicates are one row
-    if not {CENTRAL, SIDE} <= set(mean.index.get_level_values("zone")):
-        return Verdict("", UNSAID, "R5 has no profile")
-    over, beside = mean[CENTRAL], mean[SIDE]
-    both = over.index.intersection(beside.index)
-    if len(over) < 2 or both.empty:
-        return Verdict("", UNSAID, "R5 has too few layers to compare")
-    falls = bool((over.diff().dropna() < 0.0).all())
-    found = f"layers from below, over {_numbers(over)}, beside {_numbers(beside)} °/s"
-    return _verdict(found, falls and bool((over[both] > beside[both]).all()))
+def _rolling_discontinuous(evidence: Evidence) -> Found:
+    row = BEST_DISCONTINUOUS
+    if row not in evidence.regimes:
+        return Found(reason=f"{row} has no result")
+    columns = {"over the sample": "spin_over_plain", "beside it": "spin_over_plain_beside"}
+    found = {name: evidence.by_row(column, [row]).get(row) for name, column in columns.items()}
+    if None in found.values():
+        return Found(reason=f"too few particles next to {row} or its twin")
+    other = "" if evidence.regimes[row] == DISCONTINUOUS else f"{row} is not found to flow discontinuously"
+    return Found(found, [row], other)
 
 
-def _rolling_discontinuous(evidence: Evidence) -> Verdict:
-    if reason := _missing(evidence, BEST_DISCONTINUOUS):
-        return Verdict("", UNSAID, reason)
-    row = evidence.rows.loc[BEST_DISCONTINUOUS]
-    if np.isnan(row["spin_over_plain"]):
-        return Verdict("", UNSAID, "too few particles next to R2 or its twin")
-    found = f"bottom layer {row['spin_over_plain']:.1f} times the plain twin's"
-    other = "" if row["regime"] == DISCONTINUOUS else "R2 is not found to flow discontinuously"
-    return _verdict(found, 1.0 / ALIKE <= row["spin_over_plain"] <= ALIKE, other)
+# ---------------------------------------------------------------- effects of the factors
 
 
-def _taken_along(evidence: Evidence) -> Verdict:
-    if reason := _missing(evidence, BEST):
-        return Verdict("", UNSAID, reason)
-    patterned, plain = evidence.rows.loc[BEST, ["velocity_share", "plain_velocity_share"]].astype(float)
-    if np.isnan(patterned) or np.isnan(plain):
-        return Verdict("", UNSAID, "too few particles next to R5 or its twin")
-    shares = f"{PERCENT * patterned:.0f} % of the sample's velocity, over the plain twin {PERCENT * plain:.0f} %"
-    found = f"bottom layer at {shares}"
-    return _verdict(found, patterned >= TAKEN_ALONG and plain <= LEFT_BEHIND)
+def _effects(evidence: Evidence) -> tuple[pd.DataFrame, str]:
+    """Return ln(wear per metre) by packing and row of the source's whole design, or why that is not to be had."""
+    if evidence.levels.empty:
+        return pd.DataFrame(), "the study has not the source's factors"
+    missing = [row for row in evidence.levels.index if row not in evidence.regimes]
+    if missing:
+        return pd.DataFrame(), f"effects are clear of each other in all thirteen rows alone; {_some(missing)} not there"
+    scales = evidence.rows["particle_scale"]
+    if scales.nunique() > 1:
+        return pd.DataFrame(), "rows differ in their particle scale, which cannot be told from the thickness of the bed"
+    return np.log(evidence.by_packing("wear_m3_per_m", list(evidence.levels.index))), ""
 
 
-def _numbers(values: pd.Series) -> str:
-    return ", ".join(f"{value:.0f}" for value in values)
+def main_effects(response: pd.DataFrame, levels: pd.DataFrame) -> pd.DataFrame:
+    """Return the main effects (packings, factors) per coded unit of a response (packings, rows) by a design whose main
+    effects are orthogonal; levels: (rows, factors), coded.
+    """
+    return response @ levels / (levels**2).sum()
 
 
-# ---------------------------------------------------------------- regression
+def _strongest(evidence: Evidence) -> Found:
+    response, reason = _effects(evidence)
+    if reason:
+        return Found(reason=reason)
+    effects = main_effects(response, evidence.levels)
+    sizes = effects * np.sign(effects.mean())
+    others = [name for name in sizes if name != THICKNESS]
+    found = {f"{THICKNESS} - {name}": estimate(effects[THICKNESS] - sizes[name]) for name in others}
+    return Found(found, list(evidence.levels.index))
 
 
-def _no_regression(evidence: Evidence) -> str:
-    return "" if evidence.terms is not None else "the study has no regression on the source's factors"
+def _same_terms(evidence: Evidence) -> Found:
+    response, reason = _effects(evidence)
+    if reason:
+        return Found(reason=reason)
+    terms = {term: evidence.levels[term.split("*")].prod(axis=1) for term in evidence.coefficients}
+    columns = np.column_stack([np.ones(len(evidence.levels)), *terms.values()])
+    fitted = np.linalg.lstsq(columns, response[evidence.levels.index].to_numpy().T, rcond=None)[0][1:]
+    published = evidence.coefficients.items()
+    found = {term: estimate(values / theirs) for values, (term, theirs) in zip(fitted, published, strict=True)}
+    return Found(found, list(evidence.levels.index))
 
 
-def _chance(evidence: Evidence) -> str:
-    if evidence.model_p <= SIGNIFICANT:
-        return ""
-    return f"a model as good comes by chance in {PERCENT * evidence.model_p:.0f} % of permutations"
+def _no_effect(evidence: Evidence) -> Found:
+    response, reason = _effects(evidence)
+    if reason:
+        return Found(reason=reason)
+    effects = main_effects(response, evidence.levels)
+    return Found({name: estimate(effects[name]) for name in WITHOUT_EFFECT}, list(evidence.levels.index))
 
 
-def _strongest(evidence: Evidence) -> Verdict:
-    if reason := _no_regression(evidence):
-        return Verdict("", UNSAID, reason)
-    mains = main_effects(evidence)
-    found = ", ".join(f"{term} {value:+.2f}" for term, value in mains[["term", "coefficient"]].to_numpy())
-    alias = f"t cannot be told from the {evidence.aliased['t']}" if "t" in evidence.aliased else ""
-    return _verdict(f"main effects {found or 'none'}", list(mains["term"][:1]) == ["t"], alias or _chance(evidence))
-
-
-def _same_terms(evidence: Evidence) -> Verdict:
-    if reason := _no_regression(evidence):
-        return Verdict("", UNSAID, reason)
-    best = evidence.models[0]
-    words = " + ".join(sorted(best)) or "none"
-    found = f"best model {words}; {len(evidence.models)} as good"
-    alias = f"t cannot be told from the {evidence.aliased['t']}" if "t" in evidence.aliased else ""
-    several = "models as good differ in their terms" if evidence.published_terms in evidence.models[1:] else ""
-    return _verdict(found, best == evidence.published_terms, alias or several or _chance(evidence))
-
-
-def _no_effect(evidence: Evidence) -> Verdict:
-    if reason := _no_regression(evidence):
-        return Verdict("", UNSAID, reason)
-    lines = {name: coefficient(evidence, name) for name in ("h", "b")}
-    words = [
-        f"{name} not in the model"
-        if line is None
-        else f"{name} {line['coefficient']:+.2f}, p by permutation {line['p_value_permutation']:.2f}"
-        for name, line in lines.items()
-    ]
-    strong = [line is not None and line["p_value_permutation"] <= SIGNIFICANT for line in lines.values()]
-    others = [name for name, line in lines.items() if line is None and any(name in model for model in evidence.models)]
-    several = f"models as good as the best have {' and '.join(others)}" if others else ""
-    return _verdict("; ".join(words), not any(strong), several or _chance(evidence))
-
-
-TESTS: Mapping[str, Test] = {
-    "steady_flow": _steady,
-    "continuous_range": _continuous_range,
-    "discontinuous_range": _discontinuous_range,
+BUILDERS: Mapping[str, Builder] = {
+    "steady_flow": _fluctuation,
+    "continuous_runs": partial(_told_regime, regime=CONTINUOUS),
+    "discontinuous_runs": partial(_told_regime, regime=DISCONTINUOUS),
+    "continuous_range": partial(_in_regime, column="relative_velocity", regime=CONTINUOUS, log=False),
+    "discontinuous_range": partial(_in_regime, column="relative_velocity", regime=DISCONTINUOUS, log=False),
     "gradient_by_regime": _gradient,
-    "convex_wears_less": _convex_wears_less,
-    "r12_wears_more": _exception,
-    "r5_lowest": _best,
-    "r2_lowest": _best_discontinuous,
-    "base_wears_most": _base,
+    "convex_wears_less": partial(
+        _in_regime, column="wear_over_plain", regime=CONTINUOUS, log=True, without=(EXCEPTION,)
+    ),
+    "r12_wears_more": partial(_one, row=EXCEPTION, column="wear_over_plain", regime=CONTINUOUS),
+    "r5_reduction": partial(_one, row=BEST, column="wear_over_plain", regime=CONTINUOUS),
+    "r5_lowest": partial(_lowest, best=BEST, regime=CONTINUOUS),
+    "r2_lowest": partial(_lowest, best=BEST_DISCONTINUOUS, regime=DISCONTINUOUS),
+    "base_wears_most": partial(_in_regime, column="base_percent", regime=CONTINUOUS, log=False, without=(EXCEPTION,)),
     "normal_force_up": _force,
     "force_up_wear_down": _force_and_wear,
-    "rolling_at_surface": _rolling,
+    "rolling_at_surface": partial(_one, row=BEST, column="spin_over_plain"),
     "rolling_falls": _rolling_falls,
     "rolling_discontinuous": _rolling_discontinuous,
-    "bottom_layer_taken_along": _taken_along,
+    "bottom_layer_taken_along": partial(_one, row=BEST, column="velocity_percent", log=False),
+    "bottom_layer_left_behind": partial(_one, row=BEST, column="plain_velocity_percent", log=False),
     "thickness_strongest": _strongest,
     "same_terms": _same_terms,
     "no_effect_of_height": _no_effect,

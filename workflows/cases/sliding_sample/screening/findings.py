@@ -1,231 +1,207 @@
-"""Which findings of the source the simulations of its thirteen rows confirm, and which not; with numbers.
+"""What the simulations of the source's thirteen rows found, packing by packing, for the claims on its findings.
 
-A verdict is `confirmed`, `not confirmed`, or `cannot be said` with its reason: a row that was not run, a flow that is
-not steady, a factor that cannot be told from the particle scale, a ratio too near to 1 without replicates.
+The rows of a study that have the factors of a row of the source stand for it under its name; where several settings do,
+as particles of several sizes, those of the smallest particles.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
+from bulkwear.postproc.statistics.factors import factor_of
+from bulkwear.postproc.statistics.intervals import Estimate, estimates
 from bulkwear.postproc.statistics.regression import CONSTANT
 from bulkwear.postproc.tables.display import MILLIMETRES
-from bulkwear.workflows.cases.sliding_sample.comparison import relative_wear_intervals
-from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS
+from bulkwear.workflows.cases.sliding_sample.evaluation import MEASURES
 from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import has_factors
-from bulkwear.workflows.cases.sliding_sample.screening.regression_warnings import confounded
-from bulkwear.workflows.cases.sliding_sample.screening.study_regression import Screening
 
-UNSURE = 0.05  # -, from 1: between versions of the program the demo's relative wear has scattered by as much (README)
 CENTRAL, SIDE = "central", "side"
 PERCENT = 100.0
+MIXED = "mixed"  # regime of a row whose packings flow in different ones
+VELOCITY, SPIN = "velocity_m_per_s", "averaged_angular_velocity_deg_per_s"
+ROW = ["row", "packing"]
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """What the simulations found, by the source's names of the rows.
 
-    rows: index row; see `rows_of_study`. gradients: row, surface, regime and relative_gradient along the travel
-    profiles: row, surface, zone, layer, velocity_m_per_s and averaged_angular_velocity_deg_per_s
-    steady: run, row, surface, measure, mean, deviation and steady of every window, see `steady_table`
-    terms: coefficients of the best model, columns term, coefficient, p_value_permutation; None without a regression
-    models: models as good, each a set of terms; model_p: p value of the best by permutation
-    aliased: {factor: what it cannot be told from}
-    travel_end: mm, run-in included
+    rows: a line per row and packing, see `rows_of_study`
+    profiles: row, packing, surface, zone, layer, VELOCITY and SPIN
+    travel: (from, to) in mm, run-in included, over which wear counts
+    levels: coded levels of the source's whole design, index row, columns the short names of the factors; empty where
+        the study does not have these factors
+    coefficients: {term: value} of the published regression, without its constant
     published: {(quantity, of, relation): value} as in config/published/screening_results.csv
-    published_terms: of the source's model
+    told: {row: regime} as the source tells them
     """
 
     rows: pd.DataFrame
-    gradients: pd.DataFrame
     profiles: pd.DataFrame
-    steady: pd.DataFrame
-    terms: pd.DataFrame | None
-    models: tuple[frozenset[str], ...]
-    model_p: float
-    aliased: Mapping[str, str]
-    travel_end: float
+    travel: tuple[float, float]
+    levels: pd.DataFrame
+    coefficients: Mapping[str, float]
     published: Mapping[tuple[str, str, str], float]
-    published_terms: frozenset[str]
+    told: Mapping[str, str]
 
     @property
-    def continuous(self) -> pd.DataFrame:
-        """Return the rows whose flow over the patterned sample is continuous."""
-        return self.rows[self.rows["regime"] == CONTINUOUS]
+    def regimes(self) -> dict[str, str]:
+        """Return {row: regime of all its packings, or MIXED}."""
+        found = self.rows.groupby("row", sort=False)["regime"]
+        return {str(row): each.iloc[0] if each.nunique() == 1 else MIXED for row, each in found}
+
+    def rows_in(self, regime: str, without: Sequence[str] = ()) -> list[str]:
+        """Return the rows that flow in a regime, in all their packings."""
+        return [row for row, found in self.regimes.items() if found == regime and row not in without]
+
+    def unsteady(self, rows: Sequence[str]) -> list[str]:
+        """Return those of some rows whose flow and wear are not shown to be steady in all packings."""
+        steady = self.rows.groupby("row")["steady"].all()
+        return [row for row in rows if not steady[row]]
+
+    def by_row(self, column: str, rows: Sequence[str], log: bool = True) -> dict[str, Estimate]:
+        """Return the estimate of a column over the packings of each row; without those that have no value of it."""
+        table = self.rows[self.rows["row"].isin(list(rows))].dropna(subset=[column])
+        found = estimates(table["row"], table[column], table["packing"], log)
+        return {row: found[row] for row in rows if row in found}
+
+    def by_packing(self, column: str, rows: Sequence[str]) -> pd.DataFrame:
+        """Return a column by packing (index) and row (columns), of the packings that have a value of every row."""
+        return self.rows.pivot(index="packing", columns="row", values=column).reindex(columns=list(rows)).dropna()
 
 
 def gather(
-    tables: Mapping[str, pd.DataFrame],
-    study: Screening | None,
-    run_in: float,
-    settings: Mapping[str, str],
-    published_rows: Mapping[str, str],
+    tables: Mapping[str, pd.DataFrame], run_in: float, published_rows: Mapping[str, str], factors: Mapping[str, str]
 ) -> Evidence:
     """Return what a study found.
 
-    tables: summary, regimes, profiles, gradients, steady, coefficients and models of the study; published_results and
-    published_coefficients. study: None without a regression, and then no coefficients and models
-    run_in: mm; settings: {row: setting}; published_rows: {row: row of the source}
+    tables: summary, regimes, profiles and steady of the study; published_results, published_regimes,
+    published_coefficients and published_design; run_in: mm
+    published_rows: {row: row of the source}; factors: {short name: column of the design}
     """
-    summary, theirs = tables["summary"], tables["published_results"]
-    terms = frozenset(tables["published_coefficients"]["term"]) - {CONSTANT}
-    of_runs = [tables[name] for name in ("gradients", "profiles", "steady")]
-    named = [table.assign(row=table["row"].map(published_rows)).dropna(subset=["row"]) for table in of_runs]
+    summary, coefficients = tables["summary"], tables["published_coefficients"]
+    names = _rows_of_source(summary, published_rows)
+    profiles = tables["profiles"].rename(columns={"row": "own_row"}).merge(names, on="own_row")
+    terms = coefficients[coefficients["term"] != CONSTANT]
+    theirs = tables["published_results"].set_index(["quantity", "of", "relation"])
+    first, last = run_in, run_in + MILLIMETRES * float(summary["travel_m"].min())
     return Evidence(
-        rows=rows_of_study(summary, tables["regimes"], tables["profiles"], settings, published_rows),
-        gradients=named[0],
-        profiles=named[1],
-        steady=named[2],
-        **_regression(tables, study),
-        travel_end=run_in + MILLIMETRES * float(summary["travel_m"].max()),
-        published=theirs.set_index(["quantity", "of", "relation"])["value"].astype(float).to_dict(),
-        published_terms=terms,
+        rows=rows_of_study(summary, tables["regimes"], profiles, tables["steady"], names),
+        profiles=profiles[[*ROW, "surface", "zone", "layer", VELOCITY, SPIN]],
+        travel=(first, last),
+        levels=_coded(tables["published_design"], factors)
+        if has_factors(coefficients, list(factors))
+        else pd.DataFrame(),
+        coefficients=dict(zip(terms["term"], terms["coefficient"].astype(float), strict=True)),
+        published=theirs["value"].astype(float).to_dict(),
+        told=tables["published_regimes"].set_index("row")["regime"].to_dict(),
     )
 
 
-def _regression(tables: Mapping[str, pd.DataFrame], study: Screening | None) -> dict[str, Any]:
-    """Return what the evidence has of the regression."""
-    if study is None:
-        return {"terms": None, "models": (), "model_p": np.nan, "aliased": {}}
-    found = tables["models"][tables["models"]["heredity"] == "none"]
-    return {
-        "terms": tables["coefficients"] if has_factors(tables["published_coefficients"], study.names) else None,
-        "models": tuple(frozenset(model.split(" + ")) - {CONSTANT} for model in found["model"]),
-        "model_p": float(found["p_value_permutation"].iloc[0]),
-        "aliased": {name: what for what, factors in confounded(study).items() for name in factors},
-    }
+def _rows_of_source(summary: pd.DataFrame, published_rows: Mapping[str, str]) -> pd.DataFrame:
+    """Return own_row, row (of the source) and packing of the rows that stand for one of the source."""
+    table = summary[summary["row"].isin(list(published_rows))].drop_duplicates("row")
+    table = table.assign(own_row=table["row"], row=table["row"].map(published_rows))
+    finest = table.sort_values("particle_scale", kind="stable").groupby("row")["setting"].transform("first")
+    return table[table["setting"] == finest.reindex(table.index)][["own_row", *ROW]]
+
+
+def _coded(design: pd.DataFrame, factors: Mapping[str, str]) -> pd.DataFrame:
+    levels = {name: design[column].to_numpy(dtype=float) for name, column in factors.items()}
+    coded = {name: factor_of(name, values).coded(values) for name, values in levels.items()}
+    return pd.DataFrame(coded, index=design["row"].astype(str))
 
 
 def rows_of_study(
-    summary: pd.DataFrame,
-    regimes: pd.DataFrame,
-    profiles: pd.DataFrame,
-    settings: Mapping[str, str],
-    published_rows: Mapping[str, str],
+    summary: pd.DataFrame, regimes: pd.DataFrame, profiles: pd.DataFrame, steady: pd.DataFrame, names: pd.DataFrame
 ) -> pd.DataFrame:
-    """Return a line per row of the source that the study has, index row (its name there); means over replicates.
+    """Return a line per row of the source and packing, of its patterned run, beside its plain twin in the same bed.
 
-    Columns: wear_over_plain, interval_low, interval_high, wear_m3_per_m (patterned), force_over_plain, base_share,
-    bump_share, relative_velocity, regime and steady of the patterned sample, spin_over_plain (bottom layer over the
-    sample), velocity_share and plain_velocity_share (of the bottom layer, in the sample's velocity).
+    profiles: with row and packing as in `names`; steady: a line per run and measure, with both of MEASURES
+
+    Columns row, packing, regime, steady (flow and wear of both samples), particle_scale, wear_over_plain,
+    wear_m3_per_m, wear_rate (over velocity and thickness of the bed, any unit), force_over_plain, base_percent,
+    relative_velocity and its fluctuation in the source's window (%), spin_over_plain and spin_over_plain_beside,
+    velocity_percent and
+    plain_velocity_percent (of the bottom layer, over the sample's velocity).
     """
-    table = summary.merge(regimes[["run", "relative_velocity", "regime", "steady"]], on="run", how="left")
-    patterned, plain = (table[(table["surface"] == PLAIN) == which].set_index("row") for which in (False, True))
-    wear = patterned["worn_volume_m3"]
-    layer = profiles[(profiles["zone"] == CENTRAL) & (profiles["layer"] == 1)]
-    over, beside = (
-        layer[(layer["surface"] == PLAIN) == which].set_index("row").reindex(wear.index) for which in (False, True)
-    )
-    rows = pd.DataFrame(
+    table = summary.rename(columns={"row": "own_row"}).drop(columns="packing").merge(names, on="own_row")
+    table = table.merge(regimes[["run", "relative_velocity", "regime"]], on="run", how="left")
+    patterned, plain = (table[(table["surface"] == PLAIN) == which].set_index(ROW) for which in (False, True))
+    flow = steady[steady["measure"] == MEASURES[0]].set_index("run")
+    fluctuation = PERCENT * flow["published_deviation"] / flow["published_mean"]
+    spins = {zone: _bottom(profiles, SPIN, zone, patterned.index) for zone in (CENTRAL, SIDE)}
+    over, below = _bottom(profiles, VELOCITY, CENTRAL, patterned.index)
+    wear, velocity = patterned["worn_volume_m3"] / patterned["travel_m"], patterned["velocity_m_per_s"]
+    force = plain["mean_normal_force_N"].reindex(patterned.index)
+    return pd.DataFrame(
         {
-            "wear_over_plain": patterned["wear_over_plain"],
-            "wear_m3_per_m": wear / patterned["travel_m"],
-            "force_over_plain": patterned["mean_normal_force_N"] / plain["mean_normal_force_N"].reindex(wear.index),
-            "base_share": patterned["base_worn_volume_m3"] / wear,
-            "bump_share": patterned["pattern_worn_volume_m3"] / wear,
-            "relative_velocity": patterned["relative_velocity"],
-            "spin_over_plain": over["averaged_angular_velocity_deg_per_s"]
-            / beside["averaged_angular_velocity_deg_per_s"],
-            "velocity_share": over["velocity_m_per_s"] / patterned["velocity_m_per_s"],
-            "plain_velocity_share": beside["velocity_m_per_s"] / patterned["velocity_m_per_s"],
             "regime": patterned["regime"],
-            "steady": patterned["steady"],
+            "steady": patterned["own_row"].map(steady.groupby("row")["steady"].all()),
+            "particle_scale": patterned["particle_scale"],
+            "wear_over_plain": patterned["wear_over_plain"],
+            "wear_m3_per_m": wear,
+            "wear_rate": wear / (velocity * patterned["bed_thickness_mm"]),
+            "force_over_plain": patterned["mean_normal_force_N"] / force,
+            "base_percent": PERCENT * patterned["base_worn_volume_m3"] / patterned["worn_volume_m3"],
+            "relative_velocity": PERCENT * patterned["relative_velocity"],
+            "fluctuation": patterned["run"].map(fluctuation),
+            "spin_over_plain": spins[CENTRAL][0] / spins[CENTRAL][1],
+            "spin_over_plain_beside": spins[SIDE][0] / spins[SIDE][1],
+            "velocity_percent": PERCENT * over / velocity,
+            "plain_velocity_percent": PERCENT * below / velocity,
         }
+    ).reset_index()
+
+
+def _bottom(profiles: pd.DataFrame, column: str, zone: str, index: pd.MultiIndex) -> tuple[pd.Series, pd.Series]:
+    """Return a column of the bottom layer of patterned and of plain samples, by row and packing."""
+    layer = profiles[(profiles["zone"] == zone) & (profiles["layer"] == 1)]
+    patterned, plain = (
+        layer[(layer["surface"] == PLAIN) == which].set_index(ROW)[column].reindex(index) for which in (False, True)
     )
-    intervals = relative_wear_intervals(summary, settings).set_index("run")
-    for name in ("interval_low", "interval_high"):
-        rows[name] = patterned["run"].map(intervals[name])
-    rows = rows[[row in published_rows for row in rows.index]]
-    return _by_published_row(rows, published_rows)
+    return patterned, plain
 
 
-def _by_published_row(rows: pd.DataFrame, published_rows: Mapping[str, str]) -> pd.DataFrame:
-    """Return means of the numbers over replicates; the regime is the one they all have, or else mixed."""
-    names = [published_rows[row] for row in rows.index]
-    groups = rows.groupby(names, sort=False)
-    found = groups.mean(numeric_only=True)
-    found["wear_over_plain"] = np.exp(np.log(rows["wear_over_plain"]).groupby(names, sort=False).mean())
-    found["regime"] = groups["regime"].agg(lambda names: names.iloc[0] if names.nunique() == 1 else "mixed")
-    found["steady"] = groups["steady"].agg(lambda each: bool(each.all()))
-    return found.rename_axis("row")
-
-
-def percent(values: pd.Series) -> str:
-    """Return shares by row in percent, such as `R1 8 %, R5 16 %`."""
-    return ", ".join(f"{row} {PERCENT * value:.0f} %" for row, value in values.items())
-
-
-def ratios(values: pd.Series) -> str:
-    """Return ratios by row, such as `R3 1.12`."""
-    return ", ".join(f"{row} {value:.2f}" for row, value in values.items())
-
-
-def side_of_one(row: pd.Series) -> int:
-    """Return 1 or -1 where a relative wear is above or below 1, 0 where that cannot be said.
-
-    By the interval of replicates; without one it must be away from 1 by UNSURE.
-    """
-    low, high, value = row["interval_low"], row["interval_high"], row["wear_over_plain"]
-    if not (np.isfinite(low) and np.isfinite(high)):
-        low, high = value / (1.0 + UNSURE), value * (1.0 + UNSURE)
-    return int(low > 1.0) - int(high < 1.0)
-
-
-def coefficient(evidence: Evidence, term: str) -> pd.Series | None:
-    """Return the line of a term of the best model, None without it."""
-    table = evidence.terms
-    found = table[table["term"] == term] if table is not None else pd.DataFrame()
-    return found.iloc[0] if len(found) else None
-
-
-def main_effects(evidence: Evidence) -> pd.DataFrame:
-    """Return the main effects of the best model, largest first."""
-    table = evidence.terms
-    mains = table[~table["term"].str.contains(r"[*^]", regex=True) & (table["term"] != CONSTANT)]
-    return mains.sort_values("coefficient", key=np.abs, ascending=False)
-
-
-def unsteady(evidence: Evidence, rows: pd.DataFrame) -> str:
-    """Return why nothing is said of the flow of some rows, empty where it is steady."""
-    count = int((~rows["steady"].astype(bool)).sum())
-    if not count:
-        return ""
-    start, end = evidence.published["relative_velocity_steady", "all", "from"], evidence.travel_end
-    where = f"; the travel ends after {end:g} mm, the source's flow is steady from {start:g} mm on"
-    return f"the flow over {count} of {len(rows)} is not shown to be steady{where if end < start else ''}"
-
-
-def runs_beside_source(evidence: Evidence, regimes: pd.DataFrame, published_model: Mapping[str, float]) -> pd.DataFrame:
+def runs_beside_source(evidence: Evidence, published_model: Mapping[str, float]) -> pd.DataFrame:
     """Return a line per row of the source: our regime, wear and force beside what the source tells of the row.
 
-    regimes: row and regime as told; published_model: normalised wear by row, by the published regression
+    published_model: normalised wear by row, by the published regression
     """
-    rows = evidence.rows
-    told = {
+    found = evidence.regimes
+    names = list(found)
+    ratios = evidence.by_row("wear_over_plain", names)
+    wear = {row: each.value for row, each in evidence.by_row("wear_m3_per_m", names).items()}
+    force, spin = (evidence.by_row(name, names) for name in ("force_over_plain", "spin_over_plain"))
+    velocity, unknown = evidence.by_row("relative_velocity", names, log=False), Estimate(np.nan, np.nan, 0, 0)
+    published = {
         row: f"{'' if relation == 'about' else relation + ' '}{value / PERCENT:g}"
         for (quantity, row, relation), value in evidence.published.items()
         if quantity == "wear_over_plain"
     }
-    return pd.DataFrame(
+    unsteady = evidence.unsteady(names)
+    lines = [
         {
-            "row": rows.index,
-            "regime": rows["regime"],
-            "published_regime": [regimes.set_index("row")["regime"].get(row, "") for row in rows.index],
-            "steady": rows["steady"],
-            "relative_velocity_percent": PERCENT * rows["relative_velocity"],
-            "wear_over_plain": rows["wear_over_plain"],
-            "interval_low": rows["interval_low"],
-            "interval_high": rows["interval_high"],
-            "published_wear_over_plain": [told.get(row, "") for row in rows.index],
-            "normalised_wear": rows["wear_m3_per_m"] / rows["wear_m3_per_m"].max(),
-            "published_model": [published_model.get(row, float("nan")) for row in rows.index],
-            "force_over_plain": rows["force_over_plain"],
-            "bottom_spin_over_plain": rows["spin_over_plain"],
+            "row": row,
+            "regime": found[row],
+            "published_regime": evidence.told.get(row, ""),
+            "steady": row not in unsteady,
+            "relative_velocity_percent": velocity.get(row, unknown).value,
+            "packings": ratios.get(row, unknown).packings,
+            "wear_over_plain": ratios.get(row, unknown).value,
+            "interval_low": ratios.get(row, unknown).interval()[0],
+            "interval_high": ratios.get(row, unknown).interval()[1],
+            "published_wear_over_plain": published.get(row, ""),
+            "normalised_wear": wear.get(row, np.nan) / max(wear.values(), default=np.nan),
+            "published_model": published_model.get(row, float("nan")),
+            "force_over_plain": force.get(row, unknown).value,
+            "bottom_spin_over_plain": spin.get(row, unknown).value,
         }
-    ).reset_index(drop=True)
+        for row in names
+    ]
+    return pd.DataFrame(lines)

@@ -6,13 +6,12 @@ A design row is in the group of its patterned run's regime, its plain twin with 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.packings import BY, over_packings
 from bulkwear.postproc.tables.summary import rows_to_show
 from bulkwear.workflows.cases.sliding_sample.evaluation import (
     CONTINUOUS,
@@ -25,15 +24,19 @@ from bulkwear.workflows.cases.sliding_sample.evaluation import (
 
 PUBLISHED_IN_DETAIL = ("R5", "R2")  # of least wear in continuous and in discontinuous flow (Yan 2022, Fig 3.14 on)
 ORDER = (CONTINUOUS, DISCONTINUOUS, UNDECIDED)
-FEWEST_STRETCHES = 3  # of travel, of a run that has a deviation along it
+PARTS = ("base_relative_wear", "bump_relative_wear")
 
 
 def groups_of_rows(regimes: pd.DataFrame) -> pd.Series:
-    """Return the regime of each design row, that of its patterned run; index: row.
+    """Return the regime of each design row, that of the patterned runs of all packings of its setting; index: row.
+    Packings that flow in different regimes are UNDECIDED together.
 
-    regimes: run, row, surface and regime, as from `flow_history.flow_tables`.
+    regimes: run, row, setting, surface and regime, as from `flow_history.flow_tables`.
     """
-    return regimes[regimes["surface"] != PLAIN].drop_duplicates("row").set_index("row")["regime"]
+    patterned = regimes[regimes["surface"] != PLAIN]
+    found = patterned.groupby("setting")["regime"]
+    shared = patterned["regime"].where(found.transform("nunique") == 1, UNDECIDED)
+    return patterned.assign(regime=shared).drop_duplicates("row").set_index("row")["regime"]
 
 
 def by_group(table: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
@@ -53,58 +56,46 @@ def gradients_by_group(history: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataF
     return by_group(gradient_history(history), regimes)
 
 
-def wear_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
-    """Return run, row, surface, regime and relative_wear (Yan 2022, Eq 3.10), and its parts base_relative_wear and
-    bump_relative_wear, of every run (-): wear per metre over the largest of its group.
+def wear_by_group(
+    summary: pd.DataFrame, regimes: pd.DataFrame, beds: Mapping[str, Mapping[str, float]]
+) -> pd.DataFrame:
+    """Return the wear of each setting and surface by group, with packings and interval.
+
+    beds: arguments of `evaluation.wear_rate` besides the volume, by run
+    Columns setting, surface, regime, relative_wear (-, Yan 2022, Eq 3.10), which is wear per metre over the largest of
+    the group, with its parts base_relative_wear and bump_relative_wear, and wear_rate_mm3_s_per_kg (Eq 3.11).
     """
     table = by_group(summary, regimes)
-    per_metre = table["worn_volume_m3"] / table["travel_m"]
-    relative = relative_to_largest(per_metre, table["regime"])
-    parts = {
-        f"{name}_relative_wear": relative * table[f"{part}_worn_volume_m3"] / table["worn_volume_m3"]
-        for name, part in (("base", "base"), ("bump", "pattern"))
-    }
-    return table[["run", "row", "surface", "regime"]].assign(relative_wear=relative, **parts).reset_index(drop=True)
-
-
-def with_wear_rates(
-    table: pd.DataFrame, summary: pd.DataFrame, beds: Mapping[str, Mapping[str, float]]
-) -> pd.DataFrame:
-    """Return a table of runs with wear_rate_mm3_s_per_kg, wear of the whole travel over the flow of mass (Yan 2022,
-    Eq 3.11); beds: arguments of `evaluation.wear_rate` besides the volume, by run.
-    """
-    volume = CUBIC_MILLIMETRES * table["run"].map(summary.set_index("run")["worn_volume_m3"])
+    volume, travel = table["worn_volume_m3"], table["travel_m"]
     passing = pd.DataFrame([beds[run] for run in table["run"]], index=table.index)
-    return table.assign(wear_rate_mm3_s_per_kg=wear_rate(volume, **passing))
+    table = table[[*BY, "regime"]].assign(
+        relative_wear=volume / travel,
+        base_relative_wear=table["base_worn_volume_m3"] / travel,
+        bump_relative_wear=table["pattern_worn_volume_m3"] / travel,
+        wear_rate_mm3_s_per_kg=wear_rate(CUBIC_MILLIMETRES * volume, **passing),
+    )
+    found = over_packings(table, "relative_wear", parts=PARTS)
+    names = ["relative_wear", *PARTS, "interval_low", "interval_high"]
+    scale = relative_to_largest(found["relative_wear"], found["regime"]) / found["relative_wear"]
+    return found.assign(**found[names].mul(scale, axis="index"))
 
 
-def force_by_group(summary: pd.DataFrame, run_folders: Sequence[str | Path], regimes: pd.DataFrame) -> pd.DataFrame:
-    """Return the normal force on every run by group (Yan 2022, Fig 3.16).
-
-    Columns run, row, surface, regime, mean_normal_force_N and its deviation_N between stretches of travel, NaN with
-    fewer than FEWEST_STRETCHES. run_folders: with cycle_*/wear_history.csv, in the order of the summary.
-    """
-    forces = [_stretch_forces(Path(folder)) for folder in run_folders]
-    deviation = [one.std(ddof=1) if len(one) >= FEWEST_STRETCHES else float("nan") for one in forces]
-    table = summary[["run", "row", "surface", "mean_normal_force_N"]].assign(deviation_N=deviation)
-    return by_group(table, regimes)[["run", "row", "surface", "regime", "mean_normal_force_N", "deviation_N"]]
-
-
-def _stretch_forces(folder: Path) -> pd.Series:
-    files = cycle_files(folder, "wear_history.csv")
-    return pd.concat([pd.read_csv(path)["mean_normal_force_N"] for path in files]) if files else pd.Series(dtype=float)
+def force_by_group(summary: pd.DataFrame, regimes: pd.DataFrame) -> pd.DataFrame:
+    """Return setting, surface, regime and mean_normal_force_N with packings and interval (Yan 2022, Fig 3.16)."""
+    table = by_group(summary, regimes)[[*BY, "regime", "mean_normal_force_N"]]
+    return over_packings(table, "mean_normal_force_N")
 
 
 def rows_in_detail(
     summary: pd.DataFrame, regimes: pd.DataFrame, preferred: Sequence[str] = (), most: int = 2
 ) -> list[str]:
-    """Return up to `most` design rows that are shown in detail: preferred ones, then the lowest relative wear of each
-    regime, then the lowest of all.
+    """Return up to `most` design rows that are shown in detail, first packings of their settings: preferred ones, then
+    the lowest relative wear of each regime, then the lowest of all.
     """
     group = groups_of_rows(regimes)
     ranked = [row for row in rows_to_show(summary, len(summary)) if row in group.index]
     lowest = [next((row for row in ranked if group[row] == regime), None) for regime in ORDER]
-    chosen = [*(row for row in preferred if row in group.index), *(row for row in lowest if row), *ranked]
+    chosen = [*(row for row in preferred if row in ranked), *(row for row in lowest if row), *ranked]
     return list(dict.fromkeys(chosen))[:most]
 
 
@@ -125,15 +116,6 @@ def published_relative_wear(results: pd.DataFrame, rows: Mapping[str, str]) -> p
     wear = results[results["quantity"] == "wear_over_plain"].rename(columns={"of": "row"})
     wear = wear.assign(value=wear["value"].astype(float) / 100.0)
     return of_published_rows(wear, rows)[["row", "relation", "value", "source"]]
-
-
-def force_remarks(table: pd.DataFrame) -> list[str]:
-    """Return what a figure of `force_by_group` must say where runs have no deviation."""
-    lacking = table["deviation_N"].isna()
-    if not lacking.any():
-        return []
-    which = "no run has" if lacking.all() else f"{lacking.sum()} of {len(table)} runs do not have"
-    return [f"{which} the {FEWEST_STRETCHES} stretches of travel that a deviation needs"]
 
 
 def published_rows_in_detail(rows: Mapping[str, str]) -> list[str]:

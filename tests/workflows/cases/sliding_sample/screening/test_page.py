@@ -41,6 +41,8 @@ def folder(few, tmp_path):
         {
             "run": run.name,
             "row": run.row,
+            "setting": few.setting_of[run.row],
+            "packing": few.packing_of[run.row],
             "surface": run.surface,
             "travel_m": 0.06,
             "worn_volume_m3": CONVEX if run.surface == "convex" else PLAIN,
@@ -58,10 +60,12 @@ def folder(few, tmp_path):
 
 
 def test_a_row_stands_beside_its_plain_twin(few, folder):
-    """Ratios of the two surfaces, wear in mm3 per metre, and the regime over the convex one."""
+    """Ratios of the two surfaces with their interval, wear in mm3 per metre, and the regime over the convex one."""
     lines = markdown.markdown(screening.wear_by_row(page_parameters(few), folder)).splitlines()
-    assert lines[0].startswith("| row | particle scale | regime |")
-    assert lines[2] == "| R5 | 1.25 | continuous | yes | 30 | 0.75 | 25 | 33.3 | 33.3 | 1.5 |"
+    assert lines[0].startswith(
+        "| row | particle scale | regime | flow steady | packings | wear over plain | interval low"
+    )
+    assert lines[2] == "| R5 | 1.25 | continuous | yes | 3 | 0.75 | 0.75 | 0.75 | 30 | 25 | 33.3 | 33.3 | 1.5 |"
     assert len(lines) == 4
 
 
@@ -76,8 +80,8 @@ def test_a_few_rows_make_a_page_without_a_regression(few, tmp_path):
         Image.new("RGB", (2, 2)).save(path)
     text = markdown.write_results(folder, docs, few).read_text(encoding="utf-8")
     assert text.startswith("# Screening of the convex pattern, Table 3.8: results at quick fidelity")
-    assert "4 runs of 2 rows" in " ".join(text.split()) and "## Durations" in text
-    assert "Of 1 findings: 1 cannot be said." in " ".join(text.split()) and "| R12 wears more |" in text
+    assert "12 runs of 2 rows" in " ".join(text.split()) and "## Durations" in text
+    assert "Of 1 claims: 1 cannot be said." in " ".join(text.split()) and "| R12 wears more |" in text
     assert "4 of 4 windows are steady" in text
     assert "## Regression" not in text
     assert "![wear by regime](screening_quick_wear_by_regime.png)" in text
@@ -132,7 +136,7 @@ def test_a_study_with_factors_has_a_regression(study, results):
     folder, tables = results
     text = html.unescape(page_of_results(folder, study))
     assert "<td>R12 wears more</td>" in text
-    assert "Of 1 findings: 1 cannot be said." in text
+    assert "Of 1 claims: 1 cannot be said." in text
     assert embedded(text, "small_findings.csv")["verdict"].tolist() == ["cannot be said"]
     assert len(embedded(text, "small_findings_runs.csv")) == 1
     assert "Regression of the wear" in text and tables["models"]["model"][0] in text

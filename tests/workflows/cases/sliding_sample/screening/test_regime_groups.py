@@ -1,21 +1,21 @@
-"""Runs by flow regime: groups of rows, relative wear, deviation of forces, rows in detail, published rows."""
+"""Settings by flow regime: groups of rows, relative wear, forces, rows in detail, published rows."""
 
 import numpy as np
 import pandas as pd
 import pytest
+from scipy import stats
 
 from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED
 from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
     by_group,
     force_by_group,
-    force_remarks,
     gradients_by_group,
+    groups_of_rows,
     of_published_rows,
     published_rows_in_detail,
     regime_remarks,
     rows_in_detail,
     wear_by_group,
-    with_wear_rates,
 )
 
 ROUNDING = 1e-12
@@ -27,7 +27,8 @@ def regimes():
     rows = [("R1", CONTINUOUS, CONTINUOUS), ("R2", DISCONTINUOUS, CONTINUOUS), ("R3", CONTINUOUS, CONTINUOUS)]
     return pd.DataFrame(
         [
-            {"run": f"{row}_{surface}", "row": row, "surface": surface, "regime": regime, "steady": surface == "plain"}
+            {"run": f"{row}_{surface}", "row": row, "setting": row, "packing": 1, "surface": surface, "regime": regime}
+            | {"steady": surface == "plain"}
             for row, *found in rows
             for surface, regime in zip(("convex", "plain"), found, strict=True)
         ]
@@ -40,7 +41,7 @@ def summary(regimes):
     travel = np.array([1.0, 1.0, 0.5, 0.5, 1.0, 1.0])
     volume = 1e-9 * np.array([1.0, 2.0, 4.0, 8.0, 2.0, 4.0]) * travel
     bumps = np.where(regimes["surface"] == "convex", 0.25, 0.0) * volume
-    return regimes[["run", "row", "surface"]].assign(
+    return regimes[["run", "row", "setting", "packing", "surface"]].assign(
         travel_m=travel,
         worn_volume_m3=volume,
         base_worn_volume_m3=volume - bumps,
@@ -59,31 +60,48 @@ def test_a_row_is_in_the_group_of_its_convex_run(regimes, summary):
     assert set(by_group(summary, plain)["regime"]) == {UNDECIDED}
 
 
+def test_packings_of_different_regimes_are_undecided(regimes):
+    """A row whose packings do not flow alike is in no group, though each of them is."""
+    other = regimes.assign(row=regimes["row"] + "-2", regime=CONTINUOUS)
+    found = groups_of_rows(pd.concat([regimes, other], ignore_index=True))
+    assert found[["R2", "R2-2"]].tolist() == [UNDECIDED] * 2
+    assert found[["R1", "R3-2"]].tolist() == [CONTINUOUS] * 2
+
+
+BED = {"velocity": 0.5, "thickness": 0.02, "width": 0.1, "bulk_density": 2000.0}
+
+
 def test_relative_wear_is_per_length_within_the_group(regimes, summary):
-    """The largest of each group has 1 whatever its travel, and base and bumps add up (Eq 3.10)."""
-    table = wear_by_group(summary, regimes).set_index("run")
-    expected = {
-        "R1_convex": 0.25,
-        "R1_plain": 0.5,
-        "R3_convex": 0.5,
-        "R3_plain": 1.0,
-        "R2_convex": 0.5,
-        "R2_plain": 1.0,
-    }
-    assert table["relative_wear"].to_dict() == pytest.approx(expected, rel=ROUNDING)
-    np.testing.assert_allclose(
-        table["base_relative_wear"] + table["bump_relative_wear"], table["relative_wear"], rtol=ROUNDING
-    )
-    assert table.loc["R2_convex", "bump_relative_wear"] == pytest.approx(0.125, rel=ROUNDING)
+    """The largest of each group has 1 whatever its travel, and base and bumps add up (Eq 3.10); wear rates are per mass
+    flow: 1e-9 m3 worn while 2 kg/s pass are 0.5 mm3 s/kg (Eq 3.11).
+    """
+    beds = dict.fromkeys(summary["run"], BED)
+    table = wear_by_group(summary, regimes, beds).set_index(["setting", "surface"])
+    expected = [0.25, 0.5, 0.5, 1.0, 0.5, 1.0]
+    assert table.index.get_level_values("setting").tolist() == ["R1", "R1", "R3", "R3", "R2", "R2"]
+    np.testing.assert_allclose(table["relative_wear"], expected, rtol=ROUNDING)
+    total = table["base_relative_wear"] + table["bump_relative_wear"]
+    np.testing.assert_allclose(total, table["relative_wear"], rtol=ROUNDING)
+    assert table.loc[("R2", "convex"), "bump_relative_wear"] == pytest.approx(0.125, rel=ROUNDING)
+    assert table.loc[("R1", "convex"), "wear_rate_mm3_s_per_kg"] == pytest.approx(0.5, rel=ROUNDING)
+    assert table.loc[("R2", "plain"), "wear_rate_mm3_s_per_kg"] == pytest.approx(2.0, rel=ROUNDING)
 
 
-def test_wear_rates_are_per_mass_flow(regimes, summary):
-    """1e-9 m3 worn while 2 kg/s pass are 0.5 mm3 s/kg, whatever the order of the runs (Eq 3.11)."""
-    bed = {"velocity": 0.5, "thickness": 0.02, "width": 0.1, "bulk_density": 2000.0}
-    beds = dict.fromkeys(summary["run"], bed)
-    table = with_wear_rates(wear_by_group(summary, regimes), summary, beds).set_index("run")
-    assert table.loc["R1_convex", "wear_rate_mm3_s_per_kg"] == pytest.approx(0.5, rel=ROUNDING)
-    assert table.loc["R2_plain", "wear_rate_mm3_s_per_kg"] == pytest.approx(2.0, rel=ROUNDING)
+def test_intervals_are_scaled_with_the_wear(regimes, summary):
+    """Two packings, one wearing e times as much: Student's interval of ln, over the largest mean of the group."""
+    more = summary.assign(row=summary["row"] + "-2", run=summary["run"] + "-2", packing=2)
+    more["worn_volume_m3"] *= np.e
+    both = pd.concat([summary, more], ignore_index=True)
+    beds = dict.fromkeys(both["run"], BED)
+    twice = pd.concat([regimes, regimes.assign(row=regimes["row"] + "-2")], ignore_index=True)
+    found = wear_by_group(both, twice, beds).set_index(["setting", "surface"]).loc[("R1", "convex")]
+    reach = stats.t.ppf(0.975, 1) * 0.5
+    assert found["relative_wear"] == pytest.approx(0.25, rel=ROUNDING)
+    ends = 0.25 * np.exp([-reach, reach])
+    assert found[["interval_low", "interval_high"]].tolist() == pytest.approx(ends, rel=1e-9)
+    force = force_by_group(both, twice)
+    assert force["packings"].unique().tolist() == [2]
+    assert force[["mean_normal_force_N", "interval_low", "interval_high"]].to_numpy() == pytest.approx(5.0)
 
 
 def test_gradients_have_the_group_of_their_row(regimes):
@@ -95,22 +113,6 @@ def test_gradients_have_the_group_of_their_row(regimes):
     table = gradients_by_group(pd.concat(tables, ignore_index=True), regimes)
     np.testing.assert_allclose(table.loc[table["run"] == "R2_plain", "relative_gradient"], 4.0 / 6.0, rtol=ROUNDING)
     assert table.groupby("row")["regime"].first().to_dict() == {"R1": CONTINUOUS, "R2": DISCONTINUOUS, "R3": CONTINUOUS}
-
-
-def test_deviation_needs_three_stretches(regimes, summary, tmp_path):
-    """Forces of 4, 5 and 6 N over stretches of two cycles deviate by 1 N; two stretches have no deviation."""
-    folders = [tmp_path / run for run in summary["run"]]
-    for k, folder in enumerate(folders):
-        for cycle, forces in ((1, [4.0, 5.0] if k == 0 else [4.0]), (2, [6.0])):
-            (folder / f"cycle_{cycle:03d}").mkdir(parents=True)
-            table = pd.DataFrame({"mean_normal_force_N": forces})
-            table.to_csv(folder / f"cycle_{cycle:03d}" / "wear_history.csv", index=False)
-    table = force_by_group(summary, folders, regimes)
-    assert table.set_index("run").loc["R1_convex", "deviation_N"] == pytest.approx(1.0)
-    assert table["deviation_N"].isna().sum() == 5
-    assert force_remarks(table) == ["5 of 6 runs do not have the 3 stretches of travel that a deviation needs"]
-    assert force_remarks(table.assign(deviation_N=1.0)) == []
-    assert force_remarks(table.assign(deviation_N=np.nan))[0].startswith("no run has")
 
 
 def test_rows_in_detail(regimes, summary):

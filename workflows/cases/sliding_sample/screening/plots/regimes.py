@@ -23,19 +23,19 @@ from bulkwear.postproc.plots.style import (
     scaled,
 )
 from bulkwear.postproc.tables.summary import patterned_name
+from bulkwear.workflows.cases.sliding_sample.plots.bars import draw_intervals
 from bulkwear.workflows.cases.sliding_sample.screening.confirmation import interval_reach
 
 BAR = 0.4  # -, width of a bar over the distance of rows
 PLAIN_FILL = "#f4c9a8"  # of the plain samples' bars
-ERROR_BARS = {"fmt": "none", "ecolor": "black", "elinewidth": 0.9, "capsize": 2}
 HEADROOM = 1.08  # -, of the highest bar
 ROOM = 1.05  # -, of the largest value on the axis of a confirmation
 
 
 def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw relative wear of patterned (base and pattern, stacked) and plain samples, rows of least wear first.
+    """Draw relative wear of patterned (base and pattern, stacked) and plain samples with intervals, least wear first.
 
-    table: as from `regime_groups.wear_by_group`, with interval_low and interval_high, NaN where not known.
+    table: as from `regime_groups.wear_by_group`
     """
     highest = np.nanmax([1.0, *table["interval_high"]])
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -47,9 +47,7 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         axes.bar(left, patterned["bump_relative_wear"], BAR, bottom=patterned["base_relative_wear"], **pattern)
         axes.bar(_places(plain) + 0.5 * BAR, plain["relative_wear"], BAR, color=PLAIN_FILL, edgecolor=colour(PLAIN))
         for places, runs in ((left, patterned), (_places(plain) + 0.5 * BAR, plain)):
-            reach = np.abs(runs[["interval_low", "interval_high"]].to_numpy().T - runs["relative_wear"].to_numpy())
-            known = np.isfinite(reach).all(axis=0)
-            axes.errorbar(places[known], runs["relative_wear"][known], reach[:, known], **ERROR_BARS)
+            draw_intervals(axes, places, runs["relative_wear"], runs)
         axes.set_ylim(0.0, HEADROOM * highest)
     figure.axes[0].set_ylabel("Wear over the largest of the regime (-)")
     name = patterned_name(table["surface"])
@@ -63,18 +61,17 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
 
 def normal_force_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw the mean normal force (N) on patterned and plain samples with its deviation along the travel, if known.
+    """Draw the mean normal force (N) on patterned and plain samples with its interval.
 
-    table: as from `regime_groups.force_by_group`.
+    table: as from `regime_groups.force_by_group`
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     for axes, shown in _panels(figure, table, "mean_normal_force_N"):
         for shift, (surface, runs) in zip((-0.5, 0.5), _by_surface(shown), strict=False):
-            known = runs["deviation_N"].notna()
             places = _places(runs) + shift * BAR
             axes.bar(places, runs["mean_normal_force_N"], BAR, color=colour(surface))
-            axes.errorbar(places[known], runs["mean_normal_force_N"][known], runs["deviation_N"][known], **ERROR_BARS)
-    highest = (table["mean_normal_force_N"] + table["deviation_N"].fillna(0.0)).max()
+            draw_intervals(axes, places, runs["mean_normal_force_N"], runs)
+    highest = np.fmax(table["mean_normal_force_N"], table["interval_high"]).max()
     figure.axes[0].set_ylim(0.0, HEADROOM * highest)
     figure.axes[0].set_ylabel("Normal force on the sample (N)")
     handles = [Patch(color=colour(surface), label=surface) for surface in dict.fromkeys(table["surface"])]
@@ -93,24 +90,24 @@ def _places(runs: pd.DataFrame) -> np.ndarray:
 
 
 def _panels(figure: Figure, table: pd.DataFrame, column: str) -> list[tuple[Axes, pd.DataFrame]]:
-    """Return axes and runs, with their `place` on the axis, of each regime; panels are as wide as they have rows.
+    """Return axes and lines, with their `place` on the axis, of each regime; panels are as wide as they have settings.
 
-    Rows stand in the order of the column's values of their patterned runs.
+    Settings stand in the order of the column's values of their patterned samples.
     """
     regimes = list(dict.fromkeys(table["regime"]))
-    counts = [table.loc[table["regime"] == regime, "row"].nunique() for regime in regimes]
+    counts = [table.loc[table["regime"] == regime, "setting"].nunique() for regime in regimes]
     grid = figure.subplots(1, len(regimes), sharey=True, squeeze=False, width_ratios=np.maximum(counts, 2))[0]
     panels = []
     for axes, regime in zip(grid, regimes, strict=True):
         shown = table[table["regime"] == regime]
-        patterned = shown[shown["surface"] != PLAIN].sort_values(column, kind="stable")["row"]
-        rows = list(dict.fromkeys([*patterned, *shown["row"]]))
+        patterned = shown[shown["surface"] != PLAIN].sort_values(column, kind="stable")["setting"]
+        rows = list(dict.fromkeys([*patterned, *shown["setting"]]))
         axes.set_xticks(range(len(rows)), rows)
         axes.set_xlim(-0.6, len(rows) - 0.4)
         axes.grid(axis="x", visible=False)
         axes.set_title(regime, loc="left", fontsize=SMALLEST_FONT)
         axes.set_xlabel("Design row")
-        panels.append((axes, shown.assign(place=shown["row"].map(rows.index))))
+        panels.append((axes, shown.assign(place=shown["setting"].map(rows.index))))
     return panels
 
 

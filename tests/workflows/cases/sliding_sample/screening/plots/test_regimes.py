@@ -19,7 +19,7 @@ def table():
     """Two continuous rows, R2 of less convex wear, and a discontinuous one."""
     rows = [("R1", "continuous", 0.8, 1.0), ("R2", "continuous", 0.4, 0.6), ("R3", "discontinuous", 0.9, 1.0)]
     runs = [
-        {"run": f"{row}_{surface}", "row": row, "surface": surface, "regime": regime, "relative_wear": wear}
+        {"setting": row, "surface": surface, "regime": regime, "relative_wear": wear}
         for row, regime, *both in rows
         for surface, wear in zip(("convex", "plain"), both, strict=True)
     ]
@@ -27,7 +27,7 @@ def table():
     bumps = np.where(table["surface"] == "convex", 0.25, 0.0) * table["relative_wear"]
     table = table.assign(base_relative_wear=table["relative_wear"] - bumps, bump_relative_wear=bumps)
     table = table.assign(interval_low=[0.7] + [np.nan] * 5, interval_high=[1.2] + [np.nan] * 5)
-    return table.assign(mean_normal_force_N=10.0 * table["relative_wear"], deviation_N=[1.0] + [np.nan] * 5)
+    return table.assign(mean_normal_force_N=10.0 * table["relative_wear"])
 
 
 def heights(axes):
@@ -50,8 +50,10 @@ def test_wear_bars_are_the_table(table):
 
 
 def test_force_bars_are_the_table(table):
-    """A bar of the force per run, and a bar of error only where a deviation is known."""
+    """A bar of the force per setting and surface, and an interval only where one is known."""
+    table = table.assign(interval_low=10.0 * table["interval_low"], interval_high=10.0 * table["interval_high"])
     figure = normal_force_by_regime(table, REMARKS)
+    assert figure.axes[0].get_ylim()[1] > 12.0
     assert heights(figure.axes[0]) == pytest.approx([4.0, 6.0, 8.0, 10.0])
     drawn = [len(bars.get_segments()) for axes in figure.axes for bars in axes.collections]
     assert sum(drawn) == 1
