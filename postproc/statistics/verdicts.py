@@ -26,7 +26,6 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN, Ends, Estimate
 
 AGREES, CONTRADICTS = "agrees", "contradicts"
 OTHER_SIZE, UNSAID = "same direction, other size", "cannot be said"
-CONFIRMED, REFUTED = "confirmed", "not confirmed"  # until both pages of findings hold claims
 VERDICTS = (AGREES, OTHER_SIZE, CONTRADICTS, UNSAID)
 ERROR_RATE = 0.05  # -, of a false "agrees" and of a false "contradicts", each at most
 
@@ -170,7 +169,7 @@ def _no_reach(claim: Claim, covers: tuple[float, float] | None) -> str:
     (low, high), (first, last) = claim.reach, covers
     if first <= low and high <= last:
         return ""
-    return f"claimed of {low:g} to {high:g} {claim.reach_unit}, the runs cover {first:g} to {last:g}"
+    return f"claimed of {low:g} to {high:g} {claim.reach_unit}, the runs cover {first:.4g} to {last:.4g}"
 
 
 def _no_interval(named: Mapping[str, Estimate]) -> str:
