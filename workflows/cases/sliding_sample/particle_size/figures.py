@@ -28,6 +28,8 @@ PUBLISHED_LINES = "config/published/particle_size_lines.csv"
 PUBLISHED_SIZES = "config/published/particle_size_results.csv"
 PUBLISHED_PACKING = "config/published/packing.csv"
 PUBLISHED_SCALES = (1.0, 8.0)  # of the source
+OF_WEAR = {"lines": "lines", "critical": "critical_scale", "forms": "critical_scale_forms", "ratios": "wear_over_plain"}
+WEAR_TABLES = {name: f"particle_size/{file}.csv" for name, file in OF_WEAR.items()}
 size_figure = partial(figure, "Particle size", when=varies_scale)
 
 
@@ -47,12 +49,7 @@ def below(folder: str) -> OfStudy:
 @size_figure(
     "Wear against particle scale",
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
-    tables={
-        "lines": "particle_size/lines.csv",
-        "critical": "particle_size/critical_scale.csv",
-        "forms": "particle_size/critical_scale_forms.csv",
-        "ratios": "particle_size/wear_over_plain.csv",
-    },
+    tables=WEAR_TABLES,
     caption="""
     Worn volume of the plain sample, of the patterned sample, its base and its pattern, over that of the plain sample
     with the smallest particles simulated: small marks are packings, large ones their means with 95 % intervals. Thin
@@ -76,9 +73,8 @@ def wear_against_scale(job: Job) -> Any:
     reference = f"relative to the plain sample at particle scale {wear['reference_scale'].iloc[0]:g}"
     remarks = [*job.remarks, reference, by_scale.critical_scale_text(critical)]
     lines = by_scale.beside_published(by_scale.wear_lines(wear), published)
-    further = {"lines": lines, "critical": pd.DataFrame([asdict(critical)]), "forms": forms}
-    further["ratios"] = by_scale.ratio_by_scale(wear)
-    return drawn.wear_against_scale(wear, published, critical, remarks), wear, further
+    told = (lines, pd.DataFrame([asdict(critical)]), forms, by_scale.ratio_by_scale(wear))
+    return drawn.wear_against_scale(wear, published, critical, remarks), wear, dict(zip(WEAR_TABLES, told, strict=True))
 
 
 @size_figure(
@@ -92,8 +88,8 @@ def wear_against_scale(job: Job) -> Any:
     Eq 4.18 to 4.21); bars: 95 % intervals over packings. Dotted: the source's lines. With one pattern all four ratios
     grow together, so the figure cannot tell which of them decides; the source holds that it is the equivalent radius,
     with wear reduced below 1. The table in `particle_size/guidance.csv` has the ratios of real particles, the largest
-    scale that they allow, and how many times the wear at real size the source's line gives at the scale simulated. The
-    counterpart of Yan 2022, Fig 4.17.
+    scale that they allow, and how many times the wear at real size that at the scale simulated is, by the study's line
+    and by the source's. The counterpart of Yan 2022, Fig 4.17.
     """,
 )
 def wear_against_size_ratios(job: Job) -> Any:
@@ -103,19 +99,17 @@ def wear_against_size_ratios(job: Job) -> Any:
 
     from bulkwear.postproc.reference.size_ratios import size_ratios
     from bulkwear.workflows.cases.sliding_sample.particle_size import wear_by_scale as by_scale
-    from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Particles, Pattern, guidance_table
+    from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import guidance_table, simulated
     from bulkwear.workflows.cases.sliding_sample.particle_size.plots import wear_by_scale as drawn
 
     wear, lines = pd.read_csv(job.files.wear, dtype={"row": str}), pd.read_csv(job.files.published)
-    rows = job.told.rows
-    patterns = {row: Pattern(**given["pattern"]) for row, given in rows.items()}
-    real = next((Particles(**given["particles"]) for given in rows.values()), None)
-    scales = {row: given["scale"] for row, given in rows.items()}
-    ratios = {scales[row]: size_ratios(scales[row] * real.median_diameter, *patterns[row].bump) for row in rows}
+    patterns, real, scales = simulated(job.told.rows)
+    ratios = {scales[row]: size_ratios(scales[row] * real.median_diameter, *patterns[row].bump) for row in scales}
     table = by_scale.wear_by_size_ratio(wear, ratios)
     published = by_scale.published_by_size_ratio(lines, np.linspace(*PUBLISHED_SCALES, 71))
     picture = drawn.wear_against_size_ratios(table, published, job.remarks)
-    return picture, table, {"guidance": guidance_table(patterns, real, scales, lines)}
+    patterned = wear[wear["curve"] == by_scale.patterned_curve(wear)]
+    return picture, table, {"guidance": guidance_table(patterns, real, scales, lines, patterned)}
 
 
 @size_figure(
@@ -240,9 +234,8 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
     Magnitude of the averaged angular velocity of the lowest layer over the sample, from its front edge, which the bed
     meets first and which is at the top of the circle, clockwise to its rear edge. Pieces are as long as the layer is
     high, 5 mm times the particle scale, as nearly as whole ones fill the sample; means over the steady window of the
-    relative velocity, or over all of the travel where there is none. The source's text: it falls with the scale, is
-    much higher over the convex sample, and there higher at the front than at the back. The counterpart of Yan 2022, Fig
-    4.22.
+    relative velocity, or over all travel where there is none. The source: it falls with the scale, is much higher over
+    the convex sample, and there higher at the front than at the back. The counterpart of Yan 2022, Fig 4.22.
     """,
 )
 def angular_velocity_along_sample(job: Job) -> Any:

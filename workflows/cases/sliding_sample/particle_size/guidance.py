@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy import stats
 
 from bulkwear.postproc.reference.size_ratios import (
     LARGEST_RATIO,
@@ -17,6 +19,11 @@ from bulkwear.postproc.reference.size_ratios import (
     published_largest_scale,
     size_ratios,
 )
+from bulkwear.postproc.statistics.crossing import FEWEST_PLACES
+from bulkwear.postproc.statistics.intervals import CONFIDENCE
+
+PUBLISHED_SCALES = np.arange(1.0, 9.0)  # of the source's lines (Yan 2022, Table 4.1 and Fig 4.14)
+ROUNDING = 1e-9  # relative
 
 
 @dataclass(frozen=True)
@@ -43,6 +50,15 @@ class Particles:
     mass_fractions: Sequence[float]
 
 
+def simulated(
+    rows: Mapping[str, Mapping[str, Any]],
+) -> tuple[dict[str, Pattern], Particles | None, dict[str, float]]:
+    """Return patterns, real particles and particle scales of design rows, as from `study.bumps_and_particles`."""
+    patterns = {row: Pattern(**given["pattern"]) for row, given in rows.items()}
+    real = next((Particles(**given["particles"]) for given in rows.values()), None)
+    return patterns, real, {row: given["scale"] for row, given in rows.items()}
+
+
 def guidance(pattern: Pattern, particles: Particles) -> dict[str, float | bool]:
     """Return what the sizes of real particles and bumps let expect; keys below, all without unit.
 
@@ -65,29 +81,100 @@ def guidance(pattern: Pattern, particles: Particles) -> dict[str, float | bool]:
     }
 
 
-def published_bias(pattern: Pattern, particles: Particles, scale: float, lines: pd.DataFrame) -> float:
-    """Return how many times the convex sample's wear at real size it is at a particle scale, by the published line.
+@dataclass(frozen=True)
+class Line:
+    """A straight line of wear against particle scale: intercept and slope, their covariance (2, 2), its degrees of
+    freedom, and the scales (least, largest) that it is of.
+    """
 
-    lines: curve, intercept and slope, as in config/published/particle_size_lines.csv (Yan 2022, Eq 4.15), of the
-    source's pattern; it is taken to hold for others at the same alpha_ER. NaN where the line is not above zero, which
-    it is only from 0.3 times the source's own particles on.
+    coefficients: np.ndarray
+    covariance: np.ndarray
+    freedom: int
+    scales: tuple[float, float]
+
+
+def published_line(lines: pd.DataFrame) -> Line:
+    """Return the source's line of the convex sample, Eq 4.15; its scatter is what the printed R2 leaves at its scales.
+
+    lines: curve, intercept, slope and r_squared, as in config/published/particle_size_lines.csv
     """
     line = lines.set_index("curve").loc["convex"]
+    matrix = np.column_stack([np.ones(len(PUBLISHED_SCALES)), PUBLISHED_SCALES])
+    explained = line["slope"] ** 2 * ((PUBLISHED_SCALES - PUBLISHED_SCALES.mean()) ** 2).sum()
+    freedom = len(PUBLISHED_SCALES) - 2
+    variance = explained * (1.0 / line["r_squared"] - 1.0) / freedom
+    coefficients = line[["intercept", "slope"]].to_numpy(dtype=float)
+    covariance = variance * np.linalg.inv(matrix.T @ matrix)
+    return Line(coefficients, covariance, freedom, (PUBLISHED_SCALES.min(), PUBLISHED_SCALES.max()))
+
+
+def own_line(scale: np.ndarray, wear: np.ndarray) -> Line | None:
+    """Return the least-squares line of a study's patterned samples, (k,) of each run; None of fewer than 3 scales."""
+    places = np.unique(scale)
+    if len(places) < FEWEST_PLACES:
+        return None
+    matrix = np.column_stack([np.ones(len(scale)), scale])
+    coefficients, *_ = np.linalg.lstsq(matrix, wear, rcond=None)
+    freedom = len(scale) - 2
+    variance = ((wear - matrix @ coefficients) ** 2).sum() / freedom
+    return Line(coefficients, variance * np.linalg.inv(matrix.T @ matrix), freedom, (places[0], places[-1]))
+
+
+def line_ratio(line: Line, place: float, reference: float) -> tuple[float, float, float]:
+    """Return a line's value at one scale over that at another, with its 95 % interval (Fieller 1954).
+
+    NaN where the line is not above zero at the reference; ends are NaN where it cannot be told from zero there.
+    """
+    over = np.array([[1.0, place], [1.0, reference]])
+    (top, bottom), spread = over @ line.coefficients, over @ line.covariance @ over.T
+    if bottom <= 0.0:
+        return np.nan, np.nan, np.nan
+    if place == reference:
+        return 1.0, 1.0, 1.0
+    spread = spread * stats.t.ppf(0.5 + 0.5 * CONFIDENCE, line.freedom) ** 2
+    square, middle = bottom**2 - spread[1, 1], top * bottom - spread[0, 1]
+    root = middle**2 - square * (top**2 - spread[0, 0])
+    if square <= 0.0:
+        return top / bottom, np.nan, np.nan
+    low, high = ((middle + sign * np.sqrt(root)) / square for sign in (-1.0, 1.0))
+    return float(top / bottom), float(low), float(high)
+
+
+def published_bias(
+    pattern: Pattern, particles: Particles, scale: float, lines: pd.DataFrame
+) -> tuple[float, float, float]:
+    """Return how many times the convex sample's wear at real size it is at a particle scale, by the source's line.
+
+    With its 95 % interval, which is wide: the line is small at real size, and that is what everything is divided by.
+    It tells of the source's simulations, not of these, whose own line differs. It is taken to hold for other patterns
+    at the same alpha_ER, and is not extended: NaN outside its scales. lines: as for `published_line`
+    """
     unit = equivalent_size_ratio(PUBLISHED_DIAMETER, *PUBLISHED_PATTERN)
     real = equivalent_size_ratio(particles.median_diameter, *pattern.bump) / unit
-    at_real, at_scale = (line["intercept"] + line["slope"] * place for place in (real, scale * real))
-    return float(at_scale / at_real) if at_real > 0.0 else float("nan")
+    line = published_line(lines)
+    least, largest = line.scales
+    if real < least * (1.0 - ROUNDING) or scale * real > largest * (1.0 + ROUNDING):
+        return np.nan, np.nan, np.nan
+    return line_ratio(line, scale * real, real)
 
 
 def guidance_table(
-    patterns: Mapping[str, Pattern], particles: Particles | None, scales: Mapping[str, float], lines: pd.DataFrame
+    patterns: Mapping[str, Pattern],
+    particles: Particles | None,
+    scales: Mapping[str, float],
+    lines: pd.DataFrame,
+    wear: pd.DataFrame,
 ) -> pd.DataFrame:
     """Return a row of guidance per pattern, with the particle scale that a study simulates it at.
 
-    patterns, scales: by design row of a sample with bumps. Columns row, major_radius_m, minor_radius_m and height_m of
-    the bump, median_diameter_m of real particles, those of `guidance`, particle_scale, within_largest_scale, and
-    published_bias of that scale.
+    patterns, scales: by design row of a sample with bumps; lines: as for `published_line`; wear: particle_scale and
+    relative_wear of every patterned run of the study
+    Columns row, major_radius_m, minor_radius_m and height_m of the bump, median_diameter_m of real particles, those of
+    `guidance`, particle_scale, within_largest_scale, and wear at that scale over that at real size, with 95 %
+    intervals: own_bias, own_bias_low and own_bias_high by the study's own line, extended to real size from
+    own_line_from_scale; published_bias, published_bias_low and published_bias_high by the source's.
     """
+    own = own_line(wear["particle_scale"].to_numpy(dtype=float), wear["relative_wear"].to_numpy(dtype=float))
     rows = [
         {
             "row": row,
@@ -96,8 +183,14 @@ def guidance_table(
             **(told := guidance(pattern, particles)),
             "particle_scale": scales[row],
             "within_largest_scale": scales[row] < told["largest_scale"],
-            "published_bias": published_bias(pattern, particles, scales[row], lines),
+            **_named("own_bias", line_ratio(own, scales[row], 1.0) if own else (np.nan,) * 3),
+            "own_line_from_scale": own.scales[0] if own else np.nan,
+            **_named("published_bias", published_bias(pattern, particles, scales[row], lines)),
         }
         for row, pattern in patterns.items()
     ]
     return pd.DataFrame(rows) if rows else pd.DataFrame(columns=["row", "equivalent_radius"])
+
+
+def _named(name: str, told: tuple[float, float, float]) -> dict[str, float]:
+    return dict(zip((name, f"{name}_low", f"{name}_high"), told, strict=True))

@@ -151,9 +151,11 @@ def guidance(study: Mapping[str, Any], folder: Path) -> list[Block]:
         Text(
             "Is the pattern expected to help, and how far may a study of it be coarse-grained? First the ratios of real"
             " particle to bump (Yan 2022, Eq 4.18 to 4.21): the pattern is expected to help where that of the"
-            " equivalent radius is below 1, which it reaches at the largest scale. Published bias: by the source's"
-            " line (Eq 4.15), wear of the convex sample at the scale simulated over that at real size, if particle over"
-            " bump is all that matters. Then the ratios of the particles simulated."
+            " equivalent radius is below 1, which it reaches at the largest scale. Bias: wear of the patterned sample"
+            " at the scale simulated over that at real size, with its 95 % interval, by a straight line. The own one is"
+            " this study's, extended to real size from its smallest scale; the published one is the source's (Eq 4.15),"
+            " if particle over bump is all that matters. The own one says what this study's wear is worth. Then the"
+            " ratios of the particles simulated."
         ),
         Table(table, "guidance"),
         Table(pd.DataFrame(ratios), "size_ratios"),

@@ -1,14 +1,19 @@
 """Guidance: what sizes let expect, on the source's pattern and on made-up ones."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import (
+    PUBLISHED_SCALES,
     Particles,
     Pattern,
     guidance,
     guidance_table,
+    line_ratio,
+    own_line,
     published_bias,
+    published_line,
 )
 from tests import PUBLISHED
 
@@ -16,6 +21,8 @@ LINES = pd.read_csv(PUBLISHED / "particle_size_lines.csv")
 R5 = Pattern(4e-3, 8e-3, 6e-3, gap=44e-3)
 GRAVEL = Particles(2.65e-3, [2.12e-3, 2.65e-3, 3.18e-3], [0.25, 0.5, 0.25])
 ROUNDING = 1e-12  # relative
+RUNS = 2000
+FOUR_ERRORS = 4.0 * (0.95 * 0.05 / RUNS) ** 0.5
 
 
 def scaled(factor):
@@ -41,19 +48,68 @@ def test_larger_gravel_is_not_helped():
 
 
 def test_the_published_line_tells_what_scale_does_to_wear():
-    """Eq 4.15 at scales 2 and 4 over that at 1; a pattern of half the size sees it at half the scale."""
-    assert published_bias(R5, GRAVEL, 1.0, LINES) == 1.0
-    assert published_bias(R5, GRAVEL, 2.0, LINES) == pytest.approx(0.44 / 0.18, rel=ROUNDING)
+    """Eq 4.15 at scales 2 and 4 over that at 1, 5.33; a pattern of half the size sees it at half the scale.
+
+    It is not extended to particles smaller than the source's, nor beyond its largest scale.
+    """
+    assert published_bias(R5, GRAVEL, 1.0, LINES) == (1.0, 1.0, 1.0)
+    assert published_bias(R5, GRAVEL, 2.0, LINES)[0] == pytest.approx(0.44 / 0.18, rel=ROUNDING)
+    assert published_bias(R5, GRAVEL, 4.0, LINES)[0] == pytest.approx(0.96 / 0.18, rel=ROUNDING)
     half = Pattern(2e-3, 4e-3, 3e-3, gap=22e-3)
-    assert published_bias(half, GRAVEL, 2.0, LINES) == pytest.approx(0.96 / 0.44, rel=1e-9)
-    assert pd.isna(published_bias(R5, scaled(0.3), 2.0, LINES))  # the line is below zero there
+    assert published_bias(half, GRAVEL, 2.0, LINES)[0] == pytest.approx(0.96 / 0.44, rel=1e-9)
+    for particles, scale in ((scaled(0.9), 2.0), (GRAVEL, 8.1)):
+        assert np.isnan(published_bias(R5, particles, scale, LINES)).all()
+
+
+def test_the_studys_own_line_is_not_the_published_one():
+    """0.25 + 0.0561 s, the standard study's: 1.55 times at scale 4, where Eq 4.15 has 5.33, outside its interval."""
+    scale = np.array([2.0, 3.0, 4.0, 6.0, 8.0])
+    own = own_line(scale, 0.25 + 0.0561 * scale + 0.005 * np.array([1.0, -1.0, -1.0, 1.0, 0.0]))
+    ratio, low, high = line_ratio(own, 4.0, 1.0)
+    assert ratio == pytest.approx(1.55, abs=0.02) and low < ratio < high
+    assert high < published_bias(R5, GRAVEL, 4.0, LINES)[1]
+    assert own.scales == (2.0, 8.0) and own_line(scale[:2], scale[:2]) is None
+
+
+def test_the_published_scatter_is_that_of_its_r_squared():
+    """A line with residuals that make R2 = 0.98 over scales 1 to 8 has the covariance that `own_line` finds of it."""
+    residuals = np.random.default_rng(4).normal(size=8)
+    matrix = np.column_stack([np.ones(8), PUBLISHED_SCALES])
+    residuals -= matrix @ np.linalg.lstsq(matrix, residuals, rcond=None)[0]
+    fitted = -0.08 + 0.26 * PUBLISHED_SCALES
+    left = (1.0 / 0.98 - 1.0) * ((fitted - fitted.mean()) ** 2).sum()
+    found = own_line(PUBLISHED_SCALES, fitted + residuals * np.sqrt(left / (residuals**2).sum()))
+    told = published_line(LINES)
+    np.testing.assert_allclose(found.covariance, told.covariance, rtol=1e-9)
+    np.testing.assert_allclose(found.coefficients, told.coefficients, rtol=1e-9)
+
+
+def test_intervals_of_ratios_hold_95_percent():
+    """Of lines through eight noisy values, 95 % of intervals hold the true ratio at scale 4 over 1."""
+    generator, held = np.random.default_rng(7), 0
+    for _ in range(RUNS):
+        wear = 0.25 + 0.0561 * PUBLISHED_SCALES + 0.02 * generator.normal(size=8)
+        _, low, high = line_ratio(own_line(PUBLISHED_SCALES, wear), 4.0, 1.0)
+        held += low < 0.4744 / 0.3061 < high
+    assert held / RUNS == pytest.approx(0.95, abs=FOUR_ERRORS)
+
+
+def test_what_cannot_be_told_from_zero_has_no_interval():
+    """Below zero at the reference there is no ratio; near zero there is one without ends."""
+    steep = own_line(np.array([1.0, 2.0, 3.0]), np.array([-1.0, 0.1, 1.0]))
+    assert np.isnan(line_ratio(steep, 3.0, 1.0)).all()
+    unsure = own_line(np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.5, 0.7]))
+    ratio, *ends = line_ratio(unsure, 3.0, 1.0)
+    assert ratio > 0.0 and np.isnan(ends).all()
 
 
 def test_the_table_has_a_row_for_each_pattern():
-    """Scale beside its limit, row by row."""
-    table = guidance_table(
-        {"R5": R5, "small": Pattern(2e-3, 2e-3, 1.5e-3, gap=36e-3)}, GRAVEL, {"R5": 2.0, "small": 2.0}, LINES
-    )
+    """Scale beside its limit, row by row; the own line is the study's, whatever the row's pattern."""
+    wear = pd.DataFrame({"particle_scale": [2.0, 3.0, 4.0], "relative_wear": [0.37, 0.42, 0.48]})
+    patterns = {"R5": R5, "small": Pattern(2e-3, 2e-3, 1.5e-3, gap=36e-3)}
+    table = guidance_table(patterns, GRAVEL, {"R5": 2.0, "small": 2.0}, LINES, wear)
     assert list(table["row"]) == ["R5", "small"]
     assert list(table["within_largest_scale"]) == [True, False]
-    assert table["published_bias"].notna().all()
+    assert table["published_bias"].notna().all() and (table["own_line_from_scale"] == 2.0).all()
+    assert (table["own_bias_low"] < table["own_bias"]).all() and (table["own_bias"] < table["own_bias_high"]).all()
+    assert guidance_table(patterns, GRAVEL, {"R5": 2.0, "small": 2.0}, LINES, wear[:2])["own_bias"].isna().all()
