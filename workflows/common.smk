@@ -1,5 +1,6 @@
 """Studies, checked before anything runs, and the input functions of all stages."""
 
+import itertools
 import sys
 from functools import cache
 from pathlib import Path
@@ -10,6 +11,7 @@ from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
 from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
+from bulkwear.workflows.config.until import read_round
 from bulkwear.workflows.engine.case import case_folders
 from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,
@@ -89,7 +91,7 @@ wildcard_constraints:
 CASES = {study.case.name: study.case for study in STUDIES.values()}
 SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
 # What comes before the tables of a study: on a cluster all that is not named here is one submission.
-BEFORE_TABLES = {"surface_mesh", "cost_rates", *SOLVER_RULES}
+BEFORE_TABLES = {"surface_mesh", "cost_rates", "further_packings", *SOLVER_RULES}
 
 
 onstart:
@@ -101,6 +103,8 @@ onstart:
                 raise WorkflowError(fault)
     for study, jobs in jobs_by_study(workflow.dag.needrun_jobs()).items():
         announce_cost(study, jobs)
+        if STUDIES[study].until:
+            logger.info(STUDIES[study].until.said(study))
 
 
 def jobs_by_study(jobs):
@@ -128,6 +132,52 @@ def rules_of_cases():
 
 def study_of(wildcards):
     return STUDIES[wildcards.study]
+
+
+def study_so_far(wildcards):
+    """The study with the packings that were found to be needed; which are, is not known before its runs are done."""
+    study, decided = study_of(wildcards), last_round(wildcards)
+    return study.with_packings(read_round(decided[0])["packings"]) if decided else study
+
+
+def last_round(wildcards):
+    """What says how many packings are enough, which tables depend on; nothing where their number is given."""
+    if study_of(wildcards).until is None:
+        return []
+    for number in itertools.count(1):
+        decided = checkpoints.further_packings.get(study=wildcards.study, round=number).output.decided
+        if read_round(decided)["enough"]:
+            return [decided]
+
+
+def study_of_round(wildcards):
+    """The study with the packings that a round of `further_packings` looks at."""
+    study, number = study_of(wildcards), int(wildcards.round)
+    if number == 1:
+        return study.with_packings(study.first_packings)
+    before = checkpoints.further_packings.get(study=study.name, round=number - 1).output.decided
+    return study.with_packings(read_round(before)["packings"])
+
+
+def of_round(pattern):
+    """An input function: a path pattern with {study} and {run}, expanded over the runs that a round looks at."""
+
+    def paths(wildcards):
+        return [pattern.format(study=wildcards.study, run=run.name) for run in study_of_round(wildcards).runs]
+
+    return paths
+
+
+def costs_of_round(wildcards):
+    """The tables of what the runs and beds of a round cost."""
+    beds = [f"results/{wildcards.study}/beds/{bed}/cost.csv" for bed in study_of_round(wildcards).beds]
+    return [*of_round("results/{study}/{run}/cost.csv")(wildcards), *beds]
+
+
+def round_before(wildcards):
+    """What the round before decided; nothing before the first."""
+    number = int(wildcards.round) - 1
+    return [f"results/{wildcards.study}/rounds/round_{number}.json"] if number else []
 
 
 def run_of(wildcards):
@@ -185,7 +235,7 @@ def of_every_run(pattern):
     """An input function: a path pattern with {study} and {run}, expanded over the runs of the study."""
 
     def paths(wildcards):
-        return [pattern.format(study=wildcards.study, run=run.name) for run in study_of(wildcards).runs]
+        return [pattern.format(study=wildcards.study, run=run.name) for run in study_so_far(wildcards).runs]
 
     return paths
 
@@ -196,14 +246,15 @@ def costs_of_runs(wildcards):
 
 
 def study_decks(study):
-    """The decks of a study, rendered without the solver."""
-    runs = [run.name for run in STUDIES[study].runs]
-    return [f"results/{study}/decks/{name}" for name in STUDIES[study].case.deck_files(runs, list(STUDIES[study].beds))]
+    """The decks of a study, rendered without the solver; of the packings that are simulated first."""
+    first = STUDIES[study].with_packings(STUDIES[study].first_packings)
+    files = first.case.deck_files([run.name for run in first.runs], list(first.beds))
+    return [f"results/{study}/decks/{name}" for name in files]
 
 
 def input_of(source):
     """An input of a rule: a path, or an input function."""
-    return looked_up(source) if isinstance(source, str) else lambda wildcards: paths_of(source, study_of(wildcards))
+    return looked_up(source) if isinstance(source, str) else lambda wildcards: paths_of(source, study_so_far(wildcards))
 
 
 def in_report(product, paths):
@@ -218,7 +269,7 @@ def in_report(product, paths):
 
 def told_of(product):
     """A param: what a product is told of a study."""
-    return lambda wildcards: told_to(product, study_of(wildcards))
+    return lambda wildcards: told_to(product, study_so_far(wildcards))
 
 
 def used_rates(wildcards=None):

@@ -10,7 +10,8 @@ Configuration faults raise ConfigError, one sentence each.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property, partial, reduce
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,7 @@ from bulkwear.workflows.config.sources import (
     read_sources,
 )
 from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.config.until import GOALS, UNTIL, Until, until_of
 from bulkwear.workflows.config.validation import (
     check_calibrated_for,
     check_material_names,
@@ -73,6 +75,8 @@ class Study:
     factors: {short name: column of the design} of the regression of its results; empty without one
     head: the keys of its file that are the study's own, no settings
     confirms: the study whose best designs this one simulates, "" for all others
+    first_packings: {setting: packings that are simulated first}; with `until` runs are all that there may be
+    until: how narrow intervals shall be, None where packings are a fixed number
     """
 
     name: str
@@ -90,7 +94,25 @@ class Study:
     paper_settings: dict[str, Any]
     materials: dict[str, Any]
     head: dict[str, Any]
+    first_packings: dict[str, int]
     confirms: str = ""
+
+    @property
+    def until(self) -> Until | None:
+        """Return what the study asks of its intervals; None where packings are a fixed number."""
+        return until_of(self.settings)
+
+    def with_packings(self, packings: Mapping[str, int]) -> Study:
+        """Return the study with so many packings of each setting, of those that it may have."""
+
+        def there(row: str) -> bool:
+            return self.packing_of[row] <= packings[self.setting_of[row]]
+
+        return replace(
+            self,
+            runs=tuple(run for run in self.runs if there(run.row)),
+            design_rows=tuple(row for row in self.design_rows if there(str(row["row"]))),
+        )
 
     @property
     def chosen_settings(self) -> list[str]:
@@ -199,6 +221,7 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         paper_settings=sources.merged(sources.stack("paper")[:-1]),
         materials=materials,
         head=head,
+        first_packings=designed.first(settings),
         confirms=confirms,
     )
     first = study.runs[0]
@@ -258,6 +281,10 @@ def _chosen_rows(layers: tuple[Layer, ...], settings: dict[str, Any], designed: 
 def _packings(sources: Sources, layers: tuple[Layer, ...], settings: dict[str, Any], rows: list[Layer]) -> Packings:
     """Return the rows of a design with all their packings. Raises ConfigError, as for several where there is no bed."""
     case = sources.case
+    if missing := [key for key in GOALS if key not in settings.get(UNTIL, dict.fromkeys(GOALS))]:
+        raise ConfigError(
+            f"{locate(layers, (UNTIL,))}: {UNTIL}.{missing[0]} is missing, allowed are {', '.join(GOALS)} together."
+        )
     if case.seed_setting:
         column = setting_columns(load_schema(f"cases/{case.name}/design"))[case.seed_setting]
         return with_packings(rows, settings, column, reduce(dict.__getitem__, case.seed_setting.split("."), settings))

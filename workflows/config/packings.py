@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from bulkwear.workflows.config.layers import ConfigError, Layer
+from bulkwear.workflows.config.until import first_packings, until_of
 from bulkwear.workflows.engine.decks import SMALLEST_SEED, primes
 
 PACKINGS = "packings"  # key of the settings, and column of designs whose rows have numbers of their own
@@ -33,14 +34,28 @@ class Packings:
     packing_of: dict[str, int]
     added: frozenset[str] = frozenset()
 
+    def first(self, settings: Mapping[str, Any]) -> dict[str, int]:
+        """Return how many packings of each setting are simulated first; `until` adds the others, see `until`."""
+        found: dict[str, list[Layer]] = {}
+        for row in self.rows:
+            found.setdefault(self.setting_of[_name(row)], []).append(row)
+        written = {name: sum(_name(row) not in self.added for row in rows) for name, rows in found.items()}
+        own = {name: any(PACKINGS in row.values for row in rows) for name, rows in found.items()}
+        given = {
+            name: len(rows) if own[name] else max(written[name], settings[PACKINGS]) for name, rows in found.items()
+        }
+        return first_packings(until_of(settings), given, own)
+
     def added_last(self) -> list[Layer]:
         """Return the rows of the table, then second packings that were added, then third ones."""
         return sorted(self.rows, key=lambda row: self.packing_of[_name(row)] * (_name(row) in self.added))
 
 
 def wanted_packings(rows: Sequence[Layer], settings: Mapping[str, Any]) -> int:
-    """Return how many packings a setting shall have; rows: those of the design that are of it."""
-    return max(row.values.get(PACKINGS, settings[PACKINGS]) for row in rows)
+    """Return how many packings a setting may have; rows: those of the design that are of it."""
+    until = until_of(settings)
+    most = settings[PACKINGS] if until is None else max(settings[PACKINGS], until.most_packings)
+    return max(row.values.get(PACKINGS, most) for row in rows)
 
 
 def without_packings(rows: Sequence[Layer]) -> Packings:

@@ -107,3 +107,25 @@ rule run_decks:
         "Decks of {wildcards.run}"
     script:
         "../scripts/run_decks.py"
+
+
+checkpoint further_packings:
+    input:
+        before=round_before,
+        wear=of_round("results/{study}/{run}/wear.csv"),
+        costs=costs_of_round,
+    output:
+        decided="results/{study}/rounds/round_{round}.json",
+        design="results/{study}/rounds/round_{round}_design.csv",
+    log:
+        "results/{study}/logs/further_packings_{round}.log",
+    wildcard_constraints:
+        round=r"\d+",
+    localrule: True
+    params:
+        until=lambda wildcards: study_of(wildcards).until,
+        rows=lambda wildcards: study_of_round(wildcards).design_table(),
+    message:
+        "Are the intervals of {wildcards.study} narrow enough?"
+    script:
+        "../scripts/further_packings.py"

@@ -9,6 +9,7 @@ for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
         name:
             RULE_OF_PRODUCT
         input:
+            last_round,
             **{name: input_of(source) for name, source in PRODUCT.inputs.items()},
         output:
             **in_report(PRODUCT, outputs_of(PRODUCT)),
@@ -22,8 +23,8 @@ for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
             case=case_of,
             product=PRODUCT.name,
             told=told_of(PRODUCT),
-            remarks=lambda wildcards: figure_remarks(study_of(wildcards)),
-            runs=lambda wildcards: [run.name for run in study_of(wildcards).runs],
+            remarks=lambda wildcards: figure_remarks(study_so_far(wildcards)),
+            runs=lambda wildcards: [run.name for run in study_so_far(wildcards).runs],
             title=PRODUCT.title,
             caption=PRODUCT.caption,
         message:
@@ -33,6 +34,8 @@ for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
 
 
 rule design_table:
+    input:
+        last_round,
     output:
         "results/{study}/design.csv",
     log:
@@ -40,7 +43,7 @@ rule design_table:
     benchmark:
         "results/{study}/logs/design_table.benchmark.tsv"
     params:
-        rows=lambda wildcards: study_of(wildcards).design_table(),
+        rows=lambda wildcards: study_so_far(wildcards).design_table(),
     message:
         "Design table of {wildcards.study}"
     script:
@@ -75,7 +78,8 @@ rule summary:
 
 rule report:
     input:
-        lambda wildcards: product_files(study_of(wildcards)),
+        last_round,
+        lambda wildcards: product_files(study_so_far(wildcards)),
         summary="results/{study}/summary.csv",
         design="results/{study}/design.csv",
         costs=costs_of_runs,
@@ -86,7 +90,7 @@ rule report:
     log:
         "results/{study}/logs/report.log",
     params:
-        study=lambda wildcards: page_parameters(study_of(wildcards)),
+        study=lambda wildcards: page_parameters(study_so_far(wildcards)),
     message:
         "Page of {wildcards.study}"
     script:
