@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy import special, stats
+from scipy import optimize, special, stats
 
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
 
@@ -29,7 +29,7 @@ LARGEST_CORRELATION = 0.98  # -, of neighbours
 NODES = 16  # of the correlation, between 0 and its largest
 MATCHED = (0.90, 0.95)  # -, two-sided confidences at which error and freedom are those of the mixture
 ROUNDING = 1e-12  # -, of the sum of squares: what is left below it has no scatter
-REFINEMENTS, BRACKETS = 3, 16  # of quantiles
+PRECISION = 1e-6  # -, of quantiles
 SPARE = 2  # degrees of freedom that must be left
 
 
@@ -80,10 +80,10 @@ class CorrelatedFit:
             np.sqrt(squares.max() / special.chdtri(self.freedom, tails[1])),
         )
 
-        def below(tried: np.ndarray) -> np.ndarray:
-            return special.chdtrc(self.freedom, squares / tried[:, None] ** 2) @ self.weights
+        def below(tried: float) -> float:
+            return float(self.weights @ special.chdtrc(self.freedom, squares / tried**2))
 
-        low, high = (_where(below, share, float(least), float(most)) for share in tails)
+        low, high = (_where(below, share, 0.999 * float(least), 1.001 * float(most)) for share in tails)
         return low, high
 
 
@@ -153,22 +153,17 @@ def _as_t(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> Estimate
 def _reaches(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> list[float]:
     """Return how far from 0 the shares MATCHED of a mixture reach to both sides."""
 
-    def inside(tried: np.ndarray) -> np.ndarray:
-        outer, inner = (special.stdtr(fit.freedom, (end[:, None] - means) / errors) for end in (tried, -tried))
-        return (outer - inner) @ fit.weights
+    def inside(tried: float) -> float:
+        outer, inner = special.stdtr(fit.freedom, np.array([tried - means, -tried - means]) / errors)
+        return float(fit.weights @ (outer - inner))
 
-    most = float(np.abs(means).max() + errors.max() * stats.t.ppf(0.5 + 0.5 * MATCHED[-1], fit.freedom))
+    most = float(np.abs(means).max() + errors.max() * special.stdtrit(fit.freedom, 0.5 + 0.5 * MATCHED[-1]))
     return [_where(inside, share, 0.0, most) for share in MATCHED]
 
 
-def _where(rising: Callable[[np.ndarray], np.ndarray], share: float, low: float, high: float) -> float:
-    """Return where a function that rises reaches a share between two places: brackets made finer, then a line."""
-    for _ in range(REFINEMENTS):
-        tried = np.linspace(low, high, BRACKETS + 1)
-        found = rising(tried)
-        place = int(np.clip(np.searchsorted(found, share), 1, BRACKETS))
-        low, high = tried[place - 1], tried[place]
-    return float(np.interp(share, found[place - 1 : place + 1], (low, high)))
+def _where(rising: Callable[[float], float], share: float, low: float, high: float) -> float:
+    """Return where a function that rises reaches a share between two places."""
+    return float(optimize.brentq(lambda tried: rising(tried) - share, low, high, rtol=PRECISION, xtol=PRECISION * high))
 
 
 @cache

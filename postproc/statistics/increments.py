@@ -87,23 +87,24 @@ def blocks_of(
     travel: (k,) increasing within a packing; cumulated: (k,) with its value at the start of the travel first, as 0
     packings: (k,) labels; without them all are of one. Raises ValueError when a packing's travel does not increase.
     """
-    table = pd.DataFrame({"end": np.asarray(travel, dtype=float), "cumulated": np.asarray(cumulated, dtype=float)})
-    table["packing"] = 0 if packings is None else list(packings)
-    before = table.groupby("packing", sort=False)[["end", "cumulated"]].shift()
-    table = table.assign(start=before["end"], increment=table["cumulated"] - before["cumulated"])
-    table = table[before["end"].notna()]
-    if not (table["end"] > table["start"]).all():
+    travel, cumulated = np.asarray(travel, dtype=float), np.asarray(cumulated, dtype=float)
+    codes, names = pd.factorize(np.zeros(len(travel)) if packings is None else np.asarray(packings))
+    order = np.argsort(codes, kind="stable")
+    after = np.flatnonzero(np.diff(codes[order]) == 0) + 1
+    here, before = order[after], order[after - 1]
+    if not (travel[here] > travel[before]).all():
         raise ValueError("the travel does not increase, allowed are increasing values within a packing")
-    return table[BLOCKS].reset_index(drop=True)
+    ends = {"start": travel[before], "end": travel[here]}
+    grown = {"increment": cumulated[here] - cumulated[before], "cumulated": cumulated[here]}
+    return pd.DataFrame({"packing": names[codes[here]], **ends, **grown})
 
 
 def rate_trend(blocks: pd.DataFrame) -> RateTrend:
     """Return the trend of the rate of BLOCKS, of one packing or over packings."""
-    packings = [one for _, one in blocks.groupby("packing", sort=False)]
-    if len(packings) == 1:
-        return _of_one(packings[0])
-    lines = np.array([_least_squares(one) for one in packings]).reshape(-1, 3)
-    rate, slope, change = (estimate(column) for column in lines.T)
+    runs = _runs(blocks)
+    if len(runs) == 1:
+        return _of_one(runs[0])
+    rate, slope, change = (estimate(column) for column in np.array([_least_squares(run) for run in runs]).T)
     return RateTrend(rate, slope, change, len(blocks))
 
 
@@ -118,56 +119,81 @@ def prediction(
     packing scatters at least as much as a simulated one. Of one packing it holds the errors of its trend and the
     fluctuation of the blocks to come.
     """
-    packings = [one for _, one in blocks.groupby("packing", sort=False)]
-    start, end = blocks["start"].min(), min(one["end"].max() for one in packings)
+    runs = _runs(blocks)
+    start, end = min(run.start for run in runs), min(run.end for run in runs)
     if place > start + farthest * (end - start):
         reason = f"more than {farthest:g} times the travel of the run"
-        return Prediction(math.nan, math.nan, math.nan, len(packings), reason)
-    if len(packings) == 1:
-        found = _continued(packings[0], place, order)
-        reason = "" if found.known else FEW
-        return Prediction(found.value, *found.interval(), 1, reason)
-    over = estimate([_extrapolated(one, place, order) for one in packings], log=log)
+        return Prediction(math.nan, math.nan, math.nan, len(runs), reason)
+    if len(runs) == 1:
+        found = _continued(runs[0], place, order)
+        return Prediction(found.value, *found.interval(), 1, "" if found.known else FEW)
+    over = estimate([_extrapolated(run, place, order) for run in runs], log=log)
     return Prediction(over.value, *over.of_one_more(), over.packings, "" if over.known else UNKNOWN)
 
 
-def _of_one(one: pd.DataFrame) -> RateTrend:
-    rate, slope, change = _least_squares(one)
-    fit = _fit(one, order=1)
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """One packing: middles, lengths and rates (k,) of its blocks, where it starts and ends, and its sum at the end."""
+
+    middles: np.ndarray
+    lengths: np.ndarray
+    rates: np.ndarray
+    start: float
+    end: float
+    last: float
+
+    @property
+    def center(self) -> float:
+        return 0.5 * (self.start + self.end)
+
+    def powers(self, order: int) -> np.ndarray:
+        """Return (k, order + 1) of the middles about the center."""
+        return (self.middles - self.center)[:, None] ** np.arange(order + 1)
+
+    def least_squares(self, order: int) -> np.ndarray:
+        """Return the coefficients (order + 1,) of the rate, weighted by the lengths; NaN of too few blocks."""
+        if len(self.rates) <= order:
+            return np.full(order + 1, math.nan)
+        root = np.sqrt(self.lengths)
+        return np.linalg.lstsq(self.powers(order) * root[:, None], self.rates * root, rcond=None)[0]
+
+    def fit(self, order: int) -> CorrelatedFit | None:
+        """Return the fit of the rate with its errors, None of fewer blocks than FEWEST_BLOCKS."""
+        if len(self.rates) < FEWEST_BLOCKS:
+            return None
+        return correlated_fit(self.middles, self.rates, self.powers(order), self.lengths)
+
+
+def _runs(blocks: pd.DataFrame) -> list[_Run]:
+    """Return the packings in the order in which they appear, the blocks of each along its travel."""
+    columns = (blocks[name].to_numpy(float) for name in ("start", "end", "increment", "cumulated"))
+    starts, ends, increments, sums = columns
+    codes, names = pd.factorize(blocks["packing"].to_numpy())
+    found = []
+    for code in range(len(names)):
+        chosen = np.flatnonzero(codes == code)
+        chosen = chosen[np.argsort(ends[chosen])]
+        start, end = starts[chosen], ends[chosen]
+        rates = increments[chosen] / (end - start)
+        found.append(_Run(0.5 * (start + end), end - start, rates, start[0], end[-1], sums[chosen[-1]]))
+    return found
+
+
+def _of_one(run: _Run) -> RateTrend:
+    rate, slope, change = _least_squares(run)
+    fit = run.fit(1)
     if fit is None:
-        return RateTrend(*(Estimate(each, math.nan, 0, 1) for each in (rate, slope, change)), len(one))
+        return RateTrend(*(Estimate(each, math.nan, 0, 1) for each in (rate, slope, change)), len(run.rates))
     mean, slope = np.array([1.0, 0.0]), np.array([0.0, 1.0])
-    return RateTrend(fit.of(mean), fit.of(slope), fit.ratio(_span(one) * slope, mean), len(one))
+    return RateTrend(fit.of(mean), fit.of(slope), fit.ratio((run.end - run.start) * slope, mean), len(run.rates))
 
 
-def _columns(one: pd.DataFrame, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Return lengths, rates, the powers (k, order + 1) of the middles about that of the run, and that middle."""
-    length = (one["end"] - one["start"]).to_numpy(float)
-    center = 0.5 * (one["start"].min() + one["end"].max())
-    away = 0.5 * (one["start"] + one["end"]).to_numpy(float) - center
-    return length, one["increment"].to_numpy(float) / length, away[:, None] ** np.arange(order + 1), center
-
-
-def _fit(one: pd.DataFrame, order: int) -> CorrelatedFit | None:
-    length, rates, powers, _ = _columns(one, order)
-    if len(one) < FEWEST_BLOCKS:
-        return None
-    middles = 0.5 * (one["start"] + one["end"]).to_numpy(float)
-    return correlated_fit(middles, rates, powers, length)
-
-
-def _span(one: pd.DataFrame) -> float:
-    return float(one["end"].max() - one["start"].min())
-
-
-def _least_squares(one: pd.DataFrame) -> tuple[float, float, float]:
-    """Return mean rate, slope and relative change of a packing, weighted by the lengths; NaN of one block."""
-    length, rates, powers, _ = _columns(one, 1)
-    if len(one) < 2:
-        return float(rates.mean()), math.nan, math.nan
-    root = np.sqrt(length)
-    rate, slope = np.linalg.lstsq(powers * root[:, None], rates * root, rcond=None)[0]
-    return float(rate), float(slope), float(slope * _span(one) / rate) if rate else math.nan
+def _least_squares(run: _Run) -> tuple[float, float, float]:
+    """Return mean rate, slope and relative change of a packing; of one block only the rate."""
+    rate, slope = run.least_squares(1)
+    if math.isnan(rate):
+        return float(run.rates.mean()), math.nan, math.nan
+    return float(rate), float(slope), float(slope * (run.end - run.start) / rate) if rate else math.nan
 
 
 def _growth(center: float, end: float, place: float, order: int) -> np.ndarray:
@@ -176,25 +202,18 @@ def _growth(center: float, end: float, place: float, order: int) -> np.ndarray:
     return ((place - center) ** powers - (end - center) ** powers) / powers
 
 
-def _extrapolated(one: pd.DataFrame, place: float, order: int) -> float:
+def _extrapolated(run: _Run, place: float, order: int) -> float:
     """Return a packing's cumulated quantity at a place, by least squares of its rate."""
-    length, rates, powers, center = _columns(one, order)
-    if len(one) <= order:
-        return math.nan
-    root = np.sqrt(length)
-    terms = np.linalg.lstsq(powers * root[:, None], rates * root, rcond=None)[0]
-    last = one.loc[one["end"].idxmax()]
-    return float(last["cumulated"] + _growth(center, last["end"], place, order) @ terms)
+    return float(run.last + _growth(run.center, run.end, place, order) @ run.least_squares(order))
 
 
-def _continued(one: pd.DataFrame, place: float, order: int) -> Estimate:
+def _continued(run: _Run, place: float, order: int) -> Estimate:
     """Return a run's own cumulated quantity at a place, with the fluctuation of what is to come."""
-    length, _, _, center = _columns(one, order)
-    last, fit = one.loc[one["end"].idxmax()], _fit(one, order)
+    fit = run.fit(order)
     if fit is None:
-        return Estimate(_extrapolated(one, place, order), math.nan, 0, 1)
-    ahead = (place - last["end"]) / length.mean()  # blocks to come, and the sum of their noises
+        return Estimate(_extrapolated(run, place, order), math.nan, 0, 1)
+    length = float(run.lengths.mean())
+    ahead = (place - run.end) / length  # blocks to come, and the sum of their noises
     whole = np.arange(1, max(math.ceil(ahead), 1))
     sums = ahead + 2.0 * ((ahead - whole) * fit.correlations[:, None] ** whole).sum(axis=1)
-    growth = _growth(center, last["end"], place, order)
-    return fit.of(growth, float(last["cumulated"]), sums * length.mean() ** 2)
+    return fit.of(_growth(run.center, run.end, place, order), float(run.last), sums * length**2)
