@@ -52,13 +52,16 @@ class CorrelatedFit:
         """Return contrast (p,) . coefficients."""
         return float(self.weights @ (self.coefficients @ contrast))
 
-    def of(self, contrast: np.ndarray, offset: float = 0.0, further: np.ndarray | float = 0.0) -> Estimate:
-        """Return the estimate of offset + contrast (p,) . coefficients, of this series (`packings` is 1).
+    def of(self, contrast: np.ndarray, offset: np.ndarray | float = 0.0, further: np.ndarray | float = 0.0) -> Estimate:
+        """Return the estimate of offset + contrast . coefficients, of this series (`packings` is 1).
 
+        contrast: (p,), or (m, p) by correlation; offset: a number or (m,)
         further: (m,) variance by correlation, over that of a value, of what is to be met besides, such as later values
         """
-        shares = np.einsum("i,mij,j->m", contrast, self.covariances, contrast) + further
-        return _as_t(self.coefficients @ contrast + offset, np.sqrt(self.variances * shares), self)
+        contrasts = np.broadcast_to(contrast, self.coefficients.shape)
+        shares = np.einsum("mi,mij,mj->m", contrasts, self.covariances, contrasts) + further
+        means = np.einsum("mi,mi->m", contrasts, self.coefficients) + offset
+        return _as_t(means, np.sqrt(self.variances * shares), self)
 
     def ratio(self, upper: np.ndarray, lower: np.ndarray) -> Estimate:
         """Return upper . coefficients over lower . coefficients, its error to first order; unknown where that is 0."""

@@ -117,7 +117,7 @@ def prediction(
     log: whether packings scatter by a factor; farthest: of the travel of the shortest packing; beyond it all is NaN
     Over packings each is extrapolated, and the interval is that of one more (`Estimate.of_one_more`): an extrapolated
     packing scatters at least as much as a simulated one. Of one packing it holds the errors of its trend and the
-    fluctuation of the blocks to come.
+    fluctuation of the blocks to come, which go on from its last one.
     """
     runs = _runs(blocks)
     start, end = min(run.start for run in runs), min(run.end for run in runs)
@@ -208,12 +208,18 @@ def _extrapolated(run: _Run, place: float, order: int) -> float:
 
 
 def _continued(run: _Run, place: float, order: int) -> Estimate:
-    """Return a run's own cumulated quantity at a place, with the fluctuation of what is to come."""
+    """Return a run's own cumulated quantity at a place: what its trend and its last block let expect of those to come,
+    with the errors of the trend and their own fluctuation.
+    """
     fit = run.fit(order)
     if fit is None:
         return Estimate(_extrapolated(run, place, order), math.nan, 0, 1)
     length = float(run.lengths.mean())
-    ahead = (place - run.end) / length  # blocks to come, and the sum of their noises
-    whole = np.arange(1, max(math.ceil(ahead), 1))
-    sums = ahead + 2.0 * ((ahead - whole) * fit.correlations[:, None] ** whole).sum(axis=1)
-    return fit.of(_growth(run.center, run.end, place, order), float(run.last), sums * length**2)
+    ahead = (place - run.end) / length
+    number = np.arange(1, max(math.ceil(ahead), 1) + 1)
+    parts = np.minimum(ahead - number + 1.0, 1.0)  # of the blocks to come, the last one perhaps in part
+    lasting = length * (fit.correlations[:, None] ** number) @ parts  # of what the last block is off the trend
+    apart = fit.correlations[:, None, None] ** np.abs(number[:, None] - number)
+    fluctuation = length**2 * np.einsum("i,mij,j->m", parts, apart, parts) - lasting**2
+    growth = _growth(run.center, run.end, place, order) - lasting[:, None] * run.powers(order)[-1]
+    return fit.of(growth, run.last + lasting * run.rates[-1], np.maximum(fluctuation, 0.0))
