@@ -49,7 +49,7 @@ class CircularTester(SampleCase):
     run_templates = ("tester_run_in", "circular_tester")
     bed_template = "tester_bed"
     seed_setting = "bed.seed"
-    figure_modules = ("figures", "flow_figures")
+    figure_modules = ("figures", "place_figures", "flow_figures")
     shared_figures = ("worn_surface", "wear_updates")
     geometry = ("sample", "pattern")
     consumed = ("wear", "remeshing", "sliding", "tester")

@@ -1,7 +1,7 @@
 """Verdicts on the findings of Yan 2022, chapter 6, with what the runs of a circular wear tester found.
 
-Claims are those of config/published/verdicts.yaml, evidence that of `evidence`, rules those of
-`postproc.statistics.verdicts`.
+Claims are those of config/published/verdicts.yaml, evidence that of `volume_evidence` and `flow_evidence`, rules
+those of `postproc.statistics.verdicts`.
 """
 
 from __future__ import annotations
@@ -11,9 +11,12 @@ from collections.abc import Mapping
 import pandas as pd
 
 from bulkwear.postproc.statistics.verdicts import Claim, Verdict, judged, not_said
-from bulkwear.workflows.cases.circular_tester.evidence import BUILDERS, Evidence, Observed
+from bulkwear.workflows.cases.circular_tester.flow_evidence import ON_FLOW
+from bulkwear.workflows.cases.circular_tester.observed import Builder, Evidence, Observed
 from bulkwear.workflows.cases.circular_tester.volume import CONVEX
+from bulkwear.workflows.cases.circular_tester.volume_evidence import ON_VOLUMES
 
+BUILDERS: Mapping[str, Builder] = {**ON_VOLUMES, **ON_FLOW}
 OF_ANY_PATTERN = ("plain_linear", "plain_sizes", "plain_columns", "plain_even", "steady", "mesh_size", "machines")
 
 

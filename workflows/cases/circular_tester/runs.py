@@ -19,7 +19,7 @@ from bulkwear.workflows.cases.circular_tester.decks import pose
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Run, Study
 
-LOG, SURFACE, WORN_SURFACE = "log.liggghts", "surface.vtu", "worn_surface.vtu"  # files of a run
+LOG, SURFACE = "log.liggghts", "surface.vtu"  # files of a run
 VOLUME, SIZE, MESH, WORN_OUT, RING = "volume", "size", "mesh", "worn_out", "ring"  # series of the design
 
 

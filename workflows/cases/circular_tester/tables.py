@@ -11,9 +11,9 @@ from bulkwear.postproc.mesh import PLAIN, read_surface
 from bulkwear.postproc.statistics.verdicts import Claim
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester import comparison, distribution, flow, hours, volume
-from bulkwear.workflows.cases.circular_tester.evidence import Observed
 from bulkwear.workflows.cases.circular_tester.findings import findings_table
 from bulkwear.workflows.cases.circular_tester.hours import LONG, SHORT
+from bulkwear.workflows.cases.circular_tester.observed import Observed
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW, PACKING, over_packings
 from bulkwear.workflows.cases.circular_tester.runs import RING, SIZE, SURFACE, VOLUME, TesterRun, pairs_of
 from bulkwear.workflows.cases.circular_tester.volume import (

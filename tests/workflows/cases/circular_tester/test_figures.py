@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.circular_tester import figures
+from bulkwear.workflows.cases.circular_tester import figures, place_figures
 from bulkwear.workflows.cases.circular_tester.comparison import ratios_by_revolution
 from bulkwear.workflows.cases.circular_tester.runs import (
     has_pairs,
@@ -90,7 +90,7 @@ def test_channel_and_ring_are_compared_at_the_particles_of_the_ring(tmp_path):
     files = {"lost_volumes": tmp_path / "lost.csv", "ratios": tmp_path / "ratios.csv"}
     table.to_csv(files["lost_volumes"], index=False)
     ratios_by_revolution(table).to_csv(files["ratios"], index=False)
-    figure, means = figures.tester_ring(job_of(files, {}, study.REMARKS))
+    figure, means = place_figures.tester_ring(job_of(files, {}, study.REMARKS))
     assert means[["shape", "particle_scale", "revolutions"]].to_numpy().tolist() == [
         ["channel", 3.0, 5],
         ["ring", 3.0, 5],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -27,6 +28,7 @@ NAMES = {
     "wear_rate_m3_per_s": "wear rate",
 }
 TOP_SHARE = 0.98  # of the particles lie inside the colours
+TITLE_CHARACTERS = 32  # of a line over one of three panels
 SHIFT = 0.1  # revolutions that two surfaces stand apart
 MEASURES = {  # measure -> axis, factor from SI, published values (quantity, on which side of it ours are to lie)
     "bottom_averaged_angular_velocity_rad_per_s": (
@@ -79,8 +81,9 @@ def steadiness(
             last = max(of_measure["revolution"].max(), start + 1.0)
             axes.fill_between([start, last], *ends, color=BAND_COLOUR, label=words, zorder=0)
         found = steady[steady["measure"] == measure]
-        said = "\n".join(f"{surface}: {steady_words(rows)}" for surface, rows in found.groupby("surface", sort=False))
-        axes.set_title(f"{NAMES[measure]}\n{said}", loc="left", fontsize=SMALLEST_FONT)
+        told = [f"{surface}: {steady_words(rows)}" for surface, rows in found.groupby("surface", sort=False)]
+        lines = [NAMES[measure], *(line for words in told for line in textwrap.wrap(words, TITLE_CHARACTERS))]
+        axes.set_title("\n".join(lines), loc="left", fontsize=SMALLEST_FONT)
         axes.set(xlabel="Revolution", ylim=(0.0, None))
     grid[0].set_ylabel("Coefficient of variation (%)")
     figure.legend(*named_once(grid), loc="outside upper center", ncols=4)

@@ -101,17 +101,17 @@ def _rate_table(axes: Axes, rates: pd.DataFrame, published: pd.DataFrame) -> Non
         beside = [f"{volume_of_terms(theirs, row.revolutions) / row.revolutions:.3g}" if there else ""]
         beside.append(f"{change_of_terms(theirs, row.revolutions):+.3g}" if there else "")
         name = f"{row.surface}, scale {row.particle_scale:g}"
-        change = interval_text(row, "change_percent", 2)
+        change = interval_text(row, "change_percent")
         cells.append([name, interval_text(row, "rate_mm3_per_revolution"), change, f"{row.revolutions:g}", *beside])
     printed_table(axes, head, cells)
 
 
-def interval_text(row: tuple, name: str, digits: int = 3) -> str:
+def interval_text(row: tuple, name: str) -> str:
     """Return a mean with its interval from a row with <name>, <name>_low and <name>_high, in few words."""
     value, low, high = (getattr(row, f"{name}{ending}") for ending in ("", "_low", "_high"))
     if not np.isfinite(low):
-        return f"{value:.{digits}g}, {UNKNOWN}"
-    return f"{value:.{digits}g} ({low:.{digits}g} to {high:.{digits}g})"
+        return f"{value:.3g}, {UNKNOWN}"
+    return f"{value:.3g} ({low:.3g} to {high:.3g})"
 
 
 def element_increments(
@@ -145,8 +145,12 @@ def element_increments(
 
 def ratio_words(row: tuple) -> str:
     """Say what patterned loses over plain, and how that changes over the run; row: of `comparison.mean_ratios`."""
-    words = f"scale {row.particle_scale:g}: patterned over plain {interval_text(row, 'ratio')}"
-    return f"{words},\nchange over {row.revolutions:g} revolutions {interval_text(row, 'change_percent', 2)} %"
+    words = f"scale {row.particle_scale:g}: patterned over plain {row.ratio:.3g}"
+    if not np.isfinite(row.ratio_low):
+        return f"{words}, change {row.change_percent:.3g} %\n({UNKNOWN})"
+    ends = f"{row.ratio_low:.3g} to {row.ratio_high:.3g}"
+    change = f"{row.change_percent:.3g} % ({row.change_percent_low:.3g} to {row.change_percent_high:.3g})"
+    return f"{words}\n({ends}), its change {change}"
 
 
 def benchmark(
