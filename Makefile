@@ -20,7 +20,7 @@ SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 
-.PHONY: help setup doctor demo study forecast project rates test verify screening report decks lint format lock clean
+.PHONY: help setup doctor demo study forecast project rates test verify screening report decks results lint format lock clean
 
 help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
@@ -56,6 +56,9 @@ decks: setup ## Render every deck of a study without running the solver (STUDY=d
 report: setup ## Build results/<STUDY>/report.html and Snakemake's own snakemake_report.html beside it
 	$(SNAKEMAKE) results/$(STUDY)/report.html
 	$(SNAKEMAKE) $(STUDY) --report results/$(STUDY)/snakemake_report.html
+
+results: setup ## Remake every page of results in docs from its runs, or say which are stale and what redoing costs (RUN=1: do it, PAGE=one)
+	@.venv/bin/python -m bulkwear.workflows.report.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE))
 
 test: setup ## Run the tests and every check a submission must pass
 	$(PYTEST)

@@ -1,0 +1,202 @@
+"""Remake every page of results in docs from its runs, or say which are older than the code and what redoing them costs.
+
+    make results                                  # a line per page; pages whose runs are in results/ are written anew
+    make results RUN=1 PAGE=screening_results_quick    # simulates what is missing first, of one page or of all
+
+In the repository, where docs/results.json lists the pages. Writes docs/results.md, and a warning below the title of
+each page whose simulations are older than the code.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.engine.project import work_here
+from bulkwear.workflows.engine.provenance import code_of_cases
+from bulkwear.workflows.engine.state import STATE
+from bulkwear.workflows.engine.work import Work
+from bulkwear.workflows.forecast.forecast import forecast_table, hours_text, totals, work_of
+from bulkwear.workflows.forecast.rates import rates_file, read_rates
+from bulkwear.workflows.report.markdown import SECONDS_PER_HOUR, origin_of, simulated_between, write_results
+from bulkwear.workflows.report.page import package_version
+from bulkwear.workflows.report.provenance_of_pages import (
+    Origin,
+    ResultsError,
+    keep_origin,
+    older,
+    read_changes,
+    read_origins,
+    recorded,
+)
+from bulkwear.workflows.report.results_index import mark, redo
+from bulkwear.workflows.report.simulated import Simulated, versions_of
+
+PROFILE = "workflows/profiles/default"
+PENDING = "update pending"  # what Snakemake's summary plans for a file
+
+
+class RemakeError(RuntimeError):
+    """A page could not be remade; the message says what failed."""
+
+
+def snakemake(study: str, origin: Origin, cores: int, *words: str) -> list[str]:
+    """Return the command that makes a study as a page has it."""
+    settings = [f"{key}={json.dumps(value)}" for key, value in origin.overrides.items()]
+    command = [sys.executable, "-m", "snakemake", "--workflow-profile", PROFILE, "--cores", str(cores), study, *words]
+    return [*command, *(["--config", *settings] if settings else [])]
+
+
+def pending_files(summary: str) -> list[tuple[str, str]]:
+    """Return (rule, file) of what Snakemake would make, from its table of files (`--summary`)."""
+    head, *rows = [line.split("\t") for line in summary.splitlines() if "\t" in line]
+    rule, plan = head.index("rule"), head.index("plan")
+    return [(row[rule], row[0]) for row in rows if row[plan] == PENDING]
+
+
+def missing_work(study: Study, pending: Sequence[tuple[str, str]] | None) -> list[Work]:
+    """Return the jobs of a study that call the solver and whose files are pending; None: all of them are.
+
+    A job is named after its rule and what stands for its wildcards, which is a part of its files' paths.
+    """
+    work = list(work_of(study))
+    if pending is None:
+        return work
+    return [job for job in work if any(_makes(job.name, rule, file) for rule, file in pending)]
+
+
+def _makes(job: str, rule: str, file: str) -> bool:
+    return job == rule or (job.startswith(f"{rule}_") and job.removeprefix(f"{rule}_") in Path(file).parts)
+
+
+def pending_of(origin: Origin, cores: int) -> list[tuple[str, str]] | None:
+    """Return `pending_files` of a page's study; None where none of it was run here. Raises RemakeError."""
+    if not (Path("results") / origin.study / "design.csv").is_file():
+        return None
+    done = subprocess.run(snakemake(origin.study, origin, cores, "--summary"), capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RemakeError(f"snakemake cannot plan {origin.study}:\n{done.stderr.strip()}")
+    return pending_files(done.stdout)
+
+
+def cost_words(work: Sequence[Work], cores: int) -> str:
+    """Return in words what jobs cost by forecast. Raises RatesError."""
+    sums = totals(forecast_table(work, read_rates(rates_file()).rates), cores)
+    return f"about {sums['core_h']:.2g} core hours, {hours_text(sums['wall_h'])} on {cores} cores"
+
+
+def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
+    """Write the page of a study from its runs; return what was done, or what is missing and what it costs."""
+    study = load_study(origin.study, overrides=origin.overrides)
+    pending = pending_of(origin, cores)
+    missing = missing_work(study, pending)
+    solving = pending is None or any(rule in study.case.solver_rules for rule, _ in pending)
+    if solving and not run:
+        what = f"{len(missing)} jobs of the solver are not done in results/{origin.study}"
+        return f"{what}; redoing costs {cost_words(missing, cores)}: {redo(origin)}"
+    if pending or pending is None:
+        call(snakemake(origin.study, origin, cores))
+    folder = Path("results") / origin.study
+    if origin.figure:
+        shutil.copyfile(folder / "figures" / f"{origin.figure}.png", docs / origin.page)
+        keep_origin(docs, origin_of(origin.page, folder, study))
+    else:
+        write_results(folder, docs, study)
+    return f"written from results/{origin.study}"
+
+
+def remake_by_command(origin: Origin, docs: Path, run: bool) -> str:
+    """Run the command that makes a page, or return what it took and how to run it."""
+    if run:
+        call(["bash", "-c", origin.command])
+    if run or has_written(origin, docs):
+        keep_origin(docs, origin_of_command(origin))
+        return f"written by `{origin.command}`"
+    hours = "its cost was not kept" if origin.core_hours is None else f"it took {origin.core_hours:.2g} core hours"
+    return f"no study but a command, {hours}: {redo(origin)}"
+
+
+def states_of(origin: Origin) -> list[Path]:
+    """Return the states of the simulations that a command keeps."""
+    found = Path(origin.runs).glob(f"**/cycle_*/{STATE}") if origin.runs else ()
+    return [path for path in found if "superseded" not in path.parts and not path.parent.suffix]
+
+
+def has_written(origin: Origin, docs: Path) -> bool:
+    """Return whether a command has written its page since the last of its simulations that are there."""
+    newest = max((path.stat().st_mtime for path in states_of(origin)), default=None)
+    return newest is not None and newest <= (docs / origin.page).stat().st_mtime
+
+
+def origin_of_command(origin: Origin) -> Origin:
+    """Return where the page of a command that was run comes from: of its simulations, or of now where it keeps none."""
+    states = states_of(origin)
+    if not states:
+        now = datetime.now(UTC)
+        found = [Simulated("", (origin.page,), code_of_cases((origin.case,)), (f"{now:%Y-%m-%d}",) * 2)]
+        hours, when = None, (f"{now:%Y-%m-%d %H:%M}",) * 2
+    else:
+        found = versions_of(dict.fromkeys(path.parents[1] for path in states))
+        spent = [json.loads(path.read_text()).get("cost", {}).get("processor_s", 0.0) for path in states]
+        hours, when = round(sum(spent) / SECONDS_PER_HOUR, 2), simulated_between(states)
+    by = package_version()
+    return Origin(origin.page, origin.case, simulated=when, versions=recorded(found), page_by=by, core_hours=hours)
+
+
+def call(command: Sequence[str]) -> None:
+    """Run a command to its end, its words on standard error. Raises RemakeError."""
+    beside = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    done = subprocess.run(command, stdout=sys.stderr, env={**os.environ, "PATH": beside})
+    if done.returncode != 0:
+        raise RemakeError(f"{' '.join(command)} ended with exit code {done.returncode}.")
+
+
+def remake(docs: Path, page: str, run: bool, cores: int) -> None:
+    """Remake all pages, or one, and print a line for each; faults of single pages go to standard error."""
+    changes = read_changes(docs)
+    print(f"Forecasts by {read_rates(rates_file()).said()}.")
+    for origin in chosen(read_origins(docs), page):
+        try:
+            done = remake_by_command(origin, docs, run) if origin.command else remake_study(origin, docs, cores, run)
+        except (ValueError, RuntimeError, OSError) as fault:
+            print(f"{origin.page}: {fault}", file=sys.stderr)
+            continue
+        found = next(each for each in read_origins(docs) if each.page == origin.page)
+        state = "older than the code" if older(found, changes, code_of_cases((found.case,))) else "as new as the code"
+        print(f"{origin.page}: {state}; {done}", flush=True)
+    mark(docs, changes)
+
+
+def chosen(origins: Sequence[Origin], page: str) -> list[Origin]:
+    """Return those pages, or the one that is named with or without its ending. Raises ResultsError."""
+    found = [each for each in origins if page in ("", each.page, Path(each.page).stem)]
+    if not found:
+        names = ", ".join(Path(each.page).stem for each in origins)
+        raise ResultsError(f"PAGE is {page}, allowed is one of {names}.")
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--docs", type=Path, default=Path("docs"), help="where the pages are")
+    parser.add_argument("--page", default="", help="one page alone")
+    parser.add_argument("--run", action="store_true", help="simulate what is missing first")
+    parser.add_argument("--cores", type=int, default=os.cpu_count(), help="for simulations and their forecast")
+    given = parser.parse_args()
+    try:
+        work_here()
+        remake(given.docs, given.page, given.run, given.cores)
+    except (ValueError, RuntimeError) as fault:
+        sys.exit(str(fault))
+
+
+if __name__ == "__main__":
+    main()
