@@ -25,7 +25,7 @@ AMPLITUDE = (4.0, 1.5)
 NOISE = (0.02, 1.7)
 MEAN_VARIANCE = 4.0  # -, of the process' unknown mean over that of the responses
 DRAWS_POWER = 10  # 1024 draws from the prior, and as many near the ones that fit
-KERNELS = 24  # draws from the posterior that predictions are means over
+KERNELS = 16  # draws from the posterior that predictions are means over
 JITTER = 1e-9  # -, of the diagonal over the variance of the responses
 
 
@@ -77,8 +77,10 @@ class Surrogate:
 
 def _covariance(first: np.ndarray, second: np.ndarray, kernels: np.ndarray) -> np.ndarray:
     """Return the covariance (k, n, m) of the response between (n, p) and (m, p) points: Matern 5/2, and its mean's."""
-    lengths, amplitude = kernels[:, None, None, :-2], kernels[:, -2, None, None]
-    distance = np.sqrt(5.0 * (((first[:, None] - second[None])[None] / lengths) ** 2).sum(axis=-1))
+    lengths, amplitude = kernels[:, None, :-2], kernels[:, -2, None, None]
+    ours, theirs = first[None] / lengths, second[None] / lengths
+    squared = (ours**2).sum(axis=2)[:, :, None] + (theirs**2).sum(axis=2)[:, None] - 2.0 * ours @ theirs.mT
+    distance = np.sqrt(5.0 * np.maximum(squared, 0.0))
     return amplitude * (1.0 + distance + distance**2 / 3.0) * np.exp(-distance) + MEAN_VARIANCE
 
 

@@ -20,6 +20,7 @@ from bulkwear.postproc.inference.problem import Experiment, Parameter, Problem
 from bulkwear.workflows.cases.calibration.boxes import SHEAR_BOX, SIMULATIONS, simulated_width, test_of
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, read_measured
 from bulkwear.workflows.cases.calibration.simulations import answer, simulate_all
+from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.job import Progress
@@ -79,6 +80,8 @@ def run_calibration(
         result = calibrate(problem, simulate, say)
         compared = compared_pairs(problem, result.posterior, parameters, pd.read_csv(pairs))
         repeats = repeated(parameters, compared, folder, workers, say)
+    for sentence in told_sentences(problem, result.posterior):
+        say(sentence)
     return result.simulations, result.shares, repeats
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE
+from bulkwear.postproc.inference.told import told_table
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.case import PUBLISHED, published
 from bulkwear.workflows.cases.calibration.checked_pairs import CHECKED, checked_means
@@ -23,6 +24,7 @@ from bulkwear.workflows.cases.calibration.responses import (
     response_name,
 )
 from bulkwear.workflows.cases.calibration.simulations import BLOCKED, cost_table
+from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
 
@@ -31,6 +33,10 @@ INSIDE = (
     "simulated mean's own uncertainty together. Deviations: simulated minus measured, in standard deviations of the "
     "measurement. Denser share: of the posterior in pairs that fit better; a pair belongs to the family when it is at "
     "most 0.95."
+)
+LEFT_NOTE = (
+    "Low to high: 95 % of the posterior, with measurement, model and surrogate all in doubt. Left: of the range's 95 % "
+    "interval; left, others known: the same with all other parameters held. Told: at most 0.8 is left."
 )
 INFORMATION = (
     "What measuring a response once more is expected to tell about the parameters; 1 bit halves the family. Responses "
@@ -52,7 +58,7 @@ def sections_of(done: Calibrated, study: str) -> list[Section]:
     return [
         Section(
             "The family and the recommended pair",
-            [Cards(cards(done, intervals)), Table(_named(intervals)), Pictures(["family"])],
+            [Cards(cards(done, intervals)), *_intervals(done, intervals), Pictures(["family"])],
         ),
         Section("Against what was measured", against_measured(done)),
         Section("What to measure next", next_measurement(done)),
@@ -64,6 +70,12 @@ def sections_of(done: Calibrated, study: str) -> list[Section]:
         Section("Use of the result", use(done.folder, study)),
         Section("Cost of the simulations", cost(done.folder)),
     ]
+
+
+def _intervals(done: Calibrated, intervals: pd.DataFrame) -> list[Block]:
+    """Return the intervals with what they leave of the ranges, and in words which parameters are not told."""
+    table = intervals.merge(told_table(done.problem, done.known), on="parameter")
+    return [Table(_named(table), note=LEFT_NOTE), Points(told_sentences(done.problem, done.known))]
 
 
 def _named(table: pd.DataFrame) -> pd.DataFrame:

@@ -18,6 +18,7 @@ from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS, test_of, wal
 from bulkwear.workflows.cases.calibration.driver import compared_pairs, read_posterior, repeat_seeds
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, interval_table, repeat_table, statement_table
 from bulkwear.workflows.cases.calibration.simulations import flowing
+from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine.case import Parameters
 
 TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test", "wall_shear": "Wall shear test"}
@@ -117,7 +118,10 @@ def _provenance(done: Calibrated, intervals: pd.DataFrame, study: str) -> dict[s
     """Return what the materials file tells about the values calibrated: valid in this convention and model only."""
     solver = done.parameters["solver"]
     used = {name: aim for name, aim in done.problem.measured.items() if name in done.known.predicted}
-    aims = ", ".join(f"{name} {aim.value:g} +- {aim.deviation:g}" for name, aim in used.items())
+    aims = ", ".join(
+        f"{name} {aim.value:g} +- {aim.deviation:g} (with the model {aim.variance**0.5:.2g})"
+        for name, aim in used.items()
+    )
     return {
         "study": study,
         "rolling_radius": solver["rolling_radius"],
@@ -128,4 +132,5 @@ def _provenance(done: Calibrated, intervals: pd.DataFrame, study: str) -> dict[s
             f"{row.parameter} {row.recommended:.3f}, 95 % between {row.low:.3f} and {row.high:.3f}"
             for row in intervals.itertuples()
         ),
+        "not_told": " ".join(told_sentences(done.problem, done.known)),
     }

@@ -90,6 +90,12 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             "Boxes have no front and back here; particles that leave a slice on one side come back on the other.",
         ),
         (
+            "Discrepancy of the model",
+            "What the model is off by with the right parameters is normal about 0, with a standard deviation of "
+            f"{settings['calibration']['model_discrepancy']:g} times the measurement's where the table of measured "
+            "responses gives none. As many responses as parameters say nothing of its size: it is an assumption.",
+        ),
+        (
             "Independent responses",
             "Each response has a surrogate of its own, and measured responses are taken to err independently.",
         ),

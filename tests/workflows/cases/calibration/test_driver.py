@@ -11,8 +11,9 @@ from bulkwear.workflows.cases.calibration.driver import (
     read_posterior,
     repeat_seeds,
     run_box_sizes,
+    run_calibration,
 )
-from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
+from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, read_measured
 from bulkwear.workflows.engine.decks import primes
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
 
@@ -69,3 +70,32 @@ def test_box_sizes_are_all_simulated(formula, tmp_path):
     table = run_box_sizes(runs, PAIRS, tmp_path, 1)
     assert list(table["row"]) == list(runs) and (table["seeds"] == 2).all()
     assert (table["width_in_diameters"] >= 4.0 - 1e-9).all()
+
+
+def test_discrepancies_of_the_model_are_given_per_response_or_for_all(tmp_path):
+    """A row's own discrepancy, in its unit, comes before the factor that all measurements' deviations have."""
+    table = tmp_path / "measured.csv"
+    table.write_text(
+        "response,value,deviation,model_discrepancy\nshear_angle_deg,36,0.4,\nrepose_angle_deg,33,0.9,1.2\n"
+    )
+    found = read_measured(table, 3.0)
+    assert found["shear_angle_deg"].variance == pytest.approx(0.4**2 + 1.2**2)
+    assert found["repose_angle_deg"].variance == pytest.approx(0.9**2 + 1.2**2)
+    assert problem_of(study().runs[0].parameters, MEASURED).measured["shear_angle_deg"].discrepancy == 0.8
+
+
+@pytest.mark.parametrize("measured", [True, False])
+def test_what_no_response_tells_is_said(formula, tmp_path, capsys, measured):
+    """Wall friction looked for on a shear box alone is not told, and on a wall shear test that was measured it is."""
+    wall, kinds = "wall_material.contact.sliding_friction", ["shear_box", "wall_shear"]
+    names = [{"name": name, "low": 0.1, "high": 0.7} for name in (SLIDING, wall)]
+    counts = {"initial": {"shear_box": 5, "wall_shear": 8}, "most": {"shear_box": 7, "wall_shear": 8}, "repeats": 1}
+    asked = {"tests": kinds if measured else kinds[:1], "parameters": names, **counts}
+    run = study(calibration=asked, shear_box={"wall_material": "steel"}).runs[0].parameters
+    table = pd.read_csv(MEASURED)[["response", "value", "deviation"]]
+    table.loc[len(table)] = ["wall_friction_angle_deg", 20.0, 0.3]
+    table.to_csv(tmp_path / "measured.csv", index=False)
+    run_calibration(run, tmp_path / "measured.csv", PAIRS, tmp_path, 1)
+    said = "".join(capsys.readouterr())
+    assert ("wall is not told by any response that was measured" in said) != measured
+    assert ("Sliding wear rests on" in said) != measured
