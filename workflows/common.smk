@@ -107,6 +107,21 @@ onstart:
             logger.info(STUDIES[study].until.said(study))
 
 
+onsuccess:
+    for job in workflow.dag.jobs:
+        if NAMING.ours(job.rule.name) == "report":
+            study, page = STUDIES[job.wildcards.study], Path(job.output[0])
+            for sentence in answers_of(study.case.name, page.parent):
+                logger.info(f"{study.name}: {sentence}")
+
+
+def answers_of(case, folder):
+    """What a finished study of a case answers, in sentences."""
+    from bulkwear.workflows.report.page_parameters import answers_of_study  # slow to import, and jobs need none
+
+    return answers_of_study(case, folder)
+
+
 def jobs_by_study(jobs):
     """The jobs that call the solver, by study: the names they have in forecasts."""
     found = {}

@@ -72,6 +72,12 @@ def page_of(case: str) -> ModuleType:
     return case_module(find_case(case), "page")
 
 
+def answers_of_study(case: str, folder: Path) -> list[str]:
+    """Return in sentences what a study that is done answers; nothing of a case whose page has no function `answers`."""
+    page = page_of(case)
+    return page.answers(folder) if hasattr(page, "answers") else []
+
+
 def figure_remarks(study: Study) -> list[str]:
     """Return what every figure must say: what is smaller than at paper fidelity or else simpler, law, acceleration."""
     now = study.settings

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.postproc.reference.size_ratios import LARGEST_RATIO
-from bulkwear.workflows.cases.sliding_sample.key_numbers import key_numbers
+from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.workflows.cases.sliding_sample import key_numbers
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
 from bulkwear.workflows.report.sections import Pictures, Section
@@ -68,6 +69,11 @@ def told(study: Study) -> dict[str, Any]:
     }
 
 
+def answers(folder: Path) -> list[str]:
+    """Return in sentences what the patterns of a study do to the wear."""
+    return key_numbers.answers(read_summary(folder / "summary.csv"))
+
+
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a page: what particle size asks, key numbers, screening, then wear and bed of any."""
     from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size
@@ -77,7 +83,9 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     return _each_figure_once(
         [
             *(particle_size.sections(study, folder) if of_study["varies_scale"] else []),
-            Section("Key numbers", [*key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]),
+            Section(
+                "Key numbers", [*key_numbers.key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]
+            ),
             *(screening.sections(study, folder) if of_study["finds_regimes"] else []),
             *(Section(title, [Pictures(names)]) for title, names in FIGURES_OF_ALL.items()),
         ]

@@ -1,5 +1,7 @@
 """The page of a study of sliding samples: key numbers, what is simplified, and which figures it has."""
 
+import html
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,7 +9,7 @@ import pytest
 from bulkwear.workflows.cases.sliding_sample.key_numbers import answers, cards
 from bulkwear.workflows.cases.sliding_sample.study import published_rows, replicate_settings
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.page_parameters import answers_of_study, page_parameters
 from bulkwear.workflows.report.products import figures_of
 from tests.support.finished_samples import CYCLES, embedded, finished_page
 
@@ -52,6 +54,14 @@ def summary_of(**ratios):
         for surface, value in (("convex", ratio), ("plain", 1.0))
     ]
     return pd.DataFrame(runs)
+
+
+def test_a_finished_study_answers(study, tmp_path):
+    """What is said at the end of a run is the sentence on the page; a case without a page of answers says nothing."""
+    page = html.unescape(finished_page(tmp_path / study.name, study))
+    said = answers_of_study(study.case.name, tmp_path / study.name)
+    assert said and all(sentence in page for sentence in said)
+    assert answers_of_study("pin_on_disc", tmp_path) == []
 
 
 def test_less_is_said_only_where_the_interval_leaves_out_one():

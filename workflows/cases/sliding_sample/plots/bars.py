@@ -24,6 +24,7 @@ from bulkwear.postproc.tables.summary import patterned_name
 
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY = 6  # settings and surfaces; from here on their names stand upright
+LIFT = 4  # pt, of a number above its bar
 ERROR_BARS = {"elinewidth": 0.9, "capsize": 3}
 PUBLISHED_MARKS_UPRIGHT = {"about": "D", "below": "v", "above": "^"}
 MEANING = {"about": "", "below": " (at most)", "above": " (at least)"}
@@ -75,7 +76,8 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     for place, height, value in zip(places, tops, split["wear_over_plain"], strict=True):
         if np.isfinite(value):
             look = {"rotation": 90 if len(split) > MANY else 0, "bbox": {"color": "white", "pad": 0.5}}
-            axes.text(place, height, f" {value:.2f}", ha="center", va="bottom", fontsize=SMALLEST_FONT, **look)
+            above = {"xytext": (0, LIFT), "textcoords": "offset points", "ha": "center", "va": "bottom"}
+            axes.annotate(f"{value:.2f}", (place, height), fontsize=SMALLEST_FONT, **above, **look)
     axes.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
     axes.set_ylim(0.0, HEADROOM * np.nanmax([1.0, *tops]))
     axes.set_ylabel("Wear volume over the plain sample's (-)")

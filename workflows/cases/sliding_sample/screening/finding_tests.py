@@ -165,7 +165,7 @@ def _force_and_wear(evidence: Evidence) -> Found:
     both = [row for row in rows if row in force and row in wear]
     if not both:
         return Found(reason="no row has a plain twin with a result")
-    named = {f"{row} {what}": each[row] for row in both for what, each in (("force", force), ("wear", inverse))}
+    named = {f"{row} {what}": each[row] for row in both for what, each in (("force up", force), ("wear down", inverse))}
     return Found(named, both)
 
 
