@@ -99,14 +99,27 @@ def series_of(run: TesterRun) -> pd.DataFrame:
     wear["wear_rate_m3_per_s"] = history["worn_volume_m3"] / duration
     wear["normal_force_N"] = history["mean_normal_force_N"]
     parts.append(_after(wear, run.before))
-    layer = _rows(run.folder, LAYER_TABLE)
-    bottom = {name.removeprefix("bottom_"): name for name in (VELOCITY, SPIN, MEAN_SPIN)}
-    parts.append(_after(layer.rename(columns=bottom)[["revolution", *bottom.values()]], run.before))
+    parts.append(_after(lowest_layer(run.folder), run.before))
     table = pd.concat(parts, ignore_index=True)
     table.insert(0, "run", run.name)
     table.insert(1, "surface", run.surface)
     table.insert(2, PACKING, run.packing)
     return table.assign(worn_revolution=table["revolution"] - run.before)
+
+
+def lowest_layer(folder: Path) -> pd.DataFrame:
+    """What the lowest layer of a run does by revolution: VELOCITY, SPIN and MEAN_SPIN.
+
+    Raises ValueError for tables of an earlier version, which averaged otherwise.
+    """
+    layer = _rows(folder, LAYER_TABLE)
+    bottom = {name.removeprefix("bottom_"): name for name in (VELOCITY, SPIN, MEAN_SPIN)}
+    if missing := [name for name in bottom if name not in layer]:
+        raise ValueError(
+            f"{folder}: cycle_*/{LAYER_TABLE} has no column {missing[0]}, allowed are {', '.join(bottom)}; remove these"
+            " tables and the run's wear.csv, and its cycles are simulated again."
+        )
+    return layer.rename(columns=bottom)[["revolution", *bottom.values()]]
 
 
 def _after(table: pd.DataFrame, revolutions: float) -> pd.DataFrame:

@@ -41,8 +41,7 @@ def tester_steadiness(job: Job) -> Any:
     caption="""
     Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity of particles whose centres are within
     a median diameter of the sample's plane, by revolution of wear; the table has the mean of their own angular speeds
-    as well; mean over packings with its 95 % interval. Bands: the source's standard
-    deviations.
+    as well; mean over packings with its 95 % interval. Bands: the source's standard deviations.
     """,
     **OF_SERIES,
 )

@@ -1,11 +1,15 @@
 """Steadiness and flow of the circular wear tester per revolution."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics.steady import DRIFTING, STEADY
 from bulkwear.workflows.cases.circular_tester.flow import (
+    MEAN_SPIN,
+    SPIN,
     STEADINESS,
+    lowest_layer,
     revolution_means,
     revolution_numbers,
     revolutions_over_packings,
@@ -69,3 +73,15 @@ def test_means_over_packings():
     assert (two["mean"] / one["mean"]).to_numpy() == pytest.approx(np.full(len(one), 1.005))
     assert one["interval_low"].isna().all() and (two["interval_low"] < two["mean"]).all()
     assert (two["packings"] == 2).all()
+
+
+def test_tables_of_the_layer_that_averaged_otherwise_are_refused(tmp_path):
+    """Both ways of averaging are read; a table with one of them alone names its column and what to remove."""
+    table = pd.DataFrame({"revolution": [0.5], "velocity_m_per_s": [0.2], "averaged_angular_velocity_rad_per_s": [1.0]})
+    (tmp_path / "cycle_001").mkdir()
+    file = tmp_path / "cycle_001" / "lowest_layer.csv"
+    table.assign(mean_angular_speed_rad_per_s=3.0).to_csv(file, index=False)
+    assert lowest_layer(tmp_path)[[SPIN, MEAN_SPIN]].to_numpy().tolist() == [[1.0, 3.0]]
+    table.to_csv(file, index=False)
+    with pytest.raises(ValueError, match=r"lowest_layer.csv has no column mean_angular_speed_rad_per_s.*remove these"):
+        lowest_layer(tmp_path)
