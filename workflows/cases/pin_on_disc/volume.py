@@ -154,11 +154,10 @@ def growth(trend: RateTrend) -> str:
 
 
 def trend_words(row: Any) -> str:
-    """A row of `volume_trends` in words: how what a revolution adds changes over the run, with its interval."""
-    change = f"{row.change_percent:+.1f} %"
+    """A row of `volume_trends` in words: the interval of how what a revolution adds changes over the run."""
     if np.isnan(row.least_change_percent):
-        return f"{change} over the run, scatter unknown"
-    return f"{change} over the run ({row.least_change_percent:+.1f} to {row.largest_change_percent:+.1f}), {row.growth}"
+        return f"{row.change_percent:+.1f} %, scatter unknown"
+    return f"{row.least_change_percent:+.1f} to {row.largest_change_percent:+.1f} %"
 
 
 def published_volume(published: pd.DataFrame, coefficient: float, revolutions: np.ndarray) -> np.ndarray:

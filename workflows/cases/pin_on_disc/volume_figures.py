@@ -90,9 +90,9 @@ def excess_volume(job: Job) -> Any:
     Counterpart of Fig 5.15 (Yan 2022). Volume that the surface has lost, by wear coefficient and displacement scheme,
     beside the published fits (dashed, drawn as printed from the first revolution on) and the volume alpha F L of
     Archard's law with the load F. For the per-triangle rule the volume is also summed as the thesis does (Eq 5.9:
-    absolute paths of the centroids times areas). The title says how what each revolution adds changes over the run,
-    with its 95 % interval, of that rule and coefficient; a table beside the figure holds all of them. Intervals are of
-    the run that is shown, for increments correlated with their neighbours; no run is repeated.
+    absolute paths of the centroids times areas). Titles hold the 95 % interval of how much what a revolution adds
+    changes over the run: 0 for linear growth. It is that of the run that is shown, for increments correlated with their
+    neighbours; no run is repeated. A table beside the figure holds all of them.
     """,
 )
 def wear_volume(job: Job) -> Any:

@@ -128,8 +128,13 @@ def test_designs_with_one_scheme_are_drawn(pins, missing, tmp_path):
 
 
 def test_published_volumes_are_drawn_as_published(figures):
-    """The dashed line is the printed fit of the panel's coefficient, alpha F L passes through the origin."""
+    """The dashed line is the printed fit of the panel's coefficient, alpha F L passes through the origin; the title
+    says how each reading grows, and of three revolutions that its scatter is unknown.
+    """
     panel = figures["wear_volume"].axes[0]
+    _, *changes = panel.get_title(loc="left").splitlines()
+    assert [words.partition(":")[0] for words in changes] == ["conserving", "per triangle", "Eq 5.9, touched"]
+    assert all(words.endswith("scatter unknown") for words in changes)
     drawn = line(panel, "Yan 2022, Eq 5.11 to 5.15")
     np.testing.assert_allclose(drawn[:, 1], 1e9 * published_volume(FITS, 1.7e-11, drawn[:, 0]))
     law = line(panel, r"$\alpha F L$")

@@ -75,7 +75,7 @@ def wear_volume(volumes: pd.DataFrame, published: pd.DataFrame, trends: pd.DataF
 def _changes(trends: pd.DataFrame) -> list[str]:
     """Return what is drawn of a coefficient's volumes in words: the change of what a revolution adds."""
     return [
-        f"{row.scheme.replace('_', ' ')}, {row.volume}: {trend_words(row)}"
+        f"{row.scheme.replace('_', ' ') if row.volume == 'removed' else row.volume}: {trend_words(row)}"
         for row in trends.itertuples()
         if row.volume in VOLUME_LOOKS and (row.volume == "removed" or row.scheme == "per_triangle")
     ]
