@@ -2,11 +2,13 @@
 
     python -m benchmarks.calibration_coverage     # in the root of the repository: about 5 minutes on an idle core
     python -m benchmarks.calibration_coverage --number 10 --output /tmp
+    python -m benchmarks.calibration_coverage --redraw    # the page from its table; only the river gravel is new
 
 Hidden values of two frictions, drawn evenly from their range, give three responses by a formula in the solver's place.
 Each is measured with its error and, in some cases, with a bias: what the formula is off by. Then all of a calibration
 is done: simulations that scatter between packings, surrogates, acquisition and stopping rule. Coverage is the share of
-calibrations whose region, or whose interval, holds the hidden values. Writes calibration_coverage.csv and .md.
+calibrations whose region, or whose interval, holds the hidden values. Besides, what the discrepancy makes of the
+example of Yan 2022, from docs/calibration_simulations.csv. Writes calibration_coverage.csv and .md.
 """
 
 from __future__ import annotations
@@ -24,9 +26,17 @@ from scipy import stats
 from scipy.special import logsumexp
 
 from benchmarks.page import markdown
-from bulkwear.postproc.inference.loop import Request, calibrate
-from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, interval
+from bulkwear.postproc.flow.bulk_test import RESPONSES as BULK_RESPONSES
+from bulkwear.postproc.inference.loop import Request, calibrate, posterior
+from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, distance_from, interval
 from bulkwear.postproc.inference.problem import MODEL_DISCREPANCY, Experiment, Measured, Parameter, Problem
+from bulkwear.postproc.inference.told import told_table
+from bulkwear.workflows.cases.calibration.responses import (
+    interval_table,
+    nearest_point,
+    parameter_name,
+    read_measured,
+)
 
 NUMBER = 200  # calibrations per case
 LOW, HIGH = 0.1, 0.7  # of both frictions
@@ -42,6 +52,9 @@ BIASES = {
 }
 CASES = tuple((bias, discrepancy) for bias in BIASES for discrepancy in (0.0, MODEL_DISCREPANCY))
 SCALES = {"half-normal": stats.halfnorm, "half-Cauchy": stats.halfcauchy}
+GRAVEL, PUBLISHED_PAIR = Path("config/published/gravel_tests.csv"), (0.21, 0.40)  # Yan 2022, Tables 3.1 and 3.6
+GRAVEL_HEAD = ["discrepancy assumed", "parameter", "recommended", "95 % interval", "left (-)", "told"]
+GRAVEL_HEAD += ["posterior in pairs that fit better than (0.21, 0.40) (%)"]
 NODES = 12  # of a scale that is marginalised
 GRID = 48  # points along each parameter where the surrogate is exact
 EXACT = 400  # calibrations per case with exact surrogates
@@ -127,6 +140,38 @@ def with_scale(kind: str, scale: float, bias: str) -> dict[str, float]:
     return dict(pd.DataFrame(found).mean())
 
 
+# ---------------------------------------------------------------- the river gravel
+
+
+def of_gravel(docs: Path, discrepancy: float) -> pd.DataFrame:
+    """Return intervals, what they leave of the ranges, and where the published pair lies, by simulations in docs."""
+    names = ("particle.contact.sliding_friction", "particle.contact.rolling_friction")
+    tests = tuple(Experiment(kind, BULK_RESPONSES[kind], 3, 3) for kind in ("shear_box", "draw_down"))
+    aims = read_measured(GRAVEL, discrepancy)
+    problem = Problem(tuple(Parameter(name, LOW, HIGH) for name in names), tests, aims, seed=20220317)
+    known = posterior(problem, pd.read_csv(docs / "calibration_simulations.csv"))
+    pair = nearest_point(problem, known, dict(zip(names, PUBLISHED_PAIR, strict=True)))
+    share = distance_from(known.weights, known.predicted, aims, pair)["denser_share"]
+    table = interval_table(problem, known, {}).merge(told_table(problem, known), on="parameter")
+    return table.assign(discrepancy=f"given, {discrepancy:g}", published_denser_share=share)
+
+
+def gravel_cells(table: pd.DataFrame) -> list[list[str]]:
+    """Return the rows of such tables as the page shows them."""
+    return [
+        [
+            *(
+                row.discrepancy,
+                parameter_name(row.parameter),
+                f"{row.recommended:.2f}",
+                f"{row.low:.2f} to {row.high:.2f}",
+            ),
+            *(f"{row.left:.2f}", row.told, f"{100.0 * row.published_denser_share:.1f}"),
+        ]
+        for row in table.itertuples()
+    ]
+
+
 # ---------------------------------------------------------------- table and page
 
 
@@ -150,8 +195,8 @@ def cells(table: pd.DataFrame) -> list[list[str]]:
     ]
 
 
-def page(table: pd.DataFrame) -> str:
-    """Return docs/calibration_coverage.md."""
+def page(table: pd.DataFrame, gravel: pd.DataFrame) -> str:
+    """Return docs/calibration_coverage.md. gravel: tables of `of_gravel`."""
     head = ["discrepancy assumed", "bias", "calibrations", "95 % region holds (%)", "95 % intervals hold (%)"]
     head += ["region, of the range (%)", "simulations"]
     whole, exact = (table[table["surrogates"] == name] for name in ("fitted", "exact"))
@@ -170,6 +215,10 @@ def page(table: pd.DataFrame) -> str:
                 "The same without surrogates. Given: normal with that standard deviation. Half-normal, half-Cauchy: the"
                 " standard deviation of each response's discrepancy is unknown, of that scale, and marginalised.",
                 markdown(head[:-1], [row[:-1] for row in cells(exact)]),
+                "## The river gravel",
+                "What the discrepancy makes of [calibration_simulations.csv](calibration_simulations.csv), without the"
+                " repeated packings. Left: of the range's 95 % interval.",
+                markdown(GRAVEL_HEAD, gravel_cells(gravel)),
             ]
         )
         + "\n"
@@ -180,8 +229,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--number", type=int, default=NUMBER, help="calibrations per case")
     parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--redraw", action="store_true", help="write the page from the table of an earlier run")
     given = parser.parse_args()
-    rows = []
+    gravel = pd.concat([of_gravel(Path("docs"), size) for size in (0.0, MODEL_DISCREPANCY)])
+    file, rows = given.output / "calibration_coverage.csv", []
+    if given.redraw:
+        file.with_suffix(".md").write_text(page(pd.read_csv(file), gravel), encoding="utf-8")
+        return
     for kind, scale in (("given", 0.0), ("given", 2.0), *((name, scale) for name in SCALES for scale in (1.0, 2.0))):
         for bias in BIASES:
             rows.append(
@@ -194,8 +248,8 @@ def main() -> None:
             rows.append(row_of("fitted", bias, given.number, means) | {"discrepancy": f"given, {discrepancy:g}"})
             print(rows[-1], flush=True)
             table = pd.DataFrame(rows)
-            table.to_csv(given.output / "calibration_coverage.csv", index=False, float_format="%.4g")
-            (given.output / "calibration_coverage.md").write_text(page(table), encoding="utf-8")
+            table.to_csv(file, index=False, float_format="%.4g")
+            file.with_suffix(".md").write_text(page(table, gravel), encoding="utf-8")
 
 
 if __name__ == "__main__":
