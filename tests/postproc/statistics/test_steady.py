@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from bulkwear.postproc.statistics.steady import LARGEST_DRIFT, common_start, steady_window, window_between
+from bulkwear.postproc.statistics.steady import (
+    ABOVE,
+    BELOW,
+    DRIFTING,
+    LARGEST_DRIFT,
+    STEADY,
+    UNSAID,
+    common_start,
+    steady_window,
+    window_between,
+)
 
 TRAVEL = np.arange(0.005, 1.7, 0.01)  # m: middles of intervals of 10 mm
 TRANSIENT = 0.1  # m, decay length of the synthetic transient
@@ -54,6 +64,44 @@ def test_a_rising_series_is_not_steady():
     assert not window.steady
     assert window.drift == pytest.approx((window.end - window.start) / window.mean)
     assert window.drift > LARGEST_DRIFT
+
+
+@pytest.mark.parametrize(
+    ("noise", "drift", "answer"),
+    [
+        (0.01, 0.0, STEADY),
+        (0.01, 0.3, DRIFTING),
+        (0.2, 0.0, UNSAID),  # what does not drift, but fluctuates too much to show it
+        (0.2, 0.1, UNSAID),
+        (0.01, LARGEST_DRIFT, UNSAID),
+    ],
+)
+def test_three_answers(noise, drift, answer):
+    """Steady and drifting are said where the interval of the drift is inside and outside; else nothing can be said."""
+    rng, found = np.random.default_rng(9), []
+    for _ in range(5):
+        series = 1.0 + drift * (TRAVEL / np.ptp(TRAVEL) - 0.5) + noise * rng.standard_normal(len(TRAVEL))
+        found.append(window_between(TRAVEL, series, 0.0, 1.7))
+    assert [each.answer for each in found].count(answer) >= 4
+    assert all(each.drift_low < each.drift < each.drift_high for each in found)
+
+
+def test_correlated_values_are_less_sure():
+    """The same values in an order in which neighbours are alike have a wider interval of drift."""
+    values = np.random.default_rng(10).normal(1.0, 0.05, len(TRAVEL))
+    alike = values.copy()
+    for place in range(1, len(values)):
+        alike[place] = 1.0 + 0.7 * (alike[place - 1] - 1.0) + 0.714 * (values[place] - 1.0)  # of the same deviation
+    wide, narrow = (window_between(TRAVEL, each, 0.0, 1.7) for each in (alike, values))
+    assert wide.drift_high - wide.drift_low > 1.5 * (narrow.drift_high - narrow.drift_low)
+
+
+def test_fluctuation_against_a_limit():
+    """A deviation of 5 % is below 7 % and above 3 % with its whole interval, and neither beside 5 %."""
+    series = 1.0 + 0.05 * np.random.default_rng(11).standard_normal(len(TRAVEL))
+    window = window_between(TRAVEL, series, 0.0, 1.7)
+    assert [window.fluctuates(limit) for limit in (0.07, 0.03, 0.05)] == [BELOW, ABOVE, UNSAID]
+    assert window.variation_low < window.deviation / window.mean < window.variation_high
 
 
 def test_units_do_not_matter():

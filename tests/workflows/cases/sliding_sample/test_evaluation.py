@@ -107,6 +107,7 @@ def table():
 def test_both_measures_must_be_steady(table):
     """Together they are steady from the later start on; where one drifts there is no such place."""
     assert table["steady"].tolist() == [True, True, True, False]
+    assert table["answer"].tolist() == ["steady"] * 3 + ["drifting"]
     assert 270.0 <= table.loc[("R1_convex", MEASURES[0]), "start_mm"] <= 320.0
     starts = table["common_start_mm"].groupby("run").first()
     assert starts["R1_convex"] == table.loc[("R1_convex", MEASURES[0]), "start_mm"]
@@ -125,4 +126,5 @@ def test_few_values_are_not_steady():
     line = pd.DataFrame({"run": "R1_convex", **NAMES, MEASURES[0]: 1.0, MEASURES[1]: 1.0})[:3]
     found = steady_table(line, line, (500.0, 900.0))
     assert found["steady"].tolist() == [False, False]
+    assert found["answer"].tolist() == ["cannot be said"] * 2
     assert found[["mean", "common_start_mm"]].isna().all(axis=None)
