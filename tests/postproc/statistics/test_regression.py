@@ -10,6 +10,7 @@ from scipy import stats
 from bulkwear.postproc.statistics.model_terms import candidate_terms, parse_term, term_columns
 from bulkwear.postproc.statistics.regression import (
     aicc,
+    bic_corrected,
     coefficient_table,
     fit,
     fit_measures,
@@ -147,6 +148,18 @@ def test_aicc_is_akaikes_with_its_correction():
     expected = 13 * np.log(2.0 / 13) + 2 * 6 + 2 * 6 * 7 / (13 - 6 - 1)
     assert float(aicc(2.0, 10.0, 13, 4)) == pytest.approx(expected, rel=ROUNDING)
     assert np.isinf(aicc(2.0, 10.0, 7, 4))
+
+
+def test_bic_is_corrected_for_few_runs():
+    """n ln(RSS / n) + k ln(n) n / (n - k - 2) for k coefficients (McQuarrie 1999); no model where n = k + 2; for many
+    runs a term costs ln(n).
+    """
+    expected = 13 * np.log(2.0 / 13) + 5 * np.log(13) * 13 / (13 - 5 - 2)
+    assert float(bic_corrected(2.0, 10.0, 13, 4)) == pytest.approx(expected, rel=ROUNDING)
+    assert np.isinf(bic_corrected(2.0, 10.0, 7, 4))
+    many = 100_000
+    difference = bic_corrected(1.0, 2.0, many, 3) - bic_corrected(1.0, 2.0, many, 2)
+    assert float(difference) == pytest.approx(np.log(many), rel=10.0 / many)
 
 
 def test_normal_scores_are_ordered_like_the_residuals():

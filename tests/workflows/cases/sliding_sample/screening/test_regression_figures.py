@@ -87,8 +87,8 @@ def test_best_designs_name_their_fidelity(made, tmp_path):
     folder = made(FACTORS)
     summary = pd.read_csv(folder / "summary.csv")
     regimes = tmp_path / "regimes.csv"
-    runs = summary.assign(run=summary["row"] + "_convex", regime="continuous", steady=True)
-    runs[["run", "row", "surface", "regime", "steady"]].to_csv(regimes, index=False)
+    runs = summary.assign(run=summary["row"] + "_convex", setting=summary["row"], regime="continuous", steady=True)
+    runs[["run", "row", "setting", "surface", "regime", "steady"]].to_csv(regimes, index=False)
     files = {"summary": folder / "summary.csv", "regimes": regimes}
     tables = declared.best_designs(job_of(files, {"factors": FACTORS, "fidelity": "quick"}, []))
     assert tables["prediction"]["fidelity"].tolist() == ["quick"]
