@@ -20,6 +20,7 @@ from bulkwear.workflows.cases.circular_tester.volume import settings_of, shared_
 
 SECONDS_PER_HOUR = 3600.0
 SHORT, LONG = "short_test", "long_test"  # published hours
+TOO_FEW = "too few revolutions to go beyond them"
 TOO_FAR = f"more than {FARTHEST:g} times the simulated revolutions"
 
 
@@ -137,8 +138,9 @@ def predictions(lost: pd.DataFrame, scale: TimeScale, hours: Sequence[float]) ->
             volume, ratio = estimate(found, log=True), estimate((found / beside).dropna(), log=True)
             row = {**setting, "hours": each, "revolution": revolution, "packings": len(found)}
             row |= _predicted("volume_mm3", volume) | _reduction(ratio)
-            beyond = bool(revolution > shared_revolutions(own))
-            rows.append(row | {"extrapolated": beyond, "reason": "" if np.isfinite(volume.value) else TOO_FAR})
+            ratio_to_run = revolution / shared_revolutions(own)
+            lacking = "" if np.isfinite(volume.value) else (TOO_FAR if ratio_to_run > FARTHEST else TOO_FEW)
+            rows.append(row | {"extrapolated": ratio_to_run > 1.0, "reason": lacking})
     return pd.DataFrame(rows)
 
 

@@ -31,7 +31,7 @@ class Observed:
     columns: as from `distribution.wear_by_column`, with surface and packing, of series volume; bumps: as from
     `wear_by_bump`, with packing
     means, steady_means: as from `flow.revolution_means`, of revolutions of wear and of the bed
-    hours_per_revolution: as from `hours.time_scale`; short, long: hours of the tests
+    hours_per_revolution: as from `hours.time_scale`
     shape, scale: of the machine and the particles of series volume
     meshes: as from `distribution.volumes_of_meshes`, None without a series of meshes
     worn_out: as from `comparison.worn_out_at`, None without a pattern that is worn right off
@@ -45,8 +45,6 @@ class Observed:
     means: pd.DataFrame
     steady_means: pd.DataFrame
     hours_per_revolution: float
-    short: float
-    long: float
     shape: str
     scale: float
     meshes: pd.DataFrame | None = None

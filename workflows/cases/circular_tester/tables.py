@@ -57,7 +57,7 @@ def tables_of_runs(
         "series": pd.concat([flow.series_of(run) for run in runs if run.series == VOLUME], ignore_index=True),
     }
     tables["mean_ratios"] = comparison.mean_ratios(tables["ratios"], shared=False)
-    seen = observed(runs, tables, scale.hours_per_revolution, told)
+    seen = observed(runs, tables, scale.hours_per_revolution)
     return tables | {"findings": findings_table(seen, claims)}
 
 
@@ -144,12 +144,8 @@ def loss_rows(losses: pd.DataFrame, published: pd.DataFrame, revolution: float, 
     return table.assign(hours=test_hours, unit="mm", note=note).reindex(columns=COMPARED)
 
 
-def observed(
-    runs: Sequence[TesterRun], tables: Mapping[str, pd.DataFrame], hours_per_revolution: float, told: Sequence[float]
-) -> Observed:
-    """Return what findings are judged by; tables: those of `tables_of_runs`; told: hours of the short and the long
-    test.
-    """
+def observed(runs: Sequence[TesterRun], tables: Mapping[str, pd.DataFrame], hours_per_revolution: float) -> Observed:
+    """Return what findings are judged by; tables: those of `tables_of_runs`."""
     pairs, lost = pairs_of(runs), tables["lost_volumes"]
     both = [run for pair in pairs for run in pair]
     plain = pairs[0][1]
@@ -164,8 +160,6 @@ def observed(
         means=flow.flow_means(tables["series"]),
         steady_means=flow.revolution_means(tables["series"], flow.STEADINESS),
         hours_per_revolution=hours_per_revolution,
-        short=told[0],
-        long=told[-1],
         shape=plain.shape,
         scale=plain.particle_scale,
         meshes=distribution.volumes_of_meshes(lost),

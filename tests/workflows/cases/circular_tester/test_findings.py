@@ -110,8 +110,6 @@ def observed(packings=3, laws=TOLD, ring=1.0, revolutions=17, **others):
             means=flow(packings, revolutions=revolutions),
             steady_means=steady,
             hours_per_revolution=HOURS,
-            short=56.0,
-            long=184.0,
             shape="channel",
             scale=1.0,
             meshes=meshes(packings),

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bulkwear.workflows.cases.circular_tester.hours import TOO_FAR, predictions, time_scale
+from bulkwear.workflows.cases.circular_tester.hours import TOO_FAR, TOO_FEW, predictions, time_scale
 from tests.support import tester_study as study
 
 COEFFICIENT = 5e-9  # 1/Pa, of the synthetic runs
@@ -53,6 +53,8 @@ def test_predictions():
     far = table.xs(2000.0, level="hours")
     assert far["volume_mm3"].isna().all() and (far["reason"] == TOO_FAR).all()
     assert (table.drop(index=2000.0, level="hours")["reason"] == "").all()
+    one = study.volumes(packings=2, revolutions=1)
+    assert predictions(one, scale_of(one), [56.0])["reason"].unique().tolist() == [TOO_FEW]
 
 
 def test_one_packing_has_no_prediction_interval():
