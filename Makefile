@@ -58,7 +58,7 @@ report: setup ## Build results/<STUDY>/report.html and Snakemake's own snakemake
 	$(SNAKEMAKE) $(STUDY) --report results/$(STUDY)/snakemake_report.html
 
 results: setup ## Remake every page of results in docs from its runs, or say which are stale and what redoing costs (RUN=1: do it, PAGE=one)
-	@.venv/bin/python -m bulkwear.workflows.report.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE))
+	@.venv/bin/python -m bulkwear.workflows.results.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE))
 
 test: setup ## Run the tests and every check a submission must pass
 	$(PYTEST)

@@ -37,8 +37,8 @@ from bulkwear.workflows.report.provenance_of_pages import (
     read_origins,
     recorded,
 )
-from bulkwear.workflows.report.results_index import mark, redo
 from bulkwear.workflows.report.simulated import Simulated, versions_of
+from bulkwear.workflows.results.index import mark, redo
 
 PROFILE = "workflows/profiles/default"
 PENDING = "update pending"  # what Snakemake's summary plans for a file
@@ -48,7 +48,7 @@ class RemakeError(RuntimeError):
     """A page could not be remade; the message says what failed."""
 
 
-def snakemake(study: str, origin: Origin, cores: int, *words: str) -> list[str]:
+def study_command(study: str, origin: Origin, cores: int, *words: str) -> list[str]:
     """Return the command that makes a study as a page has it."""
     settings = [f"{key}={json.dumps(value)}" for key, value in origin.overrides.items()]
     command = [sys.executable, "-m", "snakemake", "--workflow-profile", PROFILE, "--cores", str(cores), study, *words]
@@ -81,7 +81,7 @@ def pending_of(origin: Origin, cores: int) -> list[tuple[str, str]] | None:
     """Return `pending_files` of a page's study; None where none of it was run here. Raises RemakeError."""
     if not (Path("results") / origin.study / "design.csv").is_file():
         return None
-    done = subprocess.run(snakemake(origin.study, origin, cores, "--summary"), capture_output=True, text=True)
+    done = subprocess.run(study_command(origin.study, origin, cores, "--summary"), capture_output=True, text=True)
     if done.returncode != 0:
         raise RemakeError(f"snakemake cannot plan {origin.study}:\n{done.stderr.strip()}")
     return pending_files(done.stdout)
@@ -103,7 +103,7 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
         what = f"{len(missing)} jobs of the solver are not done in results/{origin.study}"
         return f"{what}; redoing costs {cost_words(missing, cores)}: {redo(origin)}"
     if pending or pending is None:
-        call(snakemake(origin.study, origin, cores))
+        call(study_command(origin.study, origin, cores))
     folder = Path("results") / origin.study
     if origin.figure:
         shutil.copyfile(folder / "figures" / f"{origin.figure}.png", docs / origin.page)

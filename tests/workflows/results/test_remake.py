@@ -10,7 +10,6 @@ import pytest
 from bulkwear.workflows.config.design import list_studies, load_study
 from bulkwear.workflows.engine.provenance import PROVENANCE, code_of_cases
 from bulkwear.workflows.forecast.forecast import work_of
-from bulkwear.workflows.report import remake as module
 from bulkwear.workflows.report.provenance_of_pages import (
     Change,
     Origin,
@@ -22,7 +21,8 @@ from bulkwear.workflows.report.provenance_of_pages import (
     with_banner,
     write_origins,
 )
-from bulkwear.workflows.report.results_index import index_page
+from bulkwear.workflows.results import remake as module
+from bulkwear.workflows.results.index import index_page
 from tests import REPOSITORY
 
 DOCS = REPOSITORY / "docs"

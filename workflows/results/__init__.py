@@ -1,0 +1,1 @@
+"""The pages of results in docs: remade from their runs, or told to be older than the code."""
