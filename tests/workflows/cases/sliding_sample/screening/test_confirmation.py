@@ -42,7 +42,7 @@ def summary(design):
 def regimes(design):
     """Thick beds flow continuously, all others do not; plain runs do not count."""
     regime = np.where(design["bed_thickness_mm"] == 40.0, CONTINUOUS, DISCONTINUOUS)
-    convex = design[["row"]].assign(surface="convex", regime=regime)
+    convex = design[["row"]].assign(setting=design["row"], surface="convex", regime=regime)
     return pd.concat([convex, convex.assign(surface="plain", regime=CONTINUOUS)], ignore_index=True)
 
 
@@ -93,7 +93,7 @@ def test_simulated_runs_against_their_intervals(predictions):
     rows = [CONTINUOUS, f"{CONTINUOUS}-2", DISCONTINUOUS, f"{DISCONTINUOUS}-2"]
     runs = pd.DataFrame({"row": rows, "setting": settings, "surface": "convex", "worn_volume_per_metre_m3_per_m": wear})
     plain = runs.assign(surface="plain", worn_volume_per_metre_m3_per_m=5e-9)
-    regimes = runs[["row", "surface"]].assign(regime=CONTINUOUS)
+    regimes = runs[["row", "setting", "surface"]].assign(regime=CONTINUOUS)
     table = confirmation_table(predictions, pd.concat([runs, plain], ignore_index=True), regimes)
     assert table["inside"].tolist() == [True, False, True, True]
     assert table["over_predicted"].tolist() == pytest.approx([1.0, 10.0, 1.0, 1.0])
