@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import key_numbers
+from bulkwear.workflows.cases.circular_tester.runs import has_pairs
 from bulkwear.workflows.report.sections import Pictures, Section, Text
 from bulkwear.workflows.report.text import range_text
 
@@ -27,8 +28,8 @@ DECKS = (  # {bed} and {run} are those of the first run
 
 
 def told(study: Study) -> dict[str, Any]:
-    """Return what the page is told besides what every page is: nothing."""
-    return {}
+    """Return what the page is told besides what every page is: whether there is anything to compare."""
+    return {"paired": has_pairs(study)}
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
@@ -36,7 +37,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
 
     Of a choice of rows in which no packing has a plain and a patterned run there are its runs alone.
     """
-    if not (folder / "tester").is_dir():
+    if not study["told"]["paired"]:
         return [Section("Every run", [Text(UNPAIRED), *key_numbers.every_run(folder), Pictures(("worn_surface",))])]
     places = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")

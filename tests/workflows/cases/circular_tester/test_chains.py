@@ -217,6 +217,8 @@ def test_every_figure_has_its_section(finished, drawn):
     assert len(named) == len(set(named)) and {*drawn, "worn_surface"} <= set(named) and "wear_updates" not in named
     empty = [section.title for section in shown if len(section.blocks) == 1]
     assert empty == ["Until the pattern is gone", "The lowest layer", "Elements"]
+    alone = sections(page_parameters(finished.study) | {"told": {"paired": False}}, finished.folder)
+    assert [section.title for section in alone] == ["Every run"]  # whatever tables an earlier choice of rows has left
 
 
 def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
