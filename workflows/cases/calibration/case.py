@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
 PUBLISHED = "config/published"
+DISCREPANCY = "model_discrepancy"  # column of a table of measured responses, where it is known
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
 LEAST_DRAG_DIAMETERS = 6.0  # -, of a plate's way. Measured: with friction 0.7 the bed slides after 2.8
 LEAST_SLOT_DIAMETERS = 5.0  # -, of a slot as simulated. Measured: at 4.0 an arch blocked it, friction 0.32 and 0.37
@@ -110,6 +111,22 @@ def ranges_in_order(run: CheckedRun) -> Fault | None:
     return None
 
 
+def measured_are_numbers(run: CheckedRun) -> Fault | None:
+    """The table of measured responses has values, deviations above 0, and discrepancies of the model of at least 0."""
+    table = published(run.settings["calibration"]["measured"])
+    allowed = "a table with the columns response, value and deviation"
+    if missing := [name for name in ("response", "value", "deviation") if name not in table]:
+        return "calibration.measured", f"{allowed}; it has no {missing[0]}"
+    faults = {"value": lambda v: v.isna(), "deviation": lambda v: ~(v > 0.0), DISCREPANCY: lambda v: v < 0.0}
+    for name in filter(table.__contains__, faults):
+        numbers = pd.to_numeric(table[name], errors="coerce")
+        wrong = faults[name](numbers) | (numbers.isna() & table[name].notna())
+        if wrong.any():
+            place = f"its line {int(wrong.idxmax()) + 2} has {name} {table[name][wrong].iloc[0]}"
+            return "calibration.measured", f"{allowed}, deviations above 0, {DISCREPANCY} of 0 or more; {place}"
+    return None
+
+
 def pairs_are_known(run: CheckedRun) -> Fault | None:
     """The compared pair and that of the sizes are rows of the table of pairs simulated before."""
     calibration = run.settings["calibration"]
@@ -152,6 +169,7 @@ class Calibration(Case):
         drag_makes_it_slide,
         one_wall_is_looked_for,
         ranges_in_order,
+        measured_are_numbers,
         pairs_are_known,
         initial_below_most,
     )

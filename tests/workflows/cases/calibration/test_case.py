@@ -1,8 +1,11 @@
 """A calibration study: what it asks for, and what is refused."""
 
+import io
+
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.calibration import case
 from bulkwear.workflows.cases.calibration.driver import pair_of
 from bulkwear.workflows.config.design import ConfigError, load_study
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
@@ -56,6 +59,28 @@ def test_ranges_must_be_ranges():
         parameters = [{"name": SLIDING, "low": 0.1, "high": 0.7}, second]
         with pytest.raises(ConfigError, match=r"calibration\.parameters"):
             study(calibration={"parameters": parameters})
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("response,value\nrepose_angle_deg,33\n", "it has no deviation"),
+        ("response,value,deviation\nshear_angle_deg,36,0.4\nrepose_angle_deg,33,0\n", "its line 3 has deviation 0"),
+        ("response,value,deviation,model_discrepancy\nshear_angle_deg,36,0.4,-1\n", "line 2 has model_discrepancy -1"),
+        ("response,value,deviation,model_discrepancy\nshear_angle_deg,36,0.4,some\n", "has model_discrepancy some"),
+        ("response,value,deviation\nshear_angle_deg,steep,0.4\n", "line 2 has value steep"),
+    ],
+)
+def test_a_table_of_measurements_that_says_nothing_is_refused(monkeypatch, text, words):
+    """A column that is missing, or a number that is none, is named with its line."""
+    real = case.published
+
+    def shown(name):
+        return pd.read_csv(io.StringIO(text)) if name == "gravel_tests.csv" else real(name)
+
+    monkeypatch.setattr(case, "published", shown)
+    with pytest.raises(ConfigError, match=rf"calibration\.measured is 'gravel_tests\.csv'.*{words}"):
+        study()
 
 
 def test_published_data_are_those_of_the_source():
