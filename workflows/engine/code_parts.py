@@ -107,17 +107,29 @@ def _kept_essence(path: Path, changed_ns: int) -> str:
 def essence(text: str) -> str:
     """Return Python without comments, docstrings, blank lines and spaces at the ends of lines."""
     lines = text.splitlines()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type == tokenize.COMMENT:
-            row, column = token.start
-            lines[row - 1] = lines[row - 1][:column]
-    for said in filter(None, map(_docstring, ast.walk(ast.parse(text)))):
+    if any("#" in line and ("'" in line or '"' in line) for line in lines):
+        lines = _without_comments(text)
+    else:
+        lines = [line.partition("#")[0] for line in lines]
+    for said in _docstrings(ast.parse(text)):
         lines[said.lineno - 1 : said.end_lineno] = [""] * (said.end_lineno - said.lineno + 1)
     return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
-def _docstring(node: ast.AST) -> ast.expr | None:
-    """Return what documents a module, class or function; a line of text after a constant is no docstring, but alike."""
-    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
-        return node.value
-    return None
+def _without_comments(text: str) -> list[str]:
+    """Return the lines of Python without comments, where a # may be part of a text; slower than to cut at each #."""
+    lines = text.splitlines()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column]
+    return lines
+
+
+def _docstrings(node: ast.AST) -> Iterator[ast.expr]:
+    """Yield what documents a module, its classes and functions; a text below a constant counts as such."""
+    for each in ast.iter_child_nodes(node):
+        if isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant) and isinstance(each.value.value, str):
+            yield each.value
+        elif isinstance(each, ast.stmt):
+            yield from _docstrings(each)

@@ -41,6 +41,7 @@ from bulkwear.workflows.report.simulated import Simulated, versions_of
 from bulkwear.workflows.results.index import mark, redo
 
 PROFILE = "workflows/profiles/default"
+WRITTEN = "written from"  # begins what is said of a page that was remade
 PENDING = "update pending"  # what Snakemake's summary plans for a file
 
 
@@ -110,7 +111,7 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
         keep_origin(docs, origin_of(origin.page, folder, study))
     else:
         write_results(folder, docs, study)
-    return f"written from results/{origin.study}"
+    return f"{WRITTEN} results/{origin.study}"
 
 
 def remake_by_command(origin: Origin, docs: Path, run: bool) -> str:
@@ -119,7 +120,7 @@ def remake_by_command(origin: Origin, docs: Path, run: bool) -> str:
         call(["bash", "-c", origin.command])
     if run or has_written(origin, docs):
         keep_origin(docs, origin_of_command(origin))
-        return f"written by `{origin.command}`"
+        return f"{WRITTEN} what `{origin.command}` simulated"
     hours = "its cost was not kept" if origin.core_hours is None else f"it took {origin.core_hours:.2g} core hours"
     return f"no study but a command, {hours}: {redo(origin)}"
 
@@ -170,9 +171,19 @@ def remake(docs: Path, page: str, run: bool, cores: int) -> None:
             print(f"{origin.page}: {fault}", file=sys.stderr)
             continue
         found = next(each for each in read_origins(docs) if each.page == origin.page)
-        state = "older than the code" if older(found, changes, code_of_cases((found.case,))) else "as new as the code"
-        print(f"{origin.page}: {state}; {done}", flush=True)
+        stale = older(found, changes, code_of_cases((found.case,)))
+        state = "older than the code" if stale else "as new as the code"
+        again = f", whose runs no job does again; {anew(found, cores)}" if stale and WRITTEN in done else ""
+        print(f"{origin.page}: {state}; {done}{again}", flush=True)
     mark(docs, changes)
+
+
+def anew(origin: Origin, cores: int) -> str:
+    """Return what simulating a page anew takes whose runs are finished, though by older code."""
+    if origin.command:
+        return f"to simulate them anew move {origin.runs or 'what it kept'} away: {redo(origin)}"
+    cost = cost_words(missing_work(load_study(origin.study, overrides=origin.overrides), None), cores)
+    return f"to simulate them anew ({cost}) move results/{origin.study} away: {redo(origin)}"
 
 
 def chosen(origins: Sequence[Origin], page: str) -> list[Origin]:

@@ -163,7 +163,7 @@ def test_a_page_of_a_command_is_renewed_from_its_simulations(done, tmp_path):
     state.write_text(json.dumps({PROVENANCE: code, "cost": {"processor_s": 3600.0}}))
     (tmp_path / origin.page).write_text(TEXT)
     write_origins(tmp_path, [origin])
-    assert "written by" in module.remake_by_command(origin, tmp_path, False)
+    assert "written from" in module.remake_by_command(origin, tmp_path, False)
     (kept,) = read_origins(tmp_path)
     assert (kept.core_hours, kept.versions[0]["runs"], kept.command) == (1.0, ["one"], "make it")
     assert older(kept, [], code_of_cases(("pin_on_disc",))) == []
@@ -187,6 +187,17 @@ def test_faults_of_a_page_are_told_beside_the_others(monkeypatch, tmp_path, caps
     assert f"[{OLD.page}]" in index and f"[{DEMO.page}]" in index
     with pytest.raises(ResultsError, match=r"PAGE is none, allowed is one of demo_results_quick, page\."):
         module.remake(tmp_path, "none", False, 2)
+
+
+def test_finished_runs_of_older_code_are_told_with_what_doing_them_again_costs(monkeypatch, tmp_path, capsys):
+    """A page whose runs are there is written, and says how to simulate them anew where the code is newer."""
+    write_origins(tmp_path, [DEMO])
+    (tmp_path / "results_changes.csv").write_text("date,commit,part,concerns,change\n")
+    monkeypatch.setattr(module, "remake_study", lambda *given: "written from results/demo")
+    module.remake(tmp_path, "", False, 2)
+    (told,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith(DEMO.page)]
+    assert "older than the code; written from results/demo, whose runs no job does again" in told
+    assert "core hours" in told and "move results/demo away: make results RUN=1 PAGE=demo_results_quick" in told
 
 
 def test_the_list_of_pages_names_what_moved_their_numbers():
