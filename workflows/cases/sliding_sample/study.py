@@ -47,6 +47,13 @@ def has_findings(study: Study) -> bool:
     return finds_regimes(study) and bool(published_rows(study))
 
 
+def named_factors(study: Study) -> dict[str, str]:
+    """Return {short name: column of the design} of the factors that a study names, also where its rows are too few for
+    a regression; empty without any.
+    """
+    return dict(study.head.get(FACTORS) or {})
+
+
 def published_flow(study: Study) -> str:
     """Return the table of what the source tells of the flow: of its chapter 4 for particle size, else of chapter 3."""
     return f"config/published/{'particle_size' if varies_scale(study) else 'screening'}_results.csv"

@@ -24,6 +24,7 @@ from bulkwear.postproc.tables.summary import patterned_name
 
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY = 6  # settings and surfaces; from here on their names stand upright
+MOST_ROOM = 3.0  # -, of the highest bar; what intervals have beyond it is cut off
 LIFT = 4  # pt, of a number above its bar
 ERROR_BARS = {"elinewidth": 0.9, "capsize": 3}
 PUBLISHED_MARKS_UPRIGHT = {"about": "D", "below": "v", "above": "^"}
@@ -40,6 +41,11 @@ def _axis(axes: Axes, table: pd.DataFrame) -> np.ndarray:
     axes.set_xlim(-0.6, len(names) - 0.4)
     axes.grid(axis="x", visible=False)
     return places
+
+
+def highest_shown(values: Sequence[float], ends: Sequence[float]) -> float:
+    """Return what an axis must reach for its bars and their intervals, no more than MOST_ROOM of the highest bar."""
+    return float(min(np.nanmax([*values, *ends]), MOST_ROOM * np.nanmax(values)))
 
 
 def draw_intervals(
@@ -72,14 +78,15 @@ def wear_split(split: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     axes.bar(places, pattern, width, bottom=base, **drawn)
     patterned = split[split["surface"] != PLAIN]
     draw_intervals(axes, places[patterned.index], patterned["wear_over_plain"], patterned)
-    tops = np.fmax(split["wear_over_plain"], split["interval_high"]).to_numpy()
+    highest = highest_shown([1.0, *split["wear_over_plain"]], split["interval_high"])
+    tops = np.fmin(np.fmax(split["wear_over_plain"], split["interval_high"]), highest).to_numpy()
     for place, height, value in zip(places, tops, split["wear_over_plain"], strict=True):
         if np.isfinite(value):
             look = {"rotation": 90 if len(split) > MANY else 0, "bbox": {"color": "white", "pad": 0.5}}
             above = {"xytext": (0, LIFT), "textcoords": "offset points", "ha": "center", "va": "bottom"}
             axes.annotate(f"{value:.2f}", (place, height), fontsize=SMALLEST_FONT, **above, **look)
     axes.axhline(1.0, color="black", linewidth=0.8, linestyle="--")
-    axes.set_ylim(0.0, HEADROOM * np.nanmax([1.0, *tops]))
+    axes.set_ylim(0.0, HEADROOM * highest)
     axes.set_ylabel("Wear volume over the plain sample's (-)")
     figure.legend(loc="outside upper center", ncols=2)
     return figure
@@ -99,7 +106,7 @@ def relative_wear(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
     axes.set_xticks(places, table["setting"], rotation=0)
     axes.bar(places, ratio, 0.7, color=[colour(surface) for surface in table["surface"]])
     draw_intervals(axes, places, ratio, table)
-    top = HEADROOM * np.nanmax([1.0, *table["interval_high"], *ratio])
+    top = HEADROOM * highest_shown([1.0, *ratio], table["interval_high"])
     shown = published[published["row"].isin(table["setting"])]
     if len(shown):
         _published_marks(axes, dict(zip(table["setting"], places, strict=True)), shown)

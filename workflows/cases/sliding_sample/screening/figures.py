@@ -15,6 +15,7 @@ from bulkwear.workflows.cases.sliding_sample.study import (
     flow_runs,
     flow_velocities,
     has_findings,
+    named_factors,
     passing_beds,
     published_flow,
     published_rows,
@@ -313,7 +314,7 @@ OF_RUNS = ("summary", "regimes", "profiles", "steady")  # tables whose names are
         "published_coefficients": "config/published/screening_coefficients.csv",
         "published_design": "config/designs/screening.csv",
     },
-    told={"factors": lambda study: study.factors, "run_in": run_in, "published_rows": published_rows},
+    told={"factors": named_factors, "run_in": run_in, "published_rows": published_rows},
     tables={"findings": "findings/findings.csv", "runs": "findings/runs.csv"},
     when=has_findings,
 )

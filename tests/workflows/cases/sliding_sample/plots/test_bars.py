@@ -75,6 +75,8 @@ def test_relative_wear_is_sorted_and_marked():
     np.testing.assert_allclose(ends_of(axes), [[0.7, 0.9], [1.1, 1.4]], rtol=RELATIVE)
     marks = {line.get_label(): tuple(line.get_xydata()[0]) for line in axes.lines if line.get_label()[0] != "_"}
     assert marks == {"Yan": (0.0, 0.34), "Yan (at least)": (2.0, 1.0)}
+    wide = bars.relative_wear(table.assign(interval_high=[80.0, 0.9, np.nan]), published[:0], REMARKS).axes[0]
+    assert 2.0 * 1.2 < wide.get_ylim()[1] < 5.0 * 1.2  # bars stay to be seen beside an interval without end
     alone = table.assign(interval_low=np.nan, interval_high=np.nan)
     assert ends_of(bars.relative_wear(alone, published[:0], REMARKS).axes[0]) == []
     assert remarks_of(figure) == "; ".join(REMARKS)

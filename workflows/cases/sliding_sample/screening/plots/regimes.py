@@ -23,7 +23,7 @@ from bulkwear.postproc.plots.style import (
     scaled,
 )
 from bulkwear.postproc.tables.summary import patterned_name
-from bulkwear.workflows.cases.sliding_sample.plots.bars import draw_intervals
+from bulkwear.workflows.cases.sliding_sample.plots.bars import draw_intervals, highest_shown
 from bulkwear.workflows.cases.sliding_sample.screening.confirmation import interval_reach
 
 BAR = 0.4  # -, width of a bar over the distance of rows
@@ -37,7 +37,7 @@ def wear_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
     table: as from `regime_groups.wear_by_group`
     """
-    highest = np.nanmax([1.0, *table["interval_high"]])
+    highest = highest_shown([1.0], table["interval_high"])
     figure = new_figure(remarks, LARGEST_HEIGHT)
     for axes, shown in _panels(figure, table, "relative_wear"):
         patterned, plain = shown[shown["surface"] != PLAIN], shown[shown["surface"] == PLAIN]
@@ -71,7 +71,7 @@ def normal_force_by_regime(table: pd.DataFrame, remarks: Sequence[str]) -> Figur
             places = _places(runs) + shift * BAR
             axes.bar(places, runs["mean_normal_force_N"], BAR, color=colour(surface))
             draw_intervals(axes, places, runs["mean_normal_force_N"], runs)
-    highest = np.fmax(table["mean_normal_force_N"], table["interval_high"]).max()
+    highest = highest_shown(table["mean_normal_force_N"], table["interval_high"])
     figure.axes[0].set_ylim(0.0, HEADROOM * highest)
     figure.axes[0].set_ylabel("Normal force on the sample (N)")
     handles = [Patch(color=colour(surface), label=surface) for surface in dict.fromkeys(table["surface"])]
