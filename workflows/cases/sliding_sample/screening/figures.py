@@ -44,8 +44,9 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
     caption="""
     Worn volume of the patterned sample over that of the plain sample in the same packing, geometric mean over the
     packings, lowest first. Below 1 (dashed line) the pattern wears less in total. Black bars: 95 % interval of the
-    mean, by Student's t from the scatter of the row's own packings. Hollow marks: what the source's text gives of the
-    same rows. Above each bar: the equivalent size ratio of particle to bump (Yan 2022, Eq 4.18).
+    mean, by Student's t from the scatter of the row's own packings; without a cap it goes on beyond the axis.
+    Hollow marks: what the source's text gives of the same rows. Above each bar: the equivalent size ratio of
+    particle to bump (Yan 2022, Eq 4.18).
     """,
 )
 def relative_wear(job: Job) -> Any:
