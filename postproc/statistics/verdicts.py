@@ -69,18 +69,12 @@ class Claim:
         (low, high), size, reach = self.region, "", ""
         if self.magnitude is not None:
             least, most = self.magnitude
-            size = f"{_between(low, high)} (published {_between(least, most)})"
+            published = f"{least:g}" if least == most else f"{least:g} to {most:g}"
+            size = f"{low:g} to {high:g} (published {published})"
         if self.reach is not None:
             reach = f"for {self.reach[0]:g} to {self.reach[1]:g} {self.reach_unit}"
         unit = "" if self.unit == "-" else f" {self.unit}"
         return ", ".join(filter(None, (" and ".join(filter(None, (side, size))) + unit, reach)))
-
-
-def _between(low: float, high: float) -> str:
-    """Return the ends of a magnitude in words."""
-    if low == high:
-        return f"{low:g}"
-    return f"above {low:g}" if math.isinf(high) else f"{low:g} to {high:g}"
 
 
 @dataclass(frozen=True)
