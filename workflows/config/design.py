@@ -224,12 +224,17 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         first_packings=designed.first(settings),
         confirms=confirms,
     )
-    first = study.runs[0]
-    if settings["wear"]["law"] in dict(current_project().own_laws):
-        check_volume(settings["wear"]["law"], law_parameters(first.parameters))
-    decks = partial(sample_decks, study.case, first.parameters, study.beds.get(study.bed_of(first.name)))
-    check_own_words(layers, study.case, settings.get("deck", {}), decks)
+    _check_own_code(study, layers)
     return study
+
+
+def _check_own_code(study: Study, layers: tuple[Layer, ...]) -> None:
+    """Check a project's own law and words of templates on the first run. Raises ConfigError."""
+    first, law = study.runs[0], study.settings["wear"]["law"]
+    if law in dict(current_project().own_laws):
+        check_volume(law, law_parameters(first.parameters))
+    decks = partial(sample_decks, study.case, first.parameters, study.beds.get(study.bed_of(first.name)))
+    check_own_words(layers, study.case, study.settings.get("deck", {}), decks)
 
 
 def confirmation_design(study: str) -> str:
