@@ -117,6 +117,13 @@ def core_hours(costs: list[str | Path]) -> float:
     return float(sum(table["processor_s"].sum() for table in tables)) / SECONDS_PER_HOUR
 
 
+def last_round(folder: Path) -> str:
+    """Return what the last round of a study said; "" where packings were a fixed number. folder: results/<study>"""
+    rounds = sorted((folder / "rounds").glob("round_*.json"), key=lambda path: int(path.stem.partition("_")[2]))
+    found = [read_round(path) for path in rounds]
+    return found[-1]["said"] if found else ""
+
+
 def read_round(path: str | Path) -> dict[str, Any]:
-    """Return what a round decided."""
+    """Return what a round of `further_packings` decided."""
     return json.loads(Path(path).read_text(encoding="utf-8"))

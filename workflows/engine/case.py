@@ -85,8 +85,8 @@ class Case:
     first_title: what people call cycle 0
     leftovers: files that a wear cycle's solver leaves and nobody needs once the cycle is accounted
     kept: files that `reduce` leaves, without which a wear cycle is not whole
-    seed_setting: that seeds the bed which a run starts from, a column of the design may have its place; "" without beds,
-        where a setting has one packing, for the reason `one_packing`
+    seed_setting: that seeds the bed which a run starts from, a column of the design may have its place; "" without
+        beds, where a setting has one packing, for the reason `one_packing`
     figure_modules: of its folder, that declare figures and tables (`workflows.report.products`), in a page's order
     shared_figures: names of those of `workflows.report.surfaces` that it shows, after its own
     run_rules: rules that make a job of every run

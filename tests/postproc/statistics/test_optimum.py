@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bulkwear.postproc.statistics.model_terms import candidate_terms, parse_term, term_columns
-from bulkwear.postproc.statistics.regression import fit
 from bulkwear.postproc.statistics.optimum import best_design
+from bulkwear.postproc.statistics.regression import fit
 
 ROUNDING = 1e-9
 GRID = np.array(list(itertools.product(np.linspace(-1.0, 1.0, 21), repeat=3)))

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
-from bulkwear.workflows.config.until import Until, answers, core_hours, next_round, until_of
+from bulkwear.workflows.config.until import Until, answers, core_hours, last_round, next_round, until_of
 
 ASKED = {"width_percent": 5, "most_packings": 12, "most_core_hours": 3}
 UNTIL = Until(0.05, 12, 3.0)
@@ -65,6 +65,15 @@ def test_a_setting_with_packings_of_its_own_keeps_them():
     """It is not looked at."""
     found = next_round(UNTIL, answers(summary(R9=WIDE)), {"R9": 4, "mesh": 1}, {}, 0.1)
     assert found["packings"] == {"R9": 8, "mesh": 1}
+
+
+def test_the_last_round_is_told(tmp_path):
+    """Of ten and more rounds too; nothing where packings are a fixed number."""
+    assert last_round(tmp_path) == ""
+    (tmp_path / "rounds").mkdir()
+    for number in (1, 2, 10):
+        (tmp_path / "rounds" / f"round_{number}.json").write_text(json.dumps({"said": f"round {number}"}))
+    assert last_round(tmp_path) == "round 10"
 
 
 def test_core_hours_are_the_processors(tmp_path):
