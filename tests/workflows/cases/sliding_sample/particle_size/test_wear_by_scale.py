@@ -108,7 +108,7 @@ def test_ratios_have_an_interval_per_scale():
 
 
 def test_ratios_stand_beside_convex_over_plain_wear():
-    """Scale by scale the ratios of the scaled particles; on the published lines the points lie on the published curve."""
+    """Scale by scale the ratios of the scaled particles; on the published lines points lie on the published curve."""
     ratios = {scale: size_ratios(scale * PUBLISHED_DIAMETER, *PUBLISHED_PATTERN) for scale in SCALES}
     ours = wear_by_size_ratio(wear_by_scale(summary()), ratios)
     theirs = published_by_size_ratio(LINES, SCALES)
