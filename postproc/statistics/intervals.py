@@ -21,6 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -78,7 +79,7 @@ class Estimate:
     def _about(self, error: float, share: float) -> tuple[float, float]:
         if not self.known:
             return math.nan, math.nan
-        reach = float(stats.t.ppf(share, self.freedom)) * error
+        reach = students_t(share, self.freedom) * error
         if self.log:
             return self.value * math.exp(-reach), self.value * math.exp(reach)
         return self.value - reach, self.value + reach
@@ -133,6 +134,12 @@ class Ends:
             f"{self.value:.{digits}g}{ending}"
             f" ({100.0 * CONFIDENCE:.0f} % interval {self.low:.{digits}g} to {self.high:.{digits}g})"
         )
+
+
+@cache  # few different ones are asked for, by many estimates
+def students_t(share: float, freedom: float) -> float:
+    """Return the quantile of Student's t at a share (-), on so many degrees of freedom."""
+    return float(stats.t.ppf(share, freedom))
 
 
 def _decimals(value: float, digits: int) -> int:

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import math
 
-from scipy import stats
-
-from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate, students_t
 
 FEWEST = 4  # packings before an interval is looked at
 FURTHER = 3  # packings after it was narrow enough
@@ -27,7 +25,7 @@ def packings_needed(found: Estimate, width: float, most: int) -> int:
         raise ValueError(f"found {found.packings} packing(s), allowed are two or more to tell how many are needed")
     deviation = found.error * math.sqrt(found.packings)
     for number in range(2, most + 1):
-        reach = float(stats.t.ppf(0.5 + 0.5 * CONFIDENCE, number - 1)) * deviation / math.sqrt(number)
+        reach = students_t(0.5 + 0.5 * CONFIDENCE, number - 1) * deviation / math.sqrt(number)
         expected = 2.0 * math.sinh(reach) if found.log else 2.0 * reach / abs(found.value)
         if expected <= width:
             return number
