@@ -84,8 +84,7 @@ sample:
   skirt_slope_deg: 3.0
   skirt_radius_mm: 0
   material: steel
-pattern:
-  {major_axis: along_travel, row_spacing_mm: 40, row_spacing_between: neighbouring_rows, row_offset_fraction: 0.5}
+pattern: {major_axis: along_travel, row_spacing_mm: 40, row_spacing_between: neighbouring_rows, row_offset_fraction: .5}
 bed:
   material: river_gravel
   floor_material: perspex

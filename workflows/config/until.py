@@ -1,6 +1,6 @@
 """Packings that are added until an interval is narrow enough, within a budget: what a study asks, and what comes next.
 
-    until: {width_percent: 5, most_packings: 20, most_core_hours: 8}
+    until: {width_fraction: 0.05, most_packings: 20, most_core_h: 8}
 
 A round looks at the runs there are and says how many packings each setting shall have; the next one looks at those.
 Rows of a design with a number of packings of their own keep it.
@@ -22,7 +22,7 @@ from bulkwear.postproc.statistics.sequential import FEWEST, next_number
 from bulkwear.postproc.tables.packings import BY
 
 UNTIL = "until"  # key of the settings
-GOALS = ("width_percent", "most_packings", "most_core_hours")
+GOALS = ("width_fraction", "most_packings", "most_core_h")
 SECONDS_PER_HOUR = 3600.0
 
 
@@ -30,19 +30,19 @@ SECONDS_PER_HOUR = 3600.0
 class Until:
     """What a study asks of its intervals.
 
-    width: -, of the whole 95 % interval over its mean; most_packings: of a setting; most_core_hours: of the solver, all
+    width: -, of the whole 95 % interval over its mean; most_packings: of a setting; most_core_h: of the solver, all
     runs and beds together
     """
 
     width: float
     most_packings: int
-    most_core_hours: float
+    most_core_h: float
 
     def said(self, study: str) -> str:
         """Return in a sentence what will be done."""
         return (
             f"{study}: packings are added until the 95 % interval of every setting is {100.0 * self.width:g} % of its"
-            f" mean wide, {self.most_packings} packings of a setting and {self.most_core_hours:g} core hours at most."
+            f" mean wide, {self.most_packings} packings of a setting and {self.most_core_h:g} core hours at most."
         )
 
 
@@ -51,7 +51,7 @@ def until_of(settings: Mapping[str, Any]) -> Until | None:
     told = settings.get(UNTIL)
     if told is None:
         return None
-    return Until(0.01 * told["width_percent"], told["most_packings"], told["most_core_hours"])
+    return Until(told["width_fraction"], told["most_packings"], told["most_core_h"])
 
 
 def answers(summary: pd.DataFrame) -> dict[str, Estimate]:
@@ -86,7 +86,7 @@ def next_round(
             wanted[name], last[name] = next_number(one, until.width, until.most_packings)
     added = sum(wanted[name] - packings[name] for name in packings)
     share = hours / max(sum(packings.values()), 1)
-    short = added > 0 and hours + added * share > until.most_core_hours
+    short = added > 0 and hours + added * share > until.most_core_h
     if short:
         wanted, last = dict(packings), dict.fromkeys(last, True)
         added = 0
@@ -95,7 +95,7 @@ def next_round(
     said = f"widest interval: {100.0 * widths[widest]:.2g} % of {widest}" if widest else "no interval yet"
     said += f" with {packings[widest]} packings" if widest else ""
     if short:
-        said += f"; the budget of {until.most_core_hours:g} core hours ends here, {hours:.2g} are used"
+        said += f"; the budget of {until.most_core_h:g} core hours ends here, {hours:.2g} are used"
     said += f"; {added} packings more" if added else "; no more packings"
     enough = added == 0 or all(last.values())
     return {"packings": wanted, "finished": last, "enough": enough, "widths": widths, "said": said}

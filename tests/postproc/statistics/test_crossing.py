@@ -11,7 +11,7 @@ from bulkwear.postproc.statistics.intervals import CONFIDENCE
 
 PLACES = np.repeat([4.0, 6.0, 8.0, 9.0, 10.0, 12.0], 3)
 TRUTH, SCATTER = 8.5, 0.03
-TRIALS = 150
+TRIALS = 60
 CHANCE = 4.0 * math.sqrt(CONFIDENCE * (1.0 - CONFIDENCE) / TRIALS)  # four standard errors of a coverage
 GRID = 0.01  # of the places at which a form is looked at: 8 over 2000, and some
 ROUNDING = 1e-9  # relative

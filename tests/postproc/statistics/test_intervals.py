@@ -21,7 +21,7 @@ from bulkwear.postproc.statistics.intervals import (
 )
 
 ROUNDING = 1e-12  # relative
-TRIALS = 1000
+TRIALS = 400
 CHANCE = 4.0 * 100.0 * math.sqrt(CONFIDENCE * (1.0 - CONFIDENCE) / TRIALS)  # %, four standard errors of a coverage
 
 

@@ -9,7 +9,7 @@ from scipy import stats
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimate
 from bulkwear.postproc.statistics.sequential import FEWEST, FURTHER, next_number, packings_needed
 
-TRIALS = 1000
+TRIALS = 300
 CHANCE = 4.0 * math.sqrt(CONFIDENCE * (1.0 - CONFIDENCE) / TRIALS)  # four standard errors of a coverage
 LEAST = CONFIDENCE - 0.02 - CHANCE  # what looking again and again may cost
 

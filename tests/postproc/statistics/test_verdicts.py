@@ -20,7 +20,7 @@ from bulkwear.postproc.statistics.verdicts import (
     not_said,
 )
 
-TRIALS = 200
+TRIALS = 60
 CHANCE = 4.0 * 100.0 * math.sqrt(ALLOWED * (1.0 - ALLOWED) / TRIALS)  # %, four standard errors of a rate
 
 

@@ -8,7 +8,7 @@ import pytest
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.until import Until, answers, core_hours, last_round, next_round, until_of
 
-ASKED = {"width_percent": 5, "most_packings": 12, "most_core_hours": 3}
+ASKED = {"width_fraction": 0.05, "most_packings": 12, "most_core_h": 3}
 UNTIL = Until(0.05, 12, 3.0)
 NARROW, WIDE = (0.6, 0.601, 0.599, 0.6), (0.5, 0.6, 0.7, 0.65)
 
@@ -98,9 +98,9 @@ def test_a_study_has_all_packings_that_it_may_need():
 @pytest.mark.parametrize(
     ("asked", "found"),
     [
-        ({**ASKED, "width_percent": 0}, "until.width_percent is 0"),
+        ({**ASKED, "width_fraction": 0}, "until.width_fraction is 0"),
         ({**ASKED, "most_packings": 2}, "until.most_packings is 2"),
-        ({"width_percent": 5}, "until.most"),
+        ({"width_fraction": 0.05}, "until.most"),
         ({**ASKED, "width": 5}, "until.width"),
     ],
 )

@@ -91,7 +91,7 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, packings, rows, materials, ledger, wear, remeshing, solver, deck, sample,"
+        " allowed are particle_scale, packings, until, rows, materials, ledger, wear, remeshing, solver, deck, sample,"
         " pattern, bed, sliding, packing, design.",
     ),
     (
@@ -481,9 +481,9 @@ BAD_COMBINATIONS = [
         "command line: sampel (a block of keys) is no known key, the nearest is sample.",
     ),
     (
-        {"title": "x"},
-        "command line: title ('x') is no known key, allowed are fidelity, particle_scale, packings, rows, materials,"
-        " ledger, wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
+        {"kk": "x"},
+        "command line: kk ('x') is no known key, allowed are fidelity, particle_scale, packings, until, rows,"
+        " materials, ledger, wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
     ),
 ]
 

@@ -125,7 +125,8 @@ FAULTS = [
     ),
     (
         {"sample": {"width_mm": 9}},
-        "command line: sample (a block of keys) is no known key, allowed are fidelity, particle_scale, packings, rows,"
+        "command line: sample (a block of keys) is no known key, allowed are fidelity, particle_scale, packings, until,"
+        " rows,"
         " materials, ledger, wear, remeshing, solver, deck, pin, disc, sliding.",
     ),
 ]

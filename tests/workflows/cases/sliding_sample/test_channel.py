@@ -22,7 +22,9 @@ SIDEWAYS = 0.06  # -, of the floor's velocity, at one moment: 275 particles jost
 def channel(tmp_path_factory):
     """A run in which the bed goes more than once round its channel."""
     study = tiny_study(
-        bed={"ends": "periodic", "ahead_mm": 80}, sliding={"run_in_mm": 60, "travel_mm": 1000 * TRAVEL, "cycles": 2}
+        pattern={"row_spacing_between": "neighbouring_rows"},
+        bed={"ends": "periodic", "ahead_mm": 80},
+        sliding={"run_in_mm": 60, "travel_mm": 1000 * TRAVEL, "cycles": 2},
     )
     chain = tiny_chain(study, tmp_path_factory.mktemp("channel"))
     cycles.run_chain(chain)

@@ -82,7 +82,7 @@ def test_a_few_rows_make_a_page_without_a_regression(few, tmp_path):
     assert text.startswith("# Screening of the convex pattern, Table 3.8: results at quick fidelity")
     assert "12 runs of" in " ".join(text.split()) and "## Durations" in text
     assert "Of 1 claims: 1 cannot be said." in " ".join(text.split()) and "| R12 wears more |" in text
-    assert "4 of 4 windows are steady" in text
+    assert "12 of 12 windows are steady" in text
     assert "## Regression" not in text
     assert "![wear by regime](screening_quick_wear_by_regime.png)" in text
     assert (docs / "screening_quick_wear_by_regime.png").is_file()
