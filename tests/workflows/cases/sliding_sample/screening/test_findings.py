@@ -74,7 +74,7 @@ def tables_of(summary, noise=NOISE, seed=2):
     """All tables of a study with that summary."""
     rng = np.random.default_rng(seed)
     flows = summary["setting"].isin(CONTINUOUS_ROWS)
-    velocity = np.where(flows, 0.4, 0.97) * np.exp(rng.normal(0.0, noise, len(summary)))
+    velocity = np.where(flows, 0.4, 0.99) * np.exp(rng.normal(0.0, noise, len(summary)))
     regimes = summary[["run", "row", "surface"]].assign(
         relative_velocity=velocity, regime=np.where(flows, CONTINUOUS, DISCONTINUOUS)
     )
