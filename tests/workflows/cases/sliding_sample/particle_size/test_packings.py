@@ -147,7 +147,7 @@ def test_containers_are_of_the_studys_particles():
 
 @pytest.mark.parametrize("fidelity", ROWS)
 def test_containers_of_every_scale(fidelity):
-    """Standard packs all scales of the design, in containers no higher than thirty diameters; paper fills 300 mm."""
+    """Standard packs all scales of the design, in containers no higher than thirty diameters; paper fills all alike."""
     found = study(fidelity)
     packing, packed = to_si(found.settings)["packing"], by_scale(packed_runs(found))
     assert list(packed) == (ROWS["quick"] if fidelity == "quick" else ROWS["paper"])
@@ -155,8 +155,10 @@ def test_containers_of_every_scale(fidelity):
     most = {
         scale: packing["most_fill_diameters"] * run["particle"]["median_diameter_m"] for scale, run in packed.items()
     }
-    assert heights == {scale: pytest.approx(min(0.3, most[scale]), rel=ROUNDING) for scale in packed}
-    assert (heights[min(packed)] < 0.3) is (fidelity == "standard")
+    assert heights == {
+        scale: pytest.approx(min(packing["fill_height_m"], most[scale]), rel=ROUNDING) for scale in packed
+    }
+    assert (heights[min(packed)] < packing["fill_height_m"]) is (fidelity == "standard")
 
 
 def test_pieces_of_bed_lie_where_they_are_said_to():
