@@ -95,7 +95,7 @@ def critical_scale_text(found: Crossing) -> str:
         return f"critical scale{value}: {found.reason}"
     ends = [f"{end:.3g}" if np.isfinite(end) else "beyond the scales simulated" for end in (found.low, found.high)]
     value = f"{found.value:.3g}" if np.isfinite(found.value) else "not between the scales simulated"
-    return f"critical scale {value}, 95 % interval over {found.forms} forms {' to '.join(ends)}"
+    return f"critical scale {value}, 95 % interval over {found.forms:g} forms {' to '.join(ends)}"
 
 
 def read_critical_scale(path: str | Path) -> Crossing:
