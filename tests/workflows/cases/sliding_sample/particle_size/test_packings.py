@@ -147,7 +147,7 @@ def test_containers_are_of_the_studys_particles():
 
 @pytest.mark.parametrize("fidelity", ROWS)
 def test_containers_of_every_scale(fidelity):
-    """Standard packs all scales of the design, in containers no higher than thirty diameters; paper no higher than 120."""
+    """Standard packs all scales of the design, no higher than thirty diameters; paper no higher than 120."""
     found = study(fidelity)
     packing, packed = to_si(found.settings)["packing"], by_scale(packed_runs(found))
     assert list(packed) == (ROWS["quick"] if fidelity == "quick" else ROWS["paper"])
