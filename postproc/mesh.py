@@ -6,6 +6,7 @@ from outside. The order of the triangles is the order of the facets in an STL, h
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 from collections.abc import Callable
@@ -143,9 +144,11 @@ def nonmanifold_edges(triangles: np.ndarray) -> np.ndarray:
 def sum_over_nodes(triangles: np.ndarray, per_triangle: np.ndarray, n_points: int) -> np.ndarray:
     """Sum at each node of a scalar (m,) or vector (m, 3) of the triangles round it: (n,) or (n, 3)."""
     nodes = triangles.T.ravel()
-    columns = np.reshape(per_triangle, (len(triangles), -1)).T
+    width = math.prod(np.shape(per_triangle)[1:])  # -1 would not do where there are no triangles
+    columns = np.reshape(per_triangle, (len(triangles), width)).T
     sums = [np.bincount(nodes, weights=np.tile(column, 3), minlength=n_points) for column in columns]
-    return np.stack(sums, axis=-1).reshape((n_points, *np.shape(per_triangle)[1:]))
+    whole = np.stack(sums, axis=-1).astype(np.float64, copy=False)  # of nothing numpy counts in whole numbers
+    return whole.reshape((n_points, *np.shape(per_triangle)[1:]))
 
 
 def node_area_vectors(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

@@ -25,7 +25,6 @@ from bulkwear.postproc.statistics.factors import Factor
 
 FEWEST_FACTORS = 3
 FAKE = 2  # fake factors of a new design: four runs more, and an error that no factor has a part in
-FIRST_SEED, SEED_STEP = 20220317, 1000  # the solver takes the first few primes above a seed
 DIGITS = 10  # significant, of a level in a table
 FACTOR = re.compile(r"(?P<name>\w+)=(?P<low>[^:]+):(?P<high>[^:]+?)(?P<log>:log)?")
 CONSTANT = re.compile(r"(?P<name>\w+)=(?P<value>[^:]+)")
@@ -57,37 +56,23 @@ def design_rows(
     constants: Sequence[tuple[str, float]] = (),
     fake: int = FAKE,
     centres: int = 1,
-    replicates: int = 1,
     coded: bool = False,
-    seed: int = FIRST_SEED,
 ) -> list[dict[str, str]]:
     """Return the rows of a design table as text: row, one column per factor, then the constants.
 
     constants: names and values of columns that do not change
     fake: see `coded_design`; 0 for the fewest runs
-    replicates: how often the whole design is run; from 2 on rows are called R1-1, R1-2, ... and have a `seed`
-    seed: of the first repetition; the others have their own, far enough to share none of the solver's
     coded: levels -1, 0, 1 instead of real ones. Raises ValueError as `coded_design`, and for a name that comes twice.
     """
     names = [factor.name for factor in factors] + [name for name, _ in constants]
-    reserved = ["row", "seed"]
-    twice = [name for index, name in enumerate(names, 2) if name in (reserved + names)[:index]]
+    twice = [name for index, name in enumerate(names) if name in ("row", *names[:index])]
     if twice:
         raise ValueError(f"column {twice[0]} comes twice, allowed is each column once")
-    if replicates < 1:
-        raise ValueError(f"found {replicates} replicates, allowed is one or more")
     levels = coded_design(len(factors), fake, centres)
     columns = {f.name: levels[:, k] if coded else f.real(levels[:, k]) for k, f in enumerate(factors)}
     columns |= {name: np.full(len(levels), value) for name, value in constants}
     texts = {name: [f"{value:.{DIGITS}g}" for value in values] for name, values in columns.items()}
-    rows = [{name: texts[name][run] for name in names} for run in range(len(levels))]
-    if replicates == 1:
-        return [{"row": f"R{run}", **row} for run, row in enumerate(rows, 1)]
-    return [
-        {"row": f"R{run}-{repeat}", **row, "seed": str(seed + (repeat - 1) * SEED_STEP)}
-        for run, row in enumerate(rows, 1)
-        for repeat in range(1, replicates + 1)
-    ]
+    return [{"row": f"R{run + 1}", **{name: texts[name][run] for name in names}} for run in range(len(levels))]
 
 
 def design_text(rows: Sequence[dict[str, str]]) -> str:
@@ -138,8 +123,6 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     told = f"fake factors, two runs each, which estimate the error (default {FAKE}; 0: fewest runs)"
     add("--fake", type=int, default=FAKE, help=told)
     add("--centres", type=int, default=1, help="centre runs (default 1)")
-    add("--replicates", type=int, default=1, help="how often the whole design is run (default 1)")
-    add("--seed", type=int, default=FIRST_SEED, help=f"seed of the first repetition (default {FIRST_SEED})")
     add("--coded", action="store_true", help="write levels -1, 0, 1 instead of real ones")
     add("--output", type=Path, help="file to write, one that does not exist yet (default: print the table)")
     return parser.parse_args(words)
@@ -151,7 +134,7 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         factors = [parse_factor(text) for text in given.factor]
         constants = [parse_constant(text) for text in given.constant]
-        rows = design_rows(factors, constants, given.fake, given.centres, given.replicates, given.coded, given.seed)
+        rows = design_rows(factors, constants, given.fake, given.centres, given.coded)
         if given.output is None:
             sys.stdout.write(design_text(rows))
             return 0

@@ -8,9 +8,9 @@ import pytest
 
 from benchmarks import critical_scale, scale_case, scale_page
 from benchmarks.critical_scale import comparison, finished, publish, remarks, simulate_all
+from benchmarks.runs import FIRST_SEED
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
 from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
-from bulkwear.postproc.statistics.screening_design import FIRST_SEED
 from bulkwear.workflows.config.design import load_study
 
 OTHER = "neighbouring rows 40 mm apart"

@@ -177,16 +177,6 @@ def test_table_passes_the_checks_of_a_study(tmp_path):
     }
 
 
-def test_replicates_are_rows_of_their_own():
-    """Every run comes as often as asked for, under a name and with a seed of its own repetition."""
-    factors = [Factor(name, 0.0, 1.0) for name in "abcd"]
-    once, twice = design_rows(factors), design_rows(factors, replicates=2)
-    assert [row["row"] for row in twice[:3]] == ["R1-1", "R1-2", "R2-1"]
-    assert [row["seed"] for row in twice[:3]] == ["20220317", "20221317", "20220317"]
-    assert [row["a"] for row in twice[::2]] == [row["a"] for row in once]
-    assert len({row["row"] for row in twice}) == 2 * len(once)
-
-
 def test_coded_levels_can_be_written():
     """Coded, a table holds -1, 0 and 1 only."""
     rows = design_rows([Factor(name, 2.0, 8.0, "log") for name in "abcde"], coded=True)
