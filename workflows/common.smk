@@ -12,7 +12,7 @@ from snakemake.utils import min_version
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
 from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
 from bulkwear.workflows.config.until import read_round
-from bulkwear.workflows.engine.case import case_folders
+from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,
     bed_digest,

@@ -16,16 +16,16 @@ from functools import cached_property, partial, reduce
 from pathlib import Path
 from typing import Any
 
+from bulkwear.workflows.config.columns import as_settings, opened, row_overrides, setting_columns, with_row
 from bulkwear.workflows.config.law_settings import check_law, check_volume
 from bulkwear.workflows.config.layers import (
     ConfigError,
     Layer,
     display_name,
-    with_row,
 )
 from bulkwear.workflows.config.packings import PACKINGS, Packings, with_packings, without_packings
 from bulkwear.workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
-from bulkwear.workflows.config.schema import case_schema, leaves, load_schema
+from bulkwear.workflows.config.schema import case_schema, load_schema
 from bulkwear.workflows.config.sources import (
     DESIGN,
     STUDIES,
@@ -39,6 +39,7 @@ from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.until import GOALS, UNTIL, Until, until_of
 from bulkwear.workflows.config.validation import (
     check_calibrated_for,
+    check_given,
     check_material_names,
     check_materials,
     locate,
@@ -192,8 +193,6 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     check_law(layers)
     settings = sources.merged(layers)
     materials = check_materials(read_materials(settings, project))
-    check_material_names(layers, settings, materials, sources.case.material_keys)
-    check_calibrated_for(layers, settings, materials, sources.case.material_keys)
     head = sources.head
     written = _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project)
     designed = _packings(sources, layers, settings, written)
@@ -264,7 +263,7 @@ def _design_rows(sources: Sources, fidelity: str, project: Project) -> list[Laye
     if name not in there:
         raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
     path = project.file(f"{DESIGNS}/{name}")
-    rows = read_design(path, project.folder, sources.design_schema)
+    rows = read_design(path, project.folder, opened(sources.design_schema, path, project, sources.case.name))
     if fault := sources.case.design_fault([row.values for row in rows]):
         raise ConfigError(f"{display_name(path, project.folder)}: {fault}.")
     return rows
@@ -343,20 +342,15 @@ def _checked_run(
     """Return one run after all checks that need no solver. Raises ConfigError."""
     case = sources.case
     columns = row_overrides(row, load_schema(f"cases/{sources.case.name}/design"))
-    of_row = with_row(settings, row, columns)
-    schema = case_schema(sources.case.name, "settings")
+    own = as_settings(row, columns)
+    of_row = with_row(settings, own, case.alternatives)
+    schema, stack = case_schema(sources.case.name, "settings"), (*layers, own)
+    check_given((own, *layers), of_row, schema)
+    named = case.named_materials(of_row)
+    check_material_names(stack, of_row, materials, named)
+    check_calibrated_for(stack, of_row, materials, named)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
     check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks))
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)
-
-
-def row_overrides(row: Layer, schema: dict[str, Any]) -> dict[str, str]:
-    """Return {setting: column} of the settings that a design row overrides: the schema of such a column names one."""
-    return {setting: column for setting, column in setting_columns(schema).items() if column in row.values}
-
-
-def setting_columns(schema: dict[str, Any]) -> dict[str, str]:
-    """Return {setting: column} of all columns that stand for a setting of their row."""
-    return {inner["x-setting"]: column for (column,), inner in leaves(schema) if "x-setting" in inner}

@@ -178,16 +178,6 @@ def merge(lower: dict[str, Any], upper: dict[str, Any]) -> dict[str, Any]:
     return merged
 
 
-def with_row(settings: dict[str, Any], row: Layer, columns: dict[str, str]) -> dict[str, Any]:
-    """Return the settings of one design row; columns: {setting: column} of those that it overrides."""
-    for setting, column in columns.items():
-        value = row.values[column]
-        for key in reversed(setting.split(".")):
-            value = {key: value}
-        settings = merge(settings, value)
-    return settings
-
-
 def dotted(path: KeyPath) -> str:
     """Return a key path as people write it: `sample.width_mm`, `size_distribution.mass_fraction[1]`."""
     text = ""

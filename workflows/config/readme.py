@@ -5,17 +5,19 @@ python -m bulkwear.workflows.config.readme
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from bulkwear.postproc.wear.laws import LAWS, Law, Parameter
+from bulkwear.workflows.config.columns import ANY_SETTING
 from bulkwear.workflows.config.law_settings import parameters_schema
-from bulkwear.workflows.config.layers import dotted
+from bulkwear.workflows.config.layers import KeyPath, dotted
 from bulkwear.workflows.config.run_checks import COMMON_CHECKS, Check
-from bulkwear.workflows.config.schema import leaves, load_schema, schema_files
-from bulkwear.workflows.config.validation import allowed_text
-from bulkwear.workflows.engine.case import case_names, find_case
+from bulkwear.workflows.config.schema import leaves, load_schema, schema_files, subschema
+from bulkwear.workflows.config.validation import NEEDED, allowed_text
+from bulkwear.workflows.engine.cases import case_names, find_case
 from bulkwear.workflows.engine.project import PACKAGE
 
 INTRODUCTION = """\
@@ -36,7 +38,14 @@ A project of one's own has such a folder too; [docs/project.md](../docs/project.
 together.
 
 Every key with a dimension ends in its unit; another unit is refused, and so is an unknown key. Numbers are
-written as in YAML 1.2: `6.3e-13`, `1e-9` and `.5` are numbers, `'80'` and `80 mm` are not.
+written as in YAML 1.2: `6.3e-13`, `1e-9` and `.5` are numbers, `'80'` and `80 mm` are not. `<name>` stands for a
+name of your own. A key that is needed has no default; where its block may be left out, it is needed within that block.
+"""
+
+ANY_SETTING_WORDS = """\
+Besides these, any setting of the case that is one number or word may be a column, under its path with points, as
+`inlet.rate_t_per_h`. An empty cell leaves the setting as it is.
+
 """
 
 CHECKS_TITLE = "Checks that compare values"
@@ -67,12 +76,39 @@ TABLES_OF_CASE = (
 
 
 def _rows(schema: dict[str, Any]) -> Iterator[str]:
+    told = set()
     for path, inner in leaves(schema):
-        unit, meaning = inner.get("x-unit", "-"), inner.get("description")
-        if meaning is not None:
-            allowed = allowed_text(inner).removesuffix(f" {unit}")
-            overriding = f"; overrides `{inner['x-setting']}`" if "x-setting" in inner else ""
-            yield f"| `{dotted(path)}` | {unit} | {allowed} | {meaning}{overriding} |"
+        for block in (path[:end] for end in range(1, len(path))):
+            found = _schema_of(schema, block)
+            if block not in told and "description" in found and (_needed(schema, block) or NEEDED in found):
+                yield _row(schema, block, found)
+            told.add(block)
+        if "description" in inner:
+            yield _row(schema, path, inner)
+
+
+def _row(schema: dict[str, Any], path: KeyPath, inner: dict[str, Any]) -> str:
+    unit = inner.get("x-unit", "-")
+    allowed = allowed_text(inner).removesuffix(f" {unit}")
+    needed = "; needed" if _needed(schema, path) else "; may be left out" if _optional_block(schema, path) else ""
+    overriding = f"; overrides `{inner['x-setting']}`" if "x-setting" in inner else ""
+    return f"| `{dotted(path)}` | {unit} | {allowed}{needed} | {inner['description']}{overriding} |"
+
+
+def _schema_of(schema: dict[str, Any], path: KeyPath) -> dict[str, Any]:
+    return subschema(schema, path) or {}
+
+
+def _needed(schema: dict[str, Any], path: KeyPath) -> bool:
+    """Return whether a study has to give the key at a path, or in a block that it gives."""
+    return path[-1] in _schema_of(schema, path[:-1]).get(NEEDED, ())
+
+
+def _optional_block(schema: dict[str, Any], path: KeyPath) -> bool:
+    """Return whether a block with keys that it needs has no defaults itself, and is no one of many."""
+    above = _schema_of(schema, path[:-1])
+    named = path[-1] in above.get("properties", {})
+    return named and NEEDED in _schema_of(schema, path) and path[-1] not in above.get("required", ())
 
 
 def table(name: str) -> str:
@@ -102,17 +138,23 @@ def _parameter_row(law: str, parameter: Parameter) -> str:
 
 def listed(checks: Iterable[Check]) -> str:
     """Return the Markdown list of checks."""
-    return "Done before any solver starts:\n\n" + "\n".join(f"* {(c.__doc__ or '').splitlines()[0]}" for c in checks)
+    return "Done before any solver starts:\n\n" + "\n".join(f"* {_first_paragraph(check)}" for check in checks)
+
+
+def _first_paragraph(documented: Any) -> str:
+    return " ".join((inspect.getdoc(documented) or "").partition("\n\n")[0].split())
 
 
 def sections_of_case(name: str) -> Iterator[str]:
     """Yield the sections about one case."""
-    yield f"## Case `{name}`\n\n{(find_case(name).__doc__ or '').splitlines()[0]}\n"
+    yield f"## Case `{name}`\n\n{_first_paragraph(type(find_case(name)))}\n"
     for title, kind, where in TABLES_OF_CASE:
         schema = f"cases/{name}/{kind}"
         if schema_files(schema):
-            yield f"### {title}\n\nKeys {where.format(case=name)}.\n\n{table(schema)}\n"
-    yield f"### {CHECKS_TITLE}\n\n{listed(find_case(name).checks)}\n"
+            beside = ANY_SETTING_WORDS if load_schema(schema).get(ANY_SETTING) else ""
+            yield f"### {title}\n\nKeys {where.format(case=name)}.\n\n{beside}{table(schema)}\n"
+    if checks := find_case(name).checks:
+        yield f"### {CHECKS_TITLE}\n\n{listed(checks)}\n"
 
 
 def readme() -> str:

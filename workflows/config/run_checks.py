@@ -6,8 +6,10 @@ those of every case and those of a sliding sample are here.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.meshes.lattice import pattern_faults
@@ -15,7 +17,7 @@ from bulkwear.workflows.config.layers import ConfigError, Layer
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.config.schema import load_schema
 from bulkwear.workflows.config.units import to_si
-from bulkwear.workflows.config.validation import allowed_text, locate, show
+from bulkwear.workflows.config.validation import allowed_text, files_of, locate, show
 from bulkwear.workflows.engine.templates import DeckError, own_templates, solver_settings, template_variables
 
 if TYPE_CHECKING:
@@ -52,8 +54,7 @@ def check_run(run: CheckedRun, checks: tuple[Check, ...]) -> None:
             key, allowed = run.columns.get(fault[0], fault[0]), fault[1]
             if not key:
                 raise ConfigError(f"{run.row.where()}: {allowed}.")
-            found = f"{show(_value(run, key))}{_for_row(run, key)}"
-            raise ConfigError(f"{_where(run, key)} is {found}, allowed is {allowed}.")
+            raise ConfigError(f"{_where(run, key)} is {_found(run, key)}{_for_row(run, key)}, allowed is {allowed}.")
 
 
 def check_needed(
@@ -67,14 +68,23 @@ def check_needed(
 
 
 def _where(run: CheckedRun, key: str) -> str:
-    source = locate(run.layers, tuple(key.split("."))) if _is_setting(run, key) else run.row.where()
-    return f"{source}: {key}"
+    """Return where a key stands, or where the block stands in which it is missing: the strongest layer that has it."""
+    path = tuple(key.split("."))
+    if not _is_setting(run, key):
+        return f"{run.row.where()}: {key}"
+    while path and not any(layer.holds(path) for layer in run.layers):
+        path = path[:-1]
+    return f"{locate(run.layers if path else files_of(run.layers), path)}: {key}"
 
 
-def _value(run: CheckedRun, key: str) -> Any:
-    section, _, name = key.rpartition(".")
-    values = run.settings if _is_setting(run, key) else run.row.values
-    return values[section][name] if section else values[name]
+def _found(run: CheckedRun, key: str) -> str:
+    """Return what a key is, as a message shows it; `missing` where nobody gives it."""
+    if not _is_setting(run, key):
+        return show(run.row.values[key])
+    try:
+        return show(reduce(operator.getitem, key.split("."), run.settings))
+    except KeyError:
+        return "missing"
 
 
 def _for_row(run: CheckedRun, key: str) -> str:
@@ -83,7 +93,7 @@ def _for_row(run: CheckedRun, key: str) -> str:
 
 def _is_setting(run: CheckedRun, key: str) -> bool:
     """Return whether a key is one of the settings; else it is a column of the row."""
-    return "." in key or key not in run.row.values
+    return key not in run.row.values
 
 
 def millimetres(metres: float) -> str:
@@ -181,9 +191,11 @@ def pattern_fits(run: CheckedRun) -> Fault | None:
 
 
 def thickness_known(run: CheckedRun) -> Fault | None:
-    """What happens where a part is worn through can only be said of one whose thickness is given."""
+    """What happens where a part is worn through can only be said where its thickness is known: given, or of parts, each
+    of which has its own.
+    """
     wear = run.parameters.get("wear", {})
-    if "worn_through" not in wear or "local_thickness_m" in wear:
+    if "worn_through" not in wear or "local_thickness_m" in wear or "parts" in run.parameters:
         return None
     return "wear.worn_through", "a study that gives wear.local_thickness_mm as well, or neither"
 

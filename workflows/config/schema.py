@@ -13,10 +13,11 @@ import jsonschema
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, display_name, read_yaml
 from bulkwear.workflows.config.patterns import with_patterns
-from bulkwear.workflows.engine.case import case_folders, case_names, find_case
+from bulkwear.workflows.engine.cases import case_folders, case_names, find_case
 from bulkwear.workflows.engine.project import current_project
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
+LAW = "law"  # key of settings whose allowed words are the registered wear laws
 OF_CASES = "cases/"  # names of schemas that are a case's: cases/<case>/<kind>
 
 
@@ -48,8 +49,9 @@ def load_schema(name: str) -> dict[str, Any]:
     """Return the schema of that name, empty without a file. Raises jsonschema.SchemaError if it is no schema."""
     parts = map(_read_schema, schema_files(name))
     schema = reduce(joined, parts, {}) or {"type": "object", "additionalProperties": False, "properties": {}}
-    if name == "settings":
-        schema["properties"]["wear"]["properties"]["law"]["enum"] = list(LAWS)
+    for path, inner in leaves(schema):
+        if path[-1] == LAW and inner.get("enum") == []:
+            inner["enum"] = list(LAWS)
     if name == "study":
         schema["properties"]["case"]["enum"] = case_names()
     Validator.check_schema(schema)

@@ -13,7 +13,8 @@ from bulkwear.workflows.config.law_settings import law_settings
 from bulkwear.workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
 from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, load_schema, without_required
 from bulkwear.workflows.config.validation import check_alternatives, check_layer, unknown_name
-from bulkwear.workflows.engine.case import DEFAULT_CASE, Case, case_folders, case_names, find_case
+from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
+from bulkwear.workflows.engine.cases import case_folders, case_names, find_case
 from bulkwear.workflows.engine.project import Project, current_project
 
 DESIGN = "design"  # key of a study, and of its fidelity blocks

@@ -96,7 +96,7 @@ def next_round(
     said += f" with {packings[widest]} packings" if widest else ""
     if short:
         said += f"; the budget of {until.most_core_h:g} core hours ends here, {hours:.2g} are used"
-    said += f"; {added} packings more" if added else "; no more packings"
+    said += f"; {added} packing{'s' * (added > 1)} more" if added else "; no more packings"
     enough = added == 0 or all(last.values())
     return {"packings": wanted, "finished": last, "enough": enough, "widths": widths, "said": said}
 

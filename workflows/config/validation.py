@@ -10,6 +10,7 @@ import difflib
 import math
 import re
 from collections.abc import Iterator, Sequence
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -40,13 +41,16 @@ UNIT_OF_SUFFIX = {
     "j_per_m3": "J/m3",
     "n_per_m": "N/m",
     "m_per_s": "m/s",
+    "rpm": "rpm",
+    "t_per_h": "t/h",
+    "mt": "Mt",
     "s": "s",
     "steps": "steps",
     "h": "h",
 }
 # Suffixes that people write instead; recognised only to explain the mistake.
 FOREIGN_SUFFIXES = (
-    *("nm", "um", "cm", "dm", "m", "km", "in", "inch", "ft", "kn", "rad_per_s", "rpm"),
+    *("nm", "um", "cm", "dm", "m", "km", "in", "inch", "ft", "kn", "rad_per_s"),
     *("rad", "degrees", "radians", "percent"),
     *("kpa", "mpa", "gpa", "per_kpa", "per_mpa", "per_gpa"),
     *("mm_per_s", "cm_per_s", "km_per_h", "g_per_cm3", "t_per_m3"),
@@ -57,6 +61,7 @@ VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)
 MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 
+NEEDED = "x-needed"  # of the schema of a block: keys that a study gives, for which there are no defaults
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
 LONGEST_VALUE = 60  # characters of a value that a message shows
 
@@ -100,6 +105,23 @@ def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[K
             key = next(key for key in error.validator_value if key not in error.instance)
             allowed = allowed_text(error.schema["properties"][key])
             yield path, f"{dotted((*path, key))} is missing, allowed is {allowed}"
+
+
+def check_given(
+    layers: tuple[Layer, ...], settings: dict[str, Any], schema: dict[str, Any], path: KeyPath = ()
+) -> None:
+    """Raise ConfigError for a key that a block of the settings needs (`x-needed`), and nobody gives.
+
+    It is said to be missing in the strongest layer that has the block, at the top in the last file.
+    """
+    for key in schema.get(NEEDED, ()):
+        if key not in settings:
+            inner = schema["properties"][key]
+            where = locate(layers if path else files_of(layers), path)
+            raise ConfigError(f"{where}: {dotted((*path, key))} is missing, allowed is {allowed_text(inner)}.")
+    for key, value in settings.items():
+        if isinstance(value, dict) and (inner := subschema(schema, (key,))):
+            check_given(layers, value, inner, (*path, key))
 
 
 def allowed_text(schema: dict[str, Any]) -> str:
@@ -159,7 +181,10 @@ def show(value: Any) -> str:
         return "a block of keys"
     if isinstance(value, bool):
         return str(value).lower()
-    text = repr(value) if isinstance(value, str) else f"{value:.10g}" if isinstance(value, float) else str(value)
+    if isinstance(value, list):
+        text = f"[{', '.join(map(show, value))}]"
+    else:
+        text = repr(value) if isinstance(value, str) else f"{value:.10g}" if isinstance(value, float) else str(value)
     return text if len(text) <= LONGEST_VALUE else text[:LONGEST_VALUE] + "..."
 
 
@@ -288,38 +313,43 @@ def check_material_names(
     layers: tuple[Layer, ...],
     settings: dict[str, Any],
     materials: dict[str, Any],
-    keys: tuple[tuple[str, str, str], ...],
+    keys: tuple[tuple[str, ...], ...],
 ) -> None:
     """Raise ConfigError if a setting names a material that config/materials.yaml does not have.
 
-    keys: section, key, and kind of material of the settings that name one
+    keys: path of the settings that name one, and its kind of material
     """
-    for section, key, kind in keys:
-        value, known = settings[section][key], materials.get(kind, {})
+    for *path, kind in keys:
+        value, known = reduce(dict.__getitem__, path, settings), materials.get(kind, {})
         if value not in known:
-            where = locate(layers, (section, key))
-            raise ConfigError(unknown_name(where, f"{section}.{key}", value, sorted(known)))
+            raise ConfigError(unknown_name(locate(layers, tuple(path)), dotted(tuple(path)), value, sorted(known)))
 
 
 def check_calibrated_for(
     layers: tuple[Layer, ...],
     settings: dict[str, Any],
     materials: dict[str, Any],
-    keys: tuple[tuple[str, str, str], ...],
+    keys: tuple[tuple[str, ...], ...],
 ) -> None:
     """Raise ConfigError if a bulk material was calibrated in another rolling friction model or convention.
 
     A rolling coefficient is a number of the model and of the radius that it was found with; keys as for
     `check_material_names`.
     """
-    for section, key, kind in keys:
-        found = materials.get(kind, {}).get(settings[section][key], {}).get("calibrated")
+    for *path, kind in keys:
+        name = reduce(dict.__getitem__, path, settings)
+        found = materials.get(kind, {}).get(name, {}).get("calibrated")
         for word in CALIBRATED_WITH if found and kind == "particles" else ():
             if settings["solver"][word] != found[word]:
                 raise ConfigError(
                     f"{locate(layers, ('solver', word))}: solver.{word} is '{settings['solver'][word]}', allowed is"
-                    f" {found[word]}, in which study {found['study']} calibrated {settings[section][key]}."
+                    f" {found[word]}, in which study {found['study']} calibrated {name}."
                 )
+
+
+def files_of(layers: tuple[Layer, ...]) -> tuple[Layer, ...]:
+    """Return the layers that are whole files: the last one is the study's."""
+    return tuple(layer for layer in layers if layer.lines and not layer.block)
 
 
 def locate(layers: tuple[Layer, ...], path: KeyPath) -> str:

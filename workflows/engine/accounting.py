@@ -15,9 +15,9 @@ from bulkwear.workflows.engine.case import CycleError
 from bulkwear.workflows.engine.chain import SURFACE, WORN_THROUGH, Chain
 from bulkwear.workflows.engine.ledgers import producer
 from bulkwear.workflows.engine.schedule import Span
-from bulkwear.workflows.engine.wear_step import law_volume, load_sums, on_whole_surface, wear
+from bulkwear.workflows.engine.wear_step import load_sums, on_whole_surface, wear
 
-LEDGER, FORCES, HISTORY = "ledger.parquet", "forces.csv", "wear_history.csv"
+LEDGER, HISTORY = "ledger.parquet", "wear_history.csv"
 
 
 def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> tuple[dict[str, Any], list[Path]]:
@@ -30,7 +30,7 @@ def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
     ledger_bytes = source.written_bytes(folder)
     ledger = account(chain, span, folder, surface)
     wear_history(chain, span, folder, surface, ledger).to_csv(folder / HISTORY, index=False)
-    case.forces(chain.parameters, span, folder).to_csv(folder / FORCES, index=False)
+    case.forces(chain.parameters, span, folder).to_csv(folder / case.forces_table, index=False)
     own = case.own_columns(chain.parameters, span, folder)
     if fault := case.cycle_fault(chain.parameters, own):
         raise CycleError(f"{chain.name}, cycle {span.cycle}: {fault}")
@@ -38,9 +38,19 @@ def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
     spent = [*source.written(folder), *(folder / name for name in case.leftovers)]
     spent += case.reduce(chain.parameters, span, folder)
     record = {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}
-    if row["through_nodes"]:
-        record[WORN_THROUGH] = through_phrase(read_surface(folder / SURFACE))
+    if said := worn_through_words(int(row["through_nodes"]), read_surface(folder / SURFACE)):
+        record[WORN_THROUGH] = said
     return record, spent
+
+
+def worn_through_words(nodes: int, worn: SurfaceMesh) -> str | None:
+    """Return where a surface is worn through, None where the update left no such node.
+
+    nodes: worn through by the update; worn: after it and remeshing, which may take the last such node away
+    """
+    if not nodes:
+        return None
+    return through_phrase(worn) or f"worn through at {nodes} nodes, which remeshing has merged with their neighbours"
 
 
 def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.DataFrame:
@@ -48,10 +58,15 @@ def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.
 
     It has a row per triangle that the solver got, under its number on the whole surface.
     """
-    piece = chain.case.piece(chain.parameters, span, surface)
-    columns = producer(chain.parameters).columns(chain, span, folder, piece.mesh)
-    own = read_mesh_loads(folder / f"loads_{span.solver_steps}.vtk", len(piece.triangles))
-    ledger = pd.DataFrame({"triangle": piece.triangles[own.pop("triangle")], **columns, **own})
+    last = chain.case.piece_ends(chain.parameters, chain.bed, span)[-1]
+    ledgers = []
+    for piece in chain.case.pieces(chain.parameters, span, surface):
+        columns = producer(chain.parameters).columns(chain, span, folder, piece)
+        own = read_mesh_loads(folder / f"{piece.loads}_{last}.vtk", len(piece.triangles))
+        ledgers.append(pd.DataFrame({"triangle": piece.triangles[own.pop("triangle")], **columns, **own}))
+    ledger = pd.concat(ledgers, ignore_index=True)
+    if len(ledgers) > 1:
+        ledger = ledger.sort_values("triangle", ignore_index=True)
     ledger = chain.case.on_surface(chain.parameters, ledger)
     ledger.to_parquet(folder / LEDGER, index=False)
     return ledger
@@ -64,15 +79,20 @@ def wear_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh, l
     worn_volume_m3, the case's columns by label and mean_normal_force_N, as in wear.csv, whose row they add up to.
     Raises the producer's errors.
     """
-    parameters, piece = chain.parameters, chain.case.piece(chain.parameters, span, surface)
+    parameters, pieces = chain.parameters, chain.case.pieces(chain.parameters, span, surface)
     steps, sums = [0], []
-    for until, columns in producer(parameters).history(chain, span, folder, piece.mesh):
-        look = on_whole_surface(pd.DataFrame({"triangle": piece.triangles, **columns}), len(surface.triangles))
-        steps.append(until)
-        sums.append(_sums_of_look(chain, surface, look))
+    looks = [producer(parameters).history(chain, span, folder, piece) for piece in pieces]
+    for together in zip(*looks, strict=True):
+        tables = [
+            pd.DataFrame({"triangle": piece.triangles, **columns})
+            for piece, (_, columns) in zip(pieces, together, strict=True)
+        ]
+        look = on_whole_surface(pd.concat(tables, ignore_index=True), len(surface.triangles))
+        steps.append(together[0][0])
+        sums.append(_sums_of_look(chain, span, surface, look))
     whole = on_whole_surface(ledger, len(surface.triangles))
     steps.append(span.solver_steps)
-    sums.append(_sums_of_look(chain, surface, whole))
+    sums.append(_sums_of_look(chain, span, surface, whole))
     duration = np.array(steps) * parameters["derived"]["time_step_s"] / span.substeps
     end = span.first_step * parameters["derived"]["time_step_s"] + duration[1:]
     table = pd.DataFrame(sums)
@@ -82,9 +102,9 @@ def wear_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh, l
     return pd.DataFrame(place).join(table).assign(mean_normal_force_N=force)
 
 
-def _sums_of_look(chain: Chain, surface: SurfaceMesh, ledger: pd.DataFrame) -> dict[str, float]:
+def _sums_of_look(chain: Chain, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame) -> dict[str, float]:
     """Loads and the wear law's volume summed over the faces that wear, of all and by the case's labels."""
-    volume = law_volume(chain.parameters, ledger) * worn_faces(surface)
+    volume = chain.case.law_volume(chain.parameters, span, surface, ledger) * worn_faces(surface)
     return {
         **load_sums(surface, ledger),
         "worn_volume_m3": float(volume.sum()),

@@ -16,7 +16,8 @@ from bulkwear.postproc.flow.bulk_test import HEAP
 from bulkwear.postproc.readers.solver_log import failure, last_step, solver_version, thermo_table, warnings
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_tests import deck_text, kind_of, write_test
-from bulkwear.workflows.engine.case import CASES_PACKAGE, find_case
+from bulkwear.workflows.engine.case import CASES_PACKAGE
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code
 from bulkwear.workflows.engine.solver import EXECUTABLE, LOG, SCREEN, SolverError, processor_seconds, run_deck
 from bulkwear.workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage

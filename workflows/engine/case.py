@@ -8,27 +8,17 @@ slow to import and needed in jobs only are imported where they are used: every j
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.caps import edge_limit
-from bulkwear.workflows.engine.project import (
-    CASES_OF_PACKAGE,
-    ProjectError,
-    cases_folders,
-    current_project,
-    import_fault,
-    open_package,
-)
-from bulkwear.workflows.engine.schedule import Span, first_span
+from bulkwear.workflows.engine.derived import law_volume, run_kernels
+from bulkwear.workflows.engine.schedule import Span, first_span, next_span
 from bulkwear.workflows.engine.work import Stage, Work
 
 if TYPE_CHECKING:
@@ -38,6 +28,7 @@ if TYPE_CHECKING:
 
 CASES_PACKAGE = "bulkwear.workflows.cases"  # whose packages are the cases, each registered when it is imported
 DEFAULT_CASE = "sliding_sample"  # of a study that names none
+SURFACE_STL, LOAD_LEDGER, FORCES = "surface.stl", "load_ledger.bin", "forces.csv"
 SETUP_LOADS, SETUP_BED = "loads_0.vtk", "bed_0.dump"  # of a cycle's first instant: the last one of the cycle before
 
 Parameters = Mapping[str, Any]  # of a run or of a bed, SI
@@ -49,10 +40,21 @@ class CycleError(RuntimeError):
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """The part of a surface that the solver gets in a cycle. triangles: (k,) their numbers on the whole surface."""
+    """What the solver gets of a surface as one of its meshes in a cycle.
+
+    mesh: where it stands when the cycle begins; triangles: (k,) their numbers on the whole surface
+    name: of the mesh in the decks, before the number of the cycle; stl, ledger, loads: names of its files, the last one
+        without the step that ends it
+    frame: the same facets in the frame of the ledger's vectors and positions, None where that is the solver's
+    """
 
     mesh: SurfaceMesh
     triangles: np.ndarray
+    name: str = "sample"
+    stl: str = SURFACE_STL
+    ledger: str = LOAD_LEDGER
+    loads: str = "loads"
+    frame: SurfaceMesh | None = None
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,7 @@ class Case:
     consumed: sections of a run's parameters that the driver reads besides decks, surface and bed, see inputs.py
     length: (section, key) of a run's parameters that only say after how many of its equal cycles it ends; a longer run
         goes on from the cycles of a shorter one
+    only_told: keys of the parameters that tables and pages read, and no simulation
     first_title: what people call cycle 0
     leftovers: files that a wear cycle's solver leaves and nobody needs once the cycle is accounted
     kept: files that `reduce` leaves, without which a wear cycle is not whole
@@ -91,6 +94,9 @@ class Case:
     shared_figures: names of those of `workflows.report.surfaces` that it shows, after its own
     run_rules: rules that make a job of every run
     solver_rules: those whose jobs call the solver
+    counts_on: whether the solver's steps are counted through all cycles of a run, not from the start of each
+    forces_table: file of a cycle that holds the rows of `forces`
+    by_part: whether parts wear as bodies of their own, in one surface
     rim_direction: in which nodes at the rim of what wears slide, None: along their normal, like others
     wears: whether its runs are wear cycles; else a study has no table of them, and what it says of its results and
         cost is its case's alone
@@ -106,6 +112,7 @@ class Case:
     geometry: tuple[str, ...] = ()
     consumed: tuple[str, ...] = ("wear", "remeshing", "sliding")
     length: tuple[tuple[str, str], ...] = ()
+    only_told: tuple[str, ...] = ()
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)
     kept: tuple[str, ...] = ()
@@ -116,6 +123,9 @@ class Case:
     run_rules: tuple[str, ...] = ("surface_mesh", "worn_run")
     solver_rules: tuple[str, ...] = ("settled_bed", "worn_run")
     wears: bool = True
+    counts_on: bool = False
+    forces_table: str = FORCES
+    by_part: bool = False
     rim_direction: tuple[float, float, float] | None = None
 
     # ---------------------------------------------------------------- from settings to runs
@@ -123,6 +133,10 @@ class Case:
     def surfaces(self, head: Mapping[str, Any]) -> Sequence[str]:
         """Return the surfaces of which each design row makes a run; `head` holds the keys that are the study's own."""
         return ("",)
+
+    def named_materials(self, settings: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
+        """Return the path of each setting that names a material, and its kind."""
+        return self.material_keys
 
     def needed_columns(self, surface: str) -> Sequence[str]:
         """Return the columns that a design needs for such a surface, besides those that its schema requires."""
@@ -182,12 +196,35 @@ class Case:
     def write_bed_files(self, bed: Parameters, folder: Path) -> None:
         """Write what the deck of a bed reads into its folder."""
 
-    def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
-        """Write what the decks of all cycles of a run read besides surface and restart file into the run's folder."""
+    def write_shared_files(self, parameters: Parameters, bed: Parameters | None, surface: Path, folder: Path) -> None:
+        """Write what the decks of all cycles of a run read besides surface and restart file into the run's folder.
 
-    def piece(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> Piece:
-        """Return what the solver gets of the surface in a cycle; here all of it."""
-        return Piece(surface, np.arange(len(surface.triangles)))
+        surface: file of the run's pristine surface
+        """
+
+    def write_cycle_files(self, parameters: Parameters, span: Span | None, folder: Path) -> None:
+        """Write what the deck of a cycle, of cycle 0 for None, reads alone besides its surface into its folder."""
+
+    def pieces(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> list[Piece]:
+        """Return the meshes that the solver gets of the surface in a cycle; here all of it is one."""
+        return [Piece(surface, np.arange(len(surface.triangles)))]
+
+    def next_span(self, parameters: Parameters, states: Sequence[Mapping[str, Any]]) -> Span | None:
+        """Return the span of the wear cycle after those that left these states, first one first; None after the last.
+
+        Here all cycles are equal parts of the travel, or each is as long as the one before lets expect.
+        """
+        return next_span(parameters, Span(**states[-1]["span"]), states[-1]["wear"])
+
+    def kernels(self, parameters: Parameters) -> dict[str, dict[str, float]]:
+        """Return {contact kernel: {parameter: value}} whose sums the wear law of a run needs."""
+        return run_kernels(parameters)
+
+    def law_volume(self, parameters: Parameters, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame) -> np.ndarray:
+        """Return the volume (m,) m3 that the wear law makes of a cycle's ledger, a row per triangle of the surface,
+        acceleration included.
+        """
+        return law_volume(parameters, ledger)
 
     def on_surface(self, parameters: Parameters, ledger: pd.DataFrame) -> pd.DataFrame:
         """Return a ledger in the frame of the master surface, where the solver's is another one."""
@@ -287,6 +324,10 @@ class Case:
         """Return columns of the tables of wear that go on with time (s), in whose place a case counts; here none."""
         return {}
 
+    def part_name(self, parameters: Parameters, label: int) -> str:
+        """Return what people call the part with that label on the surface."""
+        return str(label)
+
     def label_columns(self, surface: SurfaceMesh, volume: np.ndarray) -> dict[str, float]:
         """Return columns of the tables of wear by labels; volume: (m,) m3, 0 on faces that do not wear."""
         return {}
@@ -318,67 +359,12 @@ class Case:
         raise NotImplementedError
 
 
-_REGISTERED: dict[str, Case] = {}
+REGISTERED: dict[str, Case] = {}
 
 
 def register(case: Case) -> Case:
     """Make a case known under its name; the module `case` of its folder does it. Raises TypeError for what is none."""
     if not isinstance(case, Case):
         raise TypeError(f"register takes an object of a class of cases, found {case!r}")
-    _REGISTERED[case.name] = case
+    REGISTERED[case.name] = case
     return case
-
-
-def case_names() -> list[str]:
-    """Return the names of all cases: the folders with a module `case`, of the project and of the package."""
-    return sorted({path.parent.name for folder in cases_folders() for path in folder.glob("*/case.py")})
-
-
-def find_case(name: str) -> Case:
-    """Return the case of that name, imported when it is first asked for.
-
-    Raises ValueError naming all cases, ProjectError for one that cannot be imported or registers no case of its name.
-    """
-    if name not in case_names():
-        raise ValueError(f"case is '{name}', allowed is one of {', '.join(case_names())}.")
-    package = importlib.import_module(CASES_PACKAGE)
-    package.__path__[:] = map(str, cases_folders())
-    path = next(file for folder in cases_folders() if (file := folder / name / "case.py").is_file())
-    known = sys.modules.get(f"{CASES_PACKAGE}.{name}.case")
-    if known is not None and Path(known.__file__) != path:
-        raise ProjectError(f"{_shown(path)}: {known.__file__} is in use here, allowed is one case of a name.")
-    if known is None and CASES_OF_PACKAGE not in path.parents and not path.with_name("__init__.py").exists():
-        open_package(f"{CASES_PACKAGE}.{name}", path.parent)  # before the package's, which may have one of that name
-    try:
-        importlib.import_module(f"{CASES_PACKAGE}.{name}.case")
-    except Exception as fault:
-        raise ProjectError(import_fault(fault, path, current_project().folder)) from fault
-    if name not in _REGISTERED:
-        raise ProjectError(
-            f"{_shown(path)}: it registers no case {name}, allowed is register(...) of a Case of that name."
-        )
-    return _REGISTERED[name]
-
-
-def _shown(path: Path) -> str:
-    folder = current_project().folder
-    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else str(path)
-
-
-def case_packages(case: Case) -> list[str]:
-    """Return the packages of a case and of those that its class extends, its own first."""
-    classes = [each for each in type(case).__mro__ if each.__module__.startswith(f"{CASES_PACKAGE}.")]
-    return list(dict.fromkeys(each.__module__.rpartition(".")[0] for each in classes))
-
-
-def case_folders(case: Case) -> list[Path]:
-    """Return the folders of `case_packages`."""
-    return [Path(sys.modules[f"{package}.case"].__file__).parent for package in case_packages(case)]
-
-
-def case_module(case: Case, name: str) -> ModuleType:
-    """Return a module of a case's folder, or the one of the case that it extends. Raises ModuleNotFoundError."""
-    file = Path(*name.split(".")).with_suffix(".py")
-    there = zip(case_packages(case), case_folders(case), strict=True)
-    package = next((package for package, folder in there if (folder / file).is_file()), case_packages(case)[0])
-    return importlib.import_module(f"{package}.{name}")

@@ -11,13 +11,13 @@ from typing import Any
 from bulkwear.postproc.mesh import SurfaceMesh, read_surface, write_stl
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case
-from bulkwear.workflows.engine.schedule import Span, cycle_title, first_span, known_spans, next_span
+from bulkwear.workflows.engine.schedule import Span, cycle_title, first_span, known_spans
 from bulkwear.workflows.engine.solver import DECK, LAUNCHER
 from bulkwear.workflows.engine.templates import render
 
 MOST_DECKS = 12  # wear cycles of a run whose decks are written to be run by hand
 WORN_THROUGH = "worn_through"  # of a cycle's state: where, a phrase
-SURFACE, SURFACE_STL, RESTART = "surface.vtu", "surface.stl", "run.restart"
+SURFACE, RESTART = "surface.vtu", "run.restart"
 
 
 @dataclass(frozen=True)
@@ -52,11 +52,11 @@ def span_of(chain: Chain, cycle: int) -> Span | None:
     """
     if cycle == 1:
         return first_span(chain.parameters)
-    before = state.read_state(chain.folder, cycle - 1)
-    if before.get(WORN_THROUGH) and chain.parameters["wear"].get("worn_through", "stop") == "stop":
+    states = [state.read_state(chain.folder, number) for number in range(1, cycle)]
+    if states[-1].get(WORN_THROUGH) and chain.parameters["wear"].get("worn_through", "stop") == "stop":
         return None
-    span = next_span(chain.parameters, Span(**before["span"]), before["wear"])
-    return span and replace(span, substeps=chain.case.substeps(chain.parameters, before["wear"]))
+    span = chain.case.next_span(chain.parameters, states)
+    return span and replace(span, substeps=chain.case.substeps(chain.parameters, states[-1]["wear"]))
 
 
 def run_in_steps(chain: Chain) -> int:
@@ -86,18 +86,21 @@ def deck_text(chain: Chain, span: Span | None) -> str:
 
 def write_shared_files(chain: Chain) -> None:
     """Write what the decks of all cycles read besides surface and restart file."""
-    chain.case.write_shared_files(chain.bed, chain.folder)
+    chain.case.write_shared_files(chain.parameters, chain.bed, chain.surface, chain.folder)
 
 
-def write_cycle(chain: Chain, span: Span | None, folder: Path, surface: SurfaceMesh) -> int:
-    """Write the deck and the surface of a wear cycle, or of cycle 0 (None), into its folder, where they run by hand.
+def write_cycle(chain: Chain, span: Span | None, folder: Path, surface: SurfaceMesh) -> dict[str, int]:
+    """Write the deck and the meshes of a wear cycle, or of cycle 0 (None), into its folder, where they run by hand.
 
-    Returns the number of triangles that the solver gets.
+    Returns {id of the mesh in the deck: number of its triangles}.
     """
     (folder / DECK).write_text(deck_text(chain, span))
-    mesh = chain.case.piece(chain.parameters, span, surface).mesh
-    write_stl(folder / SURFACE_STL, mesh.points, mesh.triangles)
-    return len(mesh.triangles)
+    chain.case.write_cycle_files(chain.parameters, span, folder)
+    pieces = chain.case.pieces(chain.parameters, span, surface)
+    for piece in pieces:
+        write_stl(folder / piece.stl, piece.mesh.points, piece.mesh.triangles)
+    cycle = span.cycle if span else 0
+    return {f"{piece.name}_{cycle}": len(piece.triangles) for piece in pieces}
 
 
 def title(chain: Chain, cycle: int) -> str:

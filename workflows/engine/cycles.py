@@ -118,7 +118,9 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
             progress.say(f"{title(chain, cycle)}: {through}")
         if turned := record.get("wear", {}).get("turned_faces"):
             progress.say(f"{title(chain, cycle)}: {turned} faces looked away from the particles and were turned")
-        record["cost"] = cost(chain, span, folder, triangles, pieces, time.monotonic() - started) | record["cost"]
+        record["cost"] = (
+            cost(chain, span, folder, sum(triangles.values()), pieces, time.monotonic() - started) | record["cost"]
+        )
         record |= {
             "span": asdict(span) if span else None,
             **chain.case.record(chain.parameters, chain.bed, span),
@@ -154,14 +156,19 @@ def origin_digest(chain: Chain, cycle: int, inputs: str) -> str:
 
 
 def simulate(
-    chain: Chain, span: Span | None, folder: Path, triangles: int, progress: Progress, origin: str = ""
+    chain: Chain,
+    span: Span | None,
+    folder: Path,
+    triangles: Mapping[str, int],
+    progress: Progress,
+    origin: str = "",
 ) -> list[Piece]:
     """Run the solver on a cycle's deck, or on the pieces of it that are missing; return all pieces.
 
-    origin: hash of what the cycle starts from. Raises SolverError.
+    triangles: {id of a mesh: number of its triangles}; origin: hash of what the cycle starts from. Raises SolverError.
     """
     cycle, before = span.cycle if span else 0, steps_before(chain, span)
-    substeps = span.substeps if span else 1
+    substeps, counted = span.substeps if span else 1, before if chain.case.counts_on else 0
 
     def run(variables: Mapping[str, str]) -> float:
         if "begin" in variables:
@@ -169,8 +176,8 @@ def simulate(
         return run_deck(
             folder,
             chain.ranks,
-            lambda step: progress.update(before + step // substeps, title(chain, cycle)),
-            triangles={f"sample_{cycle}": triangles},
+            lambda step: progress.update(before + (step - counted) // substeps, title(chain, cycle)),
+            triangles=triangles,
             executable=cycle_executable(chain, span),
             launcher=chain.launcher,
             variables=variables,

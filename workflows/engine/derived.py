@@ -6,7 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from bulkwear.postproc.wear.laws import law_kernels
+import numpy as np
+
+from bulkwear.postproc.wear.laws import law_kernels, worn_volume
 
 HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
@@ -144,6 +146,14 @@ def law_parameters(run: Mapping[str, Any]) -> dict[str, float]:
     """Return what the wear law of a run takes: the coefficient, acceleration included, and parameters of its own."""
     wear = run["wear"]
     return {"wear_coefficient_per_pa": wear["accelerated_wear_coefficient_per_pa"], **wear.get("parameters", {})}
+
+
+def law_volume(run: Mapping[str, Any], ledger: Mapping[str, Any]) -> Any:
+    """Return the volume (m,) m3 per triangle that the wear law of a run makes of a ledger, acceleration included.
+
+    ledger: {column: (m,)}, as a table
+    """
+    return worn_volume(run["wear"]["law"], {name: np.asarray(ledger[name]) for name in ledger}, law_parameters(run))
 
 
 def run_kernels(run: Mapping[str, Any]) -> dict[str, dict[str, float]]:

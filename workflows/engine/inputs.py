@@ -74,10 +74,7 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
         "wear_version": WEAR_VERSION,
         "ledger": parameters["ledger"],
         "pieces": [case.piece_ends(parameters, bed, span) for span in spans],
-        **{
-            section: {key: value for key, value in values.items() if (section, key) not in case.length}
-            for section, values in sections.items()
-        },
+        **{section: _simulated(case, section, values) for section, values in sections.items()},
         **_code_of_project(case, parameters),
     }
     return {
@@ -86,6 +83,16 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
         "surface": surface_from(case, parameters),
         "bed": bed or {},
     }
+
+
+def _simulated(case: Case, section: str, values: Any) -> Any:
+    """Return a section without what only says how long a run is, and what only tables read."""
+    if isinstance(values, list):
+        return [_simulated(case, section, each) for each in values]
+    if not isinstance(values, Mapping):
+        return values
+    left_out = {key for name, key in case.length if name == section} | set(case.only_told)
+    return {key: _simulated(case, section, value) for key, value in values.items() if key not in left_out}
 
 
 def why_again(run_folder: Path, found: Mapping[str, Any]) -> str | None:

@@ -13,16 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh, stl_corners
+from bulkwear.postproc.mesh import stl_corners
 from bulkwear.postproc.readers.contacts import read_contact_batches
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.ledger import LedgerBuilder, columns_of_solver
 from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.case import Piece as Mesh
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.derived import run_kernels
 from bulkwear.workflows.engine.schedule import Span
 
-LOAD_LEDGER = "load_ledger.bin"
 CONTACTS, SPINS, TOUCHING = "contacts.dump", "spins.dump", "touching.npy"
 SAMPLE_MESH = 0  # index of the sample among the meshes of the wall fix
 
@@ -37,15 +37,15 @@ class SamplesError(RuntimeError):
 class Producer:
     """A producer of load ledgers.
 
-    columns: (chain, span of the cycle, its folder, its surface) -> {column: (m,) array}, units in the names
+    columns: (chain, span of the cycle, its folder, one of its meshes) -> {column: (m,) array}, units in the names
     patterns: names of what the solver writes for it; of no use once the ledger is written
     history: the same arguments -> (steps of the cycle, columns until then) of looks inside it, in order
     kept: what it leaves for the next cycle
     """
 
-    columns: Callable[[Chain, Span, Path, SurfaceMesh], Columns]
+    columns: Callable[[Chain, Span, Path, Mesh], Columns]
     patterns: tuple[str, ...]
-    history: Callable[[Chain, Span, Path, SurfaceMesh], Iterator[tuple[int, Columns]]]
+    history: Callable[[Chain, Span, Path, Mesh], Iterator[tuple[int, Columns]]]
     kept: tuple[str, ...] = ()
 
     def written(self, folder: Path) -> list[Path]:
@@ -62,29 +62,31 @@ def producer(parameters: Mapping[str, Any]) -> Producer:
     return PRODUCERS[parameters["ledger"]]
 
 
-def summed_by_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Columns:
+def summed_by_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Columns:
     """Return the ledger that the solver has summed. Raises LoadLedgerError where it is not that of this cycle."""
-    return _columns_of_file(folder / LOAD_LEDGER, chain, span, surface, span.solver_steps)
+    return _columns_of_file(folder / mesh.ledger, chain, span, mesh, span.solver_steps)
 
 
-def history_of_solver(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Iterator[tuple[int, Columns]]:
+def history_of_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Iterator[tuple[int, Columns]]:
     """Yield steps of a cycle and what the solver had summed until then. Raises LoadLedgerError."""
-    for steps in sorted(int(path.suffix[1:]) for path in folder.glob(f"{LOAD_LEDGER}.*")):
-        yield steps, _columns_of_file(folder / f"{LOAD_LEDGER}.{steps}", chain, span, surface, steps)
+    for steps in sorted(int(path.suffix[1:]) for path in folder.glob(f"{mesh.ledger}.*")):
+        yield steps, _columns_of_file(folder / f"{mesh.ledger}.{steps}", chain, span, mesh, steps)
 
 
-def _columns_of_file(path: Path, chain: Chain, span: Span, surface: SurfaceMesh, steps: int) -> Columns:
-    loads = read_load_ledger(path, mesh=f"sample_{span.cycle}", n_triangles=len(surface.triangles), steps=steps)
-    corners = stl_corners(surface.points, surface.triangles)
-    return columns_of_solver(loads.columns, corners, run_kernels(chain.parameters))
+def _columns_of_file(path: Path, chain: Chain, span: Span, mesh: Mesh, steps: int) -> Columns:
+    loads = read_load_ledger(path, mesh=f"{mesh.name}_{span.cycle}", n_triangles=len(mesh.triangles), steps=steps)
+    facets = mesh.frame or mesh.mesh
+    return columns_of_solver(
+        loads.columns, stl_corners(facets.points, facets.triangles), chain.case.kernels(chain.parameters)
+    )
 
 
-def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Columns:
+def summed_from_dumps(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Columns:
     """Return the ledger of the sampled contacts; leaves the ids of the particles that touch at the end.
 
     Raises ContactDumpError, SamplesError.
     """
-    parameters = chain.parameters
+    parameters, surface = chain.parameters, mesh.mesh
     every, derived = parameters["solver"]["sampling_interval_steps"], parameters["derived"]
     builder = LedgerBuilder(
         len(surface.triangles),
@@ -107,7 +109,7 @@ def summed_from_dumps(chain: Chain, span: Span, folder: Path, surface: SurfaceMe
     return builder.table()
 
 
-def no_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> Iterator[tuple[int, Columns]]:
+def no_history(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Iterator[tuple[int, Columns]]:
     """Yield nothing: sampled contacts are summed over whole cycles."""
     return iter(())
 
@@ -125,6 +127,6 @@ def effective_modulus(parameters: Mapping[str, Any]) -> float:
 
 
 PRODUCERS = {
-    "solver": Producer(summed_by_solver, (LOAD_LEDGER, f"{LOAD_LEDGER}.*"), history_of_solver),
+    "solver": Producer(summed_by_solver, ("load_ledger*.bin", "load_ledger*.bin.*"), history_of_solver),
     "dumps": Producer(summed_from_dumps, (CONTACTS, SPINS), no_history, kept=(TOUCHING,)),
 }

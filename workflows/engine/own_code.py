@@ -9,7 +9,8 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from bulkwear.workflows.engine.case import Case, case_folders
+from bulkwear.workflows.engine.case import Case
+from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.project import CASES_OF_PACKAGE, MESHES, current_project
 from bulkwear.workflows.engine.state import digest, file_digest
 

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.postproc.wear import WEAR_VERSION
-from bulkwear.workflows.engine.case import Case, case_folders
+from bulkwear.workflows.engine.case import Case
+from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.code_parts import part_files, part_hashes
 from bulkwear.workflows.engine.machine import interpreter, machine_facts, program_hashes
 from bulkwear.workflows.engine.own_code import code_of_case

@@ -18,12 +18,17 @@ class Span:
 
     cycle: its number, from 1; first_step: time steps of that travel before it; steps: of the cycle itself; substeps: in
     so many the solver takes each of its steps, where the run's time step would be too large for this cycle
+    Where cycles stand for spans of operation that are found as the run goes on: phase: what the cycle is for;
+    operation_s: operation before it; stands_for_s: operation that its wear stands for
     """
 
     cycle: int
     first_step: int
     steps: int
     substeps: int = 1
+    phase: str = ""
+    operation_s: float = 0.0
+    stands_for_s: float = 0.0
 
     @property
     def solver_steps(self) -> int:

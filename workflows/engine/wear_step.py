@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import (
+    HOLDER_PART,
     SurfaceMesh,
     areas,
     node_area_vectors,
@@ -23,9 +24,9 @@ from bulkwear.postproc.mesh import (
 )
 from bulkwear.postproc.mesh_checks import LEAST_SOLVER_ANGLE
 from bulkwear.postproc.wear.balance import GrowthError, lost_volume, volume_balance
+from bulkwear.postproc.wear.bodies import body, together
 from bulkwear.postproc.wear.caps import next_cycle_factor, wanted_step
 from bulkwear.postproc.wear.displacement import StepTooLargeError
-from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.ledger import pressed_sides
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
 from bulkwear.postproc.wear.patch import ContactPatch, chosen_radius
@@ -36,7 +37,6 @@ from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update, with_dept
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.chain import SURFACE, Chain
-from bulkwear.workflows.engine.derived import law_parameters
 from bulkwear.workflows.engine.schedule import Span
 
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J")
@@ -49,6 +49,12 @@ TOTALS = {  # columns of wear.csv that are sums over all cycles -> what each cyc
     "total_excess_volume_m3": "excess_volume_m3",
     "total_beyond_back_volume_m3": "beyond_back_volume_m3",
 }
+# columns of wear.csv that are no sums over parts
+LARGEST = (
+    *("largest_step_m", "largest_depth_m", "rim_recession_m"),
+    *("step_limit_m", "step_demand", "largest_outward_edge_fraction"),
+)
+SMALLEST = ("smallest_angle_deg", "next_cycle_factor")
 IMPULSE = "impulse_x_N_s"  # a column of ledgers that know from which side a face was pressed
 
 
@@ -68,8 +74,8 @@ def wear(
     pristine = read_surface(chain.surface)
     ledger = on_whole_surface(ledger, len(surface.triangles))
     surface = prepared(case, parameters, surface)
-    volume = law_volume(parameters, ledger)
-    worn, update, asked = moved(chain, span, surface, ledger, volume)
+    volume = case.law_volume(parameters, span, surface, ledger)
+    worn, update, asked = (moved_by_part if case.by_part else moved)(chain, span, surface, ledger, volume)
     if fault := case.worn_through(worn):
         raise WearError(
             f"{chain.name}, cycle {span.cycle}: {fault}; wear is accelerated too much, or the travel too long."
@@ -109,7 +115,7 @@ def moved(
         "patch": contact_patch(parameters, ledger),
         "scheme": parameters["wear"]["scheme"],
         "pressed": pressed(surface, ledger),
-        "back": "cap" if parameters["wear"].get("worn_through") == "cap" else "go_on",
+        "back": "go_on" if parameters["wear"].get("worn_through") == "go_on" else "cap",
     }
     for share in CAP_SHARES:
         cap = share * limit
@@ -123,6 +129,35 @@ def moved(
             if share == CAP_SHARES[-1]:
                 raise
     return worn, update, asked | remeshing
+
+
+def moved_by_part(
+    chain: Chain, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame, volume: np.ndarray
+) -> tuple[SurfaceMesh, dict[str, float], dict[str, float | int]]:
+    """Return what `moved` does of a surface of parts, each worn alone: parts may touch, and stand in one another's way
+    in the frames they are drawn in. Parts that do not wear stay as they are.
+    """
+    part, bodies, updates, told = surface.cell_data["part"], [], [], []
+    for label in dict.fromkeys(part.tolist()):
+        faces = part == label
+        alone = body(surface, faces)
+        if label > HOLDER_PART:
+            try:
+                alone, update, asked = moved(chain, span, alone, ledger[faces].reset_index(drop=True), volume[faces])
+            except WearError as fault:
+                raise WearError(f"part {chain.case.part_name(chain.parameters, label)}: {fault}") from fault
+            updates.append(update)
+            told.append(asked)
+        else:
+            alone = with_sums(alone, alone, ledger[faces], volume[faces])
+        bodies.append(alone)
+    return together(bodies), _of_parts(updates), _of_parts(told)
+
+
+def _of_parts(rows: list[dict[str, float | int]]) -> dict[str, float | int]:
+    """Return what rows of parts make of the whole: the extremes of some columns, the sums of all others."""
+    extremes = {name: max for name in LARGEST} | {name: min for name in SMALLEST}
+    return {name: extremes.get(name, sum)(row[name] for row in rows) for name in rows[0]}
 
 
 def update_of_cycle(
@@ -170,15 +205,6 @@ def remeshed(
         "advanced_volume_m3": outcome.advanced_volume_m3,
         "largest_outward_edge_fraction": outcome.largest_outward,
     }
-
-
-def law_volume(parameters: Mapping[str, Any], ledger: pd.DataFrame) -> np.ndarray:
-    """Return the volume (m3) per triangle that the study's wear law makes of a ledger, acceleration included."""
-    return worn_volume(
-        parameters["wear"]["law"],
-        {name: ledger[name].to_numpy() for name in ledger},
-        law_parameters(parameters),
-    )
 
 
 def contact_patch(parameters: Mapping[str, Any], ledger: pd.DataFrame) -> ContactPatch | None:
@@ -316,4 +342,9 @@ def worn_surface(chain: Chain, last: Span) -> SurfaceMesh:
     duration = last.end * chain.parameters["derived"]["time_step_s"]
     traction = surface.cell_data["normal_impulse_N_s"] / duration / areas(surface.points, surface.triangles)
     surface = replace(surface, cell_data={**surface.cell_data, "normal_traction_Pa": traction})
-    return with_depths(surface, read_surface(chain.surface))
+    pristine = read_surface(chain.surface)
+    if not chain.case.by_part:
+        return with_depths(surface, pristine)
+    labels = dict.fromkeys(pristine.cell_data["part"].tolist())
+    pairs = [[body(mesh, mesh.cell_data["part"] == label) for mesh in (surface, pristine)] for label in labels]
+    return together([with_depths(*pair) for pair in pairs])

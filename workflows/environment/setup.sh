@@ -94,6 +94,8 @@ build_environment() {
     python=$(find_python)
     say "building .venv with $("$python" --version)"
     if ! .venv/bin/python -c 'import pip' 2>/dev/null || ! { [ -f "$stamp" ] && [ "$(head -n 1 "$stamp")" = "$PWD" ]; }; then
+        # Python would clear what the link leads to, then refuse to build there.
+        [ ! -L .venv ] || stop ".venv is a symbolic link to $(readlink .venv), allowed is a folder of its own: rm .venv"
         "$python" -m venv --clear .venv || stop "$python could not make .venv; on Debian: apt-get install python3-venv"
     fi
     rm -f "$stamp"

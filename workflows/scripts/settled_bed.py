@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.cycles import fill_bed
 from bulkwear.workflows.engine.job import project_job
 from bulkwear.workflows.engine.solver import LAUNCHER, ranks_here

@@ -1,6 +1,6 @@
 """Write the summary of a study: one row per run."""
 
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.job import project_job
 
 with project_job(snakemake.log[0]):

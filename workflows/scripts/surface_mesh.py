@@ -1,7 +1,7 @@
 """Build the pristine surface of a run."""
 
 from bulkwear.postproc.mesh import write_surface
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.job import project_job
 
 with project_job(snakemake.log[0]):

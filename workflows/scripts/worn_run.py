@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.cycles import run_chain
 from bulkwear.workflows.engine.job import project_job

@@ -1,0 +1,87 @@
+"""Columns of design tables that stand for settings: those that a case names, and where it allows it any setting.
+
+A column of the second kind is the path of a setting that is one number or word, with points: parts.liner.file.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, display_name, merge, read_csv_rows
+from bulkwear.workflows.config.schema import case_schema, leaves, subschema
+from bulkwear.workflows.config.until import UNTIL
+from bulkwear.workflows.config.validation import check_alternatives, unknown_key
+from bulkwear.workflows.engine.project import Project
+
+ANY_SETTING = "x-any-setting"  # key of the schema of a design table
+OF_STUDY = (UNTIL,)  # sections that are the whole study's
+
+
+def setting_columns(schema: dict[str, Any]) -> dict[str, str]:
+    """Return {setting: column} of all columns that stand for a setting of their row."""
+    return {inner["x-setting"]: column for (column,), inner in leaves(schema) if "x-setting" in inner}
+
+
+def row_overrides(row: Layer, schema: dict[str, Any]) -> dict[str, str]:
+    """Return {setting: column} of the settings that a design row overrides: the schema of such a column names one."""
+    named = {setting: column for setting, column in setting_columns(schema).items() if column in row.values}
+    return named | {column: column for column in row.values if "." in column}
+
+
+def as_settings(row: Layer, columns: dict[str, str]) -> Layer:
+    """Return the settings that a design row overrides as a layer; columns: as from `row_overrides`."""
+    values: dict[str, Any] = {}
+    for setting, column in columns.items():
+        value = row.values[column]
+        for key in reversed(setting.split(".")):
+            value = {key: value}
+        values = merge(values, value)
+    return Layer(row.source, values, {(): row.line(())}, row.block)
+
+
+def with_row(settings: dict[str, Any], row: Layer, alternatives: tuple[KeyPath, ...]) -> dict[str, Any]:
+    """Return the settings of one design row; row: as from `as_settings`.
+
+    Of alternatives the row's stands for all others. Raises ConfigError for a row with two of them.
+    """
+    check_alternatives(row, alternatives, required=False)
+    settings = merge(settings, {})
+    if any(row.holds(path) for path in alternatives):
+        for section, key in alternatives:
+            settings.get(section, {}).pop(key, None)
+    return merge(settings, row.values)
+
+
+def opened(schema: dict[str, Any], path: Path, project: Project, case: str) -> dict[str, Any]:
+    """Return the schema of a case's design table; where any setting may be a column of it, those of the table's header.
+
+    Raises ConfigError for a path in the header that is no setting, or no single one.
+    """
+    if not schema.get(ANY_SETTING):
+        return schema
+    header, _ = read_csv_rows(path, project.folder)
+    settings, own = case_schema(case, "settings"), setting_columns(schema)
+    found = {}
+    for name in (name for name in header if "." in name):
+        fault, inner = _fault(name, settings, own)
+        if fault:
+            raise ConfigError(f"{display_name(path, project.folder)}, header: {fault}.")
+        found[name] = inner
+    return {**schema, "properties": {**schema["properties"], **found}}
+
+
+def _fault(name: str, settings: dict[str, Any], own: dict[str, str]) -> tuple[str, dict[str, Any]]:
+    """Return what is wrong with a column that is the path of a setting, "" where nothing is, and its schema."""
+    key = tuple(name.split("."))
+    inner = subschema(settings, key)
+    if name in own:
+        return f"column {name} has a name of its own, write {own[name]}", {}
+    if key[0] in OF_STUDY:
+        return f"column {name} is a setting of the whole study, allowed are those of a run", {}
+    if not inner:
+        return unknown_key(key, settings, noun="setting"), {}
+    if inner.get("type") in ("object", "array"):
+        kind = {"object": "a block of keys", "array": "a list"}[inner["type"]]
+        return f"column {name} is {kind}, allowed are settings that are one number or one word", {}
+    return "", inner
