@@ -21,7 +21,7 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.config.until import last_round
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.project import PACKAGE, current_project
 from bulkwear.workflows.engine.provenance import commit_of, git, package_cases, package_commit, simulating_code
 from bulkwear.workflows.engine.provenance import package_version as installed_version
@@ -51,7 +51,6 @@ PACKAGES = (
     "pyvista",
     "vtk",
     "matplotlib",
-    "scikit-learn",
     "snakemake",
 )
 

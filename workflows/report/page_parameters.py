@@ -8,7 +8,7 @@ from typing import Any
 
 from bulkwear.postproc.wear.laws import NEUTRAL_LAW
 from bulkwear.workflows.config.design import Study
-from bulkwear.workflows.engine.case import case_module, find_case
+from bulkwear.workflows.engine.cases import case_module, find_case
 from bulkwear.workflows.engine.own_code import code_of_pages
 from bulkwear.workflows.report.products import Product, figures_of, products_of_study
 from bulkwear.workflows.report.text import number_and_unit

@@ -22,7 +22,8 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.engine.case import Case, case_module
+from bulkwear.workflows.engine.case import Case
+from bulkwear.workflows.engine.cases import case_module
 from bulkwear.workflows.engine.own_code import code_of_pages
 from bulkwear.workflows.engine.project import CONFIG, current_project
 from bulkwear.workflows.engine.provenance import simulating_code

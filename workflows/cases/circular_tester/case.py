@@ -65,8 +65,12 @@ class CircularTester(SampleCase):
 
     def design_fault(self, rows: Sequence[Mapping[str, Any]]) -> str | None:
         """Return a phrase unless one plain and one patterned row are of series volume, of which most figures are made,
-        in equal machines with equal particles.
+        in equal machines with equal particles, and where seeds differ: a packing is one bed for all rows of a machine
+        and particle scale.
         """
+        seeds = [str(seed) for seed in dict.fromkeys(row.get("seed", "none") for row in rows)]
+        if len(seeds) > 1:
+            return f"seed is {', '.join(seeds)}, allowed is one for all rows; further packings are added by packings"
         main = [row for row in rows if row["series"] == VOLUME]
         found = sorted(row["surface"] for row in main)
         if len(found) == 2 and found.count(PLAIN) == 1:
@@ -140,15 +144,14 @@ class CircularTester(SampleCase):
         tester_deck.write_machine(bed, folder)
         tester_deck.write_block(bed, folder)
 
-    def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
+    def write_shared_files(self, parameters: Parameters, bed: Parameters | None, surface: Path, folder: Path) -> None:
         """Write consolidator and trough."""
         tester_deck.write_machine(bed, folder)
 
-    def piece(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> Piece:
+    def pieces(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> list[Piece]:
         """Return the sample as it lies in the trough: inclined."""
-        return Piece(
-            placed(surface, tester_deck.pose(parameters["tester"]), np.zeros(3)), np.arange(len(surface.triangles))
-        )
+        inclined = placed(surface, tester_deck.pose(parameters["tester"]), np.zeros(3))
+        return [Piece(inclined, np.arange(len(surface.triangles)))]
 
     def on_surface(self, parameters: Parameters, ledger: pd.DataFrame) -> pd.DataFrame:
         """Return a ledger with its vectors in the sample's own frame."""

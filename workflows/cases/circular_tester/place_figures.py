@@ -27,18 +27,18 @@ from bulkwear.workflows.cases.circular_tester.runs import (
 )
 from bulkwear.workflows.report.products import Job, figure
 
+OF_PLACES = {"inputs": {**WEAR, **PUBLISHED}, "told": PAIRS, **OF_PAIRS}
+
 
 @figure(
     "Distribution",
     "Wear by column",
-    inputs={**WEAR, **PUBLISHED},
-    told=PAIRS,
-    **OF_PAIRS,
     caption="""
     Counterpart of Fig 6.13 (Yan 2022): volume of base and pattern by column of the sample, after the last revolution
     that all runs have. Bars: 95 % interval of the column over packings. Column 1 meets the bed first. In a straight
     channel inside and outside of a column are alike.
     """,
+    **OF_PLACES,
 )
 def tester_columns(job: Job) -> Any:
     """Draw wear by column, after as many revolutions as both samples have (Fig 6.13)."""
@@ -59,13 +59,11 @@ def tester_columns(job: Job) -> Any:
 @figure(
     "Distribution",
     "Wear of every shape of the pattern",
-    inputs={**WEAR, **PUBLISHED},
-    told=PAIRS,
-    **OF_PAIRS,
     caption="""
     Counterpart of Fig 6.14 (Yan 2022), mean over packings with its 95 % interval. C15 is the fifth one from the inner
     side in the first column. Grey: the range that the thesis gives for odd and even columns after its last revolution.
     """,
+    **OF_PLACES,
 )
 def tester_bumps(job: Job) -> Any:
     """Draw wear by shape of the pattern (Fig 6.14)."""
@@ -110,13 +108,11 @@ def tester_contours(job: Job) -> Any:
 @figure(
     "Distribution",
     "Normal force by column",
-    inputs={**WEAR, **PUBLISHED},
-    told=PAIRS,
-    **OF_PAIRS,
     caption="""
     Counterpart of Fig 6.22 (Yan 2022): mean normal force on base and pattern, from all contacts of all steps. Bars:
     95 % interval of the column over packings.
     """,
+    **OF_PLACES,
 )
 def tester_force_columns(job: Job) -> Any:
     """Draw normal force by column (Fig 6.22)."""

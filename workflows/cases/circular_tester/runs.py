@@ -27,7 +27,7 @@ VOLUME, SIZE, MESH, WORN_OUT, RING = "volume", "size", "mesh", "worn_out", "ring
 class TesterRun:
     """A run and how its bed has turned before wear was counted.
 
-    packing: number of its bed among those of equal machine and particles, from 1 on
+    packing: number among those of its setting, from 1 on; equal machines and particles share the bed of a number
     shape: channel or ring; element_size_mm: mm; folder: of the run; bed_folder: of the bed that it started from
     bed_revolution_steps, revolution_steps: time steps of a revolution of bed and run; revolution_s: s
     bed_revolutions, run_in_revolutions: of the bed alone, and with the sample before wear is counted
@@ -89,13 +89,7 @@ def has_pairs(study: Study) -> bool:
 
 def values_of_runs(study: Study) -> list[dict[str, Any]]:
     """Return what the analysis of every run of a study needs to know of it, JSON-able, see `TesterRun`."""
-    values = [_values(study, run) for run in study.runs]
-    beds: dict[tuple[str, float], list[str]] = {}
-    for each in values:
-        of_machine = beds.setdefault((each["shape"], each["particle_scale"]), [])
-        of_machine.extend({each["bed"]} - set(of_machine))
-        each["packing"] = of_machine.index(each["bed"]) + 1
-    return values
+    return [_values(study, run) for run in study.runs]
 
 
 def values_of_pairs(study: Study) -> list[dict[str, Any]]:
@@ -110,6 +104,7 @@ def _values(study: Study, run: Run) -> dict[str, Any]:
     return {
         "name": run.name,
         "bed": study.bed_of(run.name),
+        "packing": study.packing_of[run.row],
         "series": next(row["series"] for row in study.design_rows if row["row"] == run.row),
         **{name: columns[name] for name in ("surface", "shape", "particle_scale", "element_size_mm")},
         "coefficient": columns["wear_coefficient_per_pa"],

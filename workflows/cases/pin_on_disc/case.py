@@ -102,7 +102,7 @@ class PinOnDisc(SampleCase):
             return render("pin_set_down", pin_deck.pin_set_down(parameters))
         return render("pin_on_disc", pin_deck.pin_on_disc(parameters, span, restart))
 
-    def piece(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> Piece:
+    def pieces(self, parameters: Parameters, span: Span | None, surface: SurfaceMesh) -> list[Piece]:
         """Return the stretch of the disc that the pin can touch in a cycle."""
         steps = (span.first_step, span.end) if span else (0, 0)
         start, end = (pin_deck.angle(parameters, step) for step in steps)
@@ -111,7 +111,7 @@ class PinOnDisc(SampleCase):
         reach = touching_reach(parameters["pin"]["radius_m"], depth)
         track = parameters["disc"]["track_radius_m"]
         triangles = track_stretch(surface, track, start - margin, end + margin, reach)
-        return Piece(SurfaceMesh(surface.points, surface.triangles[triangles]), triangles)
+        return [Piece(SurfaceMesh(surface.points, surface.triangles[triangles]), triangles)]
 
     def run_stages(self, parameters: Parameters, bed: Parameters | None) -> tuple[Stage, ...]:
         """Return setting the pin down and the wear cycles; how much a groove widens the stretch is left out."""

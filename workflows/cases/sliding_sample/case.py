@@ -183,7 +183,7 @@ class SlidingSample(SampleCase):
         """Return the parameters of the deck that fills and settles a bed."""
         return settled_bed(bed)
 
-    def write_shared_files(self, bed: Parameters | None, folder: Path) -> None:
+    def write_shared_files(self, parameters: Parameters, bed: Parameters | None, surface: Path, folder: Path) -> None:
         """Write the wall that closes the bed at both ends, two triangles across the domain at y = 0, if it has ends."""
         if bed["ends"] != WALLS:
             return

@@ -116,10 +116,10 @@ def wear_against_size_ratios(job: Job) -> Any:
     "Relative velocity and wear rate by particle scale",
     inputs={"summary": SUMMARY, "steady": "results/{study}/flow/steady.csv", "published": PUBLISHED_SIZES},
     caption="""
-    Relative velocity of the particles (Yan 2022, Eq 4.10) and wear rate over the largest of all runs (Eq 4.12), means
-    and standard deviations over the steady window, of 10 mm of travel each; hollow where the window is not steady by
-    the study's own criterion, and the mean then is that of what comes nearest. Open marks with dotted lines: what the
-    source's text gives. The counterpart of Yan 2022, Fig 4.13.
+    Relative velocity of the particles (Yan 2022, Eq 4.10) and wear rate over the largest of all runs (Eq 4.12) in the
+    steady window: packings small, their means with 95 % intervals large. Thin lines: standard deviations over a window,
+    of 10 mm of travel each. Hollow where a window is not steady by the study's own criterion and what comes nearest
+    stands for it. Dotted: what the source's text gives. The counterpart of Yan 2022, Fig 4.13.
     """,
 )
 def steady_by_scale(job: Job) -> Any:
@@ -302,9 +302,9 @@ def packing_profiles(job: Job) -> Any:
         "template": of_template("bed_contacts"),
     },
     caption="""
-    Contacts of a particle and porosity in the lower three quarters of the bed: settled, before the plain sample comes,
-    and at rest again behind it. Porosity cuts particles at the slab's edges; dotted, they count whole where their
-    centre is. Triangles: bounds from the source's text. The counterpart of Yan 2022, Fig 4.9 and 4.10.
+    Contacts per particle and porosity in the lower three quarters of the bed, settled before the plain sample and at
+    rest behind it: packings small, their means with 95 % intervals large. Porosity cuts particles at the slab's edges;
+    dotted, they count whole at their centre. Triangles: the source's. The counterpart of Yan 2022, Fig 4.9 and 4.10.
     """,
 )
 def bed_packing(job: Job) -> Any:

@@ -13,13 +13,14 @@ from bulkwear.postproc.flow.packing import inner_means
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.reference.size_ratios import size_ratios
 from bulkwear.postproc.statistics.verdicts import VERDICTS
-from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
 from bulkwear.postproc.tables.packings import SETTING, over_packings
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
 from bulkwear.workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
 from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Pattern
 from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import bed_sentences
 from bulkwear.workflows.report.sections import Block, Pictures, Section, Table, Text
 
 if TYPE_CHECKING:
@@ -55,11 +56,14 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
 
 
 def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
-    """Return what is told of the critical scale, wear and sizes of every row, and the lines beside the source's."""
+    """Return what is told of the critical scale and of the beds, wear and sizes of every row, and the lines beside the
+    source's.
+    """
     said = pd.read_csv(folder / "particle_size" / "sentences.csv")["sentence"]
-    rows = wear_by_row(study, in_display_units(read_summary(folder / "summary.csv")))
+    summary = in_display_units(read_summary(folder / "summary.csv"))
+    rows = wear_by_row(study, summary)
     return [
-        Text(" ".join(said)),
+        Text(" ".join([*said, *bed_sentences(plain_beds(study, summary))])),
         Table(
             rows,
             "wear_by_row",
@@ -81,6 +85,16 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
             " packings lets expect is rejected; the interval of the critical scale is what the others leave open.",
         ),
     ]
+
+
+def plain_beds(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame:
+    """Return a line per plain run for `bed_sentences`; summary: in display units."""
+    plain = summary[summary["surface"] == PLAIN]
+    of_run = [study["parameters"][run] for run in plain["run"]]
+    return plain[["particle_scale", FORCE]].assign(
+        layers=[each["derived"]["layers"] for each in of_run],
+        bed_thickness_mm=[MILLIMETRES * each["bed"]["thickness_m"] for each in of_run],
+    )
 
 
 def wear_by_row(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame:

@@ -177,8 +177,7 @@ def critical_sentences(critical: Crossing, published: float, ratios: pd.DataFram
     if outside and curve == CONVEX:
         said.append(
             "What differs from the source, and a difference may come from: the size distribution, of which the source"
-            " gives the median only; how bumps are turned and rows staggered, which its text leaves open; and the ramp"
-            " round the sample."
+            " gives the median only; how bumps are turned, which its text leaves open; and the ramp round the sample."
         )
     return said
 

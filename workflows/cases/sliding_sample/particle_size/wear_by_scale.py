@@ -19,6 +19,7 @@ CONVEX = "convex"  # the source's pattern
 PARTS = {"base": "base_worn_volume_m3", "bumps": "pattern_worn_volume_m3"}  # curves of patterned samples' parts
 RATIOS = ("equivalent_radius", "projected_area", "surface_area", "volume")
 LINE_COLUMNS = ("intercept", "slope", "lack_of_fit_p_value")
+FEWEST_LAYERS = 2.0  # -, of particles in a bed: with fewer, some have no other one above them or below
 
 
 def wear_by_scale(summary: pd.DataFrame) -> pd.DataFrame:
@@ -96,6 +97,29 @@ def critical_scale_text(found: Crossing) -> str:
     ends = [f"{end:.3g}" if np.isfinite(end) else "beyond the scales simulated" for end in (found.low, found.high)]
     value = f"{found.value:.3g}" if np.isfinite(found.value) else "not between the scales simulated"
     return f"critical scale {value}, 95 % interval over {found.forms:g} forms {' to '.join(ends)}"
+
+
+def bed_sentences(plain: pd.DataFrame) -> list[str]:
+    """Return how beds that are levelled alike press at each scale, and at which ones they have few layers; nothing of
+    beds that are not.
+
+    plain: a line per plain run: particle_scale, mean_normal_force_N, layers and bed_thickness_mm; packings are averaged
+    """
+    if plain["bed_thickness_mm"].nunique() != 1:
+        return []
+    means = plain.groupby("particle_scale")[["mean_normal_force_N", "layers"]].mean()
+    over = (means["mean_normal_force_N"] / means["mean_normal_force_N"].iloc[0]).iloc[1:]
+    said = [f"All beds are levelled at {plain['bed_thickness_mm'].iloc[0]:g} mm."]
+    if len(over):
+        shares = ", ".join(f"{100.0 * share:.0f} % at scale {scale:g}" for scale, share in over.items())
+        said.append(
+            f"What then presses on the plain sample, its mean normal force over that at scale {means.index[0]:g}, is"
+            f" {shares}; the ratio of patterned to plain wear is of this change, too, not of the particles' size alone."
+        )
+    if len(thin := means.index[means["layers"] < FEWEST_LAYERS]):
+        scales = ", ".join(f"{scale:g}" for scale in thin)
+        said.append(f"Beds of scale {scales} have fewer than {FEWEST_LAYERS:g} layers of particles: hardly beds.")
+    return said
 
 
 def read_critical_scale(path: str | Path) -> Crossing:

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bulkwear.postproc.plots.style import LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, new_figure
+from bulkwear.postproc.statistics.intervals import estimates, interval_table
 
 STATES = {"loose": "loose", "dense": "shaken", "difference": "shaken minus loose"}
 QUANTITIES = {"coordination_number": "Contacts of a particle (-)", "porosity": "Porosity (-)"}
@@ -25,6 +26,8 @@ MARKERS = "osD^v<>P"  # of particle scales
 MODEL_SHADES = {"cdt": "#0072B2", "epsd2": "#D55E00"}
 MODEL_NAMES = {"cdt": "type A (cdt)", "epsd2": "type C (epsd2)"}
 MARKS_PER_CURVE = 8  # of a collision
+ASIDE = 0.15  # particle scales, that marks of two kinds stand to the left and to the right of theirs
+PACKING_SIZE, MEAN_SIZE = 2.5, 6.0  # points, of marks: of a packing among several, of their mean
 NORMAL = {"overlap": "Overlap / R (-)", "normal_force": "Normal force / (E* R²) (-)"}
 # Not the torque: where a sphere has stopped turning, type A turns it to and fro from step to step.
 TANGENTIAL = {"tangential_force": "Tangential force\n/ (E* R²) (-)", "spin": r"Spin · $R\, /\, \sqrt{E^*/\rho}$ (-)"}
@@ -35,6 +38,40 @@ def scale_colours(scales: Sequence[float]) -> dict[float, tuple]:
     """Return a colour for every particle scale, from dark (small) to light; also told apart by their markers."""
     shades = mpl.colormaps["viridis"]
     return {scale: shades(0.85 * k / max(len(scales) - 1, 1)) for k, scale in enumerate(sorted(scales))}
+
+
+def packings_by_scale(
+    axes: Axes,
+    table: pd.DataFrame,
+    quantity: str,
+    look: tuple[str, str],
+    name: str,
+    hollow: pd.Series | None = None,
+    aside: float = 0.0,
+) -> None:
+    """Draw a quantity of every packing against particle scale, and where there are several the mean of each scale with
+    its 95 % interval.
+
+    table: particle_scale and the quantity, a line per packing; look: colour and marker
+    hollow: whether the mark of a packing is; that of a mean is, where that of any of its packings is
+    aside: particle scales, that marks stand to the right of theirs
+    """
+    shade, mark = look
+    hollow = pd.Series(False, index=table.index) if hollow is None else hollow
+    repeated = table["particle_scale"].duplicated().any()
+    drawn = {"color": shade, "markersize": PACKING_SIZE if repeated else MEAN_SIZE, "label": name, "zorder": 4}
+    for empty, one in table.groupby(hollow):
+        face = "white" if empty else shade
+        axes.plot(one["particle_scale"] + aside, one[quantity], mark, markerfacecolor=face, **drawn)
+    if not repeated:
+        return
+    means = interval_table(estimates(table["particle_scale"], table[quantity]))
+    empty = hollow.groupby(table["particle_scale"]).any()
+    drawn = {"fmt": mark, "color": shade, "markersize": MEAN_SIZE, "capsize": 3, "linewidth": 1.0, "zorder": 3}
+    for each in means.itertuples():
+        reach = [[each.mean - each.interval_low], [each.interval_high - each.mean]]
+        face = "white" if empty[each.setting] else shade
+        axes.errorbar(each.setting + aside, each.mean, reach, markerfacecolor=face, label=f"{name} mean", **drawn)
 
 
 def packing_profiles(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
@@ -78,7 +115,8 @@ def _range(axes: Axes, published: pd.DataFrame) -> None:
 
 
 def bed_packing(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw coordination number and porosity of a bed against particle scale, ahead of a sample and behind it.
+    """Draw coordination number and porosity of a bed against particle scale, ahead of a sample and behind it: packings,
+    and where there are several their means with intervals.
 
     table: particle_scale, state (before, after), coordination_number, porosity and porosity_whole_particles
     published: state, scale_from, scale_to, quantity, relation, value and source; drawn as bounds with a direction
@@ -86,12 +124,12 @@ def bed_packing(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[
     figure = new_figure(remarks)
     panels = figure.subplots(1, len(QUANTITIES))
     for axes, (quantity, label) in zip(panels, QUANTITIES.items(), strict=True):
-        for state, (shade, marker) in BED_STATES.items():
-            one = table[table["state"] == state].sort_values("particle_scale")
-            drawn = {"color": shade, "label": BED_NAMES[state]}
-            axes.plot(one["particle_scale"], one[quantity], marker=marker, markersize=5, **drawn)
+        for (state, (shade, marker)), aside in zip(BED_STATES.items(), (-ASIDE, ASIDE), strict=True):
+            one = table[table["state"] == state]
+            packings_by_scale(axes, one, quantity, (shade, marker), BED_NAMES[state], aside=aside)
             if quantity == "porosity":
-                axes.plot(one["particle_scale"], one[WHOLE], ":", color=shade, label="_whole")
+                means = one.groupby("particle_scale")[WHOLE].mean()
+                axes.plot(means.index, means, ":", color=shade, label="_whole")
         for _, bound in published[published["quantity"] == quantity].iterrows():
             shade = BED_STATES[bound["state"]][0]
             drawn = {
@@ -103,7 +141,8 @@ def bed_packing(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[
             ends = [bound["scale_from"], bound["scale_to"]]
             axes.plot(ends, [bound["value"]] * 2, color=shade, linewidth=0.8, markersize=7, **drawn)
         axes.set(xlabel="Particle scale (-)", ylabel=label)
-    handles = panels[0].get_legend_handles_labels()[0]
+    looks = [(BED_NAMES[state], look) for state, look in BED_STATES.items() if state in set(table["state"])]
+    handles = [Line2D([], [], color=shade, marker=mark, linestyle="", label=name) for name, (shade, mark) in looks]
     handles.append(Line2D([], [], color="black", linestyle=":", label="particles whole"))
     if not published.empty:
         source = published["source"].iloc[0].partition(",")[0]

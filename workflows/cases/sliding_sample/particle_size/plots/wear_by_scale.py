@@ -13,8 +13,13 @@ from matplotlib.lines import Line2D
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.plots.style import BLUE, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing
-from bulkwear.postproc.statistics.intervals import estimates, interval_table
-from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import MARKERS, PUBLISHED_MARKS, scale_colours
+from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import (
+    ASIDE,
+    MARKERS,
+    PUBLISHED_MARKS,
+    packings_by_scale,
+    scale_colours,
+)
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import RATIOS, patterned_curve
 
 PARTS = {"base": ("#009E73", "^", "its base"), "bumps": ("#CC79A7", "v", "its pattern")}  # colour, marker and name
@@ -49,7 +54,7 @@ def wear_against_scale(
     looks = {name: _of_surface(name) for name in (PLAIN, patterned_curve(wear))} | PARTS
     for curve, (shade, mark, _) in looks.items():
         one = wear[wear["curve"] == curve]
-        _packings(axes, one, (shade, mark), curve)
+        packings_by_scale(axes, one, "relative_wear", (shade, mark), curve)
         if one["particle_scale"].nunique() >= FEWEST_PLACES:
             line = np.polynomial.Polynomial.fit(one["particle_scale"], one["relative_wear"], 1)
             axes.plot(places, line(places), color=shade, linewidth=0.7, label=f"{curve} line")
@@ -67,21 +72,6 @@ def wear_against_scale(
 def _of_surface(surface: str) -> tuple[str, str, str]:
     """Return colour, marker and name of a surface's sample."""
     return colour(surface), marker(surface), f"{surface} sample"
-
-
-def _packings(axes: Axes, one: pd.DataFrame, look: tuple[str, str], curve: str) -> None:
-    """Draw the packings of a curve, and where there are several the mean of each scale with its interval."""
-    shade, mark = look
-    repeated = one["particle_scale"].duplicated().any()
-    axes.plot(
-        one["particle_scale"], one["relative_wear"], mark, color=shade, markersize=2 if repeated else 6, label=curve
-    )
-    if not repeated:
-        return
-    table = interval_table(estimates(one["particle_scale"], one["relative_wear"]))
-    reach = np.abs(table[["interval_low", "interval_high"]].to_numpy().T - table["mean"].to_numpy())
-    drawn = {"fmt": mark, "color": shade, "markersize": 6, "capsize": 3, "linewidth": 1.0, "label": f"{curve} mean"}
-    axes.errorbar(table["setting"], table["mean"], reach, **drawn)
 
 
 def _critical(axes: Axes, critical: Crossing, ends: tuple[float, float]) -> None:
@@ -133,14 +123,15 @@ def wear_against_size_ratios(table: pd.DataFrame, published: pd.DataFrame, remar
 def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw relative velocity and relative wear rate (%) in the steady window against particle scale, with deviations.
 
-    table: as from `published_sizes.steady_by_scale`; hollow where the window is not steady
+    table: as from `published_sizes.steady_by_scale`; hollow where the window is not steady, of a mean over packings
+        where that of any of them is not
     published: quantity, surface, scale_from, scale_to, relation, value, source; of the two measures
     """
     figure = new_figure(remarks)
     panels = figure.subplots(1, len(MEASURE_NAMES))
     for axes, (measure, label) in zip(panels, MEASURE_NAMES.items(), strict=True):
         for surface, one in table[table["measure"] == measure].groupby("surface", sort=False):
-            _with_deviation(axes, one.sort_values("particle_scale"), str(surface))
+            _with_deviation(axes, one, str(surface))
         for each in published[published["quantity"] == measure].itertuples():
             look = {"color": colour(each.surface), "markerfacecolor": "white", "linestyle": ":", "label": "published"}
             look["marker"] = PUBLISHED_MARKS[each.relation]
@@ -148,7 +139,7 @@ def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Seque
         axes.set(xlabel="Particle scale (-)", ylabel=label)
         axes.set_ylim(bottom=0.0)
     shown = [_of_surface(name) for name in sorted(set(table["surface"]), key=lambda name: name != PLAIN)]
-    handles = [Line2D([], [], color=each, marker=mark, label=name) for each, mark, name in shown]
+    handles = [Line2D([], [], color=each, marker=mark, linestyle="", label=name) for each, mark, name in shown]
     handles.append(Line2D([], [], color="black", marker="o", markerfacecolor="white", linestyle="", label="not steady"))
     for relation in dict.fromkeys(published.loc[published["quantity"].isin(MEASURE_NAMES), "relation"]):
         mark = {"marker": PUBLISHED_MARKS[relation], "markerfacecolor": "white", "linestyle": ":"}
@@ -158,13 +149,12 @@ def steady_by_scale(table: pd.DataFrame, published: pd.DataFrame, remarks: Seque
 
 
 def _with_deviation(axes: Axes, one: pd.DataFrame, surface: str) -> None:
-    """Draw means with their deviations along the travel, hollow where the window is not steady."""
-    shade = colour(surface)
-    bars = {"color": shade, "capsize": 3, "linewidth": 1.0, "label": surface}
-    axes.errorbar(one["particle_scale"], one["mean_percent"], one["deviation_percent"], **bars)
-    fill = [shade if steady else "white" for steady in one["steady"]]
-    look = {"marker": marker(surface), "edgecolors": shade, "zorder": 3}
-    axes.scatter(one["particle_scale"], one["mean_percent"], 36, fill, **look)
+    """Draw the means of the packings' windows over packings, and their deviations along the travel as thin lines."""
+    shade, aside = colour(surface), ASIDE if surface == PLAIN else -ASIDE
+    thin = {"fmt": "none", "ecolor": shade, "elinewidth": 0.6, "alpha": 0.6, "label": f"{surface} deviation"}
+    axes.errorbar(one["particle_scale"] + aside, one["mean_percent"], one["deviation_percent"], **thin)
+    hollow = ~one["steady"].astype(bool)
+    packings_by_scale(axes, one, "mean_percent", (shade, marker(surface)), surface, hollow, aside)
 
 
 def spider_charts(

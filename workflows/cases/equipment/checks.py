@@ -1,0 +1,276 @@
+"""Checks of a run of equipment that need no drawing: parts, wear, what is predicted, and what it would take."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED, motion_faults, motion_of
+from bulkwear.workflows.cases.equipment.parameters import most_blocks, start_up_blocks
+from bulkwear.workflows.cases.equipment.placing import largest_diameter
+from bulkwear.workflows.cases.equipment.room_checks import ROOM_CHECKS
+from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres, physical_modulus_known
+from bulkwear.workflows.config.units import to_si
+
+LONGEST_NAME = 100  # letters of a part's or an outlet's name: texts of the solver hold 200, with a word of its own
+LEAST_PATCH_DIAMETERS = 2.5  # of an area patch, in median particles: a smaller one is hit by single particles
+SHORTEST_BLOCK_CONTACTS = 10.0  # of a block, in contacts of the largest particles: what is shorter counts single hits
+IMPACT_VELOCITY = 1.0  # m/s, of such a contact; its time depends on the fifth root of it
+HERTZ_TIME = 2.87  # -, of the time that an elastic impact of spheres takes (Johnson, Contact Mechanics, 1985, 11.24)
+MOST_STEPS = 50_000_000  # of a run: with ten thousand particles they take a core about a week
+MOST_PARTICLES = 20_000_000  # in a machine: some 20 GB of memory
+RULES = ("remaining_m", "remaining_fraction", "worn_mass_fraction")  # of a change-out
+# keys of a motion as parameters have them -> as a study has them
+WRITTEN = {
+    next(iter(to_si({key: 0.0}))): key
+    for key in ("point_mm", "speed_rpm", "amplitude_mm", "amplitude_deg", "phase_deg")
+}
+DIRECTIONS = ("axis", "velocity_m_per_s", "amplitude_m")  # of a motion, which must not be 0
+PACES = ("speed_rad_per_s", "amplitude_rad")  # neither
+
+
+def summed_by_the_solver(run: CheckedRun) -> Fault | None:
+    """The ledger is the solver's, which is what the decks are written for."""
+    return None if run.settings["ledger"] == "solver" else ("ledger", "solver for equipment")
+
+
+# ---------------------------------------------------------------- parts
+
+
+def names_short_enough(run: CheckedRun) -> Fault | None:
+    """The names of parts and outlets are as short as the solver needs them."""
+    for section in ("parts", "outlets"):
+        for name in run.settings.get(section) or {}:
+            if len(name) > LONGEST_NAME:
+                return f"{section}.{name}", f"a name of at most {LONGEST_NAME} letters, found {len(name)}"
+    return None
+
+
+def some_part_wears(run: CheckedRun) -> Fault | None:
+    """A part wears."""
+    if any(part["wears"] for part in run.parameters["parts"]):
+        return None
+    return "parts", "one part or more with role: wears, found none"
+
+
+def bodies_named_once(run: CheckedRun) -> Fault | None:
+    """No body of a file is two parts, one of them perhaps with all bodies: it would press on particles twice."""
+    seen: dict[str, list[Mapping[str, Any]]] = {}
+    for part in run.parameters["parts"]:
+        for other in seen.setdefault(part["file"], []):
+            named = {part.get("solid"), other.get("solid")}
+            if len(named) == 1 and None not in named:
+                return f"parts.{part['name']}.solid", f"a solid of its own, that one is parts.{other['name']}"
+            if len(named) == 2 and None in named:
+                whole, single = (part, other) if "solid" not in part else (other, part)
+                return f"parts.{whole['name']}.file", (
+                    f"a file of its own, or parts.{whole['name']}.solid, the body that is meant: without it all bodies"
+                    f" are, and solid {single['solid']} is parts.{single['name']} already"
+                )
+        seen[part["file"]].append(part)
+    return None
+
+
+def motions_complete(run: CheckedRun) -> Fault | None:
+    """Each motion has the keys that its kind needs, and none that it cannot use."""
+    for part, motion in _moving(run):
+        if fault := motion_faults(motion):
+            name, kind = WRITTEN.get(fault[0], fault[0]), motion["kind"]
+            known = [WRITTEN.get(each, each) for each in (*NEEDED[kind], *FREE.get(kind, ()))]
+            needed = ", ".join(known[: len(NEEDED[kind])])
+            free = f", and as you like {', '.join(known[len(NEEDED[kind]) :])}" if kind in FREE else ""
+            key = f"parts.{part}.motion.{name}"
+            if fault[1] == "missing":
+                return key, f"{kind} with {needed}{free}"
+            return key, f"none for the kind {kind}, which has {needed}{free}"
+    return None
+
+
+def motions_move(run: CheckedRun) -> Fault | None:
+    """Motions have a direction and a pace, stop after they have started, and start while the machine starts up."""
+    start_up = run.parameters["start_up"]["most_s"]
+    for part, motion in _moving(run):
+        still = next((name for name in DIRECTIONS if name in motion and not any(motion[name])), None)
+        still = still or next((name for name in PACES if motion.get(name) == 0.0), None)
+        key = f"parts.{part}.motion"
+        if still:
+            many = "numbers that are not all 0" if still in DIRECTIONS else "a number other than 0"
+            return f"{key}.{WRITTEN.get(still, still)}", f"{many}, or a part without motion"
+        full = motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0)
+        if motion.get("stop_s", math.inf) < full:
+            return f"{key}.stop_s", f"at least {full:g} s, start_s and ramp_s together"
+        if full > start_up:
+            late = "start_s" if "start_s" in motion else "ramp_s"
+            return f"{key}.{late}", f"full speed within start_up.most_s, {start_up:g} s, found {full:g} s"
+        motion_of(motion)  # raises ValueError for what is not known here
+    return None
+
+
+def _moving(run: CheckedRun) -> list[tuple[str, Mapping[str, Any]]]:
+    return [(part["name"], part["motion"]) for part in run.parameters["parts"] if part["motion"]]
+
+
+def thin_phrase(thickness: float, source: str) -> str:
+    """Return which edges are allowed on a liner of that thickness (m), and why."""
+    reason = "a liner that is thinner than an element would be worn through in a few updates"
+    return f"at most {millimetres(thickness)}, {source}: {reason}"
+
+
+def liner_thicker_than_elements(run: CheckedRun) -> Fault | None:
+    """A liner is at least as thick as its elements are long: an update may take a good part of an edge."""
+    for part in run.parameters["parts"]:
+        if part["wears"] and part.get("thickness_m", math.inf) < part["edge_m"]:
+            return f"parts.{part['name']}.edge_mm", thin_phrase(part["thickness_m"], "its thickness_mm")
+    return None
+
+
+# ---------------------------------------------------------------- wear and operation
+
+
+def wear_as_predicted(run: CheckedRun) -> Fault | None:
+    """Wear is not accelerated: an update stands for hours of operation; parts have their own thickness."""
+    wear = run.settings["wear"]
+    if wear["acceleration"] != 1.0:
+        return "wear.acceleration", "1: each update of the surface stands for hours of operation"
+    if "local_thickness_mm" in wear:
+        return "wear.local_thickness_mm", "none: each part has a thickness_mm of its own, or its drawing's"
+    return None
+
+
+def updates_deform(run: CheckedRun) -> Fault | None:
+    """A shape that is updated may change."""
+    most = run.parameters["updates"]["most"]
+    if not most or run.settings["wear"]["deform"]:
+        return None
+    return "wear.deform", f"true where the shape is updated (updates.most: {most}), or updates.most: 0"
+
+
+def laws_have_parameters(run: CheckedRun) -> Fault | None:
+    """Each part's wear law finds its parameters in wear.parameters, which are those of wear.law."""
+    for part in run.parameters["parts"]:
+        needed = next(iter(to_si({each.name: 0.0 for each in LAWS[part["law"]].parameters}).items()), None)
+        if part["wears"] and needed and needed[0] not in part["law_parameters"]:
+            law, own = run.settings["wear"]["law"], run.settings["parts"][part["name"]].get("law")
+            without = [name for name, each in LAWS.items() if not each.parameters]
+            return (f"parts.{part['name']}.law" if own else "wear.law"), (
+                f"wear.law ({law}), whose parameters stand in wear.parameters, or one without any: {', '.join(without)}"
+            )
+    return None
+
+
+def fed_what_is_predicted(run: CheckedRun) -> Fault | None:
+    """Megatonnes are those of a feed."""
+    if "throughput_kg" not in run.parameters["operation"] or run.parameters["inlet"]:
+        return None
+    return "operation.throughput_mt", "operation.duration_h in its place where there is no inlet to count tonnes at"
+
+
+def one_change_out_rule(run: CheckedRun) -> Fault | None:
+    """A liner is changed by one rule."""
+    given = [f"change_out_{rule.removesuffix('_m')}{'_mm' * rule.endswith('_m')}" for rule in RULES]
+    given = [key for key in given if key in run.settings["operation"]]
+    if len(given) < 2:
+        return None
+    return f"operation.{given[1]}", f"one rule of change-out, operation.{given[0]} is there already"
+
+
+def liner_left_to_wear(run: CheckedRun) -> Fault | None:
+    """Less than the thickness of every liner remains when it is changed."""
+    remaining = run.parameters["operation"].get("change_out_remaining_m", 0.0)
+    thickness = {p["name"]: p["thickness_m"] for p in run.parameters["parts"] if p["wears"] and "thickness_m" in p}
+    thinnest = min(thickness, key=thickness.__getitem__, default="")
+    if not thinnest or remaining < thickness[thinnest]:
+        return None
+    least = f"parts.{thinnest}.thickness_mm"
+    return "operation.change_out_remaining_mm", f"below {millimetres(thickness[thinnest])}, {least}"
+
+
+# ---------------------------------------------------------------- what it takes
+
+
+def patches_large_enough(run: CheckedRun) -> Fault | None:
+    """Area patches are two and a half median particles or more, and an element of what wears or more."""
+    median = LEAST_PATCH_DIAMETERS * run.parameters["particle"]["median_diameter_m"]
+    edges = {part["edge_m"]: f"parts.{part['name']}.edge_mm" for part in run.parameters["parts"] if part["wears"]}
+    least, reason = max(
+        (median, f"{LEAST_PATCH_DIAMETERS:g} median particles, as coarse-grained"),
+        (max(edges), edges[max(edges)]),
+    )
+    if run.parameters["sampling"]["patch_m"] >= least:
+        return None
+    return "sampling.patch_mm", f"at least {millimetres(least)}, {reason}"
+
+
+def blocks_in_order(run: CheckedRun) -> Fault | None:
+    """The most blocks are not fewer than the fewest."""
+    sampling = run.parameters["sampling"]
+    if sampling["fewest_blocks"] <= sampling["most_blocks"]:
+        return None
+    return "sampling.fewest_blocks", f"at most {sampling['most_blocks']}, sampling.most_blocks"
+
+
+def blocks_long_enough(run: CheckedRun) -> Fault | None:
+    """A block is longer than some contacts of particles."""
+    least = SHORTEST_BLOCK_CONTACTS * contact_time(run.parameters)
+    if run.parameters["sampling"]["block_s"] >= least:
+        return None
+    return "sampling.block_s", f"at least {least:.2g} s, {SHORTEST_BLOCK_CONTACTS:g} contacts of the largest particles"
+
+
+def contact_time(parameters: Mapping[str, Any]) -> float:
+    """Return the time (s) that two of the largest particles touch when they meet at 1 m/s, by Hertz."""
+    particle, radius = parameters["particle"], 0.5 * largest_diameter(parameters)
+    mass = particle["density_kg_per_m3"] * math.pi / 6.0 * (2.0 * radius) ** 3
+    modulus = 0.5 * parameters["derived"]["youngs_moduli_pa"][0] / (1.0 - particle["poissons_ratio"] ** 2)
+    return HERTZ_TIME * ((0.5 * mass) ** 2 / (0.5 * radius * modulus**2 * IMPACT_VELOCITY)) ** 0.2
+
+
+def steps_within_reason(run: CheckedRun) -> Fault | None:
+    """A run has fewer time steps than take weeks."""
+    derived, blocks = run.parameters["derived"], most_blocks(run.parameters)
+    steps, block_s = derived["run_in_steps"] + derived["travel_steps"], run.parameters["sampling"]["block_s"]
+    if steps <= MOST_STEPS:
+        return None
+    found = f"it takes {steps:.2g} time steps of {derived['time_step_s']:.2g} s, at most {MOST_STEPS:.2g} are allowed"
+    starting = start_up_blocks(run.parameters)
+    left = MOST_STEPS / derived["first_cycle_steps"] - (blocks - starting)
+    if 2 * starting > blocks and left >= 2.0:
+        return "start_up.most_s", f"at most {math.floor(left) * block_s:.4g} s: {found}"
+    most = block_s * MOST_STEPS / steps
+    return "sampling.block_s", f"at most {most:.2g} s in up to {blocks} blocks: {found}"
+
+
+def particles_within_reason(run: CheckedRun) -> Fault | None:
+    """A machine holds fewer particles than fit into a computer's memory."""
+    held, scale = run.parameters["derived"]["held_particles"], run.parameters["particle"]["scale"]
+    if held <= MOST_PARTICLES:
+        return None
+    least = scale * (held / MOST_PARTICLES) ** (1.0 / 3.0)
+    found = f"a filling, and what comes in within half of start_up.most_s, are about {held:.2g} particles"
+    return "particle_scale", f"at least {least:.3g}: {found}, {MOST_PARTICLES:.2g} fit into memory"
+
+
+EQUIPMENT_CHECKS: tuple[Check, ...] = (
+    summed_by_the_solver,
+    names_short_enough,
+    some_part_wears,
+    bodies_named_once,
+    motions_complete,
+    motions_move,
+    *ROOM_CHECKS,
+    liner_thicker_than_elements,
+    wear_as_predicted,
+    updates_deform,
+    laws_have_parameters,
+    physical_modulus_known,
+    fed_what_is_predicted,
+    one_change_out_rule,
+    liner_left_to_wear,
+    patches_large_enough,
+    blocks_in_order,
+    blocks_long_enough,
+    steps_within_reason,
+    particles_within_reason,
+)

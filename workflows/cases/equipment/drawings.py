@@ -1,0 +1,55 @@
+"""Where the drawings of parts are: files in meshes of the project or the package, drawn by a script where missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.engine.project import current_project
+from bulkwear.workflows.engine.state import digest, file_digest
+
+MESHES = "meshes"
+SCRIPT = "draw.py"  # in the folder of drawings: python draw.py <folder> writes them all there
+
+
+def drawing_source(name: str) -> Path:
+    """Return the file of a drawing, or the script that draws it where there is no such file.
+
+    name: path below meshes. Raises ConfigError where there is neither.
+    """
+    project = current_project()
+    for candidate in (Path(MESHES, name), Path(MESHES, name).with_name(SCRIPT)):
+        found = next((folder / candidate for folder in project.folders if (folder / candidate).is_file()), None)
+        if found is not None:
+            return found
+    raise ConfigError(
+        f"{MESHES}/{name}: there is no such file, and no {SCRIPT} in its folder that draws it; allowed is a CAD or "
+        f"mesh file in {MESHES} of the project or the package."
+    )
+
+
+def drawing_digest(name: str) -> str:
+    """Return the hash of a drawing, or of the script that draws it. Raises ConfigError where there is neither."""
+    source = drawing_source(name)
+    return digest(source.name, file_digest(source))
+
+
+def drawing(name: str, folder: Path) -> Path:
+    """Return the file of a drawing, drawn into the folder first where there is only its script.
+
+    Raises ConfigError with the script's last words where it fails or does not draw it.
+    """
+    source = drawing_source(name)
+    if source.name != SCRIPT:
+        return source
+    drawn = folder / name
+    if not drawn.is_file():
+        drawn.parent.mkdir(parents=True, exist_ok=True)
+        done = subprocess.run([sys.executable, str(source), str(drawn.parent)], capture_output=True, text=True)
+        if done.returncode or not drawn.is_file():
+            found = sorted(path.name for path in drawn.parent.iterdir())
+            words = (done.stderr.strip().splitlines() or [f"it drew {', '.join(found) or 'nothing'}"])[-1]
+            raise ConfigError(f"{MESHES}/{name}: {SCRIPT} in its folder did not draw it: {words}.")
+    return drawn

@@ -1,0 +1,243 @@
+"""What a study of equipment found, in sentences: when parts are changed, which design is better, what wear changes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN
+from bulkwear.postproc.statistics.steady import DRIFTING, STEADY
+from bulkwear.postproc.statistics.steady import UNSAID as NOT_SAID
+from bulkwear.postproc.tables.summary import THROUGH
+from bulkwear.workflows.cases.equipment.comparison import FIRST, LIFE, UNSAID
+from bulkwear.workflows.cases.equipment.life import AS_BUILT, EXTRAPOLATED, FOLLOWED, PARTLY, WHOLE_PART
+from bulkwear.workflows.cases.equipment.phases import PRISTINE
+
+Tables = Mapping[str, pd.DataFrame]
+DIGITS = 2  # significant ones of an answer, whose interval is wide
+SMALLEST_CHANGE = 0.1  # %, below which a change is called none
+STEADINESS = {STEADY: "steady", DRIFTING: "not steady", NOT_SAID: "not known to be steady"}
+FROM_ONE = 1.0  # number of packings of which the scatter is unknown
+PER_CENT = f"{100.0 * CONFIDENCE:.0f} %"
+RATIOS = {  # quantity of the table of designs: what a part does in its ratio
+    LIFE: "lasts {ratio} times as long",
+    "steel_lost": "loses {ratio} times as much steel per hour",
+}
+CHANGES = {  # quantity of the table of loads: verb and noun
+    "power_W": ("takes", "power"),
+    "worn_mass_kg_per_h": ("loses", "steel per hour"),
+}
+
+
+def rounded(value: float, digits: int = DIGITS) -> str:
+    """Return a number with few digits, thousands apart by commas: 5,200."""
+    if not math.isfinite(value):
+        return "an unknown number of"
+    if value == 0.0:
+        return "0"
+    decimals = digits - 1 - math.floor(math.log10(abs(value)))
+    return f"{round(value, decimals):,.{max(decimals, 0)}f}"
+
+
+def span(low: float, high: float, unit: str = "", digits: int = DIGITS) -> str:
+    """Return the ends of an interval, 4,100 to 6,700 h."""
+    return f"{rounded(low, digits)} to {rounded(high, digits)}{f' {unit}' if unit else ''}"
+
+
+def spoken(name: str) -> str:
+    """Return the name of a part as people say it."""
+    return name.replace("_", " ")
+
+
+# ---------------------------------------------------------------- life
+
+
+def answers_on_life(life: pd.DataFrame) -> list[str]:
+    """Return when each part of each setting is changed, where it decides and how that is known."""
+    several = life["setting"].nunique() > 1
+    return [life_sentence(row, several) for _, row in life.iterrows()]
+
+
+def life_sentence(row: pd.Series, several: bool) -> str:
+    """Return the sentences on the life of a part; several: whether the study has other designs."""
+    who = f"{f'Design {row.setting}: the' if several else 'The'} {spoken(row.part)}"
+    if isinstance(row.reason, str) and row.reason:
+        return f"{who}: how long it lasts cannot be said, because {row.reason}."
+    further = [f"{rounded(row[f'life_{unit}'])} {unit}" for unit in ("Mt", "years") if np.isfinite(row[f"life_{unit}"])]
+    after = ", ".join([f"{rounded(row.life_h)} h ({interval_words(row)})", *further])
+    said = [f"{who} has to be changed after {after}; {place_words(row)}.", how_words(row), asked_words(row)]
+    return " ".join(filter(None, said))
+
+
+def interval_words(row: pd.Series) -> str:
+    """Return the interval of a life, or what is known of it from one packing."""
+    ends = row.life_low_h, row.life_high_h
+    if row.packings > FROM_ONE and np.isfinite(ends[0]):
+        return f"{span(*ends, 'h')}, {PER_CENT}"
+    unknown = UNKNOWN if row.packings <= FROM_ONE else "scatter unknown"
+    if np.isfinite(ends[0]):
+        return f"{unknown}; its own blocks and the coefficient give {span(*ends, 'h')}"
+    if row.coefficient_error > 0.0:
+        return f"{unknown}; the coefficient alone gives {span(row.coefficient_low_h, row.coefficient_high_h, 'h')}"
+    return unknown
+
+
+def place_words(row: pd.Series) -> str:
+    """Return where the worst place is and how fast it wears; by its mass the whole part decides."""
+    if row.patch == WHOLE_PART:
+        return "its whole mass decides"
+    place = ", ".join(f"{round(row[f'{axis}_mm']):,}" for axis in "xyz")
+    worn = f", {rounded(row.worn_mm_per_1000h)} mm as worn" if row.how != AS_BUILT else ""
+    rate = f"{rounded(row.pristine_mm_per_1000h)} mm per 1,000 h as built{worn}"
+    return f"its worst place is at ({place}) mm of its drawing and loses {rate}"
+
+
+def how_words(row: pd.Series) -> str:
+    """Return as far as which hour the shape was worn, and what goes on from there."""
+    hours = rounded(row.simulated_h)
+    return {
+        FOLLOWED: "The shape was worn until then.",
+        PARTLY: f"The shape was worn for {hours} h, until then in some packings; in the others the last rate goes on.",
+        EXTRAPOLATED: f"The shape was worn for {hours} h; from there on the last rate goes on.",
+        AS_BUILT: "That is by the rate as built: the shape was not worn.",
+    }[row.how]
+
+
+def asked_words(row: pd.Series) -> str:
+    """Return whether a part lasts as long as the study asks for; nothing where it asks for no hours."""
+    if not row.asked_h > 0.0:
+        return ""
+    asked = f"the {rounded(row.asked_h)} h that are asked for"
+    ends = [end for end in (row.life_low_h, row.life_high_h) if np.isfinite(end)]
+    if row.packings > FROM_ONE and ends and ends[0] <= row.asked_h <= ends[-1]:
+        return f"Whether it lasts {asked} cannot be said."
+    return f"It {'lasts' if row.life_h >= row.asked_h else 'does not last'} {asked}."
+
+
+def cards(life: pd.DataFrame) -> list[tuple[str, str]]:
+    """Return the life of each part as a number and what it is."""
+    found, several = [], life["setting"].nunique() > 1
+    for _, row in life[np.isfinite(life["life_h"])].iterrows():
+        of = f", design {row.setting}" if several else ""
+        found.append(
+            (f"{rounded(row.life_h)} h", f"until the {spoken(row.part)} is changed{of}: {interval_words(row)}")
+        )
+    return found
+
+
+# ---------------------------------------------------------------- designs, worn shape
+
+
+def answers_on_designs(designs: pd.DataFrame) -> list[str]:
+    """Return how each design compares with the first one, and whether the interval says which is better."""
+    found = []
+    for quantity, words in RATIOS.items():
+        rows = designs[designs["quantity"] == quantity]
+        first = rows.loc[rows["verdict"] == FIRST].set_index("part")["setting"]
+        for _, row in rows[(rows["verdict"] != FIRST) & np.isfinite(rows["ratio"])].iterrows():
+            told = words.format(ratio=rounded(row.ratio, 3))
+            than = f"The {spoken(row.part)} of {row.setting} {told} as that of {first[row.part]}"
+            found.append(f"{than} ({ratio_words(row)}): {verdict_words(row)}.")
+    return found
+
+
+def ratio_words(row: pd.Series) -> str:
+    """Return the interval of a ratio."""
+    if not np.isfinite(row.ratio_low):
+        return UNKNOWN if row.packings <= FROM_ONE else "scatter unknown"
+    return f"{span(row.ratio_low, row.ratio_high, digits=3)}, {PER_CENT}"
+
+
+def verdict_words(row: pd.Series) -> str:
+    """Return what the interval of a ratio says."""
+    if row.verdict in (UNSAID, UNKNOWN):
+        return "which is better cannot be said"
+    return f"that is {row.verdict}, and the interval says so"
+
+
+def answers_on_worn_shape(loads: pd.DataFrame) -> list[str]:
+    """Return what the worn shape changes: power of moving parts, steel lost by those that wear.
+
+    Changes that are not shown to be any are left out. What may be 0 as built, or turns round, has none in per cent.
+    """
+    found, several = [], loads["setting"].nunique() > 1
+    for _, row in loads[loads["quantity"].isin(list(CHANGES))].iterrows():
+        nothing = row.pristine_low <= 0.0 <= row.pristine_high
+        unshown = row.change_percent_low <= 0.0 <= row.change_percent_high
+        if not row.worn * row.pristine > 0.0 or nothing or unshown:
+            continue
+        who = f"{f'Design {row.setting}: the' if several else 'The'} {spoken(row.part)} as worn"
+        verb, what = CHANGES[row.quantity]
+        size, more = abs(row.change_percent), "more" if row.change_percent >= 0.0 else "less"
+        if size < SMALLEST_CHANGE:
+            found.append(f"{who} {verb} as much {what} as built, within {SMALLEST_CHANGE:g} %.")
+        else:
+            found.append(f"{who} {verb} {rounded(size)} % {more} {what} than as built ({change_words(row)}).")
+    return found
+
+
+def change_words(row: pd.Series) -> str:
+    """Return the interval of a change."""
+    low, high = row.change_percent_low, row.change_percent_high
+    if not np.isfinite(low):
+        return UNKNOWN if row.packings <= FROM_ONE else "scatter unknown"
+    return f"change {span(low, high, '%')}, {PER_CENT}"
+
+
+# ---------------------------------------------------------------- flow, balance, worn through
+
+
+def answers_on_flow(flow: pd.DataFrame) -> list[str]:
+    """Return whether the flow of each setting is steady on the shape as built, and its means."""
+    found, several = [], flow["setting"].nunique() > 1
+    for setting, rows in flow[flow["phase"] == PRISTINE].groupby("setting", sort=False):
+        counts, whose = rows["answer"].value_counts(), f" of design {setting}" if several else ""
+        told = STEADINESS[counts.index[0]]
+        if len(rows) > 1:
+            told = ", ".join(f"{STEADINESS[word]} in {count}" for word, count in counts.items())
+            told += f" of {len(rows)} packings"
+        mean = rows.mean(numeric_only=True)
+        flows = mean["out_t_per_h"] > 0.0
+        held = f"{rounded(mean['held_kg'], 3)} kg are held"
+        rates = f"{rounded(mean['in_t_per_h'], 3)} t/h come in, {rounded(mean['out_t_per_h'], 3)} t/h go out, "
+        stay = f", each for {rounded(mean['residence_s'])} s" if flows else ""
+        found.append(f"The flow{whose} is {told}: {rates if flows else ''}{held}{stay}.")
+    return found
+
+
+def answer_on_balance(balance: pd.DataFrame) -> str:
+    """Return whether every particle is accounted for."""
+    missing = balance[balance["missing"] != 0]
+    if missing.empty:
+        runs = balance["run"].nunique()
+        cycles = f"{len(balance)} cycles of {f'{runs} runs' if runs > 1 else 'the run'}"
+        return f"No particle is missing in any of {cycles}: what came in was there or had gone out through an outlet."
+    cases = ", ".join(f"{row.missing} in cycle {row.cycle} of {row.run}" for row in missing.itertuples())
+    return f"Particles are missing: {cases}."
+
+
+def answers_on_holes(summary: pd.DataFrame) -> list[str]:
+    """Return which runs are worn through somewhere, and after how many hours of operation."""
+    if THROUGH not in summary:
+        return []
+    through = summary[summary[THROUGH] > 0]
+    return [
+        f"In run {row.run} a first hole is there by {rounded(row.through_h)} h: {row.through_said}. The mean depth of "
+        "its patch, which the life is told by, is less than that of the hole."
+        for row in through.itertuples()
+    ]
+
+
+def all_answers(tables: Tables, summary: pd.DataFrame) -> list[str]:
+    """Return the answers of a study in the order in which its page gives them."""
+    return [
+        *answers_on_life(tables["life"]),
+        *answers_on_holes(summary),
+        *answers_on_designs(tables["designs"]),
+        *answers_on_worn_shape(tables["loads"]),
+        *answers_on_flow(tables["flow"]),
+        answer_on_balance(tables["mass_balance"]),
+    ]

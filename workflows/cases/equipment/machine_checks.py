@@ -1,0 +1,300 @@
+"""Checks of a machine with its drawings, before any solver starts.
+
+Nothing is said of parts that cut one another, as brackets, shafts and flanges do: particles touch each of them.
+Neither of facets that look inward: closed bodies are turned outward when they are read, and of open ones the touched
+side is found. What cannot be mended is a body that is drawn as the room for the material in place of the walls round
+it: material would be placed within a body, which is what is looked for.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import igl
+import numpy as np
+
+from bulkwear.meshes.own.read import read_solids
+from bulkwear.meshes.own.solids import UNITS
+from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
+from bulkwear.postproc.wear.bodies import body
+from bulkwear.postproc.wear.side import connected_pieces
+from bulkwear.postproc.wear.thickness import thickness_to_back
+from bulkwear.workflows.cases.equipment.checks import thin_phrase
+from bulkwear.workflows.cases.equipment.decks import domain, longest_s, skin
+from bulkwear.workflows.cases.equipment.drawings import drawing
+from bulkwear.workflows.cases.equipment.motions import motion_of
+from bulkwear.workflows.cases.equipment.placing import filling_box, largest_diameter, placing_room
+from bulkwear.workflows.cases.equipment.surfaces import faces_of, looks, room_needed
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.run_checks import millimetres
+
+LARGEST_PART = 200.0  # m, diagonal: larger than any machine that particles are simulated in
+LIKELY_UNITS = ("mm", "m", "cm", "in", "ft")  # of drawings, the likeliest first
+MOST_CELLS = 500_000_000  # in which the solver looks for neighbours: 2 GB
+OUTSIDE = 1e-8  # m; a facet whose middle is farther out is lost to the solver (SMALL_DMBRDR of LIGGGHTS 3.8.0)
+GRAZING = 0.05  # -, of the smallest diameter: particles that overlap a wall by less are not thrown off
+FINEST = 0.01  # -, of half the longest side of such room: parts that are narrower there may be missed
+MEASURED = 0.1  # -, by which a thickness along normals may be less than the one drawn: a flight leans, a vault is bent
+WITHIN = 0.5  # -, winding number of a place within a closed body: 1, outside 0
+AXES = "xyz"
+
+Parameters = Mapping[str, Any]
+
+
+def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
+    """Raise ConfigError, one sentence with part and key, for a machine that cannot be simulated.
+
+    run: the sections of its parameters that its surface depends on; surface: all parts as one, as they are drawn
+    """
+    parts = [body(surface, faces_of(surface, number, part)) for number, part in enumerate(run["parts"])]
+    for part, mesh in zip(run["parts"], parts, strict=True):
+        _check_size(run, part, _diagonal(mesh.points))
+    _check_cells(run, surface)
+    for part, mesh in zip(run["parts"], parts, strict=True):
+        _check_within(run, surface, part, mesh)
+    _check_inlet(run, parts)
+    _check_filling(run, surface, parts)
+    for part, mesh in zip(run["parts"], parts, strict=True):
+        _check_thickness(part, mesh)
+
+
+# ---------------------------------------------------------------- sizes
+
+
+def check_units(run: Parameters) -> None:
+    """Raise ConfigError for a part whose unit makes it far too large or too small; what cannot be read is left alone.
+
+    It needs no elements: those of a wrong unit may be too many for anything else.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        for part in run["parts"]:
+            try:
+                solids, scale = read_solids(drawing(part["file"], Path(folder)), part["unit"], None)
+            except (ValueError, OSError):
+                continue
+            _check_size(run, part, scale * _diagonal(solids.points))
+
+
+def _check_size(run: Parameters, part: Parameters, size: float) -> None:
+    """Raise ConfigError for a part of a size (m) that no part has, with the unit that would make sense."""
+    least = run["particle"]["median_diameter_m"]
+    if least <= size <= LARGEST_PART:
+        return
+    drawn = size / UNITS[part["unit"]]
+    fitting = [f"in {unit} it is {_length(drawn * UNITS[unit])}" for unit in LIKELY_UNITS]
+    fits = [least <= drawn * UNITS[unit] <= LARGEST_PART for unit in LIKELY_UNITS]
+    hint = next((text for text, fit in zip(fitting, fits, strict=True) if fit), "no unit makes sense of it")
+    raise ConfigError(
+        f"parts.{part['name']}.unit is {part['unit']}, in which {part['file']} is {_length(size)} large, allowed are"
+        f" {millimetres(least)}, a median particle as coarse-grained, to {LARGEST_PART:g} m: {hint}."
+    )
+
+
+def _length(metres: float) -> str:
+    """Return a length as people say it."""
+    return f"{metres:.4g} m" if metres >= 1.0 else f"{1e3 * metres:.4g} mm"
+
+
+def _diagonal(points: np.ndarray) -> float:
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _check_cells(run: Parameters, surface: SurfaceMesh) -> None:
+    """Raise ConfigError for room that takes more cells than fit into memory."""
+    sides = [high - low for low, high in domain(run, surface)]
+    cell = 0.5 * (largest_diameter(run) + skin(run))
+    cells = math.prod(side / cell for side in sides)
+    if cells <= MOST_CELLS:
+        return
+    rooms = {part["name"]: _diagonal(np.array(_room_of(run, surface, part))) for part in run["parts"]}
+    largest = max(rooms, key=rooms.__getitem__)
+    found = f"{' x '.join(f'{side:.3g}' for side in sides)} m, {cells:.1e} cells of {millimetres(cell)}"
+    raise ConfigError(
+        f"{'domain' if run['domain'] else 'parts'}: what is simulated is {found} in which neighbours are looked for,"
+        f" allowed are {MOST_CELLS:.1e}: a part is in a wrong unit or far from the others (parts.{largest} needs the"
+        f" most room, {_length(rooms[largest])}), or particle_scale is too small."
+    )
+
+
+def _room_of(run: Parameters, surface: SurfaceMesh, part: Parameters) -> tuple[np.ndarray, np.ndarray]:
+    faces = surface.triangles[faces_of(surface, run["parts"].index(part), part)]
+    return room_needed(surface.points[np.unique(faces)], part, longest_s(run))
+
+
+def _check_within(run: Parameters, surface: SurfaceMesh, part: Parameters, mesh: SurfaceMesh) -> None:
+    """Raise ConfigError for a part that stands out of the domain or the slice, at any time."""
+    low, high = room_needed(mesh.points, part, longest_s(run))
+    for k, (first, last) in enumerate(domain(run, surface)):
+        beyond = max(first - low[k], high[k] - last)
+        if beyond > OUTSIDE:
+            sliced = run["periodic"] and run["periodic"]["axis"] == AXES[k]
+            section = "periodic" if sliced else "domain"
+            moving = " on its way" if part["motion"] else ""
+            mend = "cut the drawing there" if sliced and not part["motion"] else "make room for it"
+            found = f"{part['file']} stands out by {millimetres(beyond)} along {AXES[k]}{moving}"
+            raise ConfigError(
+                f"parts.{part['name']}.file: {found}, from {millimetres(low[k])} to {millimetres(high[k])}, allowed is"
+                f" {millimetres(first)} to {millimetres(last)}, {section}.low_mm and {section}.high_mm: {mend}."
+            )
+
+
+# ---------------------------------------------------------------- where material is placed
+
+
+def _check_inlet(run: Parameters, parts: Sequence[SurfaceMesh]) -> None:
+    """Raise ConfigError for an inlet within a part, or with a part in the room where particles are placed."""
+    if not run["inlet"]:
+        return
+    corners = placing_room(run)
+    centre, sides = corners.mean(axis=0), corners[[1, 3, 4]] - corners[0]
+    lengths = np.linalg.norm(sides, axis=1)
+    turned, half = (sides / lengths[:, None]).T, 0.5 * lengths - _grazed(run)
+    found = f"inlet.centre_mm is {_place(run['inlet']['centre_m'])}"
+    room = " x ".join(f"{1e3 * length:.4g}" for length in lengths)
+    for part, mesh in zip(run["parts"], parts, strict=True):
+        motion, closed = motion_of(part["motion"]), closed_faces(mesh.triangles)
+        for time in looks(part["motion"], longest_s(run)):
+            points = motion.placed(mesh.points, time)
+            hit = first_within((points - centre) @ turned, mesh.triangles, half, _spacing(run, half))
+            if hit is not None:
+                place = _place(hit @ turned.T + centre) + (f" at {time:.3g} s" if part["motion"] else "")
+                raise ConfigError(
+                    f"{found}, allowed is a place where the room of {room} mm behind the inlet, in which particles are"
+                    f" placed, is free: parts.{part['name']} reaches into it at {place}."
+                )
+            if is_within(points, mesh.triangles[closed], centre):
+                raise ConfigError(f"{found}, {_inside(part, 'an inlet')}.")
+
+
+def _check_filling(run: Parameters, surface: SurfaceMesh, parts: Sequence[SurfaceMesh]) -> None:
+    """Raise ConfigError for a filling that a part reaches into at the start, or out of what is simulated."""
+    filling = run["filling"]
+    if not filling:
+        return
+    low, high = filling_box(run)
+    for k, (first, last) in enumerate(domain(run, surface)):
+        if (beyond := max(first - low[k], high[k] - last)) > OUTSIDE:
+            raise ConfigError(
+                f"filling.centre_mm is {_place(filling['centre_m'])}, from where the cylinder stands out of what is"
+                f" simulated by {millimetres(beyond)} along {AXES[k]}, allowed is none of it: give domain, or a smaller"
+                " cylinder."
+            )
+    centre, half = 0.5 * (low + high), 0.5 * (high - low) - _grazed(run)
+    across = [k for k in range(3) if AXES[k] != filling["axis"]]
+    radius = filling["radius_m"] - _grazed(run)
+    for part, mesh in zip(run["parts"], parts, strict=True):
+        points = motion_of(part["motion"]).placed(mesh.points, 0.0) - centre
+        hit = first_within(
+            points, mesh.triangles, half, _spacing(run, half), lambda at: np.hypot(*at[:, across].T) < radius
+        )
+        if hit is not None:
+            place = f"{_place(hit + centre)}, {millimetres(np.hypot(*hit[across]))} from its axis"
+            raise ConfigError(
+                f"filling.radius_mm is {1e3 * filling['radius_m']:.6g}, allowed is a cylinder that is free at the"
+                f" start: parts.{part['name']} reaches into it at {place}."
+            )
+        if is_within(points, mesh.triangles[closed_faces(mesh.triangles)], np.zeros(3)):
+            found = f"filling.centre_mm is {_place(filling['centre_m'])}"
+            raise ConfigError(f"{found}, {_inside(part, 'a filling')}.")
+
+
+def _inside(part: Parameters, what: str) -> str:
+    return (
+        f"within the closed body parts.{part['name']}, allowed is {what} in the room where material flows: if"
+        f" {part['file']} is that room, draw the walls round it in its place"
+    )
+
+
+def _place(point: Sequence[float]) -> str:
+    return f"({', '.join(f'{1e3 * value + 0.0:.4g}' for value in point)}) mm"
+
+
+def _grazed(run: Parameters) -> float:
+    return GRAZING * min(run["particle"]["diameters_m"])
+
+
+def _spacing(run: Parameters, half: np.ndarray) -> float:
+    return max(0.5 * min(run["particle"]["diameters_m"]), FINEST * float(half.max()))
+
+
+def first_within(
+    points: np.ndarray,
+    triangles: np.ndarray,
+    half: np.ndarray,
+    spacing: float,
+    inside: Callable[[np.ndarray], np.ndarray] | None = None,
+) -> np.ndarray | None:
+    """Return a place (3,) m of a surface within a box about the origin, and where `inside` says so; None without one.
+
+    points: (n, 3) m; triangles: (m, 3); half: (3,) m, half the sides of the box; spacing: m, what is narrower may be
+    missed; inside: of places (k, 3), whether each is within (k,)
+    """
+    if not (half > 0.0).all():
+        return None
+    for corners in _small_pieces(points[triangles], half, spacing):
+        middle = corners.mean(axis=1)
+        hits = (np.abs(middle) < half).all(axis=1)
+        hits &= inside(middle) if inside else True
+        if hits.any():
+            return middle[np.argmax(hits)]
+    return None
+
+
+def _small_pieces(corners: np.ndarray, half: np.ndarray, spacing: float) -> Iterator[np.ndarray]:
+    """Yield triangles (k, 3, 3) that may reach into a box, halved at their longest edges until those are short."""
+    while len(corners):
+        corners = corners[((corners.min(axis=1) < half) & (corners.max(axis=1) > -half)).all(axis=1)]
+        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+        small = lengths.max(axis=1, initial=0.0) <= spacing
+        yield corners[small]
+        corners, lengths = corners[~small], lengths[~small]
+        rows = np.arange(len(corners))
+        first = lengths.argmax(axis=1)
+        a, b, c = (corners[rows, (first + k) % 3] for k in range(3))
+        middle = 0.5 * (a + b)
+        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+
+
+def closed_faces(triangles: np.ndarray) -> np.ndarray:
+    """Return the mask (m,) of the faces whose connected piece has no open edge; triangles: (m, 3)."""
+    piece, rim = connected_pieces(triangles), np.isin(triangles, boundary_nodes(triangles)).any(axis=1)
+    return ~np.isin(piece, piece[rim])
+
+
+def is_within(points: np.ndarray, triangles: np.ndarray, place: np.ndarray) -> bool:
+    """Return whether a place (3,) m lies within closed bodies; points (n, 3) m, triangles (m, 3)."""
+    corners = points[triangles].reshape(-1, 3)
+    if not len(corners) or (place < corners.min(axis=0)).any() or (place > corners.max(axis=0)).any():
+        return False
+    number = igl.winding_number(np.ascontiguousarray(points), np.ascontiguousarray(triangles), np.array([place]))
+    return bool(np.abs(number).max() > WITHIN)
+
+
+# ---------------------------------------------------------------- liners
+
+
+def _check_thickness(part: Parameters, mesh: SurfaceMesh) -> None:
+    """Raise ConfigError for a liner that is thinner, over half of its area, than its elements are long."""
+    if not part["wears"] or "thickness_m" in part:
+        return
+    thickness = thickness_of(mesh)
+    if thickness >= part["edge_m"] * (1.0 - MEASURED):
+        return
+    allowed = thin_phrase(thickness, f"the thickness in {part['file']}")
+    raise ConfigError(f"parts.{part['name']}.edge_mm is {1e3 * part['edge_m']:.6g}, allowed is {allowed}.")
+
+
+def thickness_of(mesh: SurfaceMesh) -> float:
+    """Return the thickness (m) to the back that half of a part's area has less of; infinite for one without a back."""
+    size = areas(mesh.points, mesh.triangles)
+    distance = thickness_to_back(mesh.points, mesh.triangles)[0]
+    known = np.isfinite(distance).any(axis=1)
+    if not known.any():
+        return math.inf
+    values, size = np.nanmean(distance[known], axis=1), size[known]
+    order = np.argsort(values)
+    return float(values[order][np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum())])

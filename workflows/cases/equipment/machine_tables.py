@@ -1,0 +1,127 @@
+"""What a study's machines are: their parts, motions and feeds, in words and tables of the page.
+
+A run's parameters are those of `parameters.run_parameters`, SI.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
+from bulkwear.workflows.report.text import number
+
+SECONDS_PER_HOUR, TONNES_PER_KG, KG_PER_MT = 3600.0, 1e-3, 1e9
+RPM = 60.0 / (2.0 * math.pi)  # per rad/s
+
+Parameters = Mapping[str, Any]
+
+
+def parts_table(runs: Mapping[str, Parameters]) -> pd.DataFrame:
+    """Return a row per part; runs: {setting: parameters of its first run}. Settings with equal parts share rows."""
+    rows: dict[tuple, dict[str, Any]] = {}
+    for setting, run in runs.items():
+        for part in run["parts"]:
+            row = _part_row(part)
+            rows.setdefault(tuple(row.values()), {"setting": [], **row})["setting"].append(setting)
+    found = [{**row, "setting": ", ".join(row["setting"])} for row in rows.values()]
+    table = pd.DataFrame(found)
+    alike = len(runs) == 1 or set(table["setting"]) == {", ".join(runs)}
+    return table.drop(columns="setting") if alike else table
+
+
+def _part_row(part: Mapping[str, Any]) -> dict[str, Any]:
+    wears = part["wears"]
+    return {
+        "part": part["name"],
+        "role": "wears" if wears else "rigid",
+        "file": part["file"],
+        "solid": part.get("solid", ""),
+        "material": part["material"],
+        "thickness_mm": part.get("thickness_m", math.nan) * MILLIMETRES,
+        "edge_mm": part["edge_m"] * MILLIMETRES,
+        "law": part["law"] if wears else "",
+        "wear_coefficient_per_pa": part["wear_coefficient_per_pa"] if wears else math.nan,
+        "coefficient_error_percent": 100.0 * part["wear_coefficient_error"] if wears else math.nan,
+        "motion": motion_words(part["motion"]),
+    }
+
+
+def motion_words(motion: Mapping[str, Any] | None) -> str:
+    """Return how a part moves."""
+    if not motion:
+        return "at rest"
+    kind = motion["kind"]
+    about = (
+        f"about {_vector(motion['axis'])} through {_vector(motion['point_m'], MILLIMETRES)} mm"
+        if "axis" in motion
+        else ""
+    )
+    words = {
+        "rotation": lambda: f"turns at {number(motion['speed_rad_per_s'] * RPM, 3)} rpm {about}",
+        "turning_surface": lambda: f"its surface turns at {number(motion['speed_rad_per_s'] * RPM, 3)} rpm {about}",
+        "translation": lambda: f"moves at {_vector(motion['velocity_m_per_s'])} m/s",
+        "belt": lambda: f"its surface runs at {_vector(motion['velocity_m_per_s'])} m/s",
+        "oscillation": lambda: (
+            f"swings by {_vector(motion['amplitude_m'], MILLIMETRES)} mm in {motion['period_s']:g} s"
+        ),
+        "angular_oscillation": lambda: (
+            f"swings by {number(motion['amplitude_rad'] * DEGREES, 3)} degrees in {motion['period_s']:g} s {about}"
+        ),
+    }[kind]()
+    start, ramp, stop = (motion.get(f"{name}_s") for name in ("start", "ramp", "stop"))
+    course = [f"from {start:g} s on" if start else "", f"ramp {ramp:g} s" if ramp else ""]
+    course.append(f"until {stop:g} s" if stop is not None else "")
+    return ", ".join(filter(None, [words, *course]))
+
+
+def _vector(values: Sequence[float], factor: float = 1.0) -> str:
+    return f"({', '.join(number(factor * value, 4) for value in values)})"
+
+
+def feed_table(runs: Mapping[str, Parameters]) -> pd.DataFrame:
+    """Return a row per setting: bulk material, feed and filling, sizes of the particles as simulated."""
+    rows = []
+    for setting, run in runs.items():
+        particle, inlet, filling = run["particle"], run["inlet"], run["filling"]
+        rows.append(
+            {
+                "setting": setting,
+                "feed_t_per_h": inlet["rate_kg_per_s"] * SECONDS_PER_HOUR * TONNES_PER_KG if inlet else math.nan,
+                "feed_velocity_m_per_s": math.hypot(*inlet["velocity_m_per_s"]) if inlet else math.nan,
+                "filled_percent": 100.0 * filling["fraction"] if filling else math.nan,
+                "particle_scale": particle["scale"],
+                "smallest_mm": min(particle["diameters_m"]) * MILLIMETRES,
+                "median_mm": particle["median_diameter_m"] * MILLIMETRES,
+                "largest_mm": max(particle["diameters_m"]) * MILLIMETRES,
+                "held_particles": run["derived"]["held_particles"],
+            }
+        )
+    return pd.DataFrame(rows).dropna(axis="columns", how="all")
+
+
+def rule_words(operation: Mapping[str, Any]) -> str:
+    """Return the rule by which a liner is changed, as a phrase: 10 mm left."""
+    if "change_out_remaining_m" in operation and operation["change_out_remaining_m"] > 0.0:
+        return f"{operation['change_out_remaining_m'] * MILLIMETRES:g} mm left"
+    if operation.get("change_out_remaining_fraction", 0.0) > 0.0:
+        return f"{100.0 * operation['change_out_remaining_fraction']:g} % of the thickness left"
+    if "change_out_worn_mass_fraction" in operation:
+        return f"{100.0 * operation['change_out_worn_mass_fraction']:g} % of the mass worn"
+    return "worn through"
+
+
+def operation_words(run: Parameters) -> str:
+    """Return what operation a run predicts, and when its liners are changed."""
+    operation, asked = run["operation"], run["derived"]["operation_s"] / SECONDS_PER_HOUR
+    said = [f"A part is changed at its worst place: {rule_words(operation)}."]
+    if "change_out_worn_mass_fraction" in operation:
+        said = [f"A part is changed by its mass: {rule_words(operation)}."]
+    if asked > 0.0:
+        fed = operation.get("throughput_kg")
+        said.append(f"{asked:,.0f} h of operation are asked for{f', {fed / KG_PER_MT:g} Mt' if fed else ''}.")
+    said.append(f"A year has {operation['hours_per_year_s'] / SECONDS_PER_HOUR:,.0f} h of operation.")
+    return " ".join(said)

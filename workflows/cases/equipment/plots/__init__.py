@@ -1,0 +1,1 @@
+"""Figures of the case equipment, drawn from its tables and surfaces."""

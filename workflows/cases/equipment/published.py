@@ -1,0 +1,130 @@
+"""What a study of equipment computes, number by number, and published values beside it.
+
+Names of numbers: <quantity>_<part>, of loads and rates <quantity>_<part>_<pristine or worn>, of the flow and of a
+mill's charge <quantity>_<pristine or worn>. A row of config/published/equipment_anchors.csv stands beside the number of
+its name and unit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bulkwear.postproc.statistics.intervals import estimate
+from bulkwear.workflows.cases.equipment.comparison import FIRST
+from bulkwear.workflows.cases.equipment.machine_tables import RPM
+from bulkwear.workflows.cases.equipment.tables import KEPT
+
+COLUMNS = ["quantity", "setting", "value", "low", "high", "unit", "packings"]
+PER_PACKING = {  # table with a row per packing and phase: its columns and their units
+    "flow": {"out_t_per_h": "t/h", "held_kg": "kg", "residence_s": "s", "power_W": "W"},
+    "charge": {"toe_deg": "degrees", "shoulder_deg": "degrees"},
+}
+NAMES = {"out_t_per_h": "out", "held_kg": "held", "residence_s": "residence", "power_W": "power"}
+INSIDE, ABOVE, BELOW = "inside", "above", "below"
+
+Rows = list[dict[str, Any]]
+
+
+def key_numbers(found: Mapping[str, pd.DataFrame], runs: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    """Return COLUMNS of all that a study computes, a row per number and setting.
+
+    found: tables life, loads, steel, remaining, designs, flow, and of mills charge; runs: values of `values_of_runs`
+    """
+    rows = [*_given(runs), *_lives(found["life"]), *_loads(found["loads"])]
+    for row in found["steel"].itertuples():
+        rows.append(_row(row, f"steel_lost_{row.part}", "kg per Mt", row.pristine_kg_per_Mt))
+    for row in found["remaining"].itertuples():
+        ends = row.remaining_mm, row.remaining_mm_low, row.remaining_mm_high
+        rows.append(_row(row, f"remaining_{row.part}_after_{row.operation_h:.0f}_h", "mm", *ends))
+    rows += _less_steel(found["designs"])
+    for name, columns in PER_PACKING.items():
+        if name in found:
+            rows += _over_packings(found[name], columns)
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _given(runs: Sequence[Mapping[str, Any]]) -> Rows:
+    """Return what a study gives that is published as well: coefficients (1/Pa) and speeds (rpm) of its parts."""
+    rows = []
+    for run in {run["setting"]: run for run in reversed(runs)}.values():
+        for name, part in run["parts"].items():
+            own = {"setting": run["setting"]}
+            if part["wears"]:
+                coefficient = {"value": part["wear_coefficient_per_pa"], "unit": "1/Pa"}
+                rows.append({"quantity": f"wear_coefficient_{name}", **own, **coefficient})
+            if speed := (part["motion"] or {}).get("speed_rad_per_s"):
+                rows.append({"quantity": f"speed_{name}", **own, "value": abs(speed) * RPM, "unit": "rpm"})
+    return rows
+
+
+def _lives(life: pd.DataFrame) -> Rows:
+    rows = []
+    for row in life.itertuples():
+        rows.append(_row(row, f"life_{row.part}", "h", row.life_h, row.life_low_h, row.life_high_h))
+        for phase in KEPT:
+            rate = getattr(row, f"{phase}_mm_per_1000h")
+            rows.append(_row(row, f"worst_recession_{row.part}_{phase}", "mm per 1,000 h", rate))
+    return rows
+
+
+def _loads(loads: pd.DataFrame) -> Rows:
+    rows = []
+    for row in loads.itertuples():
+        for phase in KEPT:
+            values = (getattr(row, f"{phase}{end}") for end in ("", "_low", "_high"))
+            rows.append(_row(row, f"{row.quantity}_{row.part}_{phase}", row.unit, *values))
+    return rows
+
+
+def _less_steel(designs: pd.DataFrame) -> Rows:
+    """Return by how much less steel the parts of each design lose than those of the first one."""
+    rows = []
+    chosen = designs[(designs["quantity"] == "steel_lost") & (designs["verdict"] != FIRST)]
+    for row in chosen[np.isfinite(chosen["ratio"])].itertuples():
+        less = (100.0 * (1.0 - ratio) for ratio in (row.ratio, row.ratio_high, row.ratio_low))
+        rows.append(_row(row, f"less_steel_lost_{row.part}", "%", *less))
+    return rows
+
+
+def _over_packings(table: pd.DataFrame, columns: Mapping[str, str]) -> Rows:
+    """Return the mean over packings of columns, a row per column, phase and setting."""
+    rows = []
+    for (setting, phase), packings in table.groupby(["setting", "phase"], sort=False):
+        for column, unit in columns.items():
+            mean = estimate(packings[column].to_numpy(float))
+            if np.isfinite(mean.value):
+                quantity = f"{NAMES.get(column, column.removesuffix('_deg'))}_{phase}"
+                ends = dict(zip(("low", "high"), mean.interval(), strict=True))
+                own = {"setting": setting, "packings": mean.packings, "value": mean.value, "unit": unit}
+                rows.append({"quantity": quantity, **own, **ends})
+    return rows
+
+
+def _row(
+    row: Any, quantity: str, unit: str, value: float, low: float = math.nan, high: float = math.nan
+) -> dict[str, Any]:
+    """Return a number of a setting; row: of a table, with `setting` and perhaps `packings`."""
+    own = {"setting": row.setting, "packings": getattr(row, "packings", math.nan)}
+    return {"quantity": quantity, **own, "unit": unit, "value": value, "low": low, "high": high}
+
+
+def beside_anchors(anchors: pd.DataFrame, computed: pd.DataFrame) -> pd.DataFrame:
+    """Return published values beside the computed ones of the same quantity and unit.
+
+    difference_percent: computed over published, less 1; where: whether the computed one lies in the published range.
+    anchors: rows of equipment_anchors.csv of a study; computed: as from `key_numbers`. A value that the study does not
+    compute stands there without one.
+    """
+    theirs = anchors.rename(columns={name: f"published_{name}" for name in ("value", "low", "high")})
+    ours = computed.rename(columns={name: f"computed_{name}" for name in ("value", "low", "high")})
+    table = theirs.merge(ours, on=["quantity", "unit"], how="left", sort=False)
+    table["setting"] = table["setting"].fillna("")
+    table["difference_percent"] = 100.0 * (table["computed_value"] / table["published_value"] - 1.0)
+    value, low, high = (table[name] for name in ("computed_value", "published_low", "published_high"))
+    where = np.select([value < low, value > high, (value >= low) & (value <= high)], [BELOW, ABOVE, INSIDE], "")
+    return table.assign(where=where)
