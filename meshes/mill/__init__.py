@@ -1,0 +1,1 @@
+"""Tumbling mill of the study `mill`: the script that draws it."""

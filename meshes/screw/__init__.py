@@ -1,0 +1,1 @@
+"""Screw feeder of the study `screw`: the script that draws it."""
