@@ -22,6 +22,7 @@ from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import LOG
 
 STUDY, RUN = "demo", "R9_convex"
+FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
 
 
 def changed(run: Run, change: Mapping[str, Any]) -> Run:

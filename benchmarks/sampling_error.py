@@ -24,8 +24,9 @@ from bulkwear.postproc.plots.style import save
 from bulkwear.postproc.readers.contacts import read_contact_batches
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.ledger import LedgerBuilder
+from bulkwear.workflows.engine.case import LOAD_LEDGER
 from bulkwear.workflows.engine.chain import Chain, deck_text
-from bulkwear.workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, SAMPLE_MESH, SPINS, effective_modulus
+from bulkwear.workflows.engine.ledgers import CONTACTS, SAMPLE_MESH, SPINS, effective_modulus
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
 

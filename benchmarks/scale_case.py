@@ -10,11 +10,11 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
-from benchmarks.runs import changed
+from benchmarks.runs import FIRST_SEED, changed
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
 from bulkwear.workflows.cases.sliding_sample.work import settled_particles
 from bulkwear.workflows.config.design import Run, load_study
+from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.chain import Chain, total_steps
 from bulkwear.workflows.engine.derived import WALLS
@@ -136,7 +136,7 @@ def cases(scales: Iterable[int], names: Iterable[str], packings: int, of_referen
         (name, of_reference if name == REFERENCE else packings) for name in CANDIDATES if name in {*names, REFERENCE}
     ]
     return [
-        Case(name, surface, scale, FIRST_SEED + number * SEED_STEP)
+        Case(name, surface, scale, FIRST_SEED + number * SEED_SPACING)
         for scale in scales
         for number in range(max(packings, of_reference))
         for name, count in told

@@ -24,11 +24,11 @@ import pandas as pd
 from scipy import stats
 
 from benchmarks.plots.figures import Panel, deviation_figure
-from benchmarks.runs import changed
+from benchmarks.runs import FIRST_SEED, changed
 from bulkwear.postproc.mesh import write_surface
 from bulkwear.postproc.plots.style import save
-from bulkwear.postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
 from bulkwear.workflows.config.design import Run, load_study
+from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.cycles import fill_bed, run_chain
 from bulkwear.workflows.engine.solver import SolverError
@@ -157,7 +157,7 @@ def row_of(variant: Variant, folder: Path) -> dict[str, float]:
 def rows(folder: Path, minutes: float, packings: int) -> Iterator[dict[str, float]]:
     """Give the row of one variant after the other, packing by packing, until the processor time (min) is spent."""
     spent = 0.0
-    for seed in range(FIRST_SEED, FIRST_SEED + SEED_STEP * packings, SEED_STEP):
+    for seed in range(FIRST_SEED, FIRST_SEED + SEED_SPACING * packings, SEED_SPACING):
         for variant in variants(seed):
             if spent > 60.0 * minutes and not (folder / variant.folder / "wear.csv").exists():
                 return

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.runs import changed, simulated_run
-from bulkwear.postproc.statistics.screening_design import FIRST_SEED, SEED_STEP
+from benchmarks.runs import FIRST_SEED, changed, simulated_run
 from bulkwear.workflows.cases.sliding_sample.work import settled_particles
 from bulkwear.workflows.config.design import Run, load_study
+from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain, total_steps
 from bulkwear.workflows.engine.derived import WALLS, WINDOW
 
@@ -78,7 +78,7 @@ class Case:
 
 def packing(surfaces: Iterable[str], number: int) -> list[Case]:
     """Return the runs of a packing (0, 1, ...): every surface in every bed, in turn."""
-    return [Case(surface, bed, FIRST_SEED + number * SEED_STEP) for surface in surfaces for bed in BEDS]
+    return [Case(surface, bed, FIRST_SEED + number * SEED_SPACING) for surface in surfaces for bed in BEDS]
 
 
 def simulated(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:

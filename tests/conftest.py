@@ -4,6 +4,7 @@ LONGEST_FIRST = (  # measured on two cores: minutes each, most of it waiting whe
     "test_slurm.py",
     "workflows/test_project.py",
     "test_extend.py",
+    "equipment/test_tutorial.py",
     "engine/test_cycles.py",
     "workflows/test_snakemake.py",
     "test_chains.py",

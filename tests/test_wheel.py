@@ -68,7 +68,8 @@ def test_the_wheel_holds_the_whole_package(wheel):
     wanted = {name_of(path) for path in tracked() if name_of(path).split("/")[0] in SHIPPED}
     placed = {name if name.startswith("bulkwear/") else f"bulkwear/{name}" for name in wanted}
     profiles = {f"bulkwear/profiles/{name}/config.yaml" for name in ("default", "slurm")}
-    assert names == placed | profiles | {"bulkwear/Snakefile", "bulkwear/docs/project.md"}
+    told = {f"bulkwear/docs/{name}.md" for name in ("project", "equipment")}
+    assert names == placed | profiles | told | {"bulkwear/Snakefile"}
 
 
 def test_eleven_names_are_public(python, tmp_path):

@@ -17,7 +17,7 @@ import pandas as pd
 from bulkwear.meshes.disc import track_disc
 from bulkwear.postproc.mesh import SurfaceMesh, write_surface
 from bulkwear.workflows.cases.pin_on_disc.volume import law_volume
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.report.products import Job, Product, job_of, outputs_of, paths_of, products_of_study
 from tests import REPOSITORY
 

@@ -153,12 +153,23 @@ def files_of(folder: Path) -> set[str]:
     return {str(path) for path in found if path.parts[0] != "logs" and path.name != ".lock"}
 
 
+def is_stopped(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] == "T"
+    except FileNotFoundError:
+        return False
+
+
 def hang(folder: Path) -> bool:
-    """Stop the solvers that work in a folder for good; False if there were none."""
+    """Stop the solvers that work in a folder for good; False if none did, or one was just ending."""
     solvers = solver_processes(folder)
     for solver in solvers:
-        os.kill(solver, signal.SIGSTOP)
-    return bool(solvers)
+        try:
+            os.kill(solver, signal.SIGSTOP)
+        except ProcessLookupError:
+            return False
+    time.sleep(POLL)
+    return bool(solvers) and all(map(is_stopped, solvers))
 
 
 def test_a_time_limit_within_a_cycle_changes_nothing(cluster, tmp_path):

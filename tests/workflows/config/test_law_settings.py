@@ -10,8 +10,8 @@ from bulkwear.postproc.wear.kernels import KERNELS
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.readme import wear_laws
+from bulkwear.workflows.engine.derived import law_volume
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, cycle_fault, missing_kernels
-from bulkwear.workflows.engine.wear_step import law_volume
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
 from bulkwear.workflows.report.text import law_words, setting_rows
 from tests.support.law_cases import LONG_SLIP, long_slip_registered

@@ -48,6 +48,12 @@ def test_a_round_adds_packings_where_they_are_needed():
     assert json.loads(json.dumps(found)) == found
 
 
+def test_a_round_counts_in_words_what_it_adds():
+    """One packing is not packings: eleven of the twelve allowed leave one, ten leave two."""
+    assert decided(R9=(WIDE * 3)[:11])["said"].endswith("; 1 packing more")
+    assert decided(R9=(WIDE * 3)[:10])["said"].endswith("; 2 packings more")
+
+
 def test_the_most_packings_end_it():
     """However wide the interval is."""
     found = decided(R9=WIDE * 3)

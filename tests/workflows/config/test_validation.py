@@ -15,7 +15,7 @@ from bulkwear.workflows.config.patterns import SURFACES
 from bulkwear.workflows.config.readme import readme
 from bulkwear.workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
 from bulkwear.workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
-from bulkwear.workflows.engine.case import case_names, find_case
+from bulkwear.workflows.engine.cases import case_names, find_case
 from bulkwear.workflows.engine.ledgers import PRODUCERS
 from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES
 from bulkwear.workflows.report.page_parameters import page_of
@@ -71,7 +71,7 @@ BAD_KEYS = [
         "design: small.csv",
         "case: drum\ndesign: small.csv",
         "config/studies/small.yaml, line 3: case is 'drum', allowed is one of calibration, circular_tester,"
-        " pin_on_disc, sliding_sample.",
+        " equipment, pin_on_disc, sliding_sample.",
     ),
     (
         STUDY,

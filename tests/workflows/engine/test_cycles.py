@@ -20,8 +20,10 @@ from bulkwear.postproc.mesh import areas, read_surface, stl_corners
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
-from bulkwear.workflows.engine.accounting import FORCES, HISTORY, LEDGER, account, account_and_wear
+from bulkwear.workflows.engine.accounting import HISTORY, LEDGER, account, account_and_wear
+from bulkwear.workflows.engine.case import FORCES
 from bulkwear.workflows.engine.chain import write_cycle, write_shared_files
+from bulkwear.workflows.engine.derived import law_volume
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.ledgers import PRODUCERS
@@ -30,7 +32,6 @@ from bulkwear.workflows.engine.pieces import PIECES
 from bulkwear.workflows.engine.provenance import PROVENANCE, PROVENANCE_FILE, simulating_code
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import SolverError
-from bulkwear.workflows.engine.wear_step import law_volume
 from tests import REPOSITORY
 from tests.support.stl import stl_facets
 from tests.support.tiny import tiny_chain, tiny_study
@@ -255,8 +256,8 @@ def test_other_ways_to_wear_run_too(finished, tmp_path, wear):
 
 @pytest.mark.parametrize("then", ["stop", "cap", "go_on"])
 def test_a_part_that_is_worn_through(finished, tmp_path, capsys, then):
-    """With half the first cycle's depth as thickness the sample is worn through in that cycle: the run ends, stops at
-    the back, or goes on, says so, and its balance closes."""
+    """With half the first cycle's depth as thickness the sample is worn through in that cycle: it stops at its back
+    and the run ends or goes on, or it wears on behind it; each says so, and its balance closes."""
     half = 0.5 * wear_table(finished)["largest_depth_m"].iloc[0]
     study = tiny_study(wear={"local_thickness_mm": 1e3 * half, "worn_through": then})
     chain = replace(twin(finished, tmp_path), parameters=study.run(finished.name).parameters)
@@ -269,8 +270,8 @@ def test_a_part_that_is_worn_through(finished, tmp_path, capsys, then):
     assert (table["balance_error"] < 1e-6).all()
     surface = read_surface(chain.folder / "worn_surface.vtu")
     deepest = surface.point_data["lost_thickness_m"].max()
-    assert (deepest > half * (1.0 + 1e-6)) == (then != "cap")
-    assert (table["beyond_back_volume_m3"].sum() > 0.0) == (then == "cap")
+    assert (deepest > half * (1.0 + 1e-6)) == (then == "go_on")
+    assert (table["beyond_back_volume_m3"].sum() > 0.0) == (then != "go_on")
     assert np.nanmin(surface.point_data["remaining_thickness_m"]) == 0.0  # the holder has none
 
 
@@ -283,7 +284,7 @@ def first_ledger(chain, finished) -> pd.DataFrame:
     write_shared_files(chain)
     span = first_span(chain.parameters)
     write_cycle(chain, span, folder, surface)
-    cycles.simulate(chain, span, folder, len(surface.triangles), Progress(chain.name, 1))
+    cycles.simulate(chain, span, folder, {f"sample_{span.cycle}": len(surface.triangles)}, Progress(chain.name, 1))
     return account(chain, span, folder, surface)
 
 
@@ -588,7 +589,7 @@ def test_missing_triangles_stop_the_run(finished, tmp_path):
     write_cycle(chain, span, folder, surface)
     count = len(surface.triangles)
     with pytest.raises(SolverError, match=re.escape(f"keeps {count} of the {count + 1} triangles of mesh sample_1")):
-        cycles.simulate(chain, span, folder, count + 1, Progress("test", 1))
+        cycles.simulate(chain, span, folder, {f"sample_{span.cycle}": count + 1}, Progress("test", 1))
 
 
 def test_a_second_driver_waits_for_the_first(finished, tmp_path):

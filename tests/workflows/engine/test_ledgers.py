@@ -12,8 +12,9 @@ from bulkwear.postproc.wear.kernels import kernel_column
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.postproc.wear.ledger import LEDGER_FIELDS, POSITION_FIELDS, vector_columns
 from bulkwear.workflows.engine import cycles
+from bulkwear.workflows.engine.case import LOAD_LEDGER, Piece
 from bulkwear.workflows.engine.chain import Chain
-from bulkwear.workflows.engine.ledgers import CONTACTS, LOAD_LEDGER, PRODUCERS, SPINS, TOUCHING, SamplesError, producer
+from bulkwear.workflows.engine.ledgers import CONTACTS, PRODUCERS, SPINS, TOUCHING, SamplesError, producer
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.engine.solver import (
     CYCLE_EXECUTABLES,
@@ -31,6 +32,7 @@ SURFACE = SurfaceMesh(
     np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.02, 0.0], [0.0, 0.02, 0.0]]),
     np.array([[0, 1, 2], [0, 2, 3]]),
 )
+MESH = Piece(SURFACE, np.arange(len(SURFACE.triangles)))
 # Of the one contact, on triangle 0, whose first edge is the x axis: m, N, N against the sliding, m/s
 POINT, FORCE, FRICTION, SPEED = (0.01, 0.005, 0.0), 2.0, 0.5, 0.3
 DUMPED_FRICTION = 1.7  # N; evaluated for the dump
@@ -108,7 +110,7 @@ def columns_of(ledger, folder, **changes):
     folder.mkdir(parents=True, exist_ok=True)
     chain = chain_of(folder.parent, ledger, **changes)
     WRITERS[ledger](chain, folder)
-    return producer(chain.parameters).columns(chain, cycle(chain, 1), folder, SURFACE)
+    return producer(chain.parameters).columns(chain, cycle(chain, 1), folder, MESH)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -156,7 +158,7 @@ def test_looks_inside_a_cycle_come_in_order(tmp_path):
         (tmp_path / LOAD_LEDGER).rename(tmp_path / f"{LOAD_LEDGER}.{steps}")
     write_load_ledger(chain, tmp_path)
     source = producer(chain.parameters)
-    found = [steps for steps, _ in source.history(chain, cycle(chain, 1), tmp_path, SURFACE)]
+    found = [steps for steps, _ in source.history(chain, cycle(chain, 1), tmp_path, MESH)]
     assert found == sorted(looks)
     assert len(source.written(tmp_path)) == len(looks) + 1
 
@@ -187,7 +189,7 @@ def test_the_ledger_of_another_cycle_is_refused(tmp_path, changes, words):
     chain = chain_of(tmp_path, "solver")
     write_load_ledger(chain, tmp_path, **changes)
     with pytest.raises(LoadLedgerError, match=words):
-        producer(chain.parameters).columns(chain, cycle(chain, 1), tmp_path, SURFACE)
+        producer(chain.parameters).columns(chain, cycle(chain, 1), tmp_path, MESH)
 
 
 def test_missing_samples_are_refused(tmp_path):
@@ -195,7 +197,7 @@ def test_missing_samples_are_refused(tmp_path):
     chain = chain_of(tmp_path, "dumps")
     write_dumps(chain, tmp_path, samples=5)
     with pytest.raises(SamplesError, match=r"contacts\.dump: found 4 samples of the contacts, allowed is \d+\."):
-        producer(chain.parameters).columns(chain, cycle(chain, 1), tmp_path, SURFACE)
+        producer(chain.parameters).columns(chain, cycle(chain, 1), tmp_path, MESH)
 
 
 def test_only_sampled_contacts_seed_the_next_cycle(tmp_path):
@@ -208,7 +210,7 @@ def test_only_sampled_contacts_seed_the_next_cycle(tmp_path):
     write_dumps(chain, tmp_path / "cycle_002")
     assert (
         not producer(chain.parameters)
-        .columns(chain, cycle(chain, 2), tmp_path / "cycle_002", SURFACE)["impact_energy_J"]
+        .columns(chain, cycle(chain, 2), tmp_path / "cycle_002", MESH)["impact_energy_J"]
         .any()
     )
     assert PRODUCERS["solver"].kept == ()

@@ -10,12 +10,7 @@ from bulkwear.workflows.config.design import list_studies, load_study
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.schema import case_schema, load_schema
 from bulkwear.workflows.engine import case as engine_case
-from bulkwear.workflows.engine.case import (
-    case_folders,
-    case_module,
-    case_names,
-    find_case,
-)
+from bulkwear.workflows.engine.cases import case_folders, case_module, case_names, find_case
 from bulkwear.workflows.engine.inputs import SIMULATED_FROM, run_digest, simulated_from, surface_from, why_again
 from bulkwear.workflows.engine.own_code import code_of_case
 from bulkwear.workflows.engine.project import (
@@ -43,7 +38,7 @@ def mine(tmp_path, monkeypatch):
     yield enter_project(folder)
     leave_project()
     LAWS.pop(LAW)
-    engine_case._REGISTERED.pop(CASE, None)
+    engine_case.REGISTERED.pop(CASE, None)
     for module in [name for name in sys.modules if name.startswith(f"{engine_case.CASES_PACKAGE}.{CASE}")]:
         del sys.modules[module]
     for each in forgotten:

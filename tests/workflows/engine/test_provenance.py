@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from bulkwear.workflows.engine import provenance
-from bulkwear.workflows.engine.case import case_names
+from bulkwear.workflows.engine.cases import case_names
 from bulkwear.workflows.engine.code_parts import PARTS, essence, part_files, part_hashes
 from bulkwear.workflows.engine.project import PACKAGE
 from tests import REPOSITORY

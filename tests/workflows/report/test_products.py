@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import list_studies, load_study
-from bulkwear.workflows.engine.case import case_names, find_case
+from bulkwear.workflows.engine.cases import case_names, find_case
 from bulkwear.workflows.report import products
 from bulkwear.workflows.report.products import (
     Product,

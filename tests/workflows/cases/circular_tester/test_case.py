@@ -11,7 +11,7 @@ from bulkwear.postproc.mesh import area_vectors, edge_lengths_per_triangle
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester.work import surface_triangles
 from bulkwear.workflows.config.design import ConfigError, load_study
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain, bed_deck_text, deck_text, write_bed
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.forecast.forecast import work_of
@@ -93,7 +93,7 @@ def test_everything_lies_in_the_domain(shape):
     assert away.min() > 0.5 * bed["sample_length_m"]
     parameters = study.run("convex").parameters
     sample = study.case.surface_mesh(parameters)
-    there = study.case.piece(parameters, None, sample).mesh
+    there = study.case.pieces(parameters, None, sample)[0].mesh
     assert there.points[:, 2].max() < meshes["block"].points[:, 2].max()
     assert np.linalg.norm(there.points.mean(axis=0) - meshes["block"].points.mean(axis=0)) < bed["headroom_m"]
 
@@ -105,7 +105,7 @@ def test_the_sample_faces_the_flow():
     study = tiny_tester()
     parameters, case = study.run("plain").parameters, study.case
     sample = case.surface_mesh(parameters)
-    there = case.piece(parameters, None, sample).mesh
+    there = case.pieces(parameters, None, sample)[0].mesh
     top = np.abs(sample.points[:, 2]) < ROUND_OFF
     back, front = (there.points[top][np.isclose(sample.points[top, 1], side)] for side in (0.02, -0.02))
     rise = back[:, 2].mean() - front[:, 2].mean()
@@ -196,6 +196,15 @@ def test_a_design_needs_a_pair_of_one_particle_scale():
     assert case.design_fault(rows) is None
     rows[1]["particle_scale"] = 4
     assert "differ in particle_scale, allowed are equal ones" in case.design_fault(rows)
+
+
+def test_rows_of_a_design_have_one_seed():
+    """With seeds of their own, packings of one number would be different beds."""
+    case = find_case("circular_tester")
+    rows = [{"row": name, "series": "volume", "surface": name, "seed": 20220317} for name in ROWS]
+    assert case.design_fault(rows) is None
+    rows.append({"row": "fine", "series": "mesh", "surface": "plain"})
+    assert "seed is 20220317, none, allowed is one for all rows" in case.design_fault(rows)
 
 
 def test_work_is_that_of_beds_and_runs():

@@ -14,7 +14,7 @@ from bulkwear.workflows.cases.circular_tester.runs import (
     values_of_runs,
 )
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.report.products import figures_of, job_of, products_of
 from tests.support import tester_study as study
 
@@ -60,6 +60,13 @@ def test_runs_come_back_from_their_values(tmp_path):
     assert len({plain.bed_folder for _, plain in pairs}) == 3
     assert {values["name"] for values in values_of_pairs(of)} == {run.name for pair in pairs for run in pair}
     assert next(run for run in runs if run.series == "worn_out").patch == "4 mm round it"
+
+
+def test_a_run_has_the_packing_of_the_design_table():
+    """The second bed alone is not called the first one."""
+    of = load_study("circular_tester", overrides={"fidelity": "quick", "packings": 2, "rows": ["plain-2", "convex-2"]})
+    assert {row["run"]: row["packing"] for row in of.design_table()} == {"plain-2": 2, "convex-2": 2}
+    assert {values["name"]: values["packing"] for values in values_of_runs(of)} == {"plain-2": 2, "convex-2": 2}
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from bulkwear.workflows.cases.pin_on_disc.page import update_remark
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine import cycles, state
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import MOST_DECKS, Chain, deck_text, write_decks
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress

@@ -12,7 +12,7 @@ from bulkwear.workflows.cases.pin_on_disc.plots.contours import coefficient_name
 from bulkwear.workflows.cases.pin_on_disc.runs import window_forces
 from bulkwear.workflows.cases.pin_on_disc.volume import published_volume
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.engine.case import find_case
+from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.report.products import figures_of
 from tests import PUBLISHED
 from tests.support import pin_study

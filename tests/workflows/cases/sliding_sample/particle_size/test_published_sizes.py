@@ -155,6 +155,7 @@ def test_the_critical_scale_is_told_beside_the_sources():
     assert "between the scales 3 and 5" in said and "differs" not in said
     said = " ".join(critical_sentences(replace(CRITICAL, value=9.0, low=8.5, high=np.inf), 4.0, ratios, "convex"))
     assert "8.5 to beyond the scales simulated" in said and "What differs from the source" in said
+    assert "how bumps are turned, which" in said and "staggered" not in said  # that is decided: docs/decisions.md
     none = Crossing(np.nan, np.nan, np.nan, np.nan, np.nan, 0, 6, 3, "no form tried describes the wear")
     assert "no form tried describes the wear" in " ".join(critical_sentences(none, 4.0, ratios, "convex"))
 

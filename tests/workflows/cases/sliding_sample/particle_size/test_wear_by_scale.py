@@ -8,6 +8,7 @@ from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHE
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     PARTS,
     RATIOS,
+    bed_sentences,
     beside_published,
     critical_scale,
     critical_scale_text,
@@ -98,6 +99,33 @@ def test_no_crossing_is_extended_beyond_the_scales():
     found, forms = critical_scale(wear_by_scale(summary([1.0, 2.0, 3.0], noise=0.02, packings=3)))
     assert np.isnan(found.value) and found.reason == "none between the places"
     assert forms["crossing"].isna().all()
+
+
+def beds(forces, layers, thicknesses=(46.0,)):
+    """Plain runs of two packings per scale, {scale: mean normal force, N}, whose forces are 1 N off their mean."""
+    return pd.DataFrame(
+        {"particle_scale": scale, "mean_normal_force_N": force + off, "layers": layers / scale, "bed_thickness_mm": mm}
+        for scale, force in forces.items()
+        for off in (-1.0, 1.0)
+        for mm in thicknesses
+    )
+
+
+def test_lighter_beds_are_told():
+    """By the plain sample's mean force over that at the smallest scale, whatever the order of the rows; beds of fewer
+    than two layers by name, two layers are enough.
+    """
+    said = " ".join(bed_sentences(beds({12.0: 10.0, 6.0: 25.0, 8.0: 23.5}, layers=16.0)))
+    assert "levelled at 46 mm" in said
+    assert "over that at scale 6, is 94 % at scale 8, 40 % at scale 12;" in said
+    assert "Beds of scale 12 have fewer than 2 layers" in said
+
+
+def test_of_beds_that_cannot_be_compared_nothing_is_told():
+    """One scale has no other to be set over; thicknesses that differ are another change; thick beds are beds."""
+    assert bed_sentences(beds({6.0: 25.0}, layers=16.0)) == ["All beds are levelled at 46 mm."]
+    assert bed_sentences(beds({6.0: 25.0, 8.0: 23.5}, layers=16.0, thicknesses=(46.0, 20.0))) == []
+    assert "fewer" not in " ".join(bed_sentences(beds({6.0: 25.0, 8.0: 23.5}, layers=16.0)))
 
 
 def test_ratios_have_an_interval_per_scale():

@@ -13,6 +13,7 @@ from bulkwear.workflows.cases.sliding_sample.screening.confirmation import (
     design_of,
 )
 from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import screen_summary
+from bulkwear.workflows.config.design import load_study
 from tests import REPOSITORY as ROOT
 from tests.support.screening_study import FACTORS
 
@@ -101,6 +102,28 @@ def test_simulated_runs_against_their_intervals(predictions):
     assert table["plain_mm3_per_m"].tolist() == pytest.approx([5.0] * 4)
     said = confirmation_remarks(table)
     assert said == [f"the run {row} for discontinuous flow is found continuous" for row in rows[2:]]
+
+
+def test_every_packing_of_the_confirming_study_is_held_against_its_prediction(config, predictions):
+    """By the names that the study's own design table gives runs, rows and settings, not by those of first packings."""
+    design = config.path("designs/small.csv")
+    design.write_text(design.read_text() + "R1,2,2,20,1.5,0.5,30\nR2,4,2,20,1.5,0.5,30\nR3,4,4,20,1.5,0.5,30\n")
+    factors = "surfaces: [convex, plain]\nfactors: {a: major_radius_mm, t: bed_thickness_mm}"
+    config.edit("studies/small.yaml", "surfaces: [convex, plain]", factors)
+    best = config.root / "results/small/confirmation/design.csv"
+    best.parent.mkdir(parents=True)
+    head = design.read_text().splitlines()[0]
+    best.write_text(f"{head}\n{CONTINUOUS},2,4,40,3,0.5,30\n{DISCONTINUOUS},2,2,20,3,0.5,10\n")
+    settings = {"packings": 3, "bed": {"allow_thin_bed": True}}
+    summary = pd.DataFrame(load_study("small_confirmation", config.project, settings).design_table())
+    summary = summary.assign(worn_volume_per_metre_m3_per_m=1e-9 * np.arange(1.0, len(summary) + 1.0))
+    table = confirmation_table(predictions, summary, summary.assign(regime=CONTINUOUS))
+    convex = summary[summary["surface"] == "convex"]
+    assert table["setting"].value_counts().to_dict() == {CONTINUOUS: 3, DISCONTINUOUS: 3}
+    assert sorted(table["row"]) == sorted(convex["row"]) and len(set(table["row"])) == 6
+    expected = convex.set_index("row")["worn_volume_per_metre_m3_per_m"].reindex(table["row"])
+    assert table["simulated_mm3_per_m"].tolist() == pytest.approx((1e9 * expected).tolist())
+    assert (table["plain_mm3_per_m"] > table["simulated_mm3_per_m"]).all()
 
 
 def test_another_fidelity_confirms_nothing(predictions):

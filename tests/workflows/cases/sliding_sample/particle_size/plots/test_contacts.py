@@ -7,6 +7,8 @@ import pytest
 from bulkwear.postproc.plots.style import remarks_of
 from bulkwear.workflows.cases.sliding_sample.particle_size.collision import COLLISIONS, MODELS, dimensionless
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import (
+    ASIDE,
+    PACKING_SIZE,
     RANGE_COLOUR,
     bed_packing,
     collisions,
@@ -61,8 +63,31 @@ def test_a_bed_is_shown_by_scale_before_and_after():
     figure = bed_packing(table, PUBLISHED[PUBLISHED["case"] == "bed"], [])
     contacts, pores = figure.axes
     assert len(contacts.lines) == 4 and len(pores.lines) == 4
+    assert all(line.get_linestyle() == "None" for line in contacts.lines if line.get_label() != "_bound")
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names[:3] == ["ahead of the sample", "behind it", "particles whole"]
     bounds = [line for line in contacts.lines if line.get_label() == "_bound"]
     assert [list(line.get_xdata()) for line in bounds] == [[1, 5], [6, 8]]
+
+
+def test_packings_of_a_bed_are_small_marks_about_their_mean():
+    """Nothing joins them; particles counted whole are a line through the means."""
+    rows = [
+        {"particle_scale": scale, "state": "before", "coordination_number": 5.0 + off, "porosity": 0.4 + 0.1 * off}
+        for scale in SCALES
+        for off in (-0.2, 0.0, 0.2)
+    ]
+    table = pd.DataFrame(rows)
+    table = table.assign(porosity_whole_particles=table["porosity"] + 0.01)
+    contacts, pores = bed_packing(table, PUBLISHED[:0], []).axes
+    (packings,) = [line for line in contacts.lines if line.get_label() == "ahead of the sample"]
+    assert packings.get_linestyle() == "None" and packings.get_markersize() == PACKING_SIZE
+    assert len(packings.get_xdata()) == len(table)
+    means = [bars.lines[0] for bars in contacts.containers]
+    assert [line.get_xdata()[0] for line in means] == [scale - ASIDE for scale in SCALES]
+    assert [line.get_ydata()[0] for line in means] == pytest.approx([5.0] * len(SCALES))
+    (whole,) = [line for line in pores.lines if line.get_label() == "_whole" and len(line.get_xdata())]
+    assert list(whole.get_xdata()) == SCALES and list(whole.get_ydata()) == pytest.approx([0.41] * len(SCALES))
 
 
 def drawn_histories():

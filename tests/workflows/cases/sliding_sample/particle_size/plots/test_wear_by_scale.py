@@ -7,6 +7,8 @@ import pytest
 from bulkwear.postproc.plots.style import remarks_of
 from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
 from bulkwear.postproc.statistics.crossing import Crossing
+from bulkwear.postproc.statistics.intervals import estimate
+from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import ASIDE, MEAN_SIZE
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import (
     spider_charts,
     steady_by_scale,
@@ -122,12 +124,42 @@ def test_published_bounds_are_arcs():
 
 
 def test_means_by_scale_show_deviations_and_published_values():
-    """A panel per measure; windows that are not steady are hollow; published marks stand on their measure only."""
+    """A panel per measure; windows that are not steady are hollow, and means of them; published marks stand on their
+    measure only.
+    """
     figure = steady_by_scale(steady_rows(), RESULTS, ["shrunk"])
     velocity, rate = figure.axes
     assert len([line for line in velocity.lines if line.get_label() == "published"]) == 5
     assert not [line for line in rate.lines if line.get_label() == "published"]
-    assert all(
-        np.allclose(points.get_facecolors()[:, :3], 1.0) for points in rate.collections if len(points.get_facecolors())
-    )
-    assert len(velocity.containers) == 2 and "shrunk" in remarks_of(figure)
+    drawn = {axes: [line for line in axes.lines if line.get_marker() in "os"] for axes in (velocity, rate)}
+    assert all(line.get_markerfacecolor() == "white" for line in drawn[rate])
+    ours = [line for line in drawn[velocity] if line.get_label() != "published"]
+    assert ours and all(line.get_markerfacecolor() == line.get_color() for line in ours)
+    assert len([bars for bars in velocity.containers if "deviation" in bars.get_label()]) == 2
+    assert "shrunk" in remarks_of(figure)
+
+
+def test_packings_of_a_scale_are_marks_that_no_line_joins():
+    """Small ones, with the mean of every scale and its interval; one that is not steady makes its mean hollow alone."""
+    table = steady_rows()
+    table.loc[table["run"] == "S5-2_plain", "steady"] = False
+    velocity = steady_by_scale(table, RESULTS, []).axes[0]
+    packings = [line for line in velocity.lines if line.get_label() == "plain"]
+    assert {line.get_linestyle() for line in packings} == {"None"}
+    assert sorted(len(line.get_xdata()) for line in packings) == [1, 5]
+    means = [bars for bars in velocity.containers if bars.get_label() == "plain mean"]
+    values = {bars.lines[0].get_xdata()[0]: bars.lines[0].get_ydata()[0] for bars in means}
+    assert values == pytest.approx({scale + ASIDE: 12.0 for scale in (4.0, 5.0)})  # beside the convex sample's
+    assert [bars.lines[0].get_markerfacecolor() == "white" for bars in means] == [False, True]
+    found = estimate(table.query("run.str.startswith('S4') and surface == 'plain'")["mean_percent"][::2])
+    low, high = means[0].lines[2][0].get_segments()[0][:, 1]
+    assert (low, high) == pytest.approx(found.interval())
+
+
+def test_one_packing_is_a_large_mark():
+    """Its scatter is unknown, so it has no interval, and its deviation along the travel stays."""
+    table = steady_rows()
+    velocity = steady_by_scale(table[~table["run"].str.contains("-")], RESULTS, []).axes[0]
+    (packings,) = [line for line in velocity.lines if line.get_label() == "plain"]
+    assert packings.get_markersize() == MEAN_SIZE and len(packings.get_xdata()) == 2
+    assert {bars.get_label() for bars in velocity.containers} == {"plain deviation", "convex deviation"}

@@ -1,0 +1,393 @@
+"""Wrong inputs of equipment that are seen without a drawing: one sentence each, with the key and what is allowed."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from bulkwear.workflows.cases.equipment.checks import (
+    EQUIPMENT_CHECKS,
+    MOST_PARTICLES,
+    MOST_STEPS,
+    WRITTEN,
+    contact_time,
+)
+from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED
+from bulkwear.workflows.cases.equipment.placing import (
+    DEPTH_DIAMETERS,
+    PLACED_FRACTION,
+    largest_filling,
+    largest_rate,
+    normal_velocity,
+    placing_room,
+)
+from bulkwear.workflows.config.layers import ConfigError
+from tests.support.law_cases import long_slip_registered
+from tests.support.own_machine_project import SETTINGS, machine_study
+
+FILE = "config/studies/machine.yaml"
+TABLE = "config/designs/machine.csv"
+LARGEST_MM = 14.4  # of the ore: 1.2 times 3 mm, at a particle scale of 4
+TURNS = {"kind": "rotation", "point_mm": [60, 0, -220], "axis": [0, 1, 0], "speed_rpm": 60}
+FILLING = {"fraction": 0.2, "axis": "y", "centre_mm": [0, 0, -300], "radius_mm": 60, "length_mm": 80}
+ONLY_FILLED = {"inlet": None, "outlets": None, "filling": FILLING}
+SLICE = {"axis": "y", "low_mm": -50, "high_mm": 50}
+DOMAIN = {"low_mm": [-600, -300, -500], "high_mm": [600, 300, 300]}
+LONG = "l" * 101
+
+
+def motion(**changes):
+    """Changes of the study by which its plate moves."""
+    return {"parts": {"plate": {"motion": changes}}}
+
+
+def message_of(folder, rows="row\nA\n", **changes) -> str:
+    with pytest.raises(ConfigError) as caught, machine_study(folder, rows, **changes):
+        pass
+    return str(caught.value)
+
+
+PARTS = [
+    ({"ledger": "dumps"}, "ledger is 'dumps'", "solver for equipment"),
+    ({"parts": {LONG: SETTINGS["parts"]["hood"]}}, f"parts.{LONG} is", "a name of at most 100 letters, found 101"),
+    ({"outlets": {LONG: SETTINGS["outlets"]["below"]}}, f"outlets.{LONG} is", "at most 100 letters, found 101"),
+    (
+        {"parts": {name: {"role": "rigid"} for name in ("liner", "plate", "paddle")}},
+        "parts is a block of keys",
+        "one part or more with role: wears, found none",
+    ),
+    (
+        {"parts": {"plate": {"file": "liner.stl", "solid": "b"}, "liner": {"solid": "b"}}},
+        "parts.plate.solid is 'b'",
+        "a solid of its own, that one is parts.liner",
+    ),
+    (
+        {"parts": {"plate": {"file": "liner.stl"}, "liner": {"solid": "b"}}},
+        "parts.plate.file is 'liner.stl'",
+        "without it all bodies are, and solid b is parts.liner already",
+    ),
+    (
+        {"parts": {"plate": {"file": "liner.stl", "solid": "b"}}},
+        "parts.liner.file is 'liner.stl'",
+        "parts.liner.solid, the body that is meant",
+    ),
+    (
+        {"parts": {"liner": {"thickness_mm": 20}}},
+        "parts.liner.edge_mm is 25",
+        "at most 20 mm, its thickness_mm: a liner that is thinner than an element would be worn through",
+    ),
+]
+MOTIONS = [
+    (
+        motion(kind="rotation", axis=[0, 1, 0], speed_rpm=5),
+        "parts.plate.motion.point_mm is missing",
+        "rotation with point_mm, axis, speed_rpm, and as you like start_s, ramp_s, stop_s",
+    ),
+    (
+        motion(kind="oscillation", amplitude_mm=[0, 0, 1]),
+        "parts.plate.motion.period_s is missing",
+        "and as you like phase",
+    ),
+    (motion(kind="belt"), "parts.plate.motion.velocity_m_per_s is missing", "belt with velocity_m_per_s"),
+    (
+        motion(kind="translation", velocity_m_per_s=[1, 0, 0], speed_rpm=5),
+        "parts.plate.motion.speed_rpm is 5",
+        "none for the kind translation, which has velocity_m_per_s, and as you like start_s, ramp_s, stop_s",
+    ),
+    (
+        motion(kind="belt", velocity_m_per_s=[1, 0, 0], start_s=1),
+        "parts.plate.motion.start_s is 1",
+        "none for the kind belt, which has velocity_m_per_s",
+    ),
+    (
+        motion(**{**TURNS, "axis": [0, 0, 0]}),
+        "parts.plate.motion.axis is [0, 0, 0]",
+        "numbers that are not all 0, or a part without motion",
+    ),
+    (
+        motion(**{**TURNS, "speed_rpm": 0}),
+        "parts.plate.motion.speed_rpm is 0",
+        "a number other than 0, or a part without",
+    ),
+    (
+        motion(kind="translation", velocity_m_per_s=[0, 0, 0]),
+        "parts.plate.motion.velocity_m_per_s is [0, 0, 0]",
+        "numbers that are not all 0",
+    ),
+    (
+        motion(kind="belt", velocity_m_per_s=[0, 0, 0]),
+        "parts.plate.motion.velocity_m_per_s is",
+        "numbers that are not all 0",
+    ),
+    (
+        motion(kind="oscillation", amplitude_mm=[0, 0, 0], period_s=1),
+        "parts.plate.motion.amplitude_mm is [0, 0, 0]",
+        "numbers that are not all 0",
+    ),
+    (
+        motion(kind="angular_oscillation", point_mm=[0, 0, 0], axis=[0, 1, 0], amplitude_deg=0, period_s=1),
+        "parts.plate.motion.amplitude_deg is 0",
+        "a number other than 0",
+    ),
+    (
+        motion(**TURNS, ramp_s=0.2, stop_s=0.1),
+        "parts.plate.motion.stop_s is 0.1",
+        "at least 0.2 s, start_s and ramp_s together",
+    ),
+    (
+        motion(**TURNS, start_s=0.4, ramp_s=0.1),
+        "parts.plate.motion.start_s is 0.4",
+        "full speed within start_up.most_s, 0.45 s, found 0.5 s",
+    ),
+]
+FEED = [
+    ({"inlet": None, "outlets": None}, "inlet is missing", "an inlet, a block `filling`, or both"),
+    ({"outlets": None}, "outlets is missing", "one outlet or more where there is an inlet"),
+    ({"outlets": None, "periodic": SLICE}, "outlets is missing", "one outlet or more where there is an inlet"),
+    ({"outlets": {"below": None}}, "outlets is a block of keys", "one outlet or more where there is an inlet"),
+    ({"inlet": {"normal": [0, 0, 0]}}, "inlet.normal is [0, 0, 0]", "a direction: three numbers that are not all 0"),
+    (
+        {"outlets": {"below": {"normal": [0, 0, 0]}}},
+        "outlets.below.normal is [0, 0, 0]",
+        "a direction: three numbers that are not all 0",
+    ),
+    (
+        {"inlet": {"velocity_m_per_s": [0, 0, 1]}},
+        "inlet.velocity_m_per_s is [0, 0, 1]",
+        "more than 0.001 m/s along inlet.normal (0, 0, -1), found -1 m/s; turn the one or the other round",
+    ),
+    ({"inlet": {"velocity_m_per_s": [1, 0, 0]}}, "inlet.velocity_m_per_s is [1, 0, 0]", "more than 0.001 m/s along"),
+    ({"inlet": {"velocity_m_per_s": [0, 0, 0]}}, "inlet.velocity_m_per_s is [0, 0, 0]", "more than 0.001 m/s along"),
+    ({"inlet": {"size_mm": [43, 80]}}, "inlet.size_mm is [43, 80]", "sides of at least 43.2 mm, 3 of the largest"),
+    (
+        {"inlet": {"rate_t_per_h": 15}},
+        "inlet.rate_t_per_h is 15",
+        "at most 14.31 t/h, which is what can be placed before 80 x 80 mm at 1 m/s; a larger inlet.size_mm or a faster",
+    ),
+    (
+        {**ONLY_FILLED, "filling": {**FILLING, "fraction": 0.45}},
+        "filling.fraction is 0.45",
+        "at most 0.41, which is what can be placed at once in such a cylinder; an inlet may bring the rest",
+    ),
+    (
+        {**ONLY_FILLED, "filling": {**FILLING, "length_mm": 35}},
+        "filling.length_mm is 35",
+        "at least 36 mm, 2.5 of the largest particles, as coarse-grained",
+    ),
+    (
+        {**ONLY_FILLED, "filling": {**FILLING, "radius_mm": 17}},
+        "filling.radius_mm is 17",
+        "at least 18 mm, half of 2.5 of the largest particles",
+    ),
+]
+ROOM = [
+    (
+        {"periodic": {**SLICE, "axis": "z"}},
+        "periodic.axis is 'z'",
+        "x or y: along z material would fall for ever",
+    ),
+    (
+        {"periodic": {**SLICE, "high_mm": -60}},
+        "periodic.high_mm is -60",
+        "at least -14 mm, periodic.low_mm and 2.5 of the largest particles, as coarse-grained",
+    ),
+    ({"periodic": {**SLICE, "high_mm": -15}}, "periodic.high_mm is -15", "at least -14 mm, periodic.low_mm and 2.5 of"),
+    (
+        {"domain": {**DOMAIN, "high_mm": [600, -310, 300]}},
+        "domain.high_mm is [600, -310, 300]",
+        "above domain.low_mm by more than",
+    ),
+    (
+        {"domain": {**DOMAIN, "high_mm": [-500, 300, -400]}},
+        "domain.high_mm is [-500, 300, -400]",
+        "along x and z, the room at both ends in which particles count as strays",
+    ),
+    (
+        {"domain": {**DOMAIN, "high_mm": [600, 300, 200]}},
+        "inlet.centre_mm is [-60, 0, 160]",
+        "does not stand out of domain, -500 mm to 200 mm along z, as it does by 3.2 mm",
+    ),
+    (
+        {"periodic": {**SLICE, "low_mm": -30}},
+        "inlet.centre_mm is [-60, 0, 160]",
+        "a place from which the room behind it, in which particles are placed, does not stand out of periodic, -30 mm"
+        " to 50 mm along y, as it does by 10 mm",
+    ),
+    (
+        {**ONLY_FILLED, "periodic": {**SLICE, "high_mm": 30}},
+        "filling.centre_mm is [0, 0, -300]",
+        "the cylinder that is filled does not stand out of periodic, -50 mm to 30 mm along y, as it does by 10 mm",
+    ),
+    (
+        {"outlets": {"below": {"centre_mm": [0, 0, -520]}}, "domain": DOMAIN},
+        "outlets.below.centre_mm is [0, 0, -520]",
+        "does not stand out of domain, -500 mm to 300 mm along z, as it does by 20 mm",
+    ),
+]
+WEAR = [
+    ({"wear": {"acceleration": 100}}, "wear.acceleration is 100", "1: each update of the surface stands for hours"),
+    (
+        {"wear": {"local_thickness_mm": 9}},
+        "wear.local_thickness_mm is 9",
+        "none: each part has a thickness_mm of its own",
+    ),
+    ({"wear": {"deform": False}}, "wear.deform is false", "true where the shape is updated (updates.most: 2), or"),
+    ({"wear": {"patch": "physical"}}, "wear.patch is 'physical'", "none, simulated or radius, because ore has no"),
+    (
+        {**ONLY_FILLED, "operation": {"duration_h": None, "throughput_mt": 1}},
+        "operation.throughput_mt is 1",
+        "operation.duration_h in its place where there is no inlet to count tonnes at",
+    ),
+    (
+        {"operation": {"change_out_remaining_fraction": 0.3}},
+        "operation.change_out_remaining_fraction is 0.3",
+        "one rule of change-out, operation.change_out_remaining_mm is there already",
+    ),
+    (
+        {"operation": {"change_out_worn_mass_fraction": 0.3}},
+        "operation.change_out_worn_mass_fraction is 0.3",
+        "one rule of change-out, operation.change_out_remaining_mm is there already",
+    ),
+    (
+        {"operation": {"change_out_remaining_mm": 30}},
+        "operation.change_out_remaining_mm is 30",
+        "below 30 mm, parts.liner.thickness_mm",
+    ),
+]
+EFFORT = [
+    (
+        {"sampling": {"patch_mm": 29}, "parts": {"plate": {"edge_mm": 20}}},
+        "sampling.patch_mm is 29",
+        "at least 30 mm, 2.5 median particles, as coarse-grained",
+    ),
+    (
+        {"sampling": {"patch_mm": 44}, "parts": {"plate": {"edge_mm": 45}}},
+        "sampling.patch_mm is 44",
+        "at least 45 mm, parts.plate.edge_mm",
+    ),
+    ({"sampling": {"fewest_blocks": 4}}, "sampling.fewest_blocks is 4", "at most 3, sampling.most_blocks"),
+    ({"sampling": {"block_s": 0.001}}, "sampling.block_s is 0.001", "s, 10 contacts of the largest particles"),
+    ({"sampling": {"block_s": 1000}}, "sampling.block_s is 1000", "s in up to 8 blocks: it takes"),
+    (
+        {"start_up": {"most_s": 9000}},
+        "start_up.most_s is 9000",
+        "at most 6147 s: it takes 7.3e+07 time steps of 0.00012 s, at most 5e+07 are allowed",
+    ),
+    (
+        {"particle_scale": 1, "start_up": {"most_s": 1000}, "inlet": {"size_mm": [500, 500], "rate_t_per_h": 500}},
+        "particle_scale is 1",
+        "at least 4.99: a filling, and what comes in within half of start_up.most_s, are about 2.5e+09 particles",
+    ),
+]
+
+
+@pytest.mark.parametrize(("changes", "found", "allowed"), [*PARTS, *MOTIONS, *FEED, *ROOM, *WEAR, *EFFORT])
+def test_a_wrong_input_is_named_with_its_key_and_what_is_allowed(tmp_path, changes, found, allowed):
+    """One fault gives one sentence: file, key, what was found, for which row, what is allowed."""
+    message = message_of(tmp_path, **changes)
+    assert f": {found} " in f"{message} " and " for row A, allowed is " in message, message
+    assert allowed in message.split(", allowed is ", 1)[1], message
+    assert message.startswith("config/") and message.endswith(".") and "\n" not in message and ". " not in message
+
+
+def test_what_a_row_asks_for_is_named_with_its_line(tmp_path):
+    """A tonnage of the design that is too high for the inlet: the second row, not the study."""
+    message = message_of(tmp_path, "row,inlet.rate_t_per_h\nlow,1\nhigh,20\n")
+    assert message.startswith(f"{TABLE}, line 3, row high: inlet.rate_t_per_h is 20, allowed is at most 14.31 t/h")
+
+
+def test_a_law_of_a_part_finds_its_parameters(tmp_path):
+    """Parameters are those of wear.law: another law with parameters is refused for what wears, not for the rest."""
+    with long_slip_registered():
+        message = message_of(tmp_path, parts={"liner": {"law": "long_slip"}})
+        assert "parts.liner.law is 'long_slip' for row A, allowed is wear.law (archard)" in message
+        assert "or one without any: archard, finnie" in message
+        chosen = {"law": "long_slip", "parameters": {"exponent": 2}}
+        with machine_study(tmp_path, wear=chosen, parts={"hood": {"law": "long_slip"}}) as study:
+            assert study.runs[0].parameters["parts"][0]["law_parameters"] == {"exponent": 2.0, "length_m": 0.002}
+        with machine_study(tmp_path, parts={"hood": {"law": "long_slip"}}) as study:
+            assert study.runs
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {**ONLY_FILLED},
+        {"filling": FILLING},
+        {"periodic": SLICE},
+        {"domain": DOMAIN},
+        {"updates": {"most": 0}, "wear": {"deform": False}},
+        {"operation": {"duration_h": None, "throughput_mt": 0.01}},
+        {"operation": {"change_out_remaining_mm": None, "change_out_worn_mass_fraction": 0.3}},
+        {"parts": {"liner": {"edge_mm": 30, "thickness_mm": 30}}},
+        {"parts": {"hood": {"thickness_mm": 1}}},
+        {"inlet": {"normal": [0, 0, -5], "velocity_m_per_s": [3, 0, -0.5]}},
+        {"parts": {"inlet": SETTINGS["parts"]["hood"]}, "outlets": {"liner": SETTINGS["outlets"]["below"]}},
+        *(motion(**given) for given in ({**TURNS, "ramp_s": 0.2}, {"kind": "belt", "velocity_m_per_s": [0, 1, 0]})),
+    ],
+)
+def test_what_is_right_passes(tmp_path, changes):
+    """Feed, filling or both, slices, domains, rules, motions and any names: nothing is refused."""
+    with machine_study(tmp_path, **changes) as study:
+        assert len(study.runs) == 1
+
+
+def test_the_motion_of_every_kind_needs_its_keys():
+    """Keys of motions are told as a study writes them."""
+    needed = {name for kind in NEEDED for name in (*NEEDED[kind], *FREE.get(kind, ()))}
+    assert not {name for name in needed if name.endswith(("_m", "_rad", "rad_per_s"))} - set(WRITTEN)
+
+
+def test_every_check_says_what_it_is_for():
+    """The page of keys lists the checks in one sentence each."""
+    said = [" ".join(check.__doc__.split()) for check in EQUIPMENT_CHECKS]
+    assert len(set(said)) == len(said) and all(text.endswith(".") for text in said)
+
+
+# ---------------------------------------------------------------- closed forms behind the limits
+
+
+def test_largest_feed_is_what_is_placed_in_a_stream(tmp_path):
+    """Solid fraction of rectangle less half a diameter, times normal velocity and density; oblique feeds count less."""
+    with machine_study(tmp_path, inlet={"velocity_m_per_s": [3, 0, -0.5]}) as study:
+        run = study.runs[0].parameters
+    area = ((80 - 0.5 * LARGEST_MM) / 1e3) ** 2
+    assert normal_velocity(run["inlet"]) == 0.5
+    assert largest_rate(run) == pytest.approx(PLACED_FRACTION * area * 0.5 * 2500)
+    room = placing_room(run)
+    assert room[:4, 2] == pytest.approx(0.16) and room[4:, 2] == pytest.approx(
+        0.16 + DEPTH_DIAMETERS * LARGEST_MM / 1e3
+    )
+
+
+def test_largest_filling_counts_bulk_volume(tmp_path):
+    """Fraction of solids over that of the bulk material, less a diameter at the ends."""
+    with machine_study(tmp_path, **ONLY_FILLED) as study:
+        run = study.runs[0].parameters
+    assert largest_filling(run) == pytest.approx(PLACED_FRACTION / 0.6 * (1 - LARGEST_MM / 80))
+
+
+def test_a_contact_lasts_as_long_as_hertz_says(tmp_path):
+    """2.87 (m*^2 / (R* E*^2 v))^(1/5), of two equal spheres."""
+    with machine_study(tmp_path) as study:
+        run = study.runs[0].parameters
+    radius = LARGEST_MM / 2e3
+    mass = 2500 * 4 / 3 * math.pi * radius**3 / 2
+    modulus = 2 * 4e6 * 1.24 / (1 - 0.24**2) / 2
+    assert contact_time(run) == pytest.approx(2.87 * (mass**2 / (radius / 2 * modulus**2 * 1.0)) ** 0.2)
+
+
+def test_limits_of_effort_are_met_where_they_say(tmp_path):
+    """What a message allows is allowed."""
+    few = {"updates": {"most": 0}, "sampling": {"block_s": 1000, "fewest_blocks": 1, "most_blocks": 1}}
+    assert "start_up.most_s is 9000 for row A, allowed is at most 5000 s:" in message_of(
+        tmp_path, **few, start_up={"most_s": 9000}
+    )
+    with machine_study(tmp_path, **few, start_up={"most_s": 5000}) as study:
+        derived = study.runs[0].parameters["derived"]
+    assert 0.9 * MOST_STEPS < derived["run_in_steps"] + derived["travel_steps"] <= MOST_STEPS
+    fed = {"inlet": {"size_mm": [500, 500], "rate_t_per_h": 500}, "start_up": {"most_s": 1000}}
+    with machine_study(tmp_path, particle_scale=5.0, **fed) as study:
+        assert 0.9 * MOST_PARTICLES < study.runs[0].parameters["derived"]["held_particles"] <= MOST_PARTICLES

@@ -1,0 +1,163 @@
+"""Figures of where parts wear, how long they last and what is left, of machines whose wear is known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from bulkwear.postproc.mesh import read_surface
+from bulkwear.workflows.cases.equipment import map_figures, pictures
+from bulkwear.workflows.cases.equipment.sections import COLUMNS, worst_sections
+from tests.workflows.cases.equipment import scenes
+
+FIGURES = [each for each in vars(map_figures).values() if hasattr(each, "product")]
+SCATTER = 0.02  # -, a life is the inverse of a geometric mean of loads, the line an arithmetic mean of depths
+ROUNDED = 1e-6  # -, relative: numbers of tables are written with nine digits
+
+
+@pytest.fixture(scope="module", params=["chute", "drum"])
+def study(request, tmp_path_factory):
+    """Folder, what jobs are told of the runs, and the tables of a study."""
+    folder = tmp_path_factory.mktemp(request.param)
+    runs = getattr(scenes, f"{request.param}_study")(folder)
+    return folder, runs, scenes.write_tables(folder, runs)
+
+
+@pytest.mark.parametrize("make", FIGURES, ids=lambda make: make.product.name)
+def test_every_figure_is_readable(study, make, tmp_path):
+    """Drawn of the files that runs leave; no text is small, cut off or over other text; a table stands beside it."""
+    folder, runs, _ = study
+    figure, table = make(scenes.job_of_study(folder, runs))
+    assert scenes.faults_of(figure, tmp_path / "figure.png") == []
+    assert len(table) > 0 and {"setting", "part"} <= set(table)
+
+
+def test_maps_hold_the_rates_of_the_table(study):
+    """A face has the mean over packings of its patch, what nothing wears has no value, marks are worst places."""
+    folder, runs, tables = study
+    rates, worst = tables["rates"], tables["worst_places"]
+    for shown in pictures.recession_maps(runs, folder, rates, worst):
+        rows = rates[(rates["setting"] == shown.setting) & (rates["part"] == shown.part)]
+        values = shown.values[pictures.RECESSION]
+        known = np.unique(values[np.isfinite(values)])
+        told = np.unique(rows.loc[rows["pristine_mm_per_1000h"] > 0.0, "pristine_mm_per_1000h"])
+        np.testing.assert_allclose(known, told, rtol=ROUNDED)
+        assert not (values <= 0.0).any()
+        first = worst[(worst["setting"] == shown.setting) & (worst["part"] == shown.part) & (worst["rank"] == 1)]
+        np.testing.assert_allclose(1e3 * shown.marks["1"], first[["x_mm", "y_mm", "z_mm"]].to_numpy()[0])
+        assert len(shown.marks) == pictures.MARKED
+
+
+def test_what_is_left_is_what_was_there_less_what_was_lost(study):
+    """Now the given thickness, at the end less the removed thickness of the first packing, by face and by patch."""
+    folder, runs, _ = study
+    maps = pictures.remaining_maps(runs, folder)
+    first, several = pictures.first_runs(runs)[0], len(pictures.first_runs(runs)) > 1
+    hours = scenes.UPDATE_HOURS * scenes.PHASES.count("wearing")
+    states = ["now", f"after {hours:,.4g} h"]
+    named = [f"{first['setting']}, {state}" if several else state for state in states]
+    assert list(dict.fromkeys(each.setting for each in maps))[:2] == named
+    now = next(each for each in maps if each.setting.endswith("now"))
+    np.testing.assert_allclose(now.values[pictures.REMAINING], 1e3 * scenes.THICKNESS, rtol=ROUNDED)
+    late = next(each for each in maps if each.part == now.part and not each.setting.endswith("now"))
+    worn = read_surface(folder / first["run"] / "worn_surface.vtu")
+    mesh, _ = pictures.part_mesh(worn, pictures.labels_of(first)[late.part])
+    lost = mesh.point_data["removed_thickness_m"][mesh.triangles].mean(axis=1)
+    np.testing.assert_allclose(late.values[pictures.REMAINING], 1e3 * (scenes.THICKNESS - lost), rtol=ROUNDED)
+    rows = pictures.remaining_rows(runs, folder)
+    least = rows[(rows["setting"] == first["setting"]) & (rows["part"] == late.part)]["least_remaining_mm"].min()
+    assert least == pytest.approx(late.values[pictures.REMAINING].min(), rel=ROUNDED)
+
+
+def test_sections_pass_through_the_worst_place(study):
+    """The outline as built runs through the origin; what is removed grows with the hours."""
+    folder, runs, tables = study
+    lines, sections = worst_sections(runs, folder, tables["worst_places"])
+    assert len(sections) == sum(len(pictures.wearing(run)) for run in pictures.first_runs(runs))
+    for section in sections.itertuples():
+        own = lines[lines["section"] == section.section]
+        hours = np.sort(own["operation_h"].unique())
+        longer = 1.6 if section.setting == "convex" else 1.0
+        np.testing.assert_allclose(hours, longer * scenes.UPDATE_HOURS * np.arange(len(hours)))
+        ends = own.loc[own["operation_h"] == 0.0, list(COLUMNS[:4])].to_numpy().reshape(-1, 2, 2)
+        start, way = ends[:, 0], ends[:, 1] - ends[:, 0]
+        share = np.clip(-(start * way).sum(axis=1) / (way**2).sum(axis=1), 0.0, 1.0)
+        assert np.linalg.norm(start + share[:, None] * way, axis=1).min() < 1e-6
+        deepest = own.groupby("operation_h")["depth_1_mm"].max().to_numpy()
+        np.testing.assert_allclose(deepest, deepest[-1] * hours / hours[-1], rtol=ROUNDED, atol=1e-12)
+        assert deepest[-1] > 0.0
+
+
+def test_a_section_of_a_mill_is_square_to_its_axis(tmp_path):
+    """Its outlines reach from lifters to shell: out is to the axis, and the far side lies two radii away."""
+    runs = scenes.drum_study(tmp_path)
+    lines, sections = worst_sections(runs, tmp_path, scenes.write_tables(tmp_path, runs)["worst_places"])
+    assert sections["turns"].all()
+    places = lines.loc[lines["operation_h"] == 0.0, ["along_1_mm", "out_1_mm"]].to_numpy()
+    radius = 1e3 * np.hypot(*(sections[["x_mm", "z_mm"]].to_numpy()[0] / 1e3))
+    distance = np.hypot(places[:, 0], places[:, 1] - radius)
+    assert distance.max() == pytest.approx(1080.0, rel=0.01) and distance.min() == pytest.approx(900.0, rel=0.02)
+
+
+def test_mm_per_mt_and_back():
+    """At 1,000 t/h a Mt takes 1,000 h; without an inlet nothing is told."""
+    run = {"setting": "A", "rate_kg_per_s": 1000.0 / 3.6, "parts": {}}
+    assert pictures.mm_per_mt([run])["A"] == pytest.approx(1.0)
+    assert pictures.hours_per_mt([run])["A"] == pytest.approx(1000.0)
+    assert np.isnan(pictures.mm_per_mt([run | {"rate_kg_per_s": None}])["A"])
+
+
+@pytest.mark.parametrize(
+    ("rule", "due"),
+    [
+        ({"change_out_remaining_m": 0.01}, 10.0),
+        ({"change_out_remaining_fraction": 0.5}, 15.0),
+        ({"change_out_remaining_m": 0.02, "change_out_remaining_fraction": 0.5}, 20.0),
+        ({"change_out_worn_mass_fraction": 0.3}, np.nan),
+    ],
+)
+def test_thickness_at_which_a_part_is_changed(rule, due):
+    """The larger of what rules ask to be left; by mass there is no such thickness."""
+    part = {"wears": True, "thickness_m": 0.03}
+    run = {"setting": "A", "operation": rule, "parts": {"liner": part}}
+    np.testing.assert_allclose(pictures.change_out_mm([run])["liner"], due)
+
+
+def test_a_study_without_updates_has_no_sections():
+    """All else is drawn of any study of the case."""
+    rigid = SimpleNamespace(settings={"updates": {"most": 0}})
+    there = {make.product.name for make in FIGURES if make.product.when(rigid)}
+    assert there == {make.product.name for make in FIGURES} - {"profile_sections"}
+
+
+def test_lives_in_the_table_are_those_beside_the_figure(study):
+    """The table of the figure is the study's table of lives."""
+    folder, runs, tables = study
+    _, table = map_figures.life_bars(scenes.job_of_study(folder, runs))
+    np.testing.assert_allclose(table["life_h"], tables["life"]["life_h"], rtol=ROUNDED)
+
+
+def test_depths_of_deciding_places(study):
+    """The mean is that of the packings; the dashed line ends at the allowed depth, here at the life."""
+    folder, runs, tables = study
+    _, depths = map_figures.recession_against_time(scenes.job_of_study(folder, runs))
+    for (setting, part), rows in depths.groupby(["setting", "part"]):
+        simulated = rows[rows["simulated"]]
+        at_end = simulated[simulated["operation_h"] == simulated["operation_h"].max()]
+        mean, each = (at_end.loc[test, "depth_mm"] for test in (at_end["packing"] == 0, at_end["packing"] > 0))
+        assert mean.iloc[0] == pytest.approx(each.mean(), rel=ROUNDED)
+        own = tables["life"].set_index(["setting", "part"]).loc[(setting, part)]
+        beyond = rows[~rows["simulated"]]
+        asked = runs[0]["operation"]["duration_s"] / 3600.0
+        assert beyond["depth_mm"].max() <= own["allowed_mm"] * (1.0 + ROUNDED)
+        if own["life_h"] < 2.0 * asked:
+            assert beyond["depth_mm"].iloc[-1] == pytest.approx(own["allowed_mm"], rel=ROUNDED)
+            assert beyond["operation_h"].iloc[-1] == pytest.approx(own["life_h"], rel=SCATTER)
+
+
+def test_figures_of_the_page_are_declared():
+    """A study of the package has them all, in the order of the modules."""
+    assert [make.product.name for make in FIGURES] == [
+        *("life_bars", "recession_against_time", "wear_map"),
+        *("remaining_thickness", "impact_and_sliding", "profile_sections"),
+    ]

@@ -1,0 +1,226 @@
+"""The page of a study of equipment, from folders as the engine leaves them: its sections, and any rows of it."""
+
+import html
+import json
+from contextlib import contextmanager
+
+import pandas as pd
+import pytest
+
+from bulkwear.postproc.statistics.intervals import UNKNOWN
+from bulkwear.workflows.cases.equipment import heads, page
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.markdown import written
+from bulkwear.workflows.report.page import write_page
+from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.products import (
+    job_of,
+    outputs_of,
+    paths_of,
+    products_of_study,
+    told_to,
+    write_product,
+)
+from bulkwear.workflows.report.sections import Pictures, Points
+from bulkwear.workflows.report.text import simplifications
+from tests.support.own_machine_project import machine_study
+from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
+
+ROWS = "row,inlet.rate_t_per_h\nslow,1.5\nfast,3\n"
+PARTS = (
+    SyntheticPart("liner", (1e-6, 3e-6), worn=1.2, thickness=0.01, error=0.2),
+    SyntheticPart("plate", (1e-6,), error=0.3),
+    SyntheticPart("paddle", (2e-6, 1e-6), power=100.0, error=0.3),
+    SyntheticPart("hood", force=10.0),
+)
+SECTIONS = [
+    *("When what has to be changed", "The machine", "Flow", "Where it wears", "Impact and sliding"),
+    *("The worn shape", "Designs side by side", "Steel lost", "Balance of particles"),
+]
+ANCHORS = """\
+study,quantity,value,low,high,unit,source,note
+machine,life_liner,3000,,,h,a handbook,of another ore
+mill,power_W_shell_pristine,1,,,W,a mill,
+"""
+MILL = {  # changes of the study: a filled machine that nothing is fed to
+    "inlet": None,
+    "outlets": None,
+    "filling": {"fraction": 0.3, "axis": "y", "centre_mm": [0, 0, 100], "radius_mm": 80, "length_mm": 80},
+}
+
+
+def run_of(study, run, **given):
+    """The synthetic run that stands for a run of a study; twice the feed wears twice as fast."""
+    inlet = run.parameters["inlet"]
+    rate = inlet["rate_kg_per_s"] if inlet else None
+    packing = study.packing_of[run.row]
+    factor = (rate or 1.0) * (1.0 + 0.02 * packing)
+    held = {"rate": rate, "held": 0.2, "pristine": 8, **given}
+    return SyntheticRun(run.name, PARTS, study.setting_of[run.row], packing, factor=factor, duration=0.15, **held)
+
+
+def make(study, folder, name):
+    """Make a product of a study and write its tables."""
+    product = products_of_study(study)[name]
+    outputs = {key: folder.parents[1] / path for key, path in outputs_of(product, study.name).items()}
+    for path in outputs.values():
+        path.parent.mkdir(parents=True, exist_ok=True)
+    files = {key: paths_of(source, study) for key, source in product.inputs.items()}
+    write_product(product, job_of(files, told_to(product, study), []), outputs)
+
+
+def write_charge(study, folder):
+    """Write the table beside the figure of a mill's charge, as if it was drawn."""
+    (folder / "figures").mkdir()
+    rows = [{"setting": study.setting_of[run.row], "packing": study.packing_of[run.row]} for run in study.runs]
+    charge = pd.DataFrame(rows).assign(phase="pristine", toe_deg=130.0, shoulder_deg=300.0)
+    charge.to_csv(folder / "figures" / "charge_shape.csv", index=False)
+
+
+@contextmanager
+def finished(root, monkeypatch, rows=ROWS, given=None, chosen=(), **changes):
+    """A study with all tables, made of synthetic runs; given: of those runs; chosen: rows, all without."""
+    with machine_study(root, rows, **changes) as whole:
+        study = load_study(whole.name, overrides={"rows": list(chosen)}) if chosen else whole
+        monkeypatch.chdir(root)
+        (root / "config/published").mkdir(exist_ok=True)
+        (root / "config/published/equipment_anchors.csv").write_text(ANCHORS)
+        folder = root / "results" / study.name
+        write_study(folder, [run_of(study, run, **(given or {})) for run in study.runs])
+        pd.DataFrame(study.design_table()).to_csv(folder / "design.csv", index=False)
+        wear = [folder / run.name / "wear.csv" for run in study.runs]
+        study.case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
+        make(study, folder, "equipment_tables")
+        if "charge_shape" in products_of_study(study):
+            write_charge(study, folder)
+        make(study, folder, "beside_published")
+        yield study, folder
+
+
+def sections_of(study, folder):
+    """The sections of its page by title, each as the text of the page in docs."""
+    found = page.sections(page_parameters(study), folder)
+    return {each.title: "\n".join(written(block, study.name) for block in each.blocks) for each in found}
+
+
+def test_sections_and_answers(tmp_path, monkeypatch):
+    """The page begins with when each part of each design is changed; the answers of the command line are the same."""
+    with finished(tmp_path, monkeypatch, packings=2) as (study, folder):
+        found = page.sections(page_parameters(study), folder)
+        assert [each.title for each in found] == [*SECTIONS, "Beside published values"]
+        points = next(block for block in found[0].blocks if isinstance(block, Points))
+        for setting in ("slow", "fast"):
+            for part in ("liner", "plate", "paddle"):
+                assert any(f"Design {setting}: the {part} has to be changed after" in item for item in points.items)
+        assert page.answers(folder) == list(points.items)
+
+
+def test_every_figure_has_a_section(tmp_path):
+    """None is left over for the section of further figures, and none stands twice."""
+    with machine_study(tmp_path) as study:
+        figures = {name for name, product in products_of_study(study).items() if product.is_figure}
+    named = [
+        *(*page.LIFE_FIGURES, *page.FLOW_FIGURES, *page.WEAR_FIGURES, *page.LOAD_FIGURES, *page.WORN_FIGURES),
+    ]
+    assert len(named) == len(set(named)) and figures <= set(named)
+
+
+def test_one_design_and_one_packing(tmp_path, monkeypatch):
+    """Nothing is compared, no design is named, and the scatter is unknown."""
+    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+        found = sections_of(study, folder)
+    assert "Designs side by side" not in found
+    first = found["When what has to be changed"]
+    assert "The liner has to be changed after" in first and UNKNOWN in first and "Design A" not in first
+
+
+def test_choice_of_rows(tmp_path, monkeypatch):
+    """A choice of rows has its page as the whole design has."""
+    with finished(tmp_path, monkeypatch, packings=2, chosen=["fast"]) as (study, folder):
+        assert {run.row for run in study.runs} == {"fast", "fast-2"}
+        found = sections_of(study, folder)
+    assert set(found) == {*SECTIONS, "Beside published values"} - {"Designs side by side"}
+
+
+def test_machine_without_feed(tmp_path, monkeypatch):
+    """A filled one has no t/h and no Mt; its flow is what it holds."""
+    with finished(tmp_path, monkeypatch, rows="row\nA\n", **MILL) as (study, folder):
+        found = sections_of(study, folder)
+        told = page.run_columns(next(iter(page_parameters(study)["parameters"].values())))
+        numbers = pd.read_csv(folder / "equipment/key_numbers.csv").set_index("quantity")["value"]
+    assert " Mt" not in found["When what has to be changed"] and "t/h come in" not in " ".join(found.values())
+    assert told["feed_t_per_h"] is None and numbers["toe_pristine"] == 130.0
+
+
+def test_shape_as_built_alone(tmp_path, monkeypatch):
+    """Without updates nothing is told of a worn shape, and lives are by the rate as built."""
+    given = {"updates": 0, "worn": 0}
+    with finished(tmp_path, monkeypatch, "row\nA\n", given, updates={"most": 0, "worn_blocks": 0}) as (study, folder):
+        found = sections_of(study, folder)
+    assert "The shape was kept as built" in found["The worn shape"]
+    assert "That is by the rate as built" in found["When what has to be changed"]
+
+
+def test_beside_published_values(tmp_path, monkeypatch):
+    """Rows of the study alone, with the difference; a study without any has no such section."""
+    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+        assert "of another ore" in sections_of(study, folder)["Beside published values"]
+        table = pd.read_csv(folder / "equipment/anchors.csv")
+        life = pd.read_csv(folder / "equipment/life.csv").set_index("part").loc["liner", "life_h"]
+        assert table["quantity"].tolist() == ["life_liner"]
+        assert table["difference_percent"].iloc[0] == pytest.approx(100.0 * (life / 3000.0 - 1.0), rel=1e-6)
+        (tmp_path / "config/published/equipment_anchors.csv").write_text(ANCHORS.splitlines()[0] + "\n")
+        make(study, folder, "beside_published")
+        assert "Beside published values" not in sections_of(study, folder)
+
+
+def test_what_is_simplified_has_the_numbers_of_the_study(tmp_path, monkeypatch):
+    """Sizes, scale, errors and patches; the words on wear have the coefficients of the parts."""
+    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+        said = dict(simplifications(page_parameters(study), pd.read_csv(folder / "summary.csv"), page))
+    assert said["Coarse-grained particles"].startswith("Spheres of 9.6 to 14.4 mm, 4 times the real ones")
+    assert "20 to 30 %" in said["Wear coefficient"] and "60 mm" in said["Patches"]
+
+
+def test_whole_page(tmp_path, monkeypatch):
+    """The page is written with every section and what is told of the runs."""
+    with finished(tmp_path, monkeypatch, packings=2) as (study, folder):
+        told = page_parameters(study) | {"figures": {}}
+        (folder / "logs").mkdir()
+        for job in told["jobs"]:
+            (folder / "logs" / f"{job}.benchmark.tsv").write_text("s\th:m:s\n2.0\t0:00:01\n")
+        jobs = {"job": [f"worn_run_{run.name}" for run in study.runs], "solver_s": 1.0, "by": "rates of a test"}
+        pd.DataFrame(jobs).to_csv(folder / "forecast.csv", index=False)
+        for run in study.runs:
+            (folder / run.name / "cycle_001" / "log.liggghts").write_text("LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0)\n")
+            cost = {"cycle": [0], "solver_s": 1.0, "other_s": 1.0, "steps": 1000, "particles": 500}
+            pd.DataFrame(cost).to_csv(folder / run.name / "cost.csv", index=False)
+        write_page(folder / "report.html", json.loads(json.dumps(told)))
+        text = html.unescape((folder / "report.html").read_text(encoding="utf-8"))
+    for title in SECTIONS:
+        assert f">{title}</h2>" in text
+    assert "has to be changed after" in text and "turns at 60 rpm about (0, 1, 0)" in text
+
+
+def test_numbers_for_people():
+    """Large ones are whole, zeros of lengths are 0, and small ones of other units stay as they are."""
+    table = pd.DataFrame({"life_h": [68523.4, 12.345], "x_mm": [4e-16, 3.0], "value": [6.3e-13, 1.0]})
+    found = heads.readable(table)
+    assert found["life_h"].tolist() == [68500.0, 12.345]
+    assert found["x_mm"].tolist() == [0.0, 3.0] and found["value"].tolist() == [6.3e-13, 1.0]
+
+
+def test_nothing_is_said_twice(tmp_path, monkeypatch):
+    """A sentence of the answers stands in no other section."""
+    with finished(tmp_path, monkeypatch, packings=2) as (study, folder):
+        found = page.sections(page_parameters(study), folder)
+    texts = [item for each in found for block in each.blocks for item in getattr(block, "items", ())]
+    assert len(texts) == len(set(texts))
+
+
+def test_pictures_stand_in_their_sections(tmp_path, monkeypatch):
+    """The map of wear stands with the worst places, sections through them with the worn shape."""
+    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+        found = page.sections(page_parameters(study), folder)
+    names = {each.title: block.names for each in found for block in each.blocks if isinstance(block, Pictures)}
+    assert "wear_map" in names["Where it wears"] and "profile_sections" in names["The worn shape"]

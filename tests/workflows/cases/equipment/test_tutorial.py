@@ -1,0 +1,178 @@
+"""The tutorial of docs/equipment.md, done as it is written there, with the package as a wheel installs it.
+
+Its files and commands are taken from the page. The drawing is made here, and sizes are less than the page's.
+"""
+
+import html
+import math
+import os
+import re
+import subprocess
+import sys
+import zipfile
+from functools import reduce
+
+import pandas as pd
+import pytest
+import yaml
+
+from bulkwear.meshes.drawing import prism, write_step
+from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.readme import readme
+from bulkwear.workflows.engine.project import enter_project, leave_project
+from tests import REPOSITORY
+
+PAGE = (REPOSITORY / "docs/equipment.md").read_text(encoding="utf-8")
+TUTORIAL = PAGE.partition("\n## Parts\n")[0]
+FILES = re.findall(r"`(config/[\w/.]+)`[^`\n]*\n\n```(?:yaml|csv)\n(.*?)```", TUTORIAL, re.DOTALL)
+COMMANDS = "".join(re.findall(r"```sh\n(.*?)```", TUTORIAL, re.DOTALL))
+SENTENCES = re.findall(r"^> (\S.*)$", TUTORIAL, re.MULTILINE)  # of the page, numbers left out
+STUDY = "transfer"
+TINY = {  # less to simulate than the page asks for
+    "start_up": {"most_s": 0.6},
+    "sampling": {"block_s": 0.2, "fewest_blocks": 3, "most_blocks": 3, "pictures_per_block": 2},
+    "updates": {"most": 2, "worn_blocks": 1},
+    "solver": {"rayleigh_fraction": 0.4},
+}
+# Commands run as they stand, but for snakemake: starting it takes seconds, so its targets are made together.
+BEFORE = 'set -e; python() { "$PYTHON" "$@"; }; targets=""; snakemake() { targets="$targets $*"; }\n'
+AFTER = '\n"$PYTHON" -m snakemake $targets --configfile "$HOME/tiny.yaml"\n'
+SOLVER = REPOSITORY / "solver" / "build"
+TIMEOUT = 1800.0  # s, for what takes a minute or two on two idle cores
+NEEDED = ("parts", "bulk", "inlet", "outlets", "operation")
+
+
+def draw(path, slope):
+    """Draw the tutorial's chute: an impact plate, a liner that falls by `slope` per length, two walls; mm."""
+    s, c = (30.0 * f(math.atan(slope)) for f in (math.sin, math.cos))
+    foot = 500.0 + 600.0 * slope
+    with gmsh_model() as gmsh:
+        names = {prism(gmsh, [(400, -490), (430, -490), (430, 150), (400, 150)], -250, 250): "impact_plate"}
+        corners = [(432, -500), (432 + s, -500 - c), (-168 + s, -foot - c), (-168, -foot)]
+        names[prism(gmsh, corners, -250, 250)] = "liner"
+        for y, name in ((-271, "left_wall"), (251, "right_wall")):
+            names[prism(gmsh, [(-200, -1200), (500, -1200), (500, 200), (-200, 200)], y, y + 20)] = name
+        write_step(gmsh, path, names)
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory):
+    """The home of someone with a drawing and the installed package."""
+    folder = tmp_path_factory.mktemp("home")
+    draw(folder / "transfer.step", slope=1.0)
+    build = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", str(folder)]
+    subprocess.run(build, cwd=REPOSITORY, check=True, capture_output=True)
+    (wheel,) = folder.glob("bulkwear-*.whl")
+    with zipfile.ZipFile(wheel) as opened:
+        opened.extractall(folder / "site")
+    (folder / "tiny.yaml").write_text(yaml.safe_dump(TINY))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def finished(home):
+    """The project after the tutorial, and what was said on the way."""
+    (study, text), (design, rows) = FILES[:2]
+    writing = "".join(f"cat >{name} <<'END'\n{each}END\n" for name, each in ((study, text), (design, rows)))
+    first, rest = COMMANDS.split("snakemake", 1)
+    environment = {
+        **{key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
+        **{"HOME": str(home), "PYTHON": sys.executable, "PYTHONPATH": str(home / "site")},
+        "PATH": f"{SOLVER}{os.pathsep}{os.environ['PATH']}",
+    }
+    done = subprocess.run(
+        ["bash", "-c", f"{BEFORE}{first}{writing}snakemake{rest}{AFTER}"],
+        cwd=home,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+    )
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
+    return home / "chutes", done.stdout + done.stderr
+
+
+def test_the_page_gives_what_a_machine_needs():
+    """One YAML, its design, and the same design with a second row; every command once."""
+    assert [name for name, _ in FILES] == [f"config/{place}" for place in ("studies/transfer.yaml",)] + [
+        "config/designs/transfer.csv"
+    ] * 2
+    assert len(SENTENCES) > 1
+    assert set(NEEDED) <= set(yaml.safe_load(FILES[0][1]))
+    assert re.findall(r"^snakemake (\S+)$", COMMANDS, re.MULTILINE) == [
+        f"{STUDY}{end}" for end in ("_forecast", "_decks", "")
+    ]
+
+
+@pytest.mark.solver
+def test_every_step_leaves_what_the_page_says(finished):
+    """The table of bodies, the forecast, decks, tables and page; all of it by the installed package."""
+    project, said = finished
+    assert str(project.parent / "site/bulkwear") in (project / "Snakefile").read_text()
+    for word in ("impact_plate", "right_wall", "nothing had to be repaired", "Forecast of transfer"):
+        assert word in said
+    results = project / "results" / STUDY
+    assert (results / "decks/A/cycle_001/deck.in").is_file() and (results / "A/worn_surface.vtu").is_file()
+    page = html.unescape((results / "report.html").read_text(encoding="utf-8"))
+    for sentence in SENTENCES:
+        form = ".+?".join(map(re.escape, sentence.split("…")))
+        assert re.search(form, page) and re.search(form, said), sentence
+    life = pd.read_csv(results / "equipment/life.csv")
+    assert list(life["part"]) == ["impact_plate", "liner"] and (life["life_h"] > 0.0).all()
+
+
+@pytest.mark.solver
+def test_the_run_goes_through_all_phases(finished):
+    """Start-up, shape as built, updates, worn shape; both parts wear, and no particle is missing."""
+    run = finished[0] / "results" / STUDY / "A"
+    wear = pd.read_csv(run / "wear.csv")
+    assert list(wear["phase"].drop_duplicates()) == ["start_up", "pristine", "wearing", "worn"]
+    assert (wear["lost_particles"] == 0).all()
+    parts = pd.concat([pd.read_csv(path) for path in run.glob("cycle_*/parts.csv")])
+    assert (parts.groupby("part")["worn_volume_m3_per_h"].sum() > 0.0).to_dict() == {
+        **{"impact_plate": True, "liner": True},
+        **{"left_wall": False, "right_wall": False},
+    }
+
+
+def test_a_second_design_is_a_row(tmp_path):
+    """The step with two designs: B has another drawing, all else is A's."""
+    (tmp_path / "meshes").mkdir()
+    draw(tmp_path / "meshes/transfer.step", slope=1.0)
+    draw(tmp_path / "meshes/transfer_steep.step", slope=1.1)
+    for name, text in FILES:  # the second design takes the place of the first
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    enter_project(tmp_path)
+    try:
+        study = load_study(STUDY)
+    finally:
+        leave_project()
+    files = {run.name: {part["name"]: part["file"] for part in run.parameters["parts"]} for run in study.runs}
+    assert list(files) == ["A", "B"]
+    assert files["B"] == files["A"] | {"liner": "transfer_steep.step"}
+
+
+def test_told_defaults_are_those_of_the_case():
+    """The page's table of defaults."""
+    layers = [
+        yaml.safe_load((REPOSITORY / f"config/{name}.yaml").read_text()) for name in ("default", "cases/equipment")
+    ]
+    told = re.findall(r"^\| `([\w.]+)` \| (\S+) \|$", PAGE.split("| key | default |")[1].split("\n\n")[0], re.MULTILINE)
+    assert len(told) > 10
+    for path, value in told:
+        found = [reduce(lambda block, key: (block or {}).get(key), path.split("."), layer) for layer in layers]
+        assert float(value) == float([each for each in found if each is not None][-1]), path
+
+
+def test_named_keys_are_there():
+    """Every key with a point that the page names is one of the configuration."""
+    known = set(re.findall(r"^\| `([\w.<>]+)` \|", readme(), re.MULTILINE))
+    known |= {re.sub(r"<name>", "shell", key) for key in known} | {re.sub(r"<name>", "liner", key) for key in known}
+    named = {
+        key
+        for key in re.findall(r"`((?:parts|bulk|start_up|sampling|updates|operation|wear|inlet|solver)\.[\w.]+)`", PAGE)
+        if not key.endswith((".csv", ".vtu"))
+    }
+    assert len(named) > 10 and named <= known | {"wear.parameters"}

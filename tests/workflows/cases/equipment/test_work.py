@@ -1,0 +1,54 @@
+"""What runs of equipment will cost: all blocks that there may be, of the particles that a machine holds."""
+
+import pytest
+
+from bulkwear.workflows.cases.equipment.parameters import most_blocks
+from bulkwear.workflows.cases.equipment.work import MOVING_OVER_RESTING, TRIANGLES_PER_PART, run_bytes, run_stages
+from bulkwear.workflows.forecast.forecast import work_of
+from tests.support.own_machine_project import machine_study
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    with machine_study(tmp_path_factory.mktemp("work")) as study:
+        yield study.runs[0].parameters
+
+
+def test_all_blocks_are_counted(run):
+    """The first one, in which the machine fills, and all others, each with a deck of its own and a wear update."""
+    first, others = run_stages(run)
+    steps = run["derived"]["first_cycle_steps"]
+    assert first.decks + others.decks == most_blocks(run) and first.decks == 1
+    assert first.steps + others.steps == most_blocks(run) * steps
+    assert others.particles == run["derived"]["held_particles"] == 2.0 * first.particles
+    assert first.surface_triangles == 0.0 < others.surface_triangles < others.triangles  # the hood does not wear
+
+
+def test_more_pictures_and_blocks_need_more_disk(run):
+    """Pictures have all particles, every block its surface and restart file."""
+    more = {**run, "sampling": {**run["sampling"], "pictures_per_block": 20}}
+    longer = [{**run, "derived": {**run["derived"], "travel_steps": k * 1220}} for k in (10, 20, 30)]
+    first, second, third = map(run_bytes, longer)
+    assert run_bytes(more) > run_bytes(run)
+    assert 0.0 < second - first == pytest.approx(third - second)
+
+
+def test_a_mesh_that_moves_costs_more_than_one_at_rest(run):
+    """Moved at every step, it makes new lists of neighbours; the surface of a belt moves on a mesh at rest."""
+    parts, axis = run["parts"], {"point_m": [0, 0, 0], "axis": [0, 1, 0], "speed_rad_per_s": 1.0}
+    triangles = {}
+    for kind in ("rest", "turning_surface", "rotation"):
+        motion = None if kind == "rest" else {"kind": kind, **axis}
+        moved = {**run, "parts": [{**parts[0], "motion": motion}, *parts[1:]]}
+        triangles[kind] = run_stages(moved)[1].triangles
+    assert triangles["rest"] == triangles["turning_surface"]
+    more = (MOVING_OVER_RESTING - 1.0) * TRIANGLES_PER_PART
+    assert triangles["rotation"] - triangles["rest"] == pytest.approx(more)
+
+
+def test_jobs_of_a_study_are_its_runs(tmp_path):
+    """One job a row and packing; twice the tonnes are twice the particles."""
+    with machine_study(tmp_path, "row,inlet.rate_t_per_h\nA,1.5\nB,3\n", packings=2) as study:
+        jobs = {job.wildcards[0]: job for job in work_of(study)}
+    assert list(jobs) == ["A", "A-2", "B", "B-2"]
+    assert jobs["B"].stages[1].particles == pytest.approx(2.0 * jobs["A"].stages[1].particles)
