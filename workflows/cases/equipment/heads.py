@@ -160,6 +160,7 @@ ANCHOR_COLUMNS = {
     "where": ("of the published range", ""),
     "source": ("source", ""),
     "note": ("note", ""),
+    "reason": ("why ours may differ", ""),
 }
 
 

@@ -25,6 +25,7 @@ PER_PACKING = {  # table with a row per packing and phase: its columns and their
     "charge": {"toe_deg": "degrees", "shoulder_deg": "degrees"},
 }
 NAMES = {"out_t_per_h": "out", "held_kg": "held", "residence_s": "residence", "power_W": "power"}
+WEEKS_PER_YEAR = 365.25 / 7.0
 INSIDE, ABOVE, BELOW = "inside", "above", "below"
 
 Rows = list[dict[str, Any]]
@@ -65,7 +66,10 @@ def _given(runs: Sequence[Mapping[str, Any]]) -> Rows:
 def _lives(life: pd.DataFrame) -> Rows:
     rows = []
     for row in life.itertuples():
-        rows.append(_row(row, f"life_{row.part}", "h", row.life_h, row.life_low_h, row.life_high_h))
+        ends = row.life_h, row.life_low_h, row.life_high_h
+        weeks = WEEKS_PER_YEAR * row.life_years / row.life_h  # of service, in an hour of operation
+        rows.append(_row(row, f"life_{row.part}", "h", *ends))
+        rows.append(_row(row, f"life_in_weeks_{row.part}", "weeks", *(weeks * end for end in ends)))
         for phase in KEPT:
             rate = getattr(row, f"{phase}_mm_per_1000h")
             rows.append(_row(row, f"worst_recession_{row.part}_{phase}", "mm per 1,000 h", rate))

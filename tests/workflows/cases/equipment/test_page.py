@@ -38,9 +38,9 @@ SECTIONS = [
     *("The worn shape", "Designs side by side", "Steel lost", "Balance of particles"),
 ]
 ANCHORS = """\
-study,quantity,value,low,high,unit,source,note
-machine,life_liner,3000,,,h,a handbook,of another ore
-mill,power_W_shell_pristine,1,,,W,a mill,
+study,quantity,value,low,high,unit,source,note,reason
+machine,life_liner,3000,,,h,a handbook,of another ore,worn by finer grains
+mill,power_W_shell_pristine,1,,,W,a mill,,
 """
 MILL = {  # changes of the study: a filled machine that nothing is fed to
     "inlet": None,
@@ -164,7 +164,8 @@ def test_shape_as_built_alone(tmp_path, monkeypatch):
 def test_beside_published_values(tmp_path, monkeypatch):
     """Rows of the study alone, with the difference; a study without any has no such section."""
     with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
-        assert "of another ore" in sections_of(study, folder)["Beside published values"]
+        said = sections_of(study, folder)["Beside published values"]
+        assert "of another ore" in said and "worn by finer grains" in said
         table = pd.read_csv(folder / "equipment/anchors.csv")
         life = pd.read_csv(folder / "equipment/life.csv").set_index("part").loc["liner", "life_h"]
         assert table["quantity"].tolist() == ["life_liner"]

@@ -8,6 +8,7 @@ from bulkwear.workflows.cases.equipment import comparison, flow_tables, life, li
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
 
 PARTS = (SyntheticPart("liner", (1e-6, 5e-6), error=0.2), SyntheticPart("wheel", (4e-6,), power=100.0))
+HOURS_PER_YEAR = 6000.0  # of the synthetic runs
 TURNING = {"kind": "rotation", "speed_rad_per_s": -np.pi}
 COLUMNS = ["study", "quantity", "value", "low", "high", "unit", "source", "note"]
 
@@ -57,6 +58,14 @@ def test_numbers_by_name(numbers, quantity, value, unit):
     """A name tells quantity, part and shape; units stand beside it."""
     row = numbers[numbers["setting"] == "plain"].set_index("quantity").loc[quantity]
     assert row["value"] == pytest.approx(value, rel=1e-3) and row["unit"] == unit
+
+
+def test_life_in_weeks_of_service(numbers):
+    """The life in hours over those that a year has, of 52.18 weeks, with its interval."""
+    table = numbers[numbers["setting"] == "plain"].set_index("quantity")
+    hours, weeks = table.loc["life_liner"], table.loc["life_in_weeks_liner"]
+    for name in ("value", "low", "high"):
+        assert weeks[name] == pytest.approx(hours[name] / HOURS_PER_YEAR * 365.25 / 7.0)
 
 
 def test_every_number_is_there_once(numbers):
