@@ -98,8 +98,8 @@ onstart:
     # before the first job: a bed takes minutes to fill, and without its solver no run can follow
     for job in workflow.dag.needrun_jobs():
         if NAMING.ours(job.rule.name) == "worn_run":
-            parameters = run_parameters(job.wildcards)
-            if fault := cycle_fault(CYCLE_EXECUTABLES[parameters["ledger"]], parameters):
+            case, parameters = study_of(job.wildcards).case, run_parameters(job.wildcards)
+            if fault := cycle_fault(CYCLE_EXECUTABLES[parameters["ledger"]], case, parameters):
                 raise WorkflowError(fault)
     for study, jobs in jobs_by_study(workflow.dag.needrun_jobs()).items():
         announce_cost(study, jobs)

@@ -10,7 +10,7 @@ contact's force and speed belongs into a kernel.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from string import Formatter
 
@@ -179,6 +179,14 @@ def law_kernels(name: str, parameters: Mapping[str, float]) -> dict[str, dict[st
         kernel: {key: _required(parameters, key, "wear parameter") for key in kernel_parameters(kernel)}
         for kernel in law_of(name).kernels
     }
+
+
+def kernels_of_laws(laws: Iterable[tuple[str, Mapping[str, float]]]) -> dict[str, dict[str, float]]:
+    """Return `law_kernels` of several laws together.
+
+    laws: name and parameters of each; those that share a kernel have the same values for it
+    """
+    return {kernel: given for name, values in laws for kernel, given in law_kernels(name, values).items()}
 
 
 def worn_volume(law: str, columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:

@@ -48,7 +48,6 @@ from bulkwear.workflows.config.validation import (
 )
 from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
-from bulkwear.workflows.engine.derived import law_parameters
 from bulkwear.workflows.engine.project import Project, current_project
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
@@ -228,10 +227,11 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
 
 
 def _check_own_code(study: Study, layers: tuple[Layer, ...]) -> None:
-    """Check a project's own law and words of templates on the first run. Raises ConfigError."""
-    first, law = study.runs[0], study.settings["wear"]["law"]
-    if law in dict(current_project().own_laws):
-        check_volume(law, law_parameters(first.parameters))
+    """Check a project's own laws, and its words of templates on the first run. Raises ConfigError."""
+    first, own = study.runs[0], dict(current_project().own_laws)
+    given = {law: values for run in study.runs for law, values in study.case.laws(run.parameters)} if own else {}
+    for law in own.keys() & given:
+        check_volume(law, given[law])
     decks = partial(sample_decks, study.case, first.parameters, study.beds.get(study.bed_of(first.name)))
     check_own_words(layers, study.case, study.settings.get("deck", {}), decks)
 

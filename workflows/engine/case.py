@@ -17,7 +17,8 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.caps import edge_limit
-from bulkwear.workflows.engine.derived import law_volume, run_kernels
+from bulkwear.postproc.wear.laws import kernels_of_laws
+from bulkwear.workflows.engine.derived import law_parameters, law_volume
 from bulkwear.workflows.engine.schedule import Span, first_span, next_span
 from bulkwear.workflows.engine.work import Stage, Work
 
@@ -216,9 +217,13 @@ class Case:
         """
         return next_span(parameters, Span(**states[-1]["span"]), states[-1]["wear"])
 
+    def laws(self, parameters: Parameters) -> list[tuple[str, dict[str, float]]]:
+        """Return the name of each wear law of a run with its parameters (SI), the coefficient included."""
+        return [(parameters["wear"]["law"], law_parameters(parameters))] if "wear" in parameters else []
+
     def kernels(self, parameters: Parameters) -> dict[str, dict[str, float]]:
-        """Return {contact kernel: {parameter: value}} whose sums the wear law of a run needs."""
-        return run_kernels(parameters)
+        """Return {contact kernel: {parameter: value}} whose sums the wear laws of a run need."""
+        return kernels_of_laws(self.laws(parameters))
 
     def law_volume(self, parameters: Parameters, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame) -> np.ndarray:
         """Return the volume (m,) m3 that the wear law makes of a cycle's ledger, a row per triangle of the surface,

@@ -81,7 +81,7 @@ def run_chain(chain: Chain) -> None:
         span = span_of(chain, finished) if finished else None
         unfinished = finished == 0 or span is not None
         program = cycle_executable(chain, first_span(chain.parameters))
-        if unfinished and (fault := cycle_fault(program, chain.parameters)):
+        if unfinished and (fault := cycle_fault(program, chain.case, chain.parameters)):
             raise SolverError(fault)  # before the run-in, which needs the plain solver only
         progress = Progress(chain.name, total_steps(chain), steps_before(chain, span))
         if finished and unfinished:

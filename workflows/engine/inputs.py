@@ -137,7 +137,7 @@ def _changed_setting(old: Any, new: Any, name: str = "") -> str:
 
 def _code_of_project(case: Case, parameters: Parameters) -> dict[str, Any]:
     """Return the hashes of a project's own files that a run depends on; nothing where all is the package's."""
-    law = code_of_law(parameters["wear"]["law"]) if "wear" in parameters else {}
+    law = {file: found for name, _ in case.laws(parameters) for file, found in code_of_law(name).items()}
     return {name: value for name, value in {"law": law, "case": code_of_case(case)}.items() if value}
 
 

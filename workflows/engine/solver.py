@@ -16,12 +16,14 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bulkwear.postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
-from bulkwear.workflows.engine.derived import run_kernels
 from bulkwear.workflows.engine.project import PACKAGE
+
+if TYPE_CHECKING:
+    from bulkwear.workflows.engine.case import Case
 
 DECK, LOG, SCREEN = "deck.in", "log.liggghts", "screen.txt"
 EXECUTABLE = "liggghts"
@@ -73,9 +75,11 @@ def _told_kernels(executable: str) -> tuple[str, ...]:
     return tuple(told.stdout.splitlines()) if told.returncode == 0 else ()
 
 
-def cycle_fault(executable: str, run: Mapping[str, Any]) -> str | None:
-    """Return a sentence that says what to do where a program cannot simulate the wear cycles of a run; else None."""
-    kernels = run_kernels(run) if run["ledger"] == "solver" else ()
+def cycle_fault(executable: str, case: Case, run: Mapping[str, Any]) -> str | None:
+    """Return a sentence that says what to do where a program cannot simulate the wear cycles of a run of a case, with
+    the kernels of all its laws; else None.
+    """
+    kernels = case.kernels(run) if run["ledger"] == "solver" else ()
     return missing_program(executable) or missing_kernels(executable, kernels)
 
 

@@ -135,12 +135,13 @@ def test_a_program_without_the_kernel_is_refused_before_anything_runs():
     """The program that is built has every kernel of the repository and not the test's; sampled contacts need none."""
     assert missing_kernels(LEDGER_EXECUTABLE, [name for name in KERNELS if name != "long_slip"]) is None
     wear = {"law": "long_slip", "parameters": {"exponent": 2.0}}
-    parameters = tiny_study(wear=wear).run("R9_plain").parameters
-    assert cycle_fault(LEDGER_EXECUTABLE, parameters).startswith(
+    study = tiny_study(wear=wear)
+    parameters = study.run("R9_plain").parameters
+    assert cycle_fault(LEDGER_EXECUTABLE, study.case, parameters).startswith(
         f"{LEDGER_EXECUTABLE}: it has no contact kernel long_slip as postproc/wear/kernels.py has it, found: "
         "finnie_work finnie_work_J"
     )
-    assert cycle_fault(LEDGER_EXECUTABLE, {**parameters, "ledger": "dumps"}) is None
+    assert cycle_fault(LEDGER_EXECUTABLE, study.case, {**parameters, "ledger": "dumps"}) is None
 
 
 def test_a_program_that_cannot_tell_its_kernels_has_none():

@@ -25,6 +25,7 @@ from bulkwear.postproc.wear.part_loads import part_loads
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, with_thickness
 from bulkwear.postproc.wear.update import REMOVED_THICKNESS
 from bulkwear.workflows.cases.equipment.motions import axis_point
+from bulkwear.workflows.cases.equipment.parameters import law_values
 from bulkwear.workflows.cases.equipment.phases import PRISTINE, phase_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, label_of
 from bulkwear.workflows.engine.schedule import Span
@@ -76,8 +77,7 @@ def rate_volume(run: Parameters, surface: SurfaceMesh, ledger: pd.DataFrame) -> 
         if part["wears"]:
             faces = faces_of(surface, number, part)
             columns = {name: ledger[name].to_numpy()[faces] for name in ledger}
-            given = {"wear_coefficient_per_pa": part["wear_coefficient_per_pa"], **part["law_parameters"]}
-            volume[faces] = worn_volume(part["law"], columns, given)
+            volume[faces] = worn_volume(part["law"], columns, law_values(part))
     return volume
 
 

@@ -12,7 +12,7 @@ from bulkwear.postproc.mesh import SurfaceMesh, read_surface
 from bulkwear.workflows.cases.equipment import decks as equipment_deck
 from bulkwear.workflows.cases.equipment.checks import EQUIPMENT_CHECKS
 from bulkwear.workflows.cases.equipment.motions import motion_of
-from bulkwear.workflows.cases.equipment.parameters import run_parameters
+from bulkwear.workflows.cases.equipment.parameters import laws_of, run_parameters
 from bulkwear.workflows.cases.equipment.phases import next_block
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, register
@@ -124,9 +124,9 @@ class Equipment(Case):
             found.append(Piece(placed, triangles, equipment_deck.mesh_name(part), *files, frame))
         return found
 
-    def kernels(self, parameters: Parameters) -> dict[str, dict[str, float]]:
-        """Return the contact kernels that the parts' wear laws need."""
-        return equipment_deck.kernels_of(parameters)
+    def laws(self, parameters: Parameters) -> list[tuple[str, dict[str, float]]]:
+        """Return the wear laws of the parts, each with its parameters."""
+        return laws_of(parameters)
 
     # ---------------------------------------------------------------- wear
 

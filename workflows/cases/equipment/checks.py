@@ -150,14 +150,24 @@ def updates_deform(run: CheckedRun) -> Fault | None:
 def laws_have_parameters(run: CheckedRun) -> Fault | None:
     """Each part's wear law finds its parameters in wear.parameters, which are those of wear.law."""
     for part in run.parameters["parts"]:
-        needed = next(iter(to_si({each.name: 0.0 for each in LAWS[part["law"]].parameters}).items()), None)
-        if part["wears"] and needed and needed[0] not in part["law_parameters"]:
+        if part["wears"] and not _has_parameters(part):
             law, own = run.settings["wear"]["law"], run.settings["parts"][part["name"]].get("law")
             without = [name for name, each in LAWS.items() if not each.parameters]
             return (f"parts.{part['name']}.law" if own else "wear.law"), (
                 f"wear.law ({law}), whose parameters stand in wear.parameters, or one without any: {', '.join(without)}"
             )
     return None
+
+
+def _has_parameters(part: Mapping[str, Any]) -> bool:
+    """Return whether all parameters of a part's law are there, each within its range."""
+    given = part["law_parameters"]
+    ends = [
+        {each.name: each.lowest for each in LAWS[part["law"]].parameters},
+        {each.name: each.highest for each in LAWS[part["law"]].parameters},
+    ]
+    lowest, highest = map(to_si, ends)
+    return all(name in given and low <= given[name] <= highest[name] for name, low in lowest.items())
 
 
 def fed_what_is_predicted(run: CheckedRun) -> Fault | None:

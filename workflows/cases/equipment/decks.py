@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, write_stl
-from bulkwear.postproc.wear.laws import law_kernels
+from bulkwear.postproc.wear.laws import kernels_of_laws
 from bulkwear.workflows.cases.equipment.motions import motion_of, moves
-from bulkwear.workflows.cases.equipment.parameters import filled_mass
+from bulkwear.workflows.cases.equipment.parameters import filled_mass, laws_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, feed_face, rectangle, room_needed
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.derived import neighbour_skin
@@ -114,14 +114,15 @@ def part_words(run: Parameters, number: int, cycle: int, begin: int) -> dict[str
     """Return what a deck says of a part: its mesh, how it goes on from that step, its ledger."""
     part = run["parts"][number]
     motion, mesh = motion_of(part["motion"]), f"{mesh_name(part)}_{cycle}"
-    kernels = [word for name, given in kernels_of(run).items() for word in _kernel_words(name, given)]
+    kernels = kernels_of_laws(laws_of(run))  # in the ledgers of all parts: a run's ledger is one table
+    words = [word for name, given in kernels.items() for word in _kernel_words(name, given)]
     return {
         "name": part["name"],
         "mesh": mesh,
         "type": part["type"],
         "surface_words": motion.mesh_words(),
         "motion_lines": list(motion.deck_lines(mesh, begin * run["derived"]["time_step_s"])),
-        "kernels": " ".join(["", "kernels", *kernels]) if kernels else "",
+        "kernels": " ".join(["", "kernels", *words]) if words else "",
         "moves": moves(part["motion"]),
     }
 
@@ -129,19 +130,6 @@ def part_words(run: Parameters, number: int, cycle: int, begin: int) -> dict[str
 def mesh_name(part: Parameters) -> str:
     """Return what the decks call the mesh of a part, before the number of the cycle: no other fix begins alike."""
     return f"part_{part['name']}"
-
-
-def kernels_of(run: Parameters) -> dict[str, dict[str, float]]:
-    """Return the contact kernels that the wear laws of the parts need, with their parameters.
-
-    The ledgers of all parts sum all of them: a run's ledger is one table.
-    """
-    found = {}
-    for part in run["parts"]:
-        if part["wears"]:
-            given = {"wear_coefficient_per_pa": part["wear_coefficient_per_pa"], **part["law_parameters"]}
-            found |= law_kernels(part["law"], given)
-    return found
 
 
 def _kernel_words(name: str, given: Mapping[str, float]) -> list[str]:

@@ -99,6 +99,16 @@ def part_section(name: str, part: Mapping[str, Any], wear: Mapping[str, Any], ty
     }
 
 
+def laws_of(run: Mapping[str, Any]) -> list[tuple[str, dict[str, float]]]:
+    """Return the name of the wear law of each part that wears, with `law_values`."""
+    return [(part["law"], law_values(part)) for part in run["parts"] if part["wears"]]
+
+
+def law_values(part: Mapping[str, Any]) -> dict[str, float]:
+    """Return the parameters (SI) of a part's wear law, its true coefficient included."""
+    return {"wear_coefficient_per_pa": part["wear_coefficient_per_pa"], **part["law_parameters"]}
+
+
 def derived_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return what follows from the other sections: moduli, time step, lengths of cycles, what is predicted."""
     particle, walls, solver = parameters["particle"], parameters["walls"], parameters["solver"]

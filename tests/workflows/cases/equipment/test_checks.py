@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import sys
+from dataclasses import replace
 
 import pytest
 
+from bulkwear.postproc.wear.laws import LAWS, Parameter
 from bulkwear.workflows.cases.equipment.checks import (
     EQUIPMENT_CHECKS,
     MOST_PARTICLES,
@@ -23,7 +26,8 @@ from bulkwear.workflows.cases.equipment.placing import (
     placing_room,
 )
 from bulkwear.workflows.config.layers import ConfigError
-from tests.support.law_cases import long_slip_registered
+from bulkwear.workflows.engine.solver import cycle_fault
+from tests.support.law_cases import LONG_SLIP, long_slip_registered
 from tests.support.own_machine_project import SETTINGS, machine_study
 
 FILE = "config/studies/machine.yaml"
@@ -308,6 +312,32 @@ def test_a_law_of_a_part_finds_its_parameters(tmp_path):
             assert study.runs[0].parameters["parts"][0]["law_parameters"] == {"exponent": 2.0, "length_m": 0.002}
         with machine_study(tmp_path, parts={"hood": {"law": "long_slip"}}) as study:
             assert study.runs
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        (Parameter("exponent", "as long_slip has it", 0.5, 3.0, unit="-"), Parameter("share", "of it", 0, 1, unit="-")),
+        (Parameter("exponent", "with another range", 2.5, 3.0, unit="-"),),
+    ],
+)
+def test_a_law_of_a_part_finds_all_its_parameters_in_their_range(tmp_path, monkeypatch, parameters):
+    """One of them missing beside one that wear.law has too, and one that wear.law allows but the part's does not."""
+    monkeypatch.setitem(LAWS, "shares", replace(LONG_SLIP, words="shares.", parameters=parameters, kernels=()))
+    with long_slip_registered():
+        chosen = {"law": "long_slip", "parameters": {"exponent": 2}}
+        message = message_of(tmp_path, wear=chosen, parts={"liner": {"law": "shares"}})
+        assert "parts.liner.law is 'shares' for row A, allowed is wear.law (long_slip)" in message
+
+
+def test_kernels_of_a_part_s_own_law_are_asked_of_the_solver(tmp_path):
+    """A program without them is refused before it starts, though wear.law needs none; parts that keep their shape need
+    none either.
+    """
+    with machine_study(tmp_path / "a") as study:
+        assert "no contact kernel finnie_work" in cycle_fault(sys.executable, study.case, study.runs[0].parameters)
+    with machine_study(tmp_path / "b", parts={"plate": {"role": "rigid"}}) as study:
+        assert cycle_fault(sys.executable, study.case, study.runs[0].parameters) is None
 
 
 @pytest.mark.parametrize(
