@@ -140,5 +140,5 @@ def machine_chain(study: Study, folder: Path, run: str = "") -> Chain:
     parameters, surface = study.run(name).parameters, folder / name / "surface.vtu"
     if not surface.exists():
         surface.parent.mkdir(parents=True, exist_ok=True)
-        write_surface(surface, study.case.surface_mesh({key: parameters[key] for key in study.case.geometry}))
+        write_surface(surface, study.case.surface_mesh(study.case.surface_sections(parameters)))
     return Chain(name, surface.parent, study.case, parameters, surface)

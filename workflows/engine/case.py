@@ -165,8 +165,12 @@ class Case:
         """Return the columns of design.csv that follow from a run's parameters."""
         return {}
 
+    def surface_sections(self, parameters: Parameters) -> dict[str, Any]:
+        """Return the parameters of a run that its pristine surface depends on: here the sections of `geometry`."""
+        return {name: parameters[name] for name in self.geometry}
+
     def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
-        """Return the pristine surface of a run from the sections of its parameters that `geometry` names."""
+        """Return the pristine surface of a run from what `surface_sections` returns of its parameters."""
         raise NotImplementedError
 
     # ---------------------------------------------------------------- decks of a run

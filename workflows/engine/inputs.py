@@ -111,9 +111,19 @@ def why_again(run_folder: Path, found: Mapping[str, Any]) -> str | None:
         if old != new:
             return f"its deck of {'a wear cycle' if number else 'cycle 0'} changed, {_first_change(old, new)}"
     for name in ("settings", "surface", "bed"):
-        if name in before and before[name] != now[name]:
-            return _changed_setting(before[name], now[name], "" if name == "settings" else name)
+        old = _named_now(before.get(name), now[name]) if name == "surface" else before.get(name)
+        if name in before and old != now[name]:
+            return _changed_setting(old, now[name], "" if name == "settings" else name)
     return None
+
+
+def _named_now(before: Any, now: Any) -> Any:
+    """Return what was kept of a surface without the keys that no surface is made from any more."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        return {key: _named_now(before[key], now[key]) for key in before.keys() & now}
+    if isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
+        return [_named_now(*pair) for pair in zip(before, now, strict=True)]
+    return before
 
 
 def _first_change(old: str, new: str) -> str:
@@ -142,10 +152,12 @@ def _code_of_project(case: Case, parameters: Parameters) -> dict[str, Any]:
 
 
 def surface_from(case: Case, parameters: Parameters) -> dict[str, Any]:
-    """Return the sections of a run's parameters that its surface is made from; of a project's case with its code."""
-    sections = {name: parameters[name] for name in case.geometry}
-    code = code_of_case(case)
-    return SimulatedFrom(sections, state.digest(sections, code)) if code else sections
+    """Return the parameters of a run that its surface is made from; of a project's case with its code.
+
+    Those of a machine are compared by their hash too: its parts are many.
+    """
+    sections, code = case.surface_sections(parameters), code_of_case(case)
+    return SimulatedFrom(sections, state.digest(sections, code)) if code or case.by_part else sections
 
 
 def inputs_digest(chain: Chain) -> str:

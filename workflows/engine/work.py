@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bulkwear.workflows.engine.derived import neighbour_skin
+from bulkwear.workflows.engine.state import DIGEST_LETTERS, digest
 
 # Median diameters of a bed's thickness in which no particle's centre is: half of one is taken off in levelling, the
 # rest is the looser layer on the floor. Measured on beds of 3 to 7.5 layers, within 1 % in particles.
@@ -92,6 +93,13 @@ class Work:
     def name(self) -> str:
         """The name of the job's log and benchmark files."""
         return "_".join([self.rule, *self.wildcards])
+
+
+class Jobs(tuple):
+    """Jobs of a study, each `Work`. Snakemake compares what they look like, which is one word however many they are."""
+
+    def __repr__(self) -> str:
+        return f"{len(self)} jobs {digest(tuple.__repr__(self))[:DIGEST_LETTERS]}"
 
 
 def builds_per_step(run: Mapping[str, Any]) -> float:

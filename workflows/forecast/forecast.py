@@ -13,7 +13,7 @@ import pandas as pd
 
 from bulkwear.workflows.config.design import Study
 from bulkwear.workflows.engine.job import duration_text
-from bulkwear.workflows.engine.work import Work
+from bulkwear.workflows.engine.work import Jobs, Work
 from bulkwear.workflows.forecast.rates import (
     OUTSIDE_TERMS,
     SOLVER_TERMS,
@@ -47,11 +47,11 @@ SHOWN = {  # column of the table -> heading of the printed one
 }
 
 
-def work_of(study: Study) -> tuple[Work, ...]:
+def work_of(study: Study) -> Jobs:
     """Return the jobs of a study that call the solver: what its case has besides, then beds, then runs."""
     bed_of = {run.name: bed for run in study.runs if (bed := study.bed_of(run.name))}
     work = study.case.work(study.runs, study.beds, bed_of, study.settings["solver"]["ranks"])
-    return *study.case.further_work(study), *work
+    return Jobs((*study.case.further_work(study), *work))
 
 
 def forecast_table(work: Sequence[Work], rates: Rates) -> pd.DataFrame:

@@ -1,6 +1,8 @@
 """Forecasts: jobs and their sizes, seconds, memory and disk, and how jobs fill cores."""
 
+import pickle
 import time
+from dataclasses import replace
 from itertools import pairwise
 
 import pandas as pd
@@ -40,6 +42,7 @@ EXACT = 1e-12  # relative; rounding of a few sums
 PARTICLES = 0.02  # relative; of the three beds of the screening and of the demo's, as the solver counted them
 LONGEST = 15.0  # s, of all studies at all fidelities together; it takes about one
 RATES = dict.fromkeys(TERMS, 0.0) | {"particle_steps": 1e-6, "triangle_steps": 1e-7, "cycles": 2.0, "jobs": 1.0}
+SHORT = 40  # letters, of what Snakemake shows of jobs
 PROFILES = REPOSITORY / "profiles"
 # Particles that LIGGGHTS 3.8.0 counted in levelled beds at quick fidelity: settings, and number by bed.
 SEVERAL_SCALES = {"particle_scale": 2.0, "bed": {"least_layers": 3.0, "width_mm": 100, "ahead_mm": 100}}
@@ -103,6 +106,16 @@ def test_jobs_are_those_of_the_workflow(repository):
         "calibrated_parameters",
         "box_sizes",
     ]
+
+
+def test_jobs_look_like_one_word(repository):
+    """By which Snakemake compares them: the same for the same jobs, another one for others; a copy is as the first."""
+    first, again, more = (work_of(load_study("demo", overrides={"packings": n})) for n in (1, 1, 2))
+    assert repr(first) == repr(again) == repr(pickle.loads(pickle.dumps(first)))
+    longer = replace(first[0], disk_bytes=first[0].disk_bytes + 1.0)
+    assert len({repr(first), repr(more), repr(type(first)((longer, *first[1:])))}) == 3
+    assert repr(first).startswith(f"{len(first)} jobs ") and len(repr(more)) < SHORT
+    assert tuple(again) == tuple(first) != tuple(more)
 
 
 @pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])

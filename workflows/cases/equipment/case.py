@@ -12,7 +12,7 @@ from bulkwear.postproc.mesh import SurfaceMesh, read_surface
 from bulkwear.workflows.cases.equipment import decks as equipment_deck
 from bulkwear.workflows.cases.equipment.checks import EQUIPMENT_CHECKS
 from bulkwear.workflows.cases.equipment.motions import motion_of
-from bulkwear.workflows.cases.equipment.parameters import laws_of, run_parameters
+from bulkwear.workflows.cases.equipment.parameters import PART_DEFAULTS, laws_of, run_parameters
 from bulkwear.workflows.cases.equipment.phases import next_block
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, register
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SECONDS_PER_HOUR = 3600.0
+OF_WEAR = (*PART_DEFAULTS, "law_parameters")  # keys of a part
+OF_DURATION = ("time_step_s", "run_in_steps", "travel_steps")  # in which parts move, and particles fly
 
 
 class Equipment(Case):
@@ -37,8 +39,8 @@ class Equipment(Case):
     alternatives = (("operation", "duration_h"), ("operation", "throughput_mt"))
     run_templates = ("equipment_start", "equipment")
     seed_setting = "bulk.seed"
-    figure_modules = ("figures", "map_figures", "flow_figures")
-    geometry = ("parts", "particle", "bulk", "inlet", "filling", "outlets", "periodic", "domain", "sampling", "derived")
+    figure_modules = ("figures", "map_figures", "flow_figures", "lifter_figures")
+    geometry = ("parts", "particle", "inlet", "filling", "outlets", "periodic", "domain")
     consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates")
     only_told = ("wear_coefficient_error",)
     first_title = "start-up"
@@ -68,6 +70,12 @@ class Equipment(Case):
             "particle_scale": parameters["particle"]["scale"],
             "predicted_operation_h": parameters["derived"]["operation_s"] / SECONDS_PER_HOUR,
         }
+
+    def surface_sections(self, parameters: Parameters) -> dict[str, Any]:
+        """Return what the parts are made and checked from: not how they wear; of the run how long it may get."""
+        parts = [{key: value for key, value in part.items() if key not in OF_WEAR} for part in parameters["parts"]]
+        derived = {key: parameters["derived"][key] for key in OF_DURATION}
+        return {**super().surface_sections(parameters), "parts": parts, "derived": derived}
 
     def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
         """Return all parts as one surface, each in the frame it was drawn in. Raises ConfigError for a machine that

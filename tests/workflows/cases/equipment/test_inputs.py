@@ -1,13 +1,17 @@
 """What simulates a machine again: the operation that its shape is worn for, not how that is judged."""
 
+import json
+
 import pytest
 
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.schema import case_schema, load_schema
-from bulkwear.workflows.engine.inputs import run_digest
+from bulkwear.workflows.engine.inputs import SIMULATED_FROM, run_digest, simulated_from, surface_from, why_again
+from bulkwear.workflows.engine.state import cycle_folder
 from tests.support.own_machine_project import machine_study
 
+SHORT = 40  # letters, of what Snakemake shows of a surface
 SHORTER = {"duration_h": 300}
 TONNES = {"duration_h": None, "throughput_mt": 0.0003}
 OURS = """\
@@ -51,6 +55,47 @@ def test_hours_of_a_shape_that_is_kept_are_not(tmp_path):
 def test_judging_simulates_nothing(tmp_path, before, operation):
     """When a liner is changed, and how many hours a year has, is told of the same runs."""
     assert digest(tmp_path, operation=operation) == before
+
+
+def told(folder, **changes):
+    """What Snakemake compares of the surface of the tiny machine, its settings changed."""
+    with machine_study(folder, **changes) as study:
+        return repr(surface_from(study.case, study.runs[0].parameters))
+
+
+def test_a_surface_is_made_again_for_its_shape_and_room_alone(tmp_path):
+    """Not for how it wears, how that is judged, nor for another seed; in one word, however many parts there are."""
+    first = told(tmp_path)
+    assert first.startswith("simulated from ") and len(first) < SHORT
+    same = (
+        {"parts": {"liner": {"wear_coefficient_error": 0.1, "wear_coefficient_per_pa": 1e-12, "law": "finnie"}}},
+        {"operation": {"duration_h": 500}, "sampling": {"patch_mm": 70, "pictures_per_block": 4}},
+        {"bulk": {"seed": 7}},
+    )
+    for changes in same:
+        assert told(tmp_path, **changes) == first, changes
+    other = (
+        {"parts": {"liner": {"edge_mm": 26}}},
+        {"parts": {"paddle": {"motion": {"speed_rpm": 70}}}},
+        {"sampling": {"most_blocks": 4}},  # parts move and particles fly for longer
+        {"inlet": {"centre_mm": [-60, 0, 161]}},
+    )
+    for changes in other:
+        assert told(tmp_path, **changes) != first, changes
+
+
+def test_a_record_of_more_than_surfaces_are_made_from_is_no_difference(tmp_path):
+    """Cycle 0 of an older version kept more of the parameters; of what counts now the first difference is told."""
+    with machine_study(tmp_path) as study:
+        run = study.runs[0].parameters
+        found = simulated_from(study.case, run, None)
+    whole = {**found, "surface": {name: run[name] for name in (*study.case.geometry, "derived", "bulk")}}
+    cycle_folder(tmp_path, 0).mkdir()
+    (cycle_folder(tmp_path, 0) / SIMULATED_FROM).write_text(json.dumps(whole))
+    assert why_again(tmp_path, found) is None
+    longer = {**found["surface"], "derived": {**found["surface"]["derived"], "travel_steps": 7}}
+    phrase = why_again(tmp_path, {**found, "surface": longer})
+    assert phrase == f"surface.derived.travel_steps is 7, it was {run['derived']['travel_steps']}"
 
 
 @pytest.fixture

@@ -89,7 +89,7 @@ def test_a_wrong_unit_is_named_with_the_one_that_makes_sense(tmp_path, unit, sca
         write_ascii(tmp_path / "meshes/liner.stl", {"liner": (points * scale, triangles)})
         parameters = study.runs[0].parameters
         with pytest.raises(ConfigError) as caught:
-            study.case.surface_mesh({key: parameters[key] for key in study.case.geometry})
+            study.case.surface_mesh(study.case.surface_sections(parameters))
     assert str(caught.value) == (
         f"parts.liner.unit is {unit}, in which liner.stl is {size} large, allowed are 12 mm, a median particle as"
         f" coarse-grained, to 200 m: {hint}."
@@ -111,7 +111,7 @@ def test_other_faults_of_a_drawing_are_told_as_they_are(tmp_path, run):
         (tmp_path / "meshes/plate.stl").unlink()
         check_units(parameters)
         with pytest.raises(ConfigError, match=r"^parts\.liner: .*liner\.stl") as caught:
-            study.case.surface_mesh({key: parameters[key] for key in study.case.geometry})
+            study.case.surface_mesh(study.case.surface_sections(parameters))
     assert ".unit is" not in str(caught.value)
 
 
@@ -119,7 +119,7 @@ def test_a_machine_of_the_right_size_passes(tmp_path):
     """The tiny machine of these tests, with its drawings."""
     with machine_study(tmp_path) as study:
         parameters = study.runs[0].parameters
-        surface = study.case.surface_mesh({key: parameters[key] for key in study.case.geometry})
+        surface = study.case.surface_mesh(study.case.surface_sections(parameters))
     assert len(np.unique(surface.cell_data["part"])) == 4
 
 

@@ -50,7 +50,7 @@ def pin_chain(study, folder: Path, run: str = ROW) -> Chain:
     """A chain in `folder`, its disc built."""
     parameters, case = study.run(run).parameters, study.case
     folder.mkdir(parents=True, exist_ok=True)
-    write_surface(folder / "surface.vtu", case.surface_mesh({name: parameters[name] for name in case.geometry}))
+    write_surface(folder / "surface.vtu", case.surface_mesh(case.surface_sections(parameters)))
     return Chain(run, folder, study.case, parameters, folder / "surface.vtu")
 
 
