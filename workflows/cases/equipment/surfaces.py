@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bulkwear.meshes.own.mesh import own_mesh
+from bulkwear.meshes.own.mesh import OwnMesh, own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.wear.bodies import body, together
 from bulkwear.workflows.cases.equipment.drawings import drawing
@@ -32,16 +33,25 @@ def label_of(number: int, part: Part) -> int:
 
 
 def machine_surface(parts: Sequence[Part]) -> SurfaceMesh:
-    """Return all parts as one surface with cell data `part`, see `label_of`. Raises ConfigError."""
+    """Return all parts as one surface with cell data `part`, see `label_of`. Raises ConfigError.
+
+    A file with several parts of the same unit and edge is meshed once.
+    """
+    meshed = cache(own_mesh)
     with tempfile.TemporaryDirectory() as folder:
-        return together([part_surface(number, part, Path(folder)) for number, part in enumerate(parts)])
+        return together([part_surface(number, part, Path(folder), meshed) for number, part in enumerate(parts)])
 
 
-def part_surface(number: int, part: Part, folder: Path) -> SurfaceMesh:
-    """Return a part as the solver takes it; drawings that a script makes go into the folder. Raises ConfigError."""
+def part_surface(
+    number: int, part: Part, folder: Path, meshed: Callable[[Path, str, float], OwnMesh] = own_mesh
+) -> SurfaceMesh:
+    """Return a part as the solver takes it; drawings that a script makes go into the folder. Raises ConfigError.
+
+    meshed: `own_mesh`, or what remembers its meshes
+    """
     name = f"parts.{part['name']}"
     try:
-        found = own_mesh(drawing(part["file"], folder), part["unit"], part["edge_m"])
+        found = meshed(drawing(part["file"], folder), part["unit"], part["edge_m"])
     except (ValueError, OSError) as fault:
         raise ConfigError(f"{name}: {fault}.") from fault
     surface = found.surface

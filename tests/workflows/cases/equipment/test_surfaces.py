@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.postproc.mesh import (
     SurfaceMesh,
     areas,
@@ -95,6 +96,25 @@ def test_solid_is_the_body_of_that_name(two_bodies, solid):
     assert set(both.cell_data["part"].tolist()) == {-4}
     whole = sum(math.prod(size) for size in SOLID_SIZES.values()) / 1e9
     assert enclosed_volume(both.points, both.triangles) == pytest.approx(whole, rel=VOLUME)
+
+
+def test_a_file_of_several_parts_is_meshed_once(two_bodies, monkeypatch):
+    """Once for every unit and edge that its parts have; each part is what it is alone, to the last bit."""
+    parts = [
+        part_of("both.stl", name="a", solid="trough"),
+        part_of("both.stl", name="b", solid="lip", wears=False),
+        part_of("both.stl", name="c", solid="lip", edge_m=0.04),
+        part_of("both.stl", name="d", solid="lip", unit="cm", edge_m=0.5),
+    ]
+    alone = [part_surface(number, part, two_bodies) for number, part in enumerate(parts)]
+    asked = []
+    monkeypatch.setattr(surfaces, "own_mesh", lambda *given: asked.append(given) or own_mesh(*given))
+    whole = machine_surface(parts)
+    path = two_bodies / "both.stl"
+    assert asked == [(path, "mm", 0.05), (path, "mm", 0.04), (path, "cm", 0.5)]
+    for number, (part, mesh) in enumerate(zip(parts, alone, strict=True)):
+        one = body(whole, faces_of(whole, number, part))
+        assert np.array_equal(one.points[one.triangles], mesh.points[mesh.triangles])
 
 
 def test_unknown_solid_is_one_sentence(two_bodies):
