@@ -1,4 +1,4 @@
-"""Tables of a study of equipment; what is drawn of them is in `map_figures` and `flow_figures`."""
+"""Tables of a study of equipment; what is drawn of them is in the other modules of figures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bulkwear.workflows.cases.equipment.tables import values_of_runs
-from bulkwear.workflows.report.products import Job, every_run, outputs_of, products_of_study, tables
+from bulkwear.workflows.report.products import Job, OfStudy, every_run, outputs_of, products_of_study, tables
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,13 +28,19 @@ TABLES = {
 }
 BESIDE_PUBLISHED = {name: f"equipment/{name}.csv" for name in ("key_numbers", "anchors")}
 NUMBERS = ("life", "loads", "steel", "remaining", "designs", "flow")  # tables with numbers that may be published
-CHARGE = "charge_shape"  # figure of mills, whose table has the angles of toe and shoulder
+LIFTERS = {"lifters": "equipment/lifters.csv"}
+OF_MILLS = {"charge": ("charge_shape", "table"), "lifters": ("lifters", "lifters")}  # table: its product, key there
 
 
-def charge_table(study: Study) -> str | list[str]:
-    """Return the path of the angles of a charge; nothing where a study has no such figure."""
-    found = products_of_study(study)
-    return outputs_of(found[CHARGE], study.name)["table"] if CHARGE in found else []
+def of_mills(table: str) -> OfStudy:
+    """Return a source: the path of a table of OF_MILLS; nothing where a study has none."""
+    product, key = OF_MILLS[table]
+
+    def path(study: Study) -> str | list[str]:
+        found = products_of_study(study)
+        return outputs_of(found[product], study.name)[key] if product in found else []
+
+    return path
 
 
 @tables(
@@ -82,7 +88,8 @@ def equipment_tables(job: Job) -> dict[str, pd.DataFrame]:
 @tables(
     inputs={
         **{name: f"results/{{study}}/{TABLES[name]}" for name in NUMBERS},
-        **{"charge": charge_table, **ANCHORS},
+        **{name: of_mills(name) for name in OF_MILLS},
+        **ANCHORS,
     },
     told={"runs": values_of_runs, "study": lambda study: study.name},
     tables=BESIDE_PUBLISHED,
@@ -94,7 +101,7 @@ def beside_published(job: Job) -> dict[str, pd.DataFrame]:
 
     from bulkwear.workflows.cases.equipment.published import beside_anchors, key_numbers
 
-    names = (*NUMBERS, *(["charge"] if job.files.charge else []))
+    names = (*NUMBERS, *(name for name in OF_MILLS if getattr(job.files, name)))
     found = {name: pd.read_csv(getattr(job.files, name), dtype={"setting": str}) for name in names}
     computed, anchors = key_numbers(found, job.told.runs), pd.read_csv(job.files.anchors)
     anchors = anchors[anchors["study"] == job.told.study]

@@ -30,6 +30,7 @@ from bulkwear.workflows.cases.equipment.phases import PRISTINE, WEARING, WORN
 from bulkwear.workflows.cases.equipment.pictures import SURFACE, Run, first_runs, labels_of, part_mesh, turns_about
 
 AS_BUILT, AS_WORN = "as built", "as worn"
+SHAPES = {AS_BUILT: PRISTINE, AS_WORN: WORN}  # as figures call them: as tables do
 TOE, SHOULDER = "toe", "shoulder"
 
 
@@ -192,13 +193,13 @@ def charge_of(scene: Scene) -> ChargeAngles:
 def charge_rows(runs: Sequence[Run], folder: Path) -> pd.DataFrame:
     """Return toe and shoulder of every packing: setting, packing, phase, operation_h, toe_deg, shoulder_deg.
 
-    Degrees from 12 o'clock in the sense of rotation, see `postproc.flow.charge_angles`.
+    phase: PRISTINE or WORN. Degrees from 12 o'clock in the sense of rotation, see `postproc.flow.charge_angles`.
     """
     rows = []
     for run in runs:
         for scene in scenes(run, folder):
             found = charge_of(scene)
-            row = {"setting": run["setting"], "packing": run["packing"], "phase": scene.phase}
+            row = {"setting": run["setting"], "packing": run["packing"], "phase": SHAPES[scene.phase]}
             row["operation_h"] = scene.hours
             rows.append(row | {"toe_deg": found.toe_deg, "shoulder_deg": found.shoulder_deg})
     return pd.DataFrame(rows)

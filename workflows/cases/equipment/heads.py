@@ -91,6 +91,25 @@ LOAD_NAMES = {
     "worn_mass_kg_per_h": "steel lost",
     "power_W": "power of its motion",
 }
+LIFTER_COLUMNS = {
+    "setting": ("design", ""),
+    "part": ("part", ""),
+    "operation_h": ("operation", "h"),
+    "packings": ("packings", "-"),
+    "lifters": ("lifters", "-"),
+    "height_mm": ("height", "mm"),
+    "height_mm_low": ("from", "mm"),
+    "height_mm_high": ("to", "mm"),
+    "leading_face_angle_deg": ("leading face", "degrees"),
+    "leading_face_angle_deg_low": ("from", "degrees"),
+    "leading_face_angle_deg_high": ("to", "degrees"),
+    "trailing_face_angle_deg": ("trailing face", "degrees"),
+    "trailing_face_angle_deg_low": ("from", "degrees"),
+    "trailing_face_angle_deg_high": ("to", "degrees"),
+    "height_loss_mm_per_1000h": ("height lost since as built", "mm per 1,000 h"),
+    "height_loss_mm_per_1000h_low": ("from", "mm per 1,000 h"),
+    "height_loss_mm_per_1000h_high": ("to", "mm per 1,000 h"),
+}
 FLOW_COLUMNS = {
     "setting": ("design", ""),
     "packing": ("packing", ""),

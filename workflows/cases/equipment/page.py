@@ -32,6 +32,7 @@ FLOW_FIGURES = ("flow_over_time", "flow_pictures", "velocity_fields", "charge_sh
 WEAR_FIGURES = ("wear_map", "remaining_thickness")
 LOAD_FIGURES = ("impact_and_sliding",)
 WORN_FIGURES = ("profile_sections",)
+LIFTER_FIGURES = ("lifter_heights",)
 
 
 def told(study: Study) -> dict[str, Any]:
@@ -52,6 +53,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ("Where it wears", [worst], WEAR_FIGURES),
         ("Impact and sliding", page_blocks.impacts(found), LOAD_FIGURES),
         ("The worn shape", page_blocks.worn_shape(found, summary, machines), WORN_FIGURES),
+        ("Lifters", page_blocks.lifters(found), LIFTER_FIGURES if "lifters" in found else ()),
         ("Designs side by side", page_blocks.designs(found, machines), ()),
         ("Steel lost", [steel], ()),
         ("Balance of particles", page_blocks.balance(found), ()),

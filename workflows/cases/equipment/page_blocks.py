@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from bulkwear.workflows.cases.equipment import findings, heads
-from bulkwear.workflows.cases.equipment.figures import BESIDE_PUBLISHED, TABLES
+from bulkwear.workflows.cases.equipment.figures import BESIDE_PUBLISHED, LIFTERS, TABLES
 from bulkwear.workflows.cases.equipment.findings import Tables
 from bulkwear.workflows.cases.equipment.heads import shown
 from bulkwear.workflows.cases.equipment.machine_tables import feed_table, operation_words, parts_table
@@ -40,12 +40,18 @@ IMPACT_NOTE = (
     "As built. Sliding: normal force times sliding velocity. Impacts: energy of the motion against the face at the "
     "first touches of particles, over time."
 )
+LIFTER_NOTE = (
+    "As built and after every update. Height: crest above plates. Faces: degrees from the radius through the lifter's "
+    "middle, of the straight line through a face between 20 and 80 % of its height; the leading face looks ahead in "
+    f"the sense of rotation. Means over lifters; hours, too, are means over packings. {INTERVALS}"
+)
 ANCHOR_NOTE = "Difference: computed over published, less 1. Without a computed value the study has no such number."
 
 
 def read_tables(folder: Path) -> dict[str, pd.DataFrame]:
-    """Return the tables of a study by name; empty words are ""."""
-    paths = TABLES | BESIDE_PUBLISHED
+    """Return the tables of a study by name, those of mills where it has them; empty words are ""."""
+    of_mills = {name: path for name, path in LIFTERS.items() if (folder / path).exists()}
+    paths = TABLES | BESIDE_PUBLISHED | of_mills
     found = {name: pd.read_csv(folder / path, dtype=dict.fromkeys(WORDS, str)) for name, path in paths.items()}
     return {
         name: table.assign(**{word: table[word].fillna("") for word in WORDS if word in table})
@@ -106,6 +112,13 @@ def worn_shape(found: Tables, summary: pd.DataFrame, machines: Mapping[str, Mapp
         shown(loads, heads.LOAD_COLUMNS, "loads", note),
         *([shown(found["remaining"], heads.REMAINING_COLUMNS, "remaining", left)] if len(found["remaining"]) else []),
     ]
+
+
+def lifters(found: Tables) -> list[Block]:
+    """Return the lifters of a mill against hours of operation; nothing where there are none."""
+    if "lifters" not in found or found["lifters"].empty:
+        return []
+    return [shown(found["lifters"], heads.LIFTER_COLUMNS, "lifters", LIFTER_NOTE)]
 
 
 def acceleration_words(summary: pd.DataFrame, blocks_s: list[float]) -> str:

@@ -1,8 +1,8 @@
 """What a study of equipment computes, number by number, and published values beside it.
 
-Names of numbers: <quantity>_<part>, of loads and rates <quantity>_<part>_<pristine or worn>, of the flow and of a
-mill's charge <quantity>_<pristine or worn>. A row of config/published/equipment_anchors.csv stands beside the number of
-its name and unit.
+Names of numbers: <quantity>_<part>, of loads, rates and lifters <quantity>_<part>_<pristine or worn>, of the flow and
+of a mill's charge <quantity>_<pristine or worn>. A row of config/published/equipment_anchors.csv stands beside the
+number of its name and unit.
 """
 
 from __future__ import annotations
@@ -16,13 +16,15 @@ import pandas as pd
 
 from bulkwear.postproc.statistics.intervals import estimate
 from bulkwear.workflows.cases.equipment.comparison import FIRST
+from bulkwear.workflows.cases.equipment.lifters import HEIGHT, LEADING, LOSS
 from bulkwear.workflows.cases.equipment.machine_tables import RPM
 from bulkwear.workflows.cases.equipment.tables import KEPT
 
 COLUMNS = ["quantity", "setting", "value", "low", "high", "unit", "packings"]
+LOAD_ANGLE = "load_angle_deg"
 PER_PACKING = {  # table with a row per packing and phase: its columns and their units
     "flow": {"out_t_per_h": "t/h", "held_kg": "kg", "residence_s": "s", "power_W": "W"},
-    "charge": {"toe_deg": "degrees", "shoulder_deg": "degrees"},
+    "charge": {"toe_deg": "degrees", "shoulder_deg": "degrees", LOAD_ANGLE: "degrees"},
 }
 NAMES = {"out_t_per_h": "out", "held_kg": "held", "residence_s": "residence", "power_W": "power"}
 WEEKS_PER_YEAR = 365.25 / 7.0
@@ -34,7 +36,8 @@ Rows = list[dict[str, Any]]
 def key_numbers(found: Mapping[str, pd.DataFrame], runs: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """Return COLUMNS of all that a study computes, a row per number and setting.
 
-    found: tables life, loads, steel, remaining, designs, flow, and of mills charge; runs: values of `values_of_runs`
+    found: tables life, loads, steel, remaining, designs, flow, and of mills charge and lifters
+    runs: values of `values_of_runs`
     """
     rows = [*_given(runs), *_lives(found["life"]), *_loads(found["loads"])]
     for row in found["steel"].itertuples():
@@ -43,6 +46,10 @@ def key_numbers(found: Mapping[str, pd.DataFrame], runs: Sequence[Mapping[str, A
         ends = row.remaining_mm, row.remaining_mm_low, row.remaining_mm_high
         rows.append(_row(row, f"remaining_{row.part}_after_{row.operation_h:.0f}_h", "mm", *ends))
     rows += _less_steel(found["designs"])
+    if "lifters" in found:
+        rows += _lifters(found["lifters"])
+    if "charge" in found:
+        found = {**found, "charge": _with_load_angle(found["charge"])}
     for name, columns in PER_PACKING.items():
         if name in found:
             rows += _over_packings(found[name], columns)
@@ -93,6 +100,28 @@ def _less_steel(designs: pd.DataFrame) -> Rows:
         less = (100.0 * (1.0 - ratio) for ratio in (row.ratio, row.ratio_high, row.ratio_low))
         rows.append(_row(row, f"less_steel_lost_{row.part}", "%", *less))
     return rows
+
+
+def _lifters(lifters: pd.DataFrame) -> Rows:
+    """Return height, angle of the leading face, and loss of height of lifters, as built and after the last update."""
+    rows = []
+    for (_, part), updates in lifters.groupby(["setting", "part"], sort=False):
+        last = updates.iloc[-1]
+        for phase, row in zip(KEPT, (updates.iloc[0], last) if len(updates) > 1 else (last,), strict=False):
+            rows.append(_row(row, f"lifter_height_{part}_{phase}", "mm", *_ends(row, HEIGHT)))
+            rows.append(_row(row, f"lifter_face_angle_{part}_{phase}", "degrees", *_ends(row, LEADING)))
+        rows.append(_row(last, f"lifter_height_loss_{part}", "mm per 1,000 h", *_ends(last, LOSS)))
+    return [row for row in rows if np.isfinite(row["value"])]
+
+
+def _ends(row: pd.Series, name: str) -> tuple[float, ...]:
+    return tuple(float(row[f"{name}{end}"]) for end in ("", "_low", "_high"))
+
+
+def _with_load_angle(charge: pd.DataFrame) -> pd.DataFrame:
+    """Return toe and shoulder with LOAD_ANGLE, the slope of the chord between them, see `flow.charge_angles`."""
+    middle = charge["toe_deg"] + 0.5 * ((charge["shoulder_deg"] - charge["toe_deg"]) % 360.0)  # of the charge's arc
+    return charge.assign(**{LOAD_ANGLE: middle - 180.0})
 
 
 def _over_packings(table: pd.DataFrame, columns: Mapping[str, str]) -> Rows:

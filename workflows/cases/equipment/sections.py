@@ -58,12 +58,14 @@ def _names(sections: pd.DataFrame) -> list[str]:
     ]
 
 
-def shown_shapes(folder: Path) -> list[tuple[float, SurfaceMesh]]:
-    """Return (hours of operation, surface) of a run as built and after some of its updates, evenly in their number."""
+def shown_shapes(folder: Path, most: float = MOST_SHAPES) -> list[tuple[float, SurfaceMesh]]:
+    """Return (hours of operation, surface) of a run as built and after its updates, of more than `most` in all some,
+    evenly in their number.
+    """
     wear = pd.read_csv(folder / "wear.csv")
     wear = wear[wear["stands_for_h"] > 0.0]
     hours = (wear["operation_h"] + wear["stands_for_h"]).to_numpy()
-    shown = np.unique(np.linspace(0, len(wear), min(len(wear) + 1, MOST_SHAPES)).round().astype(int))[1:] - 1
+    shown = np.unique(np.linspace(0, len(wear), min(len(wear) + 1, most)).round().astype(int))[1:] - 1
     files = [folder / f"cycle_{cycle:03d}" / SURFACE for cycle in wear["cycle"].to_numpy()[shown]]
     worn = [(float(hours[k]), read_surface(file)) for k, file in zip(shown, files, strict=True)]
     return [(0.0, read_surface(folder / SURFACE)), *worn]

@@ -192,7 +192,7 @@ def test_toe_and_shoulder_are_those_of_the_charge(mill):
     """Of every packing, as built and as worn; the panel tells the same, and which way the mill is seen to turn."""
     folder, runs = mill
     rows = flow_panels.charge_rows(runs, folder)
-    assert len(rows) == 2
+    assert rows["phase"].tolist() == ["pristine", "worn"]  # as in the other tables, for names of key numbers
     np.testing.assert_allclose(rows["toe_deg"], 130.0, atol=ANGLE)
     np.testing.assert_allclose(rows["shoulder_deg"], 300.0, atol=ANGLE)
     panel = flow_panels.charge_panels(runs, folder)[0]

@@ -93,6 +93,7 @@ def finished(root, monkeypatch, rows=ROWS, given=None, chosen=(), **changes):
         make(study, folder, "equipment_tables")
         if "charge_shape" in products_of_study(study):
             write_charge(study, folder)
+            make(study, folder, "lifters")
         make(study, folder, "beside_published")
         yield study, folder
 
@@ -116,11 +117,13 @@ def test_sections_and_answers(tmp_path, monkeypatch):
 
 
 def test_every_figure_has_a_section(tmp_path):
-    """None is left over for the section of further figures, and none stands twice."""
-    with machine_study(tmp_path) as study:
+    """None is left over for the section of further figures, and none stands twice; mills have all."""
+    with machine_study(tmp_path, **MILL) as study:
         figures = {name for name, product in products_of_study(study).items() if product.is_figure}
+    assert "lifter_heights" in figures
     named = [
         *(*page.LIFE_FIGURES, *page.FLOW_FIGURES, *page.WEAR_FIGURES, *page.LOAD_FIGURES, *page.WORN_FIGURES),
+        *page.LIFTER_FIGURES,
     ]
     assert len(named) == len(set(named)) and figures <= set(named)
 
@@ -150,6 +153,24 @@ def test_machine_without_feed(tmp_path, monkeypatch):
         numbers = pd.read_csv(folder / "equipment/key_numbers.csv").set_index("quantity")["value"]
     assert " Mt" not in found["When what has to be changed"] and "t/h come in" not in " ".join(found.values())
     assert told["feed_t_per_h"] is None and numbers["toe_pristine"] == 130.0
+    assert numbers["load_angle_pristine"] == 35.0
+
+
+def test_lifters_of_a_mill(tmp_path, monkeypatch):
+    """Their table stands after the worn shape; parts that turn without lifters have no rows, and the page no table."""
+    with finished(tmp_path, monkeypatch, rows="row\nA\n", **MILL) as (study, folder):
+        none = pd.read_csv(folder / "equipment/lifters.csv")
+        assert none.empty and "leading face" not in sections_of(study, folder).get("Lifters", "")
+        rows = {"setting": "A", "part": "paddle", "operation_h": [0.0, 300.0], "packings": 1, "lifters": 8}
+        values = {name: 40.0 for name in none.columns.difference(list(rows))}
+        pd.DataFrame(rows | values | {"height_mm": [65.25, 51.5]}).to_csv(folder / "equipment/lifters.csv", index=False)
+        make(study, folder, "beside_published")
+        numbers = pd.read_csv(folder / "equipment/key_numbers.csv").set_index("quantity")["value"]
+        found = sections_of(study, folder)
+    titles = list(found)
+    assert titles[titles.index("Lifters") - 1] == "The worn shape"
+    assert "65.2" in found["Lifters"] and "leading face" in found["Lifters"]
+    assert numbers["lifter_height_paddle_pristine"] == 65.25 and numbers["lifter_height_paddle_worn"] == 51.5
 
 
 def test_shape_as_built_alone(tmp_path, monkeypatch):

@@ -10,6 +10,15 @@ from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRu
 PARTS = (SyntheticPart("liner", (1e-6, 5e-6), error=0.2), SyntheticPart("wheel", (4e-6,), power=100.0))
 HOURS_PER_YEAR = 6000.0  # of the synthetic runs
 TURNING = {"kind": "rotation", "speed_rad_per_s": -np.pi}
+LIFTERS = pd.DataFrame(
+    {
+        **{"setting": "plain", "part": "wheel", "operation_h": [0.0, 100.0, 200.0], "packings": 2, "lifters": 8},
+        **{"height_mm": [65.0, 60.0, 50.0], "height_mm_low": [65.0, 58.0, 46.0], "height_mm_high": [65.0, 62.0, 54.0]},
+        **{"leading_face_angle_deg": [14.0, 20.0, 30.0], "leading_face_angle_deg_low": [14.0, 19.0, 28.0]},
+        **{"leading_face_angle_deg_high": [14.0, 21.0, 32.0], "height_loss_mm_per_1000h": [np.nan, 50.0, 75.0]},
+        **{"height_loss_mm_per_1000h_low": [np.nan, 40.0, 70.0], "height_loss_mm_per_1000h_high": [np.nan, 60.0, 80.0]},
+    }
+)
 COLUMNS = ["study", "quantity", "value", "low", "high", "unit", "source", "note"]
 
 
@@ -37,6 +46,7 @@ def numbers(tmp_path):
         "designs": comparison.designs_table(read, lives),
         "flow": flow_tables.flow_table(read),
         "charge": charge.assign(shoulder_deg=300.0),
+        "lifters": LIFTERS,
     }
     return published.key_numbers(found, values)
 
@@ -52,6 +62,12 @@ def numbers(tmp_path):
         ("held_worn", 20.0, "kg"),
         ("out_pristine", 180.0, "t/h"),
         ("toe_worn", 125.0, "degrees"),
+        ("load_angle_worn", 32.5, "degrees"),
+        ("lifter_height_wheel_pristine", 65.0, "mm"),
+        ("lifter_height_wheel_worn", 50.0, "mm"),
+        ("lifter_face_angle_wheel_pristine", 14.0, "degrees"),
+        ("lifter_face_angle_wheel_worn", 30.0, "degrees"),
+        ("lifter_height_loss_wheel", 75.0, "mm per 1,000 h"),
     ],
 )
 def test_numbers_by_name(numbers, quantity, value, unit):
@@ -66,6 +82,29 @@ def test_life_in_weeks_of_service(numbers):
     hours, weeks = table.loc["life_liner"], table.loc["life_in_weeks_liner"]
     for name in ("value", "low", "high"):
         assert weeks[name] == pytest.approx(hours[name] / HOURS_PER_YEAR * 365.25 / 7.0)
+
+
+def test_numbers_of_lifters_have_their_intervals(numbers):
+    """Those of the table, at the row of the number."""
+    row = numbers.set_index("quantity").loc["lifter_height_wheel_worn"]
+    assert (row["low"], row["high"], row["packings"]) == (46.0, 54.0, 2)
+
+
+@pytest.mark.parametrize(("rows", "left"), [(1, {"pristine"}), (2, {"pristine"})], ids=["never worn", "worn away"])
+def test_lifters_that_are_not_there_have_no_numbers(rows, left):
+    """Without updates there are none as worn, nor where the last update left no lifter."""
+    lifters = LIFTERS.iloc[:rows].copy()
+    lifters.loc[lifters.index[1:], lifters.columns[5:]] = np.nan
+    found = published._lifters(lifters)
+    assert {row["quantity"].removeprefix("lifter_height_wheel_") for row in found[::2]} == left
+    assert not any("loss" in row["quantity"] for row in found)
+
+
+@pytest.mark.parametrize(("toe", "shoulder", "angle"), [(128.0, 303.0, 35.5), (120.0, 10.0, 65.0)])
+def test_load_angle(toe, shoulder, angle):
+    """That of Kalala's toe and shoulder; a shoulder past 12 o'clock is still behind the toe."""
+    charge = pd.DataFrame({"toe_deg": [toe], "shoulder_deg": [shoulder]})
+    assert published._with_load_angle(charge)[published.LOAD_ANGLE].item() == pytest.approx(angle)
 
 
 def test_every_number_is_there_once(numbers):
