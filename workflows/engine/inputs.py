@@ -80,7 +80,7 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
     return {
         "settings": settings,
         "decks": list(case.sample_decks(parameters, bed)),
-        "surface": surface_from(case, parameters),
+        "surface": _simulated(case, "surface", surface_from(case, parameters)),
         "bed": bed or {},
     }
 

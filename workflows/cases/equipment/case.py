@@ -42,7 +42,7 @@ class Equipment(Case):
     figure_modules = ("figures", "map_figures", "flow_figures", "lifter_figures")
     geometry = ("parts", "particle", "inlet", "filling", "outlets", "periodic", "domain")
     consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates")
-    only_told = ("wear_coefficient_error",)
+    only_told = ("wear_coefficient_error", "change_out_remaining_m")
     first_title = "start-up"
     leftovers = ()
     kept = ("patches.csv", "parts.csv", "flow.csv")
@@ -72,10 +72,14 @@ class Equipment(Case):
         }
 
     def surface_sections(self, parameters: Parameters) -> dict[str, Any]:
-        """Return what the parts are made and checked from: not how they wear; of the run how long it may get."""
+        """Return what the parts are made and checked from: not how they wear; of the run how long it may get, and how
+        thick a liner is when it is changed.
+        """
         parts = [{key: value for key, value in part.items() if key not in OF_WEAR} for part in parameters["parts"]]
         derived = {key: parameters["derived"][key] for key in OF_DURATION}
-        return {**super().surface_sections(parameters), "parts": parts, "derived": derived}
+        remaining = parameters["operation"].get("change_out_remaining_m", 0.0)
+        sections = super().surface_sections(parameters)
+        return {**sections, "parts": parts, "derived": derived, "change_out_remaining_m": remaining}
 
     def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
         """Return all parts as one surface, each in the frame it was drawn in. Raises ConfigError for a machine that

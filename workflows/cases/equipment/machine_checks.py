@@ -59,7 +59,7 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     _check_inlet(run, parts)
     _check_filling(run, surface, parts)
     for part, mesh in zip(run["parts"], parts, strict=True):
-        _check_thickness(part, mesh)
+        _check_thickness(run, part, mesh)
 
 
 # ---------------------------------------------------------------- sizes
@@ -277,15 +277,21 @@ def is_within(points: np.ndarray, triangles: np.ndarray, place: np.ndarray) -> b
 # ---------------------------------------------------------------- liners
 
 
-def _check_thickness(part: Parameters, mesh: SurfaceMesh) -> None:
-    """Raise ConfigError for a liner that is thinner, over half of its area, than its elements are long."""
+def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> None:
+    """Raise ConfigError for a liner that is thinner, over half of its area, than its elements are long, or no thicker
+    than what shall remain of it.
+    """
     if not part["wears"] or "thickness_m" in part:
         return
-    thickness = thickness_of(mesh)
-    if thickness >= part["edge_m"] * (1.0 - MEASURED):
-        return
-    allowed = thin_phrase(thickness, f"the thickness in {part['file']}")
-    raise ConfigError(f"parts.{part['name']}.edge_mm is {1e3 * part['edge_m']:.6g}, allowed is {allowed}.")
+    thickness, source = thickness_of(mesh), f"the thickness in {part['file']}"
+    if thickness < part["edge_m"] * (1.0 - MEASURED):
+        allowed = thin_phrase(thickness, source)
+        raise ConfigError(f"parts.{part['name']}.edge_mm is {1e3 * part['edge_m']:.6g}, allowed is {allowed}.")
+    if (remaining := run["change_out_remaining_m"]) >= thickness:
+        raise ConfigError(
+            f"operation.change_out_remaining_mm is {1e3 * remaining:.6g}, allowed is below {millimetres(thickness)},"
+            f" {source}, of parts.{part['name']}."
+        )
 
 
 def thickness_of(mesh: SurfaceMesh) -> float:

@@ -69,7 +69,7 @@ def test_a_surface_is_made_again_for_its_shape_and_room_alone(tmp_path):
     assert first.startswith("simulated from ") and len(first) < SHORT
     same = (
         {"parts": {"liner": {"wear_coefficient_error": 0.1, "wear_coefficient_per_pa": 1e-12, "law": "finnie"}}},
-        {"operation": {"duration_h": 500}, "sampling": {"patch_mm": 70, "pictures_per_block": 4}},
+        {"operation": {"duration_h": 500, "hours_per_year_h": 8000}, "sampling": {"patch_mm": 70, "pictures_per_block": 4}},
         {"bulk": {"seed": 7}},
     )
     for changes in same:
@@ -79,6 +79,7 @@ def test_a_surface_is_made_again_for_its_shape_and_room_alone(tmp_path):
         {"parts": {"paddle": {"motion": {"speed_rpm": 70}}}},
         {"sampling": {"most_blocks": 4}},  # parts move and particles fly for longer
         {"inlet": {"centre_mm": [-60, 0, 161]}},
+        {"operation": {"change_out_remaining_mm": 3}},  # which a drawing may be too thin for
     )
     for changes in other:
         assert told(tmp_path, **changes) != first, changes
@@ -93,6 +94,7 @@ def test_a_record_of_more_than_surfaces_are_made_from_is_no_difference(tmp_path)
     cycle_folder(tmp_path, 0).mkdir()
     (cycle_folder(tmp_path, 0) / SIMULATED_FROM).write_text(json.dumps(whole))
     assert why_again(tmp_path, found) is None
+    assert "change_out_remaining_m" not in found["surface"]  # another one is checked, and simulates nothing
     longer = {**found["surface"], "derived": {**found["surface"]["derived"], "travel_steps": 7}}
     phrase = why_again(tmp_path, {**found, "surface": longer})
     assert phrase == f"surface.derived.travel_steps is 7, it was {run['derived']['travel_steps']}"

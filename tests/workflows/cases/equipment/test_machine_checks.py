@@ -36,7 +36,7 @@ PLATE = box((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.3))
 def run(tmp_path_factory):
     """Parameters of a machine with an inlet of 80 x 80 mm at (-60, 0, 160) mm; particles have 9.6 and 14.4 mm."""
     with machine_study(tmp_path_factory.mktemp("machine")) as study:
-        return study.runs[0].parameters
+        return study.case.surface_sections(study.runs[0].parameters)
 
 
 def machine(run, *bodies, **sections):
@@ -269,6 +269,20 @@ def test_a_drawn_liner_that_is_thinner_than_its_elements(run):
     check_machine(*machine(run, ("liner", thin, {"thickness_m": 0.03})))
     check_machine(*machine(run, ("liner", thin, {"edge_m": 0.01})))
     check_machine(*machine(run, ("liner", thin, {"edge_m": 0.0105})))  # a leaning one is measured thinner than drawn
+
+
+def test_a_drawn_liner_of_which_more_shall_remain_than_there_is(run):
+    """As much as there is, too; not of parts that keep their shape, nor where the thickness is given."""
+    thick = box((0.4, 0.2, 0.04), 0.025, (0.0, 0.0, -0.3))
+    for remaining in (0.0401, 0.05):
+        told = message_of(run, ("liner", thick, {}), change_out_remaining_m=remaining)
+        assert told == (
+            f"operation.change_out_remaining_mm is {1e3 * remaining:g}, allowed is below 40 mm, the thickness in"
+            " liner.stl, of parts.liner."
+        )
+    check_machine(*machine(run, ("liner", thick, {}), change_out_remaining_m=0.039))
+    check_machine(*machine(run, ("liner", thick, {"wears": False}), change_out_remaining_m=0.05))
+    check_machine(*machine(run, ("liner", thick, {"thickness_m": 0.06}), change_out_remaining_m=0.05))
 
 
 def test_thickness_is_that_of_half_the_area():
