@@ -69,7 +69,10 @@ def test_a_surface_is_made_again_for_its_shape_and_room_alone(tmp_path):
     assert first.startswith("simulated from ") and len(first) < SHORT
     same = (
         {"parts": {"liner": {"wear_coefficient_error": 0.1, "wear_coefficient_per_pa": 1e-12, "law": "finnie"}}},
-        {"operation": {"duration_h": 500, "hours_per_year_h": 8000}, "sampling": {"patch_mm": 70, "pictures_per_block": 4}},
+        {
+            "operation": {"duration_h": 500, "hours_per_year_h": 8000},
+            "sampling": {"patch_mm": 70, "pictures_per_block": 4},
+        },
         {"bulk": {"seed": 7}},
     )
     for changes in same:
