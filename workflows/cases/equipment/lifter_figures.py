@@ -37,20 +37,21 @@ def lifters(job: Job) -> dict[str, pd.DataFrame]:
 
 @figure(
     "Wear",
-    "Height of the lifters against hours of operation",
+    "Lifters against hours of operation",
     inputs={name: f"results/{{study}}/{path}" for name, path in LIFTERS.items()},
     when=wears_mills,
     digits=DIGITS,
     caption="""
-    Height of the crests above the plates, a mean over lifters and packings, as built and after every update of the
-    shape. Bars of error: 95 % interval over packings; of one packing the scatter is unknown.
+    Height of the crests above the plates, and lean of the leading face from the radius: means over lifters and
+    packings, as built and after every update of the shape. Bars: 95 % interval over packings; of one packing the
+    scatter is unknown.
     """,
 )
-def lifter_heights(job: Job) -> Any:
-    """Draw the height of lifters against hours of operation."""
+def lifter_profiles(job: Job) -> Any:
+    """Draw height and leading face of lifters against hours of operation."""
     import pandas as pd
 
-    from bulkwear.workflows.cases.equipment.plots.lifters import lifter_heights as draw
+    from bulkwear.workflows.cases.equipment.plots.lifters import lifter_profiles as draw
 
     table = pd.read_csv(job.files.lifters, dtype={"setting": str})
     return draw(table, job.remarks), table

@@ -32,7 +32,7 @@ FLOW_FIGURES = ("flow_over_time", "flow_pictures", "velocity_fields", "charge_sh
 WEAR_FIGURES = ("wear_map", "remaining_thickness")
 LOAD_FIGURES = ("impact_and_sliding",)
 WORN_FIGURES = ("profile_sections",)
-LIFTER_FIGURES = ("lifter_heights",)
+LIFTER_FIGURES = ("lifter_profiles",)
 
 
 def told(study: Study) -> dict[str, Any]:

@@ -120,7 +120,7 @@ def test_every_figure_has_a_section(tmp_path):
     """None is left over for the section of further figures, and none stands twice; mills have all."""
     with machine_study(tmp_path, **MILL) as study:
         figures = {name for name, product in products_of_study(study).items() if product.is_figure}
-    assert "lifter_heights" in figures
+    assert "lifter_profiles" in figures
     named = [
         *(*page.LIFE_FIGURES, *page.FLOW_FIGURES, *page.WEAR_FIGURES, *page.LOAD_FIGURES, *page.WORN_FIGURES),
         *page.LIFTER_FIGURES,
