@@ -10,7 +10,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, write_stl
 from bulkwear.postproc.wear.laws import kernels_of_laws
-from bulkwear.workflows.cases.equipment.motions import motion_of, moves
+from bulkwear.workflows.cases.equipment.motions import motion_of, surface_runs
 from bulkwear.workflows.cases.equipment.parameters import filled_mass, laws_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, feed_face, rectangle, room_needed
 from bulkwear.workflows.engine import decks as deck
@@ -92,7 +92,7 @@ def _common(run: Parameters, cycle: int, begin: int) -> dict[str, Any]:
 
 def moving_mesh(part: Parameters) -> bool:
     """Return whether the mesh of a part moves; that of a belt rests, its surface runs."""
-    return bool(part["motion"]) and not motion_of(part["motion"]).mesh_words()
+    return bool(part["motion"]) and not surface_runs(part["motion"])
 
 
 def skin(run: Parameters) -> float:
@@ -123,7 +123,6 @@ def part_words(run: Parameters, number: int, cycle: int, begin: int) -> dict[str
         "surface_words": motion.mesh_words(),
         "motion_lines": list(motion.deck_lines(mesh, begin * run["derived"]["time_step_s"])),
         "kernels": " ".join(["", "kernels", *words]) if words else "",
-        "moves": moves(part["motion"]),
     }
 
 

@@ -26,6 +26,7 @@ RATIOS = {  # quantity of the table of designs: what a part does in its ratio
     LIFE: "lasts {ratio} times as long",
     "steel_lost": "loses {ratio} times as much steel per hour",
 }
+RUNNING = "the wear is not spread along the way that it goes round, so that its life is too short"
 CHANGES = {  # quantity of the table of loads: verb and noun
     "power_W": ("takes", "power"),
     "worn_mass_kg_per_h": ("loses", "steel per hour"),
@@ -56,9 +57,15 @@ def spoken(name: str) -> str:
 
 
 def answers_on_life(life: pd.DataFrame) -> list[str]:
-    """Return when each part of each setting is changed, where it decides and how that is known."""
+    """Return when each part of each setting is changed, where it decides and how that is known; then what that means
+    of parts whose surface runs.
+    """
     several = life["setting"].nunique() > 1
-    return [life_sentence(row, several) for _, row in life.iterrows()]
+    running = dict.fromkeys(life.loc[life["surface_runs"], "part"])
+    return [
+        *(life_sentence(row, several) for _, row in life.iterrows()),
+        *(f"The surface of the {spoken(part)} runs, and is worn where it stands: {RUNNING}." for part in running),
+    ]
 
 
 def life_sentence(row: pd.Series, several: bool) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import boundary_edges, enclosed_volume, read_surface
+from bulkwear.postproc.mesh import area_vectors, boundary_edges, read_surface
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.workflows.cases.equipment.life import (
@@ -22,6 +22,8 @@ from bulkwear.workflows.cases.equipment.life import (
     patch_courses,
 )
 from bulkwear.workflows.cases.equipment.machine_tables import rule_words
+from bulkwear.workflows.cases.equipment.motions import surface_runs
+from bulkwear.workflows.cases.equipment.surfaces import ON_END
 from bulkwear.workflows.cases.equipment.tables import (
     AT_A_PATCH,
     HOURS,
@@ -42,16 +44,33 @@ Lives = Mapping[tuple[str, str], PartLife]
 def part_volumes(surface: str, run: Mapping[str, Any]) -> dict[str, float]:
     """Return the volume (m3) of each part that wears and is closed, where its mass decides; else nothing.
 
-    surface: of the run as built, whose labels are the numbers of the parts
+    surface: of the run as built, whose labels are the numbers of the parts. A part may be open at the ends of a slice,
+    where it goes on in its image; its volume is then that within the slice.
     """
     if BY_MASS not in run["operation"]:
         return {}
     mesh, found = read_surface(surface), {}
     for number, (name, part) in enumerate(run["parts"].items()):
         triangles = mesh.triangles[mesh.cell_data["part"] == number]
-        if part["wears"] and not len(boundary_edges(triangles)):
-            found[name] = abs(enclosed_volume(mesh.points, triangles))
+        if part["wears"] and _closed(mesh.points, triangles, run["periodic"]):
+            found[name] = _volume(mesh.points, triangles, run["periodic"])
     return found
+
+
+def _closed(points: np.ndarray, triangles: np.ndarray, periodic: Mapping[str, Any] | None) -> bool:
+    """Return whether a surface has no rim, but for those in the ends of a slice."""
+    rim = boundary_edges(triangles)
+    if not periodic or not len(rim):
+        return not len(rim)
+    along = points[rim][:, :, "xyz".index(periodic["axis"])]
+    return all(any(np.abs(edge - periodic[end]).max() < ON_END for end in ("low_m", "high_m")) for edge in along)
+
+
+def _volume(points: np.ndarray, triangles: np.ndarray, periodic: Mapping[str, Any] | None) -> float:
+    """Return the volume (m3) within a surface, by the flux of a field across the slice, of which its ends have none."""
+    across = next(k for k, axis in enumerate("xyz") if not periodic or axis != periodic["axis"])
+    heights = points[triangles][:, :, across].mean(axis=1) - points[:, across].mean()
+    return abs(float(heights @ area_vectors(points, triangles)[:, across]))
 
 
 # ---------------------------------------------------------------- life
@@ -61,12 +80,14 @@ def life_table(runs: Runs, lives: Lives) -> pd.DataFrame:
     """Return a row per setting and part that wears: the place that decides and its life in h, Mt and years.
 
     life_low_h, life_high_h: with scatter and coefficient; scatter_..., coefficient_...: with one of them alone; of one
-    packing the scatter is that of its blocks, which tells nothing of another packing
+    packing the scatter is that of its blocks, which tells nothing of another packing; surface_runs: whether the part
+    stays where it is and its surface runs
     """
     rows = []
     for (setting, part), life in lives.items():
         run = runs.first(setting)
         row = {"setting": setting, "part": part, "patch": life.patch, **_place(runs, setting, part, life.patch)}
+        row["surface_runs"] = surface_runs(run["parts"][part]["motion"])
         row["rule"] = rule_words(run["operation"])
         row["asked_h"] = run["operation"].get("duration_s", 0.0) / SECONDS_PER_HOUR
         row["allowed_mm"] = life.allowed * MILLIMETRES if life.patch != WHOLE_PART else math.nan

@@ -22,14 +22,12 @@ BESIDE = "wear.csv"  # of every run, with the folders of its cycles beside it
 
 
 def runs_as_told(study: Study) -> list[dict[str, Any]]:
-    """Return what figures are told of every run: as `tables.values_of_runs`, with patch_m, time_step_s, periodic and
-    filling.
-    """
+    """Return what figures are told of every run: as `tables.values_of_runs`, with patch_m, time_step_s and filling."""
     found = []
     for run, values in zip(study.runs, values_of_runs(study), strict=True):
         parameters = run.parameters
         own = {"patch_m": parameters["sampling"]["patch_m"], "time_step_s": parameters["derived"]["time_step_s"]}
-        found.append(values | own | {name: parameters[name] for name in ("periodic", "filling")})
+        found.append(values | own | {"filling": parameters["filling"]})
     return found
 
 

@@ -28,6 +28,7 @@ NEEDED = {
 }
 COURSE = ("start_s", "ramp_s", "stop_s")  # of what goes on for good
 FREE = {"rotation": COURSE, "translation": COURSE, "oscillation": ("phase_rad",), "angular_oscillation": ("phase_rad",)}
+RUNNING = ("belt", "turning_surface")  # whose mesh rests
 MADE: dict[str, Callable[..., Motion]] = {
     "rotation": rotation,
     "translation": translation,
@@ -66,9 +67,9 @@ def axis_point(given: Mapping[str, Any] | None) -> tuple[float, float, float]:
     return tuple((given or {}).get("point_m", (0.0, 0.0, 0.0)))
 
 
-def moves(given: Mapping[str, Any] | None) -> bool:
-    """Return whether a part does work on the particles: it, or its surface, moves."""
-    return given is not None
+def surface_runs(given: Mapping[str, Any] | None) -> bool:
+    """Return whether a part stays where it is and its surface runs, as a belt's does."""
+    return given is not None and given["kind"] in RUNNING
 
 
 def turn_s(given: Mapping[str, Any] | None) -> float:

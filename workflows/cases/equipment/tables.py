@@ -73,7 +73,7 @@ class Runs:
 
 def values_of_runs(study: Study) -> list[dict[str, Any]]:
     """Return what jobs are told of every run of a study, JSON-able, SI: run, row, setting, packing, rate_kg_per_s (None
-    without an inlet), block_s, operation, and parts {name: what is told of it}.
+    without an inlet), block_s, periodic, operation, and parts {name: what is told of it}.
     """
     found = []
     for run in study.runs:
@@ -85,6 +85,7 @@ def values_of_runs(study: Study) -> list[dict[str, Any]]:
                 "packing": study.packing_of[run.row],
                 "rate_kg_per_s": inlet["rate_kg_per_s"] if inlet else None,
                 "block_s": parameters["sampling"]["block_s"],
+                "periodic": parameters["periodic"],
                 "operation": dict(parameters["operation"]) | {"duration_s": parameters["derived"]["operation_s"]},
                 "parts": {
                     part["name"]: {name: part.get(name) for name in OF_PARTS}

@@ -44,6 +44,7 @@ class SyntheticPart:
     error: float = 0.0
     force: float = 100.0
     power: float = 0.0
+    motion: Mapping[str, Any] | None = None
 
     @property
     def wears(self) -> bool:
@@ -111,6 +112,7 @@ def values_of(run: SyntheticRun) -> dict[str, Any]:
         **{"run": run.name, "row": run.name, "setting": run.setting or run.name, "packing": run.packing},
         "rate_kg_per_s": run.rate,
         "block_s": run.duration,
+        "periodic": None,
         "operation": dict(run.operation),
         "parts": {
             part.name: {
@@ -120,7 +122,7 @@ def values_of(run: SyntheticRun) -> dict[str, Any]:
                 "law": "archard",
                 "wear_coefficient_per_pa": part.coefficient,
                 "wear_coefficient_error": part.error,
-                "motion": None,
+                "motion": part.motion,
             }
             for part in run.parts
         },

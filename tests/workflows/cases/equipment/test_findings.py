@@ -100,6 +100,24 @@ def test_interval_round_what_is_asked_for_says_nothing(found):
     assert said.endswith("Whether it lasts the 8,000 h that are asked for cannot be said.")
 
 
+@pytest.mark.parametrize(
+    ("motion", "said"),
+    [
+        ({"kind": "belt", "velocity_m_per_s": [1.0, 0.0, 0.0]}, True),
+        ({"kind": "turning_surface", "point_m": [0, 0, 0], "axis": [0, 1, 0], "speed_rad_per_s": 2.0}, True),
+        ({"kind": "rotation", "point_m": [0, 0, 0], "axis": [0, 1, 0], "speed_rad_per_s": 2.0}, False),
+        (None, False),
+    ],
+)
+def test_a_running_surface_that_wears_is_worn_where_it_stands(found, motion, said):
+    """It is said once for all designs, however the life comes out; not of parts that move, and of those at rest."""
+    parts = {"parts": (replace(LINER, motion=motion),)}
+    runs = [*packings("plain", (0.9, 1.1), **parts), *packings("R9", (0.9, 1.1), **parts)]
+    answers = findings.answers_on_life(found(runs)["life"])
+    sentence = f"The surface of the back liner runs, and is worn where it stands: {findings.RUNNING}."
+    assert answers[2:] == ([sentence] if said else [])
+
+
 # ---------------------------------------------------------------- designs
 
 

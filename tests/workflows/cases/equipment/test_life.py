@@ -23,6 +23,7 @@ RELATIVE = 1e-9  # numbers pass through CSV text
 THICKNESS, RATE = 0.03, 2e-6  # m, m/h
 UNIFORM = SyntheticPart("liner", (RATE,) * 4, thickness=THICKNESS)
 ONE = SyntheticRun("plain", (UNIFORM,))
+TWO_PARTS = {"parts": {"hood": {"wears": False}, "liner": {"wears": True}}, "operation": {BY_MASS: 0.1}}
 T_TWO = 4.302652729911275  # Student's t at 95 % on two degrees of freedom
 
 
@@ -102,9 +103,29 @@ def test_volume_of_a_part_is_that_of_its_body(tmp_path):
     mesh = box((0.4, 0.2, 0.1), 2)
     both = SurfaceMesh(mesh.points, mesh.triangles, {"part": np.full(len(mesh.triangles), 1)})
     write_surface(tmp_path / "surface.vtu", both)
-    run = {"parts": {"hood": {"wears": False}, "liner": {"wears": True}}, "operation": {BY_MASS: 0.1}}
-    found = life_tables.part_volumes(tmp_path / "surface.vtu", run)
+    found = life_tables.part_volumes(tmp_path / "surface.vtu", {**TWO_PARTS, "periodic": None})
     assert found == {"liner": pytest.approx(0.4 * 0.2 * 0.1)}
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_volume_of_a_part_in_a_slice_is_that_between_its_ends(tmp_path, axis):
+    """It goes on in its image, without faces there; a part that is open elsewhere, too, has none."""
+    mesh, k = box((0.4, 0.2, 0.1), 2), "xyz".index(axis)
+    points = np.add(mesh.points, (0.03, 0.01, 0.02))
+    low, high = points[:, k].min(), points[:, k].max()
+    kept = mesh.triangles[np.ptp(points[mesh.triangles][:, :, k], axis=1) > 0.0]
+    assert len(kept) < len(mesh.triangles)
+    slices = {"axis": axis, "low_m": low, "high_m": high}
+    for triangles, periodic, volumes in (
+        (kept, slices, {"liner": pytest.approx(0.4 * 0.2 * 0.1)}),
+        (mesh.triangles, slices, {"liner": pytest.approx(0.4 * 0.2 * 0.1)}),
+        (kept, None, {}),
+        (kept, {**slices, "low_m": low - 0.01}, {}),
+        (kept[1:], slices, {}),
+    ):
+        write_surface(tmp_path / "surface.vtu", SurfaceMesh(points, triangles, {"part": np.full(len(triangles), 1)}))
+        run = {**TWO_PARTS, "periodic": periodic}
+        assert life_tables.part_volumes(tmp_path / "surface.vtu", run) == volumes
 
 
 def test_open_part_has_no_mass(lives, tmp_path):
