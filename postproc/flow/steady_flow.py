@@ -115,8 +115,8 @@ def steady_flow(table: pd.DataFrame, block_s: float, tolerance: float = LARGEST_
 def steady_rest(table: pd.DataFrame, block_s: float, tolerance: float = LARGEST_DRIFT) -> SteadyFlow:
     """Return what the flow does after its start, which is cut off as `statistics.steady.steady_window` does.
 
-    The latest start of held mass, outflow and power counts, at most half of the table. Arguments and errors as for
-    `steady_flow`.
+    The latest start of held mass, outflow and power counts, at most half of the table, and FEWEST_BLOCKS blocks stay.
+    Arguments and errors as for `steady_flow`.
     """
     series = _block_series(table, block_s)
     if len(series) < FEWEST_BLOCKS:
@@ -124,7 +124,7 @@ def steady_rest(table: pd.DataFrame, block_s: float, tolerance: float = LARGEST_
     names = [HELD, OUT, *([POWER] if POWER in series else [])]
     middles = series["start_s"].to_numpy() + 0.5 * block_s
     latest = max(steady_window(middles, series[name].to_numpy()).start for name in names)
-    return _judged(series[middles >= latest], block_s, tolerance)
+    return _judged(series[middles >= min(latest, middles[-FEWEST_BLOCKS])], block_s, tolerance)
 
 
 def first_steady_time(table: pd.DataFrame, block_s: float, tolerance: float = LARGEST_DRIFT) -> float:

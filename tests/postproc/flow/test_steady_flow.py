@@ -117,6 +117,15 @@ def test_the_start_is_cut_off(seed):
     assert not steady_rest(table[table["time_s"] < 0.8], 0.05).steady
 
 
+@pytest.mark.parametrize("blocks", range(FEWEST_BLOCKS, 2 * FEWEST_BLOCKS))
+def test_enough_blocks_stay_to_judge(blocks):
+    """However few there are and whatever the start looks like: here the first half is a transient."""
+    table = table_of(20.0, 20.0, seconds=0.2 * blocks)
+    early = table["time_s"] < 0.1 * blocks
+    found = steady_rest(table.assign(held_mass_kg=table["held_mass_kg"].where(~early, 20.0)), 0.2)
+    assert found.blocks >= FEWEST_BLOCKS
+
+
 def test_no_time_is_steady_while_a_machine_fills():
     """Before the first particles go out, and where in and out never meet."""
     assert math.isnan(first_steady_time(chute(1, 0.4), 0.02))

@@ -26,22 +26,24 @@ def flow_series(runs: Runs) -> pd.DataFrame:
 
 def _series_of(flow: pd.DataFrame) -> pd.DataFrame:
     flow = flow.drop_duplicates("time_s")
-    window = min(WINDOW, max(len(flow) - 1, 1))
-    time = flow["time_s"].to_numpy()
-    seconds = time[window:] - time[:-window]
+    half = max(min(WINDOW, len(flow)) // 2, 1)
+
+    def mean(column: str, rows: int = 2 * half) -> np.ndarray:
+        sums = np.cumsum(np.insert(np.nan_to_num(flow[column].to_numpy(float)), 0, 0.0))
+        return (sums[rows:] - sums[:-rows]) / rows
+
+    def change(column: str) -> np.ndarray:
+        """Return the mean of the later half of a window less that of its earlier half: batches of the feed even out."""
+        means = mean(column, half)
+        return means[half:] - means[:-half]
 
     def rate(column: str) -> np.ndarray:
-        mass = flow[column].to_numpy()
-        return (mass[window:] - mass[:-window]) / seconds * SECONDS_PER_HOUR / KG_PER_TONNE
-
-    def mean(column: str) -> np.ndarray:
-        sums = np.cumsum(np.nan_to_num(flow[column].to_numpy(float)))
-        return (sums[window:] - sums[:-window]) / window
+        return change(column) / change("time_s") * SECONDS_PER_HOUR / KG_PER_TONNE
 
     powers = [name for name in flow if name.startswith("power_")]
     table = {
         **{name: flow[name].iloc[0] for name in ("run", "setting", "packing")},
-        "time_s": 0.5 * (time[window:] + time[:-window]),
+        "time_s": mean("time_s"),
         "in_t_per_h": rate("inserted_mass_kg"),
         "out_t_per_h": rate("out_mass_kg"),
         "held_kg": mean("held_mass_kg"),

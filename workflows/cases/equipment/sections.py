@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, centroids, read_surface, unit_normals
+from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids, read_surface, unit_normals
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.workflows.cases.equipment.pictures import SURFACE, first_runs, labels_of, part_mesh, turns_about
 from bulkwear.workflows.cases.equipment.plane_cuts import SectionPlane, cut, part_plane, turning_plane, values_on
@@ -36,7 +36,7 @@ def worst_sections(
         for place in worst[(worst["setting"] == run["setting"]) & (worst["rank"] == 1)].itertuples():
             number = len(sections) + 1
             label, motion = labels_of(run)[place.part], run["parts"][place.part]["motion"]
-            plane = _plane(shapes[0][1], label, motion, place)
+            plane = _plane(shapes[0][1], label, motion, place, run["patch_m"])
             turns, thick = turns_about(motion) is not None, WINDOW_THICKNESSES * place.thickness_mm
             wide = MILLIMETRES * WINDOW_PATCHES * run["patch_m"]
             half = np.fmax(thick, wide) if turns else thick if np.isfinite(thick) else wide
@@ -71,15 +71,24 @@ def shown_shapes(folder: Path, most: float = MOST_SHAPES) -> list[tuple[float, S
     return [(0.0, read_surface(folder / SURFACE)), *worn]
 
 
-def _plane(surface: SurfaceMesh, label: int, motion: Mapping[str, Any] | None, place: tuple) -> SectionPlane:
-    """Return the plane of a section through the face nearest to a place of a table, the middle of an area patch."""
+def _plane(
+    surface: SurfaceMesh, label: int, motion: Mapping[str, Any] | None, place: tuple, patch_m: float
+) -> SectionPlane:
+    """Return the plane of a section through the face nearest to a place of a table, the middle of an area patch.
+
+    Out of the body is the mean normal of the faces round it, as far as the length of a patch (m), that look its way:
+    the slope of a bump does not turn the section of its plate.
+    """
     mesh, _ = part_mesh(surface, label)
     middle = centroids(mesh.points, mesh.triangles)
     point = np.array([place.x_mm, place.y_mm, place.z_mm]) / MILLIMETRES
     nearest = int(np.linalg.norm(middle - point, axis=1).argmin())
     if (turning := turns_about(motion)) is not None:
         return turning_plane(middle[nearest], *turning)
-    return part_plane(mesh, middle[nearest], unit_normals(mesh.points, mesh.triangles)[nearest])
+    normals = unit_normals(mesh.points, mesh.triangles)
+    near = np.linalg.norm(middle - middle[nearest], axis=1) <= patch_m
+    near &= normals @ normals[nearest] > 0.0
+    return part_plane(mesh, middle[nearest], areas(mesh.points, mesh.triangles)[near] @ normals[near])
 
 
 def _lines(surface: SurfaceMesh, label: int, plane: SectionPlane) -> pd.DataFrame:

@@ -1,5 +1,6 @@
 """Figures of the flow: readable, and what they show is the flow that was written."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,13 +18,15 @@ from bulkwear.workflows.cases.equipment.flow_views import (
     side_along,
     velocity_field,
 )
-from bulkwear.workflows.cases.equipment.histories import flow_series, phase_spans
+from bulkwear.workflows.cases.equipment.histories import WINDOW, flow_series, phase_spans
 from bulkwear.workflows.cases.equipment.tables import read_runs
 from tests.workflows.cases.equipment import scenes
 
 FIGURES = [each for each in vars(flow_figures).values() if hasattr(each, "product")]
 OF_ANY = [make for make in FIGURES if make.product.name != "charge_shape"]
-ONE_PARTICLE = scenes.PARTICLE / (scenes.BLOCK / scenes.REPORTS) * 3.6  # t/h, by which a rate of one report is rounded
+REPORT = scenes.BLOCK / scenes.REPORTS  # s
+ONE_PARTICLE = scenes.PARTICLE / REPORT * 3.6  # t/h, by which a rate of one report is rounded
+EVENED = 0.5  # -, of a batch over a window: ten reports on each side share it
 ANGLE = 6.0  # degrees: scatter of a charge of which some hundred particles lie at the shell
 
 
@@ -70,6 +73,17 @@ def test_rates_are_those_of_the_feed(chute):
     steady = series[series["time_s"] > full + scenes.BLOCK]
     np.testing.assert_allclose(steady["out_t_per_h"], 3.6 * scenes.RATE, atol=ONE_PARTICLE)
     np.testing.assert_allclose(steady["held_kg"], scenes.HELD)
+
+
+def test_a_feed_in_batches_is_even(chute):
+    """Rates do not leap by a batch over a window where one batch more or less falls into it."""
+    folder, runs = chute
+    read = read_runs(runs, folder)
+    batch = 0.8 * REPORT  # s
+    mass = scenes.RATE * batch * np.floor(read.flow["time_s"] / batch + 1e-6)
+    series = flow_series(replace(read, flow=read.flow.assign(inserted_mass_kg=mass)))
+    leap = 3.6 * scenes.RATE * batch / (WINDOW * REPORT)
+    assert 0.0 < np.ptp(series["in_t_per_h"]) < EVENED * leap
 
 
 def test_power_is_in_kilowatts(mill):

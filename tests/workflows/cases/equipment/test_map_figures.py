@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bulkwear.postproc.mesh import read_surface
+from bulkwear.postproc.mesh import SurfaceMesh, centroids, read_surface, unit_normals
+from bulkwear.postproc.tables.display import few_digits
 from bulkwear.workflows.cases.equipment import map_figures, pictures
-from bulkwear.workflows.cases.equipment.sections import COLUMNS, worst_sections
+from bulkwear.workflows.cases.equipment.sections import COLUMNS, _plane, worst_sections
 from tests.workflows.cases.equipment import scenes
 
 FIGURES = [each for each in vars(map_figures).values() if hasattr(each, "product")]
@@ -54,7 +55,7 @@ def test_what_is_left_is_what_was_there_less_what_was_lost(study):
     maps = pictures.remaining_maps(runs, folder)
     first, several = pictures.first_runs(runs)[0], len(pictures.first_runs(runs)) > 1
     hours = scenes.UPDATE_HOURS * scenes.PHASES.count("wearing")
-    states = ["now", f"after {hours:,.4g} h"]
+    states = ["now", f"after {few_digits(hours, 4)} h"]
     named = [f"{first['setting']}, {state}" if several else state for state in states]
     assert list(dict.fromkeys(each.setting for each in maps))[:2] == named
     now = next(each for each in maps if each.setting.endswith("now"))
@@ -86,6 +87,20 @@ def test_sections_pass_through_the_worst_place(study):
         deepest = own.groupby("operation_h")["depth_1_mm"].max().to_numpy()
         np.testing.assert_allclose(deepest, deepest[-1] * hours / hours[-1], rtol=ROUNDED, atol=1e-12)
         assert deepest[-1] > 0.0
+
+
+def test_a_bump_does_not_turn_the_section_of_its_plate():
+    """Through its steep flank: out is the normal of the plate, its back does not count."""
+    plate = scenes.box((0.6, 0.4, 0.03), 0.02)
+    top, away = plate.points[:, 2] > 0.0, np.hypot(plate.points[:, 0], plate.points[:, 1])
+    height = np.where(top, 0.06 * np.clip(1.0 - away / 0.05, 0.0, 1.0), 0.0)
+    points = plate.points + height[:, None] * [0.0, 0.0, 1.0]
+    surface = SurfaceMesh(points, plate.triangles, {"part": np.ones(len(plate.triangles), dtype=int)})
+    place = SimpleNamespace(x_mm=25.0, y_mm=2.0, z_mm=45.0)
+    plane = _plane(surface, 1, None, place, 0.2)
+    nearest = np.abs(centroids(points, plate.triangles) - plane.place).sum(axis=1).argmin()
+    flank = unit_normals(points, plate.triangles)[nearest]
+    assert flank[2] < 0.8 and plane.out[2] == pytest.approx(1.0, abs=0.01)
 
 
 def test_a_section_of_a_mill_is_square_to_its_axis(tmp_path):
