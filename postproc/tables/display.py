@@ -29,6 +29,11 @@ CONVERSIONS = (
 RATES = ("_per_m",)  # per metre stays per metre unless it is listed above
 
 
+def few_digits(value: float, digits: int = 3) -> str:
+    """Return a number of so many significant digits, thousands apart by commas, without an exponent: 5,230."""
+    return f"{float(f'{value:.{digits}g}'):,.12g}"
+
+
 def display_unit(column: str) -> tuple[str, float]:
     """Return (name, factor): how a column of SI values is called and scaled for people."""
     for suffix, shown, factor in CONVERSIONS:

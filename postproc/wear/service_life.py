@@ -77,10 +77,16 @@ class Life:
     def said(self) -> str:
         """Life, interval, what makes it wide, and of what it is, in words."""
         if not self.known:
-            return f"{self.hours:.3g} h (one packing, scatter unknown)" if self.packings < 2 else f"{self.hours:.3g} h"
+            return f"{_few(self.hours)} h{' (one packing, scatter unknown)' * (self.packings < 2)}"
         of = f"{self.packings} packings" if self.packings > 1 else "of this packing alone"
         share = "" if math.isnan(self.scatter_share) else f", {_shares(self.scatter_share)}"
-        return f"{self.hours:.3g} h (95 % interval {self.low_h:.3g} to {self.high_h:.3g} h, {of}{share})"
+        low, high = _few(self.low_h), _few(self.high_h)
+        return f"{_few(self.hours)} h (95 % interval {low} to {high} h, {of}{share})"
+
+
+def _few(hours: float) -> str:
+    """Hours with three significant digits, without an exponent."""
+    return f"{float(f'{hours:.3g}'):,.12g}"
 
 
 class Reached(NamedTuple):

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 NO_UNIT = "-"
+WITH_EXPONENT = 1e6  # from which numbers are told with one
 UNDEFINED = "\u2013"  # shown for numbers that are not there
 # suffix of a key -> unit; the longest that fits counts, so they stand in that order
 UNITS = (
@@ -71,7 +72,7 @@ def number(value: Any, digits: int = 4) -> str:
         return "yes" if value else "no"
     if value == int(value) and (isinstance(value, int) or abs(value) < 1e7):
         return f"{int(value):,}".replace(",", "\u202f")
-    return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e6 else f"{value:.{digits - 1}e}"
+    return f"{value:.{digits}g}" if 1e-3 <= abs(value) < WITH_EXPONENT else f"{value:.{digits - 1}e}"
 
 
 def data_uri(content: bytes, kind: str) -> str:
@@ -175,7 +176,7 @@ def worn_through_words(wear: Mapping[str, Any], summary: pd.DataFrame) -> list[t
     through = summary[summary[THROUGH] > 0]
     how = {"stop": "The run ends then.", "cap": "The surface stops there.", "go_on": "The run goes on."}
     rows = zip(through["run"], through[THROUGH], through["time_s"], strict=True)
-    runs = [f"{run} ({nodes} nodes by {time:.3g} s)" for run, nodes, time in rows]
+    runs = [f"{run} ({nodes} node{'s' * (nodes > 1)} by {time:.3g} s)" for run, nodes, time in rows]
     found = f"Worn through: {', '.join(runs)}." if runs else "No run is worn through."
     meaning = f"A place is worn through when {wear['local_thickness_mm']:g} mm of thickness are removed."
     return [("Worn through", f"{meaning} {how[wear.get('worn_through', 'stop')]} {found}")]
@@ -193,8 +194,12 @@ def law_words(wear: Mapping[str, Any], coefficient: str) -> str:
 
 
 def range_text(values: list[float], digits: int = 2) -> str:
-    """Return a number, or the lowest and highest where they differ."""
-    low, high = (f"{value:.{digits}g}" for value in (min(values), max(values)))
+    """Return a number, or the lowest and highest where they differ; few digits, without an exponent up to 1e6."""
+    found = [float(f"{value:.{digits}g}") for value in (min(values), max(values))]
+    shown_whole = [10.0**digits <= abs(value) < WITH_EXPONENT for value in found]
+    low, high = (
+        number(value) if whole else f"{value:.{digits}g}" for value, whole in zip(found, shown_whole, strict=True)
+    )
     return low if low == high else f"{low} to {high}"
 
 

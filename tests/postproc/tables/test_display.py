@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.tables.display import display_unit, in_display_units
+from bulkwear.postproc.tables.display import display_unit, few_digits, in_display_units
 
 RELATIVE = 1e-12  # rounding of one product
 
@@ -34,3 +34,12 @@ def test_values_are_scaled_with_their_names():
     assert list(table) == ["run", "worn_volume_mm3", "x_mm"]
     assert table["worn_volume_mm3"].iloc[0] == pytest.approx(1.0, rel=RELATIVE)
     assert table["x_mm"].iloc[0] == pytest.approx(500.0, rel=RELATIVE)
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "shown"),
+    [(5523.4, 3, "5,520"), (12345.6, 4, "12,350"), (500.0, 4, "500"), (0.0123456, 3, "0.0123"), (1e6, 3, "1,000,000")],
+)
+def test_few_digits_without_an_exponent(value, digits, shown):
+    """Thousands apart by commas."""
+    assert few_digits(value, digits) == shown

@@ -130,6 +130,13 @@ def test_what_a_life_is_of():
     assert "one packing, scatter unknown" in short.said()
 
 
+def test_hours_are_told_without_an_exponent():
+    """Three digits, thousands apart by commas."""
+    assert life(estimate([TRUTH]), 0.0, ALLOWED).said() == "10,000 h (one packing, scatter unknown)"
+    found = life(Estimate(TRUTH, 0.02, 7.0, 8, log=True), 0.0, ALLOWED).said()
+    assert found.startswith("10,000 h (95 % interval 9,540 to 10,500 h, 8 packings")
+
+
 def test_what_does_not_wear_lasts():
     """Without a rate the life is infinite; of an unknown thickness or rate it is not known."""
     assert life(Estimate(0.0, 0.0, 5, 3), 0.2, ALLOWED).hours == math.inf

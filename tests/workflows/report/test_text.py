@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.report.text import worn_through_words
+from bulkwear.workflows.report.text import range_text, worn_through_words
 
 TWO_RUNS = pd.DataFrame({"run": ["R9_convex", "R9_plain"], "through_nodes": [3, 0], "time_s": [0.4, 1.0]})
 
@@ -22,3 +22,22 @@ def test_runs_that_are_worn_through_are_named(then, said):
     assert words.endswith("Worn through: R9_convex (3 nodes by 0.4 s).")
     assert worn_through_words(wear, TWO_RUNS[1:])[0][1].endswith("No run is worn through.")
     assert worn_through_words({}, TWO_RUNS) == []
+    one = TWO_RUNS.assign(through_nodes=[1, 0])
+    assert worn_through_words(wear, one)[0][1].endswith("Worn through: R9_convex (1 node by 0.4 s).")
+
+
+@pytest.mark.parametrize(
+    ("values", "digits", "said"),
+    [
+        ([4.0], 2, "4"),
+        ([0.5, 1.25], 2, "0.5 to 1.2"),
+        ([123.0, 123.4], 2, "120"),
+        ([162.8, 4.0e4], 2, "160 to 40\u202f000"),
+        ([1234.5], 3, "1\u202f230"),
+        ([6.0e7], 2, "6e+07"),
+        ([0.00012], 2, "0.00012"),
+    ],
+)
+def test_ranges_have_no_exponent_that_hides_a_number(values, digits, said):
+    """Up to a million; alike ones are told once."""
+    assert range_text(values, digits) == said

@@ -12,7 +12,7 @@ import pandas as pd
 from bulkwear.postproc.flow.charge_angles import ChargeAngles, charge_angles
 from bulkwear.postproc.mesh import SurfaceMesh, read_surface
 from bulkwear.postproc.readers.cycle_folders import cycle_folders
-from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.tables.display import MILLIMETRES, few_digits
 from bulkwear.workflows.cases.equipment.flow import pictures_of
 from bulkwear.workflows.cases.equipment.flow_views import (
     LEVEL,
@@ -56,7 +56,7 @@ class FlowPanel:
     @property
     def title(self) -> str:
         """Return the phase with its hours of operation."""
-        return f"{self.phase}, after {self.hours:,.4g} h" if self.hours > 0.0 else self.phase
+        return f"{self.phase}, after {few_digits(self.hours, 4)} h" if self.hours > 0.0 else self.phase
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
 RUNS_NOTE = (
-    "Particles: estimate of what the machine holds. Blocks: the most that a run may take. Empty cells of the design "
+    "Particles: estimate of what the machine holds. Block: simulated time of each. Empty cells of the design "
     "leave a setting as it is."
 )
 DECKS = (
@@ -84,7 +84,8 @@ def remarks(study: Study) -> list[str]:
     said = [f"particles at scale {range_text(scales)}"] if scales != [1.0] else []
     now, full = study.settings["sampling"], study.paper_settings["sampling"]
     if now["most_blocks"] != full["most_blocks"]:
-        said.append(f"at most {now['most_blocks']} blocks on the shape as built instead of {full['most_blocks']}")
+        blocks = f"{now['most_blocks']} block{'s' * (now['most_blocks'] > 1)}"
+        said.append(f"at most {blocks} on the shape as built instead of {full['most_blocks']}")
     return said
 
 
@@ -105,6 +106,16 @@ def further_cap(settings: Mapping[str, Any]) -> str:
     return "as far as an even share of the operation that is left wears it"
 
 
+def update_words(most: int) -> str:
+    """Return what a block's wear stands for in so many updates of the shape at most."""
+    if not most:
+        return "The shape is kept as built."
+    return (
+        f"In up to {most} update{'s' * (most > 1)} a block's wear stands for as many hours as a step of the shape"
+        " allows, and for an even share of the operation that is asked for at most."
+    )
+
+
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than in the plant, besides scale and wear."""
     settings, runs = study["settings"], list(study["parameters"].values())
@@ -119,9 +130,8 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         ),
         (
             "Hours from seconds",
-            "Each block of simulated time tells the rate of wear per hour of operation, with the true coefficient. In "
-            f"up to {settings['updates']['most']} updates a block's wear stands for as many hours as a step of the "
-            "shape allows, and for an even share of the operation that is asked for at most.",
+            "Each block of simulated time tells the rate of wear per hour of operation, with the true coefficient. "
+            + update_words(settings["updates"]["most"]),
         ),
         (
             "Steady operation",

@@ -77,7 +77,7 @@ def machine(machines: Mapping[str, Mapping[str, Any]]) -> list[Block]:
     return [
         Table(parts_table(machines), "parts"),
         Table(heads.readable(feed.drop(columns="setting") if len(feed) == 1 else feed), "feed"),
-        Text(f"{first['particle']['name'].replace('_', ' ').capitalize()}; sizes: {'; '.join(sizes)}."),
+        Text(f"{first['particle']['name'].replace('_', ' ').capitalize()}; sizes: {'; '.join(sizes).rstrip('.')}."),
         Points(list(dict.fromkeys(operation_words(run) for run in machines.values()))),
     ]
 
@@ -126,10 +126,11 @@ def acceleration_words(summary: pd.DataFrame, blocks_s: list[float]) -> str:
     worn = summary[summary["wearing_cycles"] > 0]
     if worn.empty:
         return "The shape was kept as built: nothing is told of the worn one."
-    updates = range_text(worn["wearing_cycles"].tolist())
+    counts = worn["wearing_cycles"].tolist()
+    updates = f"{range_text(counts)} update{'s' * (max(counts) > 1)}"
     worn_for, each = _hours(worn["operation_h"]), _hours(worn["operation_h"] / worn["wearing_cycles"])
     return (
-        f"The shape was worn in {updates} updates per run, for {worn_for} h of operation. A block of "
+        f"The shape was worn in {updates} per run, for {worn_for} h of operation. A block of "
         f"{range_text(blocks_s, 3)} s stood for {each} h there, on average.{_carried_words(worn)}"
     )
 
@@ -140,9 +141,9 @@ def _carried_words(worn: pd.DataFrame) -> str:
     if not share >= LEAST_CARRIED:
         return ""
     return (
-        f" At the end caps on a step held back up to {100.0 * share:.2g} % of the volume that the wear law took: the"
-        " worn shape lags behind its hours, most where elements are small. More updates (updates.most), or larger"
-        " elements, bring it closer."
+        f" At the end caps on a step held back up to {findings.rounded(100.0 * share)} % of the volume that the wear"
+        " law took: the worn shape lags behind its hours, most where elements are small. More updates (updates.most),"
+        " or larger elements, bring it closer."
     )
 
 

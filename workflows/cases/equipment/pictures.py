@@ -16,7 +16,7 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface
 from bulkwear.postproc.readers.cycle_folders import cycle_files
-from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.tables.display import MILLIMETRES, few_digits
 from bulkwear.postproc.wear.area_patches import area_patches, patches_of
 from bulkwear.postproc.wear.thickness import remaining_thickness
 from bulkwear.workflows.cases.equipment.tables import AT_A_PATCH, HOURS, KG_PER_MT, SECONDS_PER_HOUR
@@ -191,7 +191,7 @@ def remaining_maps(runs: Sequence[Run], folder: Path) -> list[PartMap]:
     for run in first_runs(runs):
         labels = labels_of(run)
         for hours, file in remaining_states(run, folder):
-            state = f"after {hours:,.4g} h" if hours > 0.0 else "now"
+            state = f"after {few_digits(hours, 4)} h" if hours > 0.0 else "now"
             surface = read_surface(file)
             for name in wearing(run):
                 mesh, _ = part_mesh(surface, labels[name])

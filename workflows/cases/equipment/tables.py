@@ -248,5 +248,5 @@ def _worn_through(wear: pd.DataFrame, folder: Path) -> dict[str, Any]:
         return found
     first = through.iloc[0]
     state = json.loads((folder / f"cycle_{int(first['cycle']):03d}" / STATE).read_text())
-    said = state.get(WORN_THROUGH, f"at {int(first[THROUGH])} nodes")
+    said = state.get(WORN_THROUGH, f"at {(nodes := int(first[THROUGH]))} node{'s' * (nodes > 1)}")
     return found | {"through_h": float(first["operation_h"] + first["stands_for_h"]), "through_said": said}

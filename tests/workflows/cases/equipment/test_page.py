@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
-from bulkwear.workflows.cases.equipment import heads, page
+from bulkwear.workflows.cases.equipment import heads, page, page_blocks
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import written
 from bulkwear.workflows.report.page import write_page
@@ -21,7 +21,7 @@ from bulkwear.workflows.report.products import (
     told_to,
     write_product,
 )
-from bulkwear.workflows.report.sections import Pictures, Points
+from bulkwear.workflows.report.sections import Pictures, Points, Text
 from bulkwear.workflows.report.text import simplifications
 from tests.support.own_machine_project import machine_study
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
@@ -202,6 +202,37 @@ def test_what_is_simplified_has_the_numbers_of_the_study(tmp_path, monkeypatch):
         said = dict(simplifications(page_parameters(study), pd.read_csv(folder / "summary.csv"), page))
     assert said["Coarse-grained particles"].startswith("Spheres of 9.6 to 14.4 mm, 4 times the real ones")
     assert "20 to 30 %" in said["Wear coefficient"] and "60 mm" in said["Patches"]
+
+
+@pytest.mark.parametrize(
+    ("most", "said"), [(0, "The shape is kept as built."), (1, "In up to 1 update a "), (6, "In up to 6 updates a ")]
+)
+def test_updates_are_counted_in_words(most, said):
+    """One, several, and none."""
+    assert page.update_words(most).startswith(said)
+
+
+def test_what_updates_stood_for():
+    """One update or several; large shares without an exponent."""
+    summary = pd.DataFrame(
+        {"wearing_cycles": [1], "operation_h": [12345.0], "carried_volume_m3": [9.96], "worn_volume_m3": [10.0]}
+    )
+    said = page_blocks.acceleration_words(summary, [0.5])
+    assert said.startswith("The shape was worn in 1 update per run, for 12,300 h of operation. A block of 0.5 s")
+    assert " up to 100 % of the volume" in said
+    several = pd.concat([summary, summary.assign(wearing_cycles=3)])
+    assert "in 1 to 3 updates per run" in page_blocks.acceleration_words(several, [0.5])
+
+
+SIEVES = {"sieve_mm": [1, 2, 4, 8], "fraction": [0, 0.3, 0.7, 1]}
+
+
+def test_sentences_end_once(tmp_path):
+    """Sizes by sieves are told in sentences of their own."""
+    with machine_study(tmp_path, bulk={"passing": SIEVES}) as study:
+        run = study.runs[0].parameters
+    texts = [block.text for block in page_blocks.machine({"A": run}) if isinstance(block, Text)]
+    assert len(texts) == 1 and texts[0].endswith(" mm.") and ".." not in texts[0]
 
 
 def test_whole_page(tmp_path, monkeypatch):

@@ -22,6 +22,7 @@ from bulkwear.postproc.plots.style import (
     label_all,
     new_figure,
 )
+from bulkwear.postproc.tables.display import few_digits
 
 # distinguishable with colour-blindness (M. Okabe and K. Ito, 2008)
 SETTING_COLOURS = (BLUE, ORANGE, "#009E73", "#CC79A7", "#56B4E9", "#E69F00", OTHER_COLOUR)
@@ -223,16 +224,11 @@ def life_words(row: tuple, hours_per_mt: float = np.nan) -> str:
     """Return a life with its interval in words; row: life_h, life_low_h, life_high_h; the mass where hours_per_mt is
     known.
     """
-    words = f"{rounded(row.life_h)} h"
+    words = f"{few_digits(row.life_h)} h"
     if np.isfinite(row.life_low_h):
-        high = rounded(row.life_high_h) if np.isfinite(row.life_high_h) else "no end"
-        words += f" ({rounded(row.life_low_h)} to {high})"
-    return words + (f", {row.life_h / hours_per_mt:.3g} Mt" if np.isfinite(hours_per_mt) else "")
-
-
-def rounded(value: float) -> str:
-    """Return a number of three significant digits without an exponent."""
-    return f"{float(f'{value:.3g}'):,.12g}"
+        high = few_digits(row.life_high_h) if np.isfinite(row.life_high_h) else "no end"
+        words += f" ({few_digits(row.life_low_h)} to {high})"
+    return words + (f", {few_digits(row.life_h / hours_per_mt)} Mt" if np.isfinite(hours_per_mt) else "")
 
 
 # ---------------------------------------------------------------- depth against hours
