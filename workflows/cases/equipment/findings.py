@@ -186,6 +186,28 @@ def answers_on_worn_shape(loads: pd.DataFrame) -> list[str]:
     return found
 
 
+def answers_on_lifters(lifters: pd.DataFrame) -> list[str]:
+    """Return how far the lifters of each mill lean and stand out as built and after the last update of their shape."""
+    found, several = [], lifters["setting"].nunique() > 1
+    for (setting, part), rows in lifters.dropna(subset=["height_mm"]).groupby(["setting", "part"], sort=False):
+        built, worn = rows.iloc[0], rows.iloc[-1]
+        if len(rows) < 2:
+            continue
+        who = f"{f'Design {setting}: the' if several else 'The'} leading faces of the {spoken(part)}'s lifters"
+        after = f"after {rounded(worn.operation_h)} h"
+        faces, crests = (
+            f"{rounded(built[name])} {unit} as built and {rounded(worn[name])} {unit} {then}{_ends(worn, name)}"
+            for name, unit, then in (("leading_face_angle_deg", "degrees", after), ("height_mm", "mm", "then"))
+        )
+        found.append(f"{who} lean back by {faces}; the crests stand out of the plates, which wear too, by {crests}.")
+    return found
+
+
+def _ends(row: pd.Series, name: str) -> str:
+    low, high = row[f"{name}_low"], row[f"{name}_high"]
+    return f" ({span(low, high, digits=3)}, {PER_CENT})" if np.isfinite(low) else f" ({UNKNOWN})"
+
+
 def change_words(row: pd.Series) -> str:
     """Return the interval of a change."""
     low, high = row.change_percent_low, row.change_percent_high
@@ -245,6 +267,7 @@ def all_answers(tables: Tables, summary: pd.DataFrame) -> list[str]:
         *answers_on_holes(summary),
         *answers_on_designs(tables["designs"]),
         *answers_on_worn_shape(tables["loads"]),
+        *(answers_on_lifters(tables["lifters"]) if "lifters" in tables else []),
         *answers_on_flow(tables["flow"]),
         answer_on_balance(tables["mass_balance"]),
     ]

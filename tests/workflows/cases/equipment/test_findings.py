@@ -212,3 +212,26 @@ def test_holes_are_told_with_their_hours():
     (said,) = findings.answers_on_holes(summary)
     assert said.startswith("In run B a first hole is there by 1,200 h: worn through at 4 nodes.")
     assert findings.answers_on_holes(summary[["run"]]) == []
+
+
+def lifters_of(setting, packings, angles, heights):
+    """Rows of the table of lifters, with intervals of 1 degree or mm to both sides of more than one packing."""
+    rows = []
+    for hour, angle, height in zip((0.0, 1180.0), angles, heights, strict=False):
+        row = {"setting": setting, "part": "liner", "operation_h": hour, "packings": packings}
+        for name, value in (("leading_face_angle_deg", angle), ("height_mm", height)):
+            half = 1.0 if packings > 1 else np.nan
+            row |= {name: value, f"{name}_low": value - half, f"{name}_high": value + half}
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def test_answer_on_lifters():
+    """As built and after the last update, with intervals; of one packing without, and nothing of a kept shape."""
+    (said,) = findings.answers_on_lifters(lifters_of("n77", 2, (14.15, 31.9), (65.0, 68.4)))
+    leans = "lean back by 14 degrees as built and 32 degrees after 1,200 h (30.9 to 32.9, 95 %)"
+    stand = "the crests stand out of the plates, which wear too, by 65 mm as built and 68 mm then (67.4 to 69.4, 95 %)"
+    assert said == f"The leading faces of the liner's lifters {leans}; {stand}."
+    both = [lifters_of("slow", 1, (14.15, 20.0), (65.0, 60.0)), lifters_of("kept", 1, (14.15,), (65.0,))]
+    (said,) = findings.answers_on_lifters(pd.concat(both))
+    assert said.startswith("Design slow: the leading faces") and said.count(UNKNOWN) == 2
