@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -47,7 +48,7 @@ def own_templates() -> list[Path]:
 def _is_own(template: str) -> bool:
     """Return whether a template, or a partial that it includes, is the current project's own."""
     own = own_templates()
-    return bool(own) and any(template_file(name) in own for name in _trees(template, {}))
+    return bool(own) and any(template_file(name) in own for name in _uses(template, {}).variables)
 
 
 def template_file(name: str) -> Path:
@@ -90,8 +91,19 @@ def particles_and_walls(particles: float, walls: float, type_names: Sequence[str
     return [[particles if i == j == 0 else walls for j, _ in enumerate(type_names)] for i, _ in enumerate(type_names)]
 
 
-def _trees(template: str, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Template]:
-    """Return {file name: syntax tree} of a template and its partials, without branches that `words` do not take.
+@dataclass(frozen=True)
+class Uses:
+    """What a template and its partials use.
+
+    variables: {file name: names of parameters}; settings: as `solver_settings` returns them
+    """
+
+    variables: Mapping[str, frozenset[str]]
+    settings: Mapping[str, str]
+
+
+def _uses(template: str, words: Mapping[str, Any]) -> Uses:
+    """Return what a template and its partials use, without branches that `words` do not take.
 
     That is decided for branches `{% if name == "word" %}` whose name, or `solver.name`, `words` has, and for those with
     `!=` and `in ("word", "other")`; all others count as taken.
@@ -99,7 +111,7 @@ def _trees(template: str, words: Mapping[str, Any]) -> dict[str, jinja2.nodes.Te
     environment = _environment(template_folders())
     files = sorted(path for root in environment.loader.searchpath for path in Path(root).glob("**/*.in.j2"))
     stamp = tuple(path.stat().st_mtime_ns for path in files)
-    return _pruned_trees(environment, template, _choices(words), _choices(words.get(SOLVER, {})), stamp)
+    return _kept_uses(environment, template, _choices(words), _choices(words.get(SOLVER, {})), stamp)
 
 
 def _choices(words: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
@@ -108,10 +120,22 @@ def _choices(words: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
 
 
 @lru_cache(maxsize=256)  # a study asks for the same few templates once per run; `stamp` tells edited files
-def _pruned_trees(
+def _kept_uses(
     environment: jinja2.Environment, template: str, chosen: tuple, of_solver: tuple, stamp: tuple[int, ...]
+) -> Uses:
+    trees = _pruned_trees(environment, template, {**dict(chosen), SOLVER: dict(of_solver)})
+    settings: dict[str, str] = {}
+    for tree in trees.values():
+        for name, chosen_by in _solver_settings(tree):
+            settings[name] = chosen_by if settings.get(name, chosen_by) else ""
+    variables = {file: frozenset(jinja2.meta.find_undeclared_variables(tree)) for file, tree in trees.items()}
+    return Uses(variables, settings)
+
+
+def _pruned_trees(
+    environment: jinja2.Environment, template: str, words: Mapping[str, Any]
 ) -> dict[str, jinja2.nodes.Template]:
-    words = {**dict(chosen), SOLVER: dict(of_solver)}
+    """Return {file name: syntax tree} of a template and its partials, see `_uses`."""
     trees: dict[str, jinja2.nodes.Template] = {}
     names = [f"{template}.in.j2"]
     for name in names:
@@ -163,7 +187,7 @@ def _solver_settings(node: jinja2.nodes.Node, chosen_by: str = "") -> Iterator[t
 
 def template_sources(template: str) -> dict[str, str]:
     """Return {file name: text} of a template and its partials: what a deck depends on besides its parameters."""
-    return {name: template_file(name).read_text(encoding="utf-8") for name in _trees(template, {})}
+    return {name: template_file(name).read_text(encoding="utf-8") for name in _uses(template, {}).variables}
 
 
 def templates_digest(*templates: str) -> str:
@@ -173,17 +197,13 @@ def templates_digest(*templates: str) -> str:
 
 def template_variables(template: str, words: Mapping[str, Any] = MappingProxyType({})) -> set[str]:
     """Return the names of all parameters that a template and its partials use, in the branches that `words` take."""
-    return set().union(*map(jinja2.meta.find_undeclared_variables, _trees(template, words).values()))
+    return set().union(*_uses(template, words).variables.values())
 
 
 def template_users(template: str, names: set[str], words: Mapping[str, Any]) -> list[str]:
     """Return which of a template and its partials, without .in.j2, use one of these parameters."""
-    trees = _trees(template, words)
-    return [
-        part.removesuffix(".in.j2")
-        for part, tree in trees.items()
-        if names & jinja2.meta.find_undeclared_variables(tree)
-    ]
+    used = _uses(template, words).variables
+    return [part.removesuffix(".in.j2") for part, variables in used.items() if names & variables]
 
 
 def solver_settings(template: str, words: Mapping[str, Any] = MappingProxyType({})) -> dict[str, str]:
@@ -191,11 +211,7 @@ def solver_settings(template: str, words: Mapping[str, Any] = MappingProxyType({
 
     words: as for `template_variables`; "" for what is used whatever the others are
     """
-    found: dict[str, str] = {}
-    for tree in _trees(template, words).values():
-        for name, chosen_by in _solver_settings(tree):
-            found[name] = chosen_by if found.get(name, chosen_by) else ""
-    return found
+    return dict(_uses(template, words).settings)
 
 
 def whole_sections(parameters: Mapping[str, Any]) -> dict[str, Any]:
@@ -208,9 +224,9 @@ def used_sections(template: str, parameters: Mapping[str, Any], **words: Any) ->
 
     words: further ones that choose branches
     """
-    words = {**whole_sections(parameters), **words}
-    kept = {"rayleigh_fraction", *solver_settings(template, words=words)}  # `integration` uses that one too
-    own = template_variables(template, words=words)
+    used = _uses(template, {**whole_sections(parameters), **words})
+    kept = {"rayleigh_fraction", *used.settings}  # `integration` uses that one too
+    own = set().union(*used.variables.values())
     return {
         SOLVER: {name: value for name, value in parameters[SOLVER].items() if name in kept},
         OWN: {name: value for name, value in parameters[OWN].items() if name in own},
@@ -225,13 +241,14 @@ def render(template: str, parameters: Mapping[str, Any]) -> str:
     """
     own = parameters.get(OWN, {})
     given = {name: value for name, value in parameters.items() if name != OWN}
-    wanted = template_variables(template, given)
-    missing = {f"solver.{name}" for name in solver_settings(template, given)}
+    used = _uses(template, given)
+    wanted = set().union(*used.variables.values())
+    missing = {f"solver.{name}" for name in used.settings}
     missing -= {f"solver.{name}" for name in given.get(SOLVER, {})}
     unused = set() if _is_own(template) else set(given) - wanted - {SOLVER}
     unknown = (wanted - {*given, *own}) | missing
-    using = next((part for part in template_users(template, unknown, given)), template)
     if unknown:
+        using = next((part for part in template_users(template, unknown, given)), template)
         words = f"is not given, allowed are its deck's words and those of `{OWN}`"
         raise DeckError(f"{shown_template(using)}: parameter {', '.join(sorted(unknown))} {words}.")
     for names, fault in (
