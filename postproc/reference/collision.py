@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 EXACT = 1e-10  # relative, of the integration
 DURATION = 2.943  # -, of an undamped collision over largest overlap / speed (Hertz 1882)
@@ -56,6 +55,8 @@ def collision(
     speed: float, radius: float, mass: float, modulus: float, restitution: float, points: int = 400
 ) -> Collision:
     """Return the collision at a speed (m/s) of bodies with reduced radius (m) and mass (kg), E* (Pa) and e (-)."""
+    from scipy.integrate import solve_ivp  # slow to import, and every start of Snakemake reads pages that draw this
+
     overlap = largest_overlap(speed, radius, mass, modulus)
     time = overlap / speed  # with these units of length and time the equation has one parameter, beta
     # S = 1.5 F/x, and F is 5/4 in these units at x = 1

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy import optimize, special, stats
+from scipy import optimize, special  # scipy.stats is slow to import
 
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
 
@@ -173,5 +173,5 @@ def _where(rising: Callable[[float], float], share: float, low: float, high: flo
 def _ratio_table() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return degrees of freedom, the ratio of the quantiles at MATCHED, falling, and the logarithm of the outer one."""
     freedoms = np.geomspace(0.3, 1e4, 400)
-    inner, outer = (stats.t.ppf(0.5 + 0.5 * share, freedoms) for share in MATCHED)
+    inner, outer = (special.stdtrit(freedoms, 0.5 + 0.5 * share) for share in MATCHED)
     return freedoms, outer / inner, np.log(outer)

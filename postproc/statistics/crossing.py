@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy import special  # scipy.stats is slow to import
 
-from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimates
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimates, students_t
 
 REJECTED = 0.05  # -, a form whose lack of fit is less probable than that is no form of these data
 PLACES = 2001  # at which a fitted form is looked at between the first and the last place
@@ -102,7 +102,7 @@ def _fitted(place: np.ndarray, y: np.ndarray, columns: Columns) -> dict[str, flo
     if not of_error:
         return found
     error = pure_error(place, y) * np.sqrt(np.einsum("ij,jk,ik->i", over, np.linalg.inv(matrix.T @ matrix), over))
-    within = grid[np.abs(value) <= stats.t.ppf(0.5 + 0.5 * CONFIDENCE, of_error) * error]
+    within = grid[np.abs(value) <= students_t(0.5 + 0.5 * CONFIDENCE, of_error) * error]
     if within.size:
         found["interval_low"] = float(within[0]) if within[0] > grid[0] else -math.inf
         found["interval_high"] = float(within[-1]) if within[-1] < grid[-1] else math.inf
@@ -130,7 +130,7 @@ def lack_of_fit(place: np.ndarray, y: np.ndarray, fitted: np.ndarray, coefficien
         return found
     lack, pure = float(((means - fitted) ** 2).sum()) / of_lack, pure_error(place, y) ** 2
     f_value = lack / pure if pure > 0.0 else (math.inf if lack > 0.0 else 0.0)
-    return found | {"lack_of_fit_F": f_value, "p_value": float(stats.f.sf(f_value, of_lack, of_error))}
+    return found | {"lack_of_fit_F": f_value, "p_value": float(special.fdtrc(of_lack, of_error, f_value))}
 
 
 def _whole(place: np.ndarray, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -25,7 +25,7 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy import special  # scipy.stats is slow to import, and every start of Snakemake reads this module
 
 CONFIDENCE = 0.95  # -, of every interval that is shown
 UNKNOWN = "one packing, scatter unknown"
@@ -139,7 +139,7 @@ class Ends:
 @cache  # few different ones are asked for, by many estimates
 def students_t(share: float, freedom: float) -> float:
     """Return the quantile of Student's t at a share (-), on so many degrees of freedom."""
-    return float(stats.t.ppf(share, freedom))
+    return float(special.stdtrit(freedom, share))
 
 
 def _decimals(value: float, digits: int) -> int:

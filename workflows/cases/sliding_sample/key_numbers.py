@@ -10,7 +10,6 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN, Estimate, estimates
-from bulkwear.postproc.tables.depths import depth_summary
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.packings import BY, over_packings
 from bulkwear.postproc.tables.summary import read_summary
@@ -26,6 +25,8 @@ INTERVAL = f"{PERCENT * CONFIDENCE:g} % interval"
 
 def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return the answer to a study's question in words and cards, and the numbers of every setting."""
+    from bulkwear.postproc.tables.depths import depth_summary  # slow to import, and every start reads this module
+
     summary, settings = read_summary(folder / "summary.csv"), study["settings"]
     columns = ["run", "depth_um", "area_mm2"]
     depths = depth_summary(pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=columns, dtype={"run": str}))

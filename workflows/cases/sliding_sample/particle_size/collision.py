@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.readers.dump_text import read_frames
 from bulkwear.postproc.reference.collision import Collision, collision, reduced
 from bulkwear.postproc.reference.sphere_contact import effective_modulus
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale
@@ -164,6 +163,8 @@ def read_collisions(path: str | Path, spheres: Spheres, time_step: float) -> pd.
     (magnitude, about the first sphere's centre), spin (magnitude, of the first sphere).
     Raises ContactDumpError for a damaged dump.
     """
+    from bulkwear.postproc.readers.dump_text import read_frames  # slow to import, and every start reads the page
+
     batches = list(read_frames(path, "ATOMS", ("id",)))
     steps = np.concatenate([batch.steps for batch in batches])
     frames = np.concatenate([batch.table for batch in batches]).reshape(len(steps), -1, len(COLUMNS))

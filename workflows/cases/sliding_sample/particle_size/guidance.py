@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from bulkwear.postproc.reference.size_ratios import (
     LARGEST_RATIO,
@@ -20,7 +19,7 @@ from bulkwear.postproc.reference.size_ratios import (
     size_ratios,
 )
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES
-from bulkwear.postproc.statistics.intervals import CONFIDENCE
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, students_t
 
 PUBLISHED_SCALES = np.arange(1.0, 9.0)  # of the source's lines (Yan 2022, Table 4.1 and Fig 4.14)
 ROUNDING = 1e-9  # relative
@@ -131,7 +130,7 @@ def line_ratio(line: Line, place: float, reference: float) -> tuple[float, float
         return np.nan, np.nan, np.nan
     if place == reference:
         return 1.0, 1.0, 1.0
-    spread = spread * stats.t.ppf(0.5 + 0.5 * CONFIDENCE, line.freedom) ** 2
+    spread = spread * students_t(0.5 + 0.5 * CONFIDENCE, line.freedom) ** 2
     square, middle = bottom**2 - spread[1, 1], top * bottom - spread[0, 1]
     root = middle**2 - square * (top**2 - spread[0, 0])
     if square <= 0.0:
