@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy.stats import theilslopes
 
 RASTER_DIAMETERS = 0.1  # -, step of the raster in median diameters; spheres are then resolved to 1 % of a diameter
 CELL_DIAMETERS = 1.0  # -, edge of the cells whose medians are fitted
@@ -130,6 +129,8 @@ def fitted_slope(points: pd.DataFrame, start: float, end: float, diameter: float
     uncertainty half the interval that holds it with 68 % (P. K. Sen, Journal of the American Statistical Association 63
     (1968) 1379-1389). Up to 29 % of outliers do not move it. Raises FreeSurfaceError.
     """
+    from scipy.stats import theilslopes  # slow to import, and every start of Snakemake reads this module
+
     used = straight_stretch(points, start, end, diameter)
     y, z = used["y_m"].to_numpy(), used["z_m"].to_numpy()
     gradient, height, low, high = theilslopes(z, y, alpha=ONE_SIGMA)
