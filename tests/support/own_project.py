@@ -134,7 +134,8 @@ rule all:
 rule ranking:
     input:
         summary="results/mine/summary.csv",
-        page="results/mine/report.html",
+        figure="results/mine/figures/wear_against_travel.png",
+        forecast="results/mine/forecast.csv",
     output:
         "results/ranking.txt",
     shell:
