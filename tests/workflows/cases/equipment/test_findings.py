@@ -210,7 +210,7 @@ def test_holes_are_told_with_their_hours():
     told = {"through_nodes": [0, 4], "through_h": [np.nan, 1234.0], "through_said": ["", "worn through at 4 nodes"]}
     summary = pd.DataFrame({"run": ["A", "B"], **told})
     (said,) = findings.answers_on_holes(summary)
-    assert said.startswith("In run B a first hole is there by 1,200 h: worn through at 4 nodes.")
+    assert said.startswith("In run B a first place has no thickness left by 1,200 h: worn through at 4 nodes.")
     assert findings.answers_on_holes(summary[["run"]]) == []
 
 
