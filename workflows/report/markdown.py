@@ -122,7 +122,9 @@ def provenance(folder: Path, study: Study) -> str:
     states = states_of(folder, study)
     simulations = {path.parents[1] for path in states}
     solver = solver_words(states[0].parent / "log.liggghts")
-    number = f"{len(simulations)} {'runs' if study.case.wears else 'simulations'} of {len(study.chosen_settings)} rows"
+    count, rows = len(simulations), len(study.chosen_settings)
+    kind = "run" if study.case.wears else "simulation"
+    number = f"{count} {kind}{'s' * (count != 1)} of {rows} row{'s' * (rows != 1)}"
     when = " to ".join(simulated_between(states))
     said = f"Simulated {when} UTC with {solver}, {said_of(versions_in_folder(folder, study))}; page written by"
     said += f" {package_version()}: {number}."

@@ -59,9 +59,9 @@ EXTRA_UNITS = {
 
 
 def number(value: Any, digits: int = 4) -> str:
-    """Return a number as people read it: few digits, no exponent between 0.001 and 1e6; words stay words."""
+    """Return a number as people read it: few digits, no exponent between 0.001 and 1e6; a name as words."""
     if isinstance(value, str):
-        return value.replace("_", " ")
+        return value.replace("_", " ") if value.isidentifier() else value
     if isinstance(value, list):
         return ", ".join(number(item, digits) for item in value)
     if isinstance(value, Mapping):

@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.report.text import range_text, worn_through_words
+from bulkwear.workflows.report.text import number, range_text, worn_through_words
 
 TWO_RUNS = pd.DataFrame({"run": ["R9_convex", "R9_plain"], "through_nodes": [3, 0], "time_s": [0.4, 1.0]})
 
@@ -41,3 +41,10 @@ def test_runs_that_are_worn_through_are_named(then, said):
 def test_ranges_have_no_exponent_that_hides_a_number(values, digits, said):
     """Up to a million; alike ones are told once."""
     assert range_text(values, digits) == said
+
+
+def test_names_are_words_and_text_stays():
+    """Of a name underscores are spaces; files and sentences keep theirs."""
+    assert number("steel_lost") == "steel lost"
+    assert number("chute/liner_r9.step") == "chute/liner_r9.step"
+    assert number("told in charge_angles.py") == "told in charge_angles.py"

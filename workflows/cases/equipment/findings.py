@@ -254,8 +254,8 @@ def answers_on_holes(summary: pd.DataFrame) -> list[str]:
         return []
     through = summary[summary[THROUGH] > 0]
     return [
-        f"In run {row.run} a first place has no thickness left by {rounded(row.through_h)} h: {row.through_said}. Lives "
-        "are told by mean depths of patches: a thin edge or a deep spot goes before."
+        f"In run {row.run} a first place has no thickness left by {rounded(row.through_h)} h: {row.through_said}. "
+        "Lives are told by mean depths of patches: a thin edge or a deep spot goes before."
         for row in through.itertuples()
     ]
 
