@@ -32,6 +32,7 @@ fidelities:
     sliding: {run_in_mm: 10, travel_mm: 20, cycles: 2}
 packings: 1
 """
+RUNS = ["R9_convex", "R9_plain"]
 THREE_RUNS = """\
 rule all:
     input:
@@ -97,7 +98,7 @@ def undisturbed(tmp_path_factory):
 def test_a_design_row_becomes_a_summary(undisturbed):
     """One row and two surfaces give two runs, each with its wear; the plain run is its own reference."""
     table = pd.read_csv(undisturbed / "results/tiny/summary.csv").set_index("run")
-    assert list(table.index) == ["R9_convex", "R9_plain"]
+    assert list(table.index) == RUNS
     assert (table["worn_volume_m3"] > 0).all()
     assert table.loc["R9_plain", "wear_over_plain"] == 1.0
     assert table.loc["R9_plain", "pattern_worn_volume_m3"] == 0.0 < table.loc["R9_convex", "pattern_worn_volume_m3"]
@@ -112,8 +113,13 @@ def test_nothing_is_left_to_do_after_a_study(undisturbed):
 
 @pytest.mark.solver
 def test_killed_snakemake_started_again_gives_the_same_summary(undisturbed, tmp_path):
-    """kill -9 of everything during a wear cycle; a plain second call ends in the same summary.csv."""
-    folder = workspace(tmp_path)
+    """kill -9 of everything during a wear cycle; a plain second call ends in the same summary.csv. Surfaces and bed are
+    there already.
+    """
+    folder = shutil.copytree(undisturbed, tmp_path / "killed", symlinks=True)
+    (folder / "results/tiny/summary.csv").unlink()
+    for run in RUNS:
+        shutil.rmtree(folder / "results/tiny" / run)
     process = snakemake(folder, "results/tiny/summary.csv")
     deadline = time.monotonic() + TIMEOUT
     while not list(folder.glob("results/tiny/*/cycle_001.part/bed_0.dump")):
@@ -122,7 +128,7 @@ def test_killed_snakemake_started_again_gives_the_same_summary(undisturbed, tmp_
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
     finish(snakemake(folder, "results/tiny/summary.csv"))
-    for name in ("summary.csv", "R9_convex/wear.csv", "R9_plain/wear.csv"):
+    for name in ("summary.csv", *(f"{run}/wear.csv" for run in RUNS)):
         path = Path("results/tiny") / name
         assert (folder / path).read_bytes() == (undisturbed / path).read_bytes()
 
@@ -215,12 +221,13 @@ def test_targets_of_no_study_are_refused(target):
 def test_an_edited_template_renders_again(tmp_path):
     """Decks are up to date until a template changes; then they are rendered again."""
     folder = workspace(tmp_path)
-    finish(snakemake(folder, "tiny_decks"))
-    deck = folder / "results/tiny/decks/R9_plain/cycle_001/deck.in"
-    assert "Nothing to be done" in finish(snakemake(folder, "tiny_decks"))
+    decks = "results/tiny/decks/R9_plain/cycle_000/deck.in"  # and those of the cycles beside it
+    finish(snakemake(folder, decks))
+    assert "Nothing to be done" in finish(snakemake(folder, decks))
     template = folder / "templates/sliding_sample/sliding_sample.in.j2"
     template.write_text(template.read_text() + "# the end\n")
-    finish(snakemake(folder, "tiny_decks"))
+    finish(snakemake(folder, decks))
+    deck = folder / "results/tiny/decks/R9_plain/cycle_001/deck.in"
     assert deck.read_text().endswith("# the end\n")
 
 
