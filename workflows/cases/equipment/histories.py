@@ -6,12 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from scipy.ndimage import gaussian_filter1d
 
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.workflows.cases.equipment.life import WHOLE_PART, Course, patch_courses
 from bulkwear.workflows.cases.equipment.tables import KG_PER_TONNE, SECONDS_PER_HOUR, Runs
 
-WINDOW = 20  # rows of the table of the flow, of which a rate is told: single reports hold few particles
+WINDOW = 20  # rows of the table of the flow, over which a bell evens out single particles and batches of the feed
+DEVIATIONS = 3.0  # of the bell in half of the window
 WATTS_PER_KW = 1e3
 HORIZON = 3.0  # -, over the hours asked for or simulated: lives beyond are not drawn
 LONGEST_ROWS = 2000  # of a run in the table of the flow
@@ -19,35 +21,32 @@ LONGEST_ROWS = 2000  # of a run in the table of the flow
 
 def flow_series(runs: Runs) -> pd.DataFrame:
     """Return the flow of every run over simulated time: run, setting, packing, time_s, in_t_per_h, out_t_per_h,
-    held_kg, power_<part>_kW. Rates and powers are means of a few reports.
+    held_kg, power_<part>_kW. All are evened out over a few reports.
     """
     return pd.concat([_series_of(table) for _, table in runs.flow.groupby("run", sort=False)], ignore_index=True)
 
 
 def _series_of(flow: pd.DataFrame) -> pd.DataFrame:
     flow = flow.drop_duplicates("time_s")
-    half = max(min(WINDOW, len(flow)) // 2, 1)
+    half = max(min(WINDOW, len(flow) - 1) // 2, 1)
+    inside = slice(half, len(flow) - half) if len(flow) > 2 * half else slice(None)
+    time = flow["time_s"].to_numpy()
 
-    def mean(column: str, rows: int = 2 * half) -> np.ndarray:
-        sums = np.cumsum(np.insert(np.nan_to_num(flow[column].to_numpy(float)), 0, 0.0))
-        return (sums[rows:] - sums[:-rows]) / rows
-
-    def change(column: str) -> np.ndarray:
-        """Return the mean of the later half of a window less that of its earlier half: batches of the feed even out."""
-        means = mean(column, half)
-        return means[half:] - means[:-half]
+    def smooth(column: str) -> np.ndarray:
+        values = np.nan_to_num(flow[column].to_numpy(float))
+        return gaussian_filter1d(values, half / DEVIATIONS, mode="nearest", truncate=DEVIATIONS)
 
     def rate(column: str) -> np.ndarray:
-        return change(column) / change("time_s") * SECONDS_PER_HOUR / KG_PER_TONNE
+        return np.gradient(smooth(column), time)[inside] * SECONDS_PER_HOUR / KG_PER_TONNE
 
     powers = [name for name in flow if name.startswith("power_")]
     table = {
         **{name: flow[name].iloc[0] for name in ("run", "setting", "packing")},
-        "time_s": mean("time_s"),
+        "time_s": time[inside],
         "in_t_per_h": rate("inserted_mass_kg"),
         "out_t_per_h": rate("out_mass_kg"),
-        "held_kg": mean("held_mass_kg"),
-        **{f"{name.removesuffix('_W')}_kW": mean(name) / WATTS_PER_KW for name in powers},
+        "held_kg": smooth("held_mass_kg")[inside],
+        **{f"{name.removesuffix('_W')}_kW": smooth(name)[inside] / WATTS_PER_KW for name in powers},
     }
     found = pd.DataFrame(table)
     return found.iloc[:: max(len(found) // LONGEST_ROWS, 1)]
