@@ -5,8 +5,10 @@ import re
 import pytest
 
 from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
-from bulkwear.workflows.config.design import list_studies, load_study
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.sources import list_studies, read_sources
 from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.engine.templates import DeckError, render
 from tests import DATA
@@ -15,7 +17,7 @@ from tests.support.tiny import tiny_study
 
 RESET = 'if "${begin_step} == 0" then "reset_timestep 0"'  # a later piece goes on counting
 GOLDEN = DATA / "golden_sliding_sample.in"
-SLIDING = [name for name in list_studies() if load_study(name).case.name == "sliding_sample"]
+SLIDING = [name for name in list_studies() if read_sources(name, current_project(), None).case.name == "sliding_sample"]
 
 
 def run_and_bed(study, name="R9_convex"):
