@@ -15,12 +15,15 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.collision import (
     simulate,
     spheres_of,
 )
-from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
+from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.schema import SCHEMA_FOLDER, load_schema
+from bulkwear.workflows.config.sources import list_studies, read_sources
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.bulk_tests import time_step
+from bulkwear.workflows.engine.cases import case_names
 from bulkwear.workflows.engine.chain import bed_deck_text
+from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.solver import run_deck
 from bulkwear.workflows.engine.templates import render, solver_settings, template_variables
 from tests import REPOSITORY
@@ -134,8 +137,10 @@ def test_a_property_that_a_model_needs_is_missed_before_the_solver(choice, missi
 def test_a_model_needs_no_property_of_another(choice, needed):
     """What is listed for a model is all that it needs, in every case."""
     solver = dict([choice]) | {key: PROPERTIES[key] for key in needed}
-    for name in list_studies():
-        if choice[0] != "contact_model" or load_study(name).case.name != "pin_on_disc":
+    studies = {read_sources(name, current_project(), None).case.name: name for name in list_studies()}
+    assert set(studies) == set(case_names())
+    for case, name in studies.items():
+        if choice[0] != "contact_model" or case != "pin_on_disc":
             assert load_study(name, overrides={"solver": solver}).runs
 
 
