@@ -1,16 +1,16 @@
 """In which order test files run: those that take longest first, so that no process waits for one of them at the end."""
 
-LONGEST_FIRST = (  # measured on two cores: minutes each, most of it waiting where a cluster is asked
+LONGEST_FIRST = (  # measured on two cores: half a minute to minutes each, most of it waiting where a cluster is asked
     "test_slurm.py",
     "workflows/test_project.py",
-    "test_extend.py",
-    "equipment/test_tutorial.py",
-    "engine/test_cycles.py",
     "workflows/test_snakemake.py",
-    "test_chains.py",
-    "config/test_design.py",
+    "engine/test_cycles.py",
+    "equipment/test_tutorial.py",
+    "test_solver_ledger_ranks.py",
+    "test_extend.py",
+    "test_equipment_motion.py",
     "engine/test_contact_model.py",
-    "engine/test_decks.py",
+    "test_chains.py",
 )
 
 
