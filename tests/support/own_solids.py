@@ -114,10 +114,10 @@ def write_cad(path: Path) -> None:
             gmsh.model.occ.synchronize()
             gmsh.model.setEntityName(3, tag, name)
         gmsh.write(str(path))
-    if path.suffix == ".step":  # gmsh writes no names
+    if path.suffix == ".step":  # gmsh writes no names, but the number of the file in its process and that of the body
         text = path.read_text()
         for number, name in enumerate(SIZES, start=1):
-            text = re.sub(rf"'Open CASCADE STEP translator [^']* 1\.{number}'", f"'{name}'", text)
+            text = re.sub(rf"'Open CASCADE STEP translator [^']* \d+\.{number}'", f"'{name}'", text)
         path.write_text(text)
 
 
