@@ -2,7 +2,7 @@
 
 The local thickness is given, as that of a liner, or measured on the pristine surface along the inward normal to the
 back of the same part. It stays with the nodes, and with them what is lost of it: in front, square to their faces, and
-where it was measured also at the back, which may wear too. A place is worn through when nothing is left between.
+where XX no thickness as drawn: it goes no further than it is, and is not called worn through.
 """
 
 from __future__ import annotations
@@ -71,7 +71,8 @@ def with_turned_thickness(mesh: SurfaceMesh, turned: np.ndarray) -> SurfaceMesh:
 def thickness_to_back(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Distance (m, 3) m from each corner of each face along the face's inward normal to the next face, and that face.
 
-    points (n, 3) m; triangles (m, 3) of one part, normals out of the body. NaN and -1 where no back lies behind.
+    points (n, 3) m; triangles (m, 3) of one part, normals out of the body. NaN and -1 where no back lies behind, 0 at
+    the corners of a sharp edge, where the back meets the face.
     """
     normal = unit_normals(points, triangles)
     corners = points[triangles]
@@ -84,7 +85,9 @@ def thickness_to_back(points: np.ndarray, triangles: np.ndarray) -> tuple[np.nda
     face, distance, _ = tree.intersect_ray_first(points, faces, np.ascontiguousarray(start.reshape(-1, 3)), rays)
     is_back = (face >= 0) & (np.einsum("ij,ij->i", rays, normal[np.maximum(face, 0)]) > LEAST_FACING_COSINE)
     distance = np.where(is_back, distance, np.nan).reshape(-1, 3) + nudge[:, None]
-    return distance, np.where(is_back, face, -1).reshape(-1, 3)
+    face = np.where(is_back, face, -1).reshape(-1, 3)
+    meets = (face >= 0) & (triangles[face] == triangles[:, :, None]).any(axis=2)
+    return np.where(meets, 0.0, distance), face
 
 
 def with_lost_thickness(before: SurfaceMesh, after: SurfaceMesh) -> SurfaceMesh:
@@ -133,8 +136,8 @@ def remaining_thickness(mesh: SurfaceMesh) -> np.ndarray:
 
 
 def worn_through(mesh: SurfaceMesh) -> np.ndarray:
-    """Mask (n,) of the nodes at which the lost thickness has reached the local thickness of the part."""
-    return remaining_thickness(mesh) == 0.0
+    """Mask (n,) of the nodes at which the lost thickness has reached the local thickness of the part, if it had any."""
+    return (remaining_thickness(mesh) == 0.0) & (np.asarray(mesh.point_data.get(LOCAL_THICKNESS, 0.0)) > 0.0)
 
 
 def through_phrase(mesh: SurfaceMesh) -> str | None:

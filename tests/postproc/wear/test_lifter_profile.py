@@ -70,7 +70,7 @@ def found_in(mesh, point=ORIGIN, axis=AXIS):
     return lifter_profile(mesh.points, mesh.triangles, np.array(point), np.array(axis))
 
 
-def check(found, heights=(HEIGHT,) * LIFTERS, leading=LEADING, trailing=TRAILING, tolerance=EXACT_DEG):
+def assert_lifters(found, heights=(HEIGHT,) * LIFTERS, leading=LEADING, trailing=TRAILING, tolerance=EXACT_DEG):
     assert len(found) == len(heights)
     np.testing.assert_allclose(np.sort(found.height_m), np.sort(heights), atol=EXACT_M)
     np.testing.assert_allclose(found.leading_face_deg, leading, atol=tolerance)
@@ -80,23 +80,25 @@ def check(found, heights=(HEIGHT,) * LIFTERS, leading=LEADING, trailing=TRAILING
 @pytest.mark.parametrize("cells", [1, 4, 9])
 def test_heights_and_faces_of_trapezoids(cells):
     """As drawn, whatever the elements are."""
-    check(found_in(drum(cells=cells)))
+    assert_lifters(found_in(drum(cells=cells)))
 
 
 @pytest.mark.parametrize("height", [HEIGHT, 0.5 * HEIGHT, 0.2 * HEIGHT])
 def test_lifters_of_any_height(height):
     """Half of the height is found as half, with the same faces."""
-    check(found_in(drum((height,) * LIFTERS)), (height,) * LIFTERS)
+    assert_lifters(found_in(drum((height,) * LIFTERS)), (height,) * LIFTERS)
 
 
 @pytest.mark.parametrize(("leading", "trailing"), [(5.0, 5.0), (30.0, 12.0), (20.0, 45.0)])
 def test_faces_at_any_angle(leading, trailing):
-    check(found_in(drum(leading=leading, trailing=trailing)), leading=leading, trailing=trailing)
+    assert_lifters(found_in(drum(leading=leading, trailing=trailing)), leading=leading, trailing=trailing)
 
 
 def test_upright_faces():
     """Their feet are out of sight from the axis: they lean as the ray past the crest, to a step of the profile."""
-    check(found_in(drum(leading=0.0, trailing=0.0)), leading=HIDDEN_DEG, trailing=HIDDEN_DEG, tolerance=STEP_DEG)
+    assert_lifters(
+        found_in(drum(leading=0.0, trailing=0.0)), leading=HIDDEN_DEG, trailing=HIDDEN_DEG, tolerance=STEP_DEG
+    )
 
 
 def test_faces_along_rays():
@@ -107,12 +109,12 @@ def test_faces_along_rays():
     radius = np.tile(RADIUS - HEIGHT * np.array([0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), LIFTERS)
     found = found_in(extruded(radius[:, None] * np.column_stack([np.sin(angle), np.cos(angle)]), 3))
     crest = (RADIUS - HEIGHT) * np.cos(0.5 * half)  # of two chords
-    check(found, [RADIUS - crest] * LIFTERS, np.degrees(half), np.degrees(half), STEP_DEG)
+    assert_lifters(found, [RADIUS - crest] * LIFTERS, np.degrees(half), np.degrees(half), STEP_DEG)
 
 
 def test_reversed_rotation_swaps_the_faces():
     """What leads one way round trails the other way."""
-    check(found_in(drum(), axis=(0.0, -3.0, 0.0)), leading=TRAILING, trailing=LEADING)
+    assert_lifters(found_in(drum(), axis=(0.0, -3.0, 0.0)), leading=TRAILING, trailing=LEADING)
 
 
 @pytest.mark.parametrize("angles", [(0.0, 0.3, 0.0), (0.0, 0.0, 0.5 * np.pi), (0.4, -1.1, 2.0)])
@@ -120,21 +122,21 @@ def test_wherever_the_drum_lies(angles):
     """Turned about its axis, about others, and moved."""
     along = moved_rigidly(SurfaceMesh(np.array([AXIS]), np.zeros((0, 3), dtype=int)), angles, ORIGIN).points[0]
     by = np.array([0.3, -2.0, 1.5])
-    check(found_in(moved_rigidly(drum(), angles, by), point=by + 0.7 * along, axis=2.0 * along))
+    assert_lifters(found_in(moved_rigidly(drum(), angles, by), point=by + 0.7 * along, axis=2.0 * along))
 
 
 def test_with_and_without_a_back():
     """The inside of a liner that is a body counts alone, whichever way its faces look."""
     inside = drum()
     both = welded(SurfaceMesh(inside.points, inside.triangles[:, ::-1]), smooth(90, RADIUS + 0.05))
-    check(found_in(both))
+    assert_lifters(found_in(both))
 
 
 def test_lifters_stand_in_their_order():
     """In the sense of rotation: of two neighbours the higher one comes first in a run round."""
     heights = np.linspace(HEIGHT, 0.7 * HEIGHT, LIFTERS)
     found = found_in(drum(heights))
-    check(found, heights)
+    assert_lifters(found, heights)
     first = int(found.height_m.argmax())
     np.testing.assert_allclose(np.roll(found.height_m, -first), heights, atol=EXACT_M)
 
@@ -142,7 +144,7 @@ def test_lifters_stand_in_their_order():
 def test_worn_out_lifters_are_not_found():
     """Below half of the others' height they are taken for plates, and their neighbours are as before."""
     heights = [HEIGHT if number % 3 else 0.3 * HEIGHT for number in range(LIFTERS)]
-    check(found_in(drum(heights)), [each for each in heights if each == HEIGHT])
+    assert_lifters(found_in(drum(heights)), [each for each in heights if each == HEIGHT])
 
 
 def polar(shape, points=400):
@@ -158,7 +160,7 @@ def test_rounded_lifters():
     share = np.linspace(0.2, 0.8, 1001)
     level, turn = RADIUS - share * HEIGHT, np.arccos(2.0 * share - 1.0) / LIFTERS
     slope = np.polyfit(level * np.cos(turn), level * np.sin(turn), 1)[0]
-    check(found, leading=np.degrees(np.arctan(slope)), trailing=np.degrees(np.arctan(slope)))
+    assert_lifters(found, leading=np.degrees(np.arctan(slope)), trailing=np.degrees(np.arctan(slope)))
 
 
 def test_slanting_crests():
@@ -174,7 +176,7 @@ def test_slanting_crests():
     ):
         level, turn = RADIUS - rows * HEIGHT, way * pitch * (phase - middle)
         expected[name] = np.degrees(np.arctan(np.polyfit(level * np.cos(turn), level * np.sin(turn), 1)[0]))
-    check(found, **expected)
+    assert_lifters(found, **expected)
 
 
 def test_a_ledge_half_way_up_a_face():
@@ -202,7 +204,7 @@ def test_a_pit_in_one_place_does_not_count():
     there = (np.abs(angle - np.pi / LIFTERS) < 0.03) & (np.abs(mesh.points[:, 1]) < 0.1 * LENGTH)
     assert there.any()
     points = np.where(there[:, None], mesh.points * [1.03, 1.0, 1.03], mesh.points)
-    check(found_in(SurfaceMesh(points, mesh.triangles)))
+    assert_lifters(found_in(SurfaceMesh(points, mesh.triangles)))
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from bulkwear.postproc.mesh import areas, enclosed_volume, unit_normals
+from bulkwear.postproc.mesh import SurfaceMesh, areas, enclosed_volume, unit_normals
 from bulkwear.postproc.wear.balance import lost_volume
 from bulkwear.postproc.wear.built_shape import with_built_shape
 from bulkwear.postproc.wear.thickness import remaining_thickness, through_phrase, with_thickness, worn_through
@@ -155,6 +155,24 @@ def test_an_edge_is_not_through_before_its_faces_are():
     assert mesh.point_data["removed_thickness_m"].max() > 1.9e-3
     assert record["through_nodes"] == 0
     assert remaining_thickness(mesh) == pytest.approx(0.6e-3, abs=0.05e-3)  # the cube shrinks by 7 % on the way
+
+
+def test_a_sharp_edge_is_not_called_worn_through():
+    """A slanted block, worn at its top: along the edge of 45 degrees there was no thickness, so none was worn away."""
+    block = box((0.1, 0.08, 0.05), 5)
+    slanted = SurfaceMesh(block.points + block.points[:, 2:] * [-1.0, 0.0, 0.0], block.triangles)
+    mesh = with_thickness(with_built_shape(slanted))
+    local, top = mesh.point_data["local_thickness_m"], slanted.points[:, 2] > 0.05 - 1e-9
+    sharp = top & (slanted.points[:, 0] < -0.05 + 1e-9)
+    assert sharp.any()
+    assert (local[sharp] == 0.0).all()
+    assert (local[top & ~sharp] > 1e-3).all()
+    upper = unit_normals(mesh.points, mesh.triangles)[:, 2] > 0.9
+    for _ in range(3):
+        mesh, record = wear_update(mesh, upper * 1e-3 * areas(mesh.points, mesh.triangles), back="cap")
+        assert record["through_nodes"] == 0
+    assert through_phrase(mesh) is None
+    assert mesh.points[sharp] == pytest.approx(slanted.points[sharp], abs=EXACT)
 
 
 def test_a_thin_part_is_not_reached_through_from_behind():
