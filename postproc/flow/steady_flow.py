@@ -21,11 +21,11 @@ from bulkwear.postproc.statistics.block_means import change_of_blocks, mean_of_b
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
 from bulkwear.postproc.statistics.steady import (
     DRIFTING,
-    ERROR_RATE,
     FEWEST_VALUES,
     LARGEST_DRIFT,
     STEADY,
     UNSAID,
+    answer_on_change,
     steady_window,
 )
 
@@ -188,23 +188,13 @@ def _judged(series: pd.DataFrame, block_s: float, tolerance: float) -> SteadyFlo
         power_w=float(series[POWER].mean()) if parts else math.nan,
         power_change=changes.get(POWER, UNKNOWN),
         power_changes={name.removeprefix(POWER_PREFIX).removesuffix(POWER_SUFFIX): changes[name] for name in parts},
-        answers={name: _answer(found, tolerance) for name, found in judged.items()},
+        answers={name: answer_on_change(found, tolerance) for name, found in judged.items()},
     )
 
 
 def _takes_power(series: pd.DataFrame) -> bool:
     """Return whether the power is more than it fluctuates by: of a part that turns idle a change says nothing."""
     return POWER in series and bool(abs(series[POWER].mean()) > series[POWER].std(ddof=1))
-
-
-def _answer(change: Estimate, tolerance: float) -> str:
-    """Return whether a change is within a tolerance (-) or beyond it, as `statistics.steady` judges a drift."""
-    if not change.known:
-        return UNSAID
-    low, high = change.bounds(ERROR_RATE)
-    if low >= -tolerance and high <= tolerance:
-        return STEADY
-    return DRIFTING if low > tolerance or high < -tolerance else UNSAID
 
 
 def _with_interval(found: Estimate, unit: str, factor: float = 1.0) -> str:

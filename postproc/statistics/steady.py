@@ -118,7 +118,7 @@ def _window(travel: np.ndarray, measure: np.ndarray) -> Window:
         variation_low=deviation[0] / abs(mean) if mean else math.nan,
         variation_high=deviation[1] / abs(mean) if mean else math.nan,
         values=len(measure),
-        answer=_answer(drift),
+        answer=answer_on_change(drift),
     )
 
 
@@ -136,10 +136,11 @@ def relative_drift(travel: np.ndarray, measure: np.ndarray) -> Estimate:
     return fit.ratio(np.array([0.0, span]), np.array([1.0, 0.0]))
 
 
-def _answer(drift: Estimate) -> str:
-    if not drift.known:
+def answer_on_change(change: Estimate, tolerance: float = LARGEST_DRIFT) -> str:
+    """Return STEADY for a change (-) that is surely within a tolerance (-), DRIFTING for one beyond it, else UNSAID."""
+    if not change.known:
         return UNSAID
-    low, high = drift.bounds(ERROR_RATE)
-    if low >= -LARGEST_DRIFT and high <= LARGEST_DRIFT:
+    low, high = change.bounds(ERROR_RATE)
+    if low >= -tolerance and high <= tolerance:
         return STEADY
-    return DRIFTING if low > LARGEST_DRIFT or high < -LARGEST_DRIFT else UNSAID
+    return DRIFTING if low > tolerance or high < -tolerance else UNSAID
