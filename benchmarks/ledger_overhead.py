@@ -17,7 +17,7 @@ from benchmarks.measure import Measure, in_turn, measured
 from benchmarks.runs import cycle_deck, particles_of, prepared_chain
 from bulkwear.workflows.engine.chain import Chain, deck_text
 from bulkwear.workflows.engine.schedule import first_span
-from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, SCREEN, run_deck
+from bulkwear.workflows.engine.solver import EXECUTABLE, LEDGER_EXECUTABLE, SCREEN, run_deck
 
 PARTICLE_SCALE, QUICK_PARTICLE_SCALE = 1.85, 4.0  # the former makes some 20,000 particles of the demo's bed
 STEPS, QUICK_STEPS = 1200, 200  # time steps per run
@@ -43,16 +43,16 @@ def variants(chain: Chain, steps: int) -> dict[str, Variant]:
     solver = {**chain.parameters["solver"], "sampling_interval_steps": SAMPLING_INTERVAL}
     derived = {**chain.parameters["derived"], "first_cycle_steps": steps}
     whole, ways = {}, {}
-    for ledger, program in CYCLE_EXECUTABLES.items():
+    for ledger, program in (("solver", LEDGER_EXECUTABLE), ("dumps", EXECUTABLE)):
         parameters = {**chain.parameters, "ledger": ledger, "solver": solver, "derived": derived}
         whole[ledger] = deck_text(replace(chain, parameters=parameters), first_span(parameters))
         ways[ledger] = Variant(OTHER_OUTPUT.sub("", whole[ledger]), program)
     plain = OF_LEDGER.sub("", ways["solver"].deck)
     return {
-        "bare": Variant(bare(plain), CYCLE_EXECUTABLES["dumps"]),
-        "plain": Variant(plain, CYCLE_EXECUTABLES["dumps"]),
+        "bare": Variant(bare(plain), EXECUTABLE),
+        "plain": Variant(plain, EXECUTABLE),
         **ways,
-        "whole": Variant(whole["solver"], CYCLE_EXECUTABLES["solver"]),
+        "whole": Variant(whole["solver"], LEDGER_EXECUTABLE),
     }
 
 

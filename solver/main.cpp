@@ -1,6 +1,8 @@
-// LIGGGHTS with a load ledger: the solver of the shared library, unchanged, plus one fix style (load/ledger).
+// LIGGGHTS with a load ledger and rolling models: the solver of the shared library, unchanged, plus a fix style
+// (load/ledger) and two models of rolling friction (own_spin, rvd).
 // Used like the plain program: liggghts-ledger -in deck.in
-// liggghts-ledger -kernels lists its contact kernels: name, column of the ledger, parameters.
+// liggghts-ledger -kernels lists its contact kernels: name, column of the ledger, parameters; -rolling its models of
+// rolling friction.
 
 #include <mpi.h>
 
@@ -14,6 +16,8 @@
 #include "input.h"
 #include "lammps.h"
 #include "modify.h"
+#include "rolling/fix_spin_friction.h"
+#include "rolling/rolling_models.h"
 #include "signal_handling.h"
 
 namespace {
@@ -34,6 +38,10 @@ template struct StyleListAccess<&Modify::fix_map>;
 
 Fix* create_load_ledger(LAMMPS* lammps, int narg, char** arg) {
   return new load_ledger::FixLoadLedger(lammps, narg, arg);
+}
+
+Fix* create_spin_friction(LAMMPS* lammps, int narg, char** arg) {
+  return new rolling::FixSpinFriction(lammps, narg, arg);
 }
 
 void list_kernels() {
@@ -59,11 +67,17 @@ int main(int argc, char** argv) {
     list_kernels();
     return 0;
   }
+  if (argc == 2 && !std::strcmp(argv[1], "-rolling")) {
+    for (const char* name : rolling::MODELS) std::printf("%s\n", name);
+    return 0;
+  }
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // or a fatal message would vanish in a pipe
   handle_signals();
   MPI_Init(&argc, &argv);
   LAMMPS* lammps = new LAMMPS(argc, argv, MPI_COMM_WORLD);
   (*style_list(lammps->modify))["load/ledger"] = create_load_ledger;
+  (*style_list(lammps->modify))["rolling/own_spin"] = create_spin_friction;
+  rolling::add_rolling_models();
   lammps->input->file();
   delete lammps;
   MPI_Finalize();

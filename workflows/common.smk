@@ -23,7 +23,7 @@ from bulkwear.workflows.engine.inputs import (
 )
 from bulkwear.workflows.engine.job import let_jobs_import
 from bulkwear.workflows.engine.project import ProjectError, enter_project
-from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, LAUNCHER, cycle_fault
+from bulkwear.workflows.engine.solver import LAUNCHER, cycle_fault, executable_of
 from bulkwear.workflows.engine.templates import DeckError, templates_digest
 from bulkwear.workflows.forecast.rates import rates_file
 from bulkwear.workflows.report.products import looked_up, paths_of, told_to
@@ -99,7 +99,7 @@ onstart:
     for job in workflow.dag.needrun_jobs():
         if NAMING.ours(job.rule.name) == "worn_run":
             case, parameters = study_of(job.wildcards).case, run_parameters(job.wildcards)
-            if fault := cycle_fault(CYCLE_EXECUTABLES[parameters["ledger"]], case, parameters):
+            if fault := cycle_fault(executable_of(parameters, wears=True), case, parameters):
                 raise WorkflowError(fault)
     for study, jobs in jobs_by_study(workflow.dag.needrun_jobs()).items():
         announce_cost(study, jobs)

@@ -19,7 +19,7 @@ from bulkwear.workflows.engine.bulk_tests import deck_text, kind_of, write_test
 from bulkwear.workflows.engine.case import CASES_PACKAGE
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code
-from bulkwear.workflows.engine.solver import EXECUTABLE, LOG, SCREEN, SolverError, processor_seconds, run_deck
+from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, executable_of, processor_seconds, run_deck
 from bulkwear.workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
 
 POURED = 1.04  # -, poured particles over those that fill the box, as counted
@@ -58,7 +58,7 @@ def simulated(test: Mapping[str, Any], root: Path, alone: bool = False) -> Path:
 def _run(folder: Path, test: Mapping[str, Any]) -> float:
     """Run the deck and return its wall time in s; a deck that gives up without an error found no rest."""
     try:
-        return run_deck(folder)
+        return run_deck(folder, executable=executable_of(test))
     except SolverError:
         if (folder / SCREEN).is_file() and failure(folder / SCREEN) is None:
             check_rest(folder, test)
@@ -90,7 +90,7 @@ def _record(
     return {
         "test": test,
         "cost": cost,
-        PROVENANCE: provenance(code, EXECUTABLE, cost),
+        PROVENANCE: provenance(code, executable_of(test), cost),
         "solver": solver_version(folder / SCREEN),
         "solver_warnings": warnings(folder / SCREEN),
     }

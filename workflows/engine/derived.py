@@ -15,6 +15,9 @@ STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diame
 SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
+FULL, REDUCED = "full", "reduced"  # values of solver.rolling_radius
+RADIUS_BETWEEN = {FULL: 1.0, REDUCED: 0.5}  # -, over the radius of equal spheres that touch
+FULL_RADIUS_MODELS = ("own_spin",)  # rolling models with the particle's own radius between particles
 # Values of bed.ends: two walls that push the bed along, none, or a window that travels with the sample.
 WALLS, PERIODIC, WINDOW = "walls", "periodic", "window"
 
@@ -33,29 +36,28 @@ def rayleigh_time(radius: float, density: float, shear_modulus: float, poissons_
     return math.pi * radius * math.sqrt(density / shear_modulus) / (0.1631 * poissons_ratio + 0.8766)
 
 
-def rolling_coefficient_for_solver(coefficient: float, rolling_radius: str, contact: str) -> float:
-    """Return the rolling friction coefficient (-) that makes LIGGGHTS apply the torque meant.
+def rolling_coefficient_for_solver(coefficient: float, solver: Mapping[str, Any], contact: str) -> float:
+    """Return the rolling friction coefficient (-) that makes the solver apply the torque meant.
 
-    LIGGGHTS' rolling models limit the torque to mu_r F_n R_reduced, R_reduced = R1 R2 / (R1 + R2): half the
-    radius for two equal spheres, the whole radius against a wall. A coefficient calibrated with the full
-    radius (`rolling_radius` full: M_r = mu_r R F_n, Yan 2022, Eq 3.3) is therefore doubled between particles
-    and unchanged at walls. For unequal spheres the factor is a compromise (radii 1.2 to 0.8: the torque is
-    4 % less than with the mean radius): recalibrate where that matters.
+    LIGGGHTS' rolling models, and `rvd`, limit the torque to mu_r F_n R_reduced, R_reduced = R1 R2 / (R1 + R2): half
+    the radius for two equal spheres, the whole radius against a wall; `own_spin` has the particle's radius everywhere.
+    A coefficient calibrated with the other radius (`rolling_radius` full: M_r = mu_r R F_n, Yan 2022, Eq 3.3) is
+    therefore doubled or halved between particles, and unchanged at walls. For unequal spheres the factor is a
+    compromise (radii 1.2 to 0.8: the torque is 4 % less than with the mean radius): recalibrate where that matters.
 
-    `contact` is "particle_particle" or "particle_wall". Raises ValueError for other words.
+    solver: settings, with `rolling_friction` and `rolling_radius`; contact: "particle_particle" or "particle_wall".
+    Raises ValueError for other words.
     """
-    factors = {
-        ("full", "particle_particle"): 2.0,
-        ("full", "particle_wall"): 1.0,
-        ("reduced", "particle_particle"): 1.0,
-        ("reduced", "particle_wall"): 1.0,
-    }
-    if (rolling_radius, contact) not in factors:
+    model, meant = solver["rolling_friction"], solver["rolling_radius"]
+    if meant not in RADIUS_BETWEEN or contact not in ("particle_particle", "particle_wall"):
         raise ValueError(
-            f"rolling_radius is {rolling_radius!r} and contact {contact!r}, allowed are full or reduced"
+            f"rolling_radius is {meant!r} and contact {contact!r}, allowed are full or reduced"
             " and particle_particle or particle_wall."
         )
-    return coefficient * factors[rolling_radius, contact]
+    if contact == "particle_wall":
+        return coefficient
+    acting = FULL if model in FULL_RADIUS_MODELS else REDUCED
+    return coefficient * RADIUS_BETWEEN[meant] / RADIUS_BETWEEN[acting]
 
 
 def whole_steps(duration: float, largest_time_step: float, multiple: int) -> tuple[int, float]:
@@ -90,7 +92,6 @@ def physical_patch_factor(parameters: dict[str, Any]) -> float:
 def derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
     """Return Young's moduli, and the rolling coefficients in the solver's convention."""
     sections = {name: parameters[name] for name in ("particle", "sample_material", "floor_material")}
-    convention = parameters["solver"]["rolling_radius"]
     return {
         "youngs_modulus_pa": {
             name: youngs_modulus(section["shear_modulus_pa"], section["poissons_ratio"])
@@ -99,7 +100,7 @@ def derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
         "rolling_friction_for_solver": {
             name: rolling_coefficient_for_solver(
                 section["contact"]["rolling_friction"],
-                convention,
+                parameters["solver"],
                 "particle_particle" if name == "particle" else "particle_wall",
             )
             for name, section in sections.items()

@@ -30,7 +30,7 @@ EXECUTABLE = "liggghts"
 LAUNCHER = "mpirun --bind-to none"  # starts the ranks of a solver; a cluster's profile may name another
 BUILT = PACKAGE / "solver" / "build" / "liggghts-ledger"
 LEDGER_EXECUTABLE = str(BUILT) if BUILT.exists() else shutil.which(BUILT.name) or str(BUILT)
-CYCLE_EXECUTABLES = {"solver": LEDGER_EXECUTABLE, "dumps": EXECUTABLE}  # of wear cycles, by the ledger's producer
+OWN_ROLLING_MODELS = ("own_spin", "rvd")  # those of solver/rolling, which only our program has
 OF_SLURM = ("SLURM_", "PMI_", "PMIX_")  # environment variables of a job
 POLL_SECONDS = 0.25  # between two looks at the log
 LAST_LINES = 12  # of the solver's output, shown when it fails
@@ -48,9 +48,29 @@ def missing_program(executable: str) -> str | None:
     if executable == LEDGER_EXECUTABLE:
         return (
             f"{executable}: there is no such program, nor one of its name on the PATH; `make setup` (or `make -C "
-            "solver`) builds it, and a study with `ledger: dumps` does without."
+            "solver`) builds it, and a study with `ledger: dumps` and a rolling friction of LIGGGHTS does without."
         )
     return f"{executable} is not on the PATH; `make setup` installs it and `make doctor` checks it."
+
+
+def executable_of(parameters: Mapping[str, Any], wears: bool = False) -> str:
+    """Return the program that runs a deck: ours if its rolling model is ours or a ledger is summed, else the plain one.
+
+    parameters: with `solver`, and where the deck is one of a wear cycle (wears) with `ledger`
+    """
+    ours = parameters["solver"]["rolling_friction"] in OWN_ROLLING_MODELS
+    return LEDGER_EXECUTABLE if ours or (wears and parameters["ledger"] == "solver") else EXECUTABLE
+
+
+def missing_rolling_model(executable: str, model: str) -> str | None:
+    """Return a sentence that says what to do where a program of ours lacks a rolling model of ours; else None."""
+    known = _told(executable, "-rolling") if model in OWN_ROLLING_MODELS else (model,)
+    if model in known:
+        return None
+    return (
+        f"{executable}: it has no rolling friction {model}, found: {', '.join(known) or 'none'} beside LIGGGHTS' own; "
+        "`make -C solver` builds those of solver/rolling."
+    )
 
 
 def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
@@ -58,7 +78,7 @@ def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
     are here: column and parameters; None where it has them.
     """
     wanted = {name: " ".join([name, kernel_column(name), *kernel_parameters(name)]) for name in kernels}
-    known = _told_kernels(executable) if wanted else ()
+    known = _told(executable, "-kernels") if wanted else ()
     if missing := [name for name, line in wanted.items() if line not in known]:
         return (
             f"{executable}: it has no contact kernel {', '.join(missing)} as postproc/wear/kernels.py has it, found: "
@@ -69,18 +89,22 @@ def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
 
 
 @cache  # a study asks once per run
-def _told_kernels(executable: str) -> tuple[str, ...]:
-    """Return what a program says of its kernels, a line each; nothing from one that does not know the question."""
-    told = subprocess.run([executable, "-kernels"], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+def _told(executable: str, question: str) -> tuple[str, ...]:
+    """Return what a program says of what it has, a line each; nothing from one that does not know the question."""
+    told = subprocess.run([executable, question], stdin=subprocess.DEVNULL, capture_output=True, text=True)
     return tuple(told.stdout.splitlines()) if told.returncode == 0 else ()
 
 
 def cycle_fault(executable: str, case: Case, run: Mapping[str, Any]) -> str | None:
     """Return a sentence that says what to do where a program cannot simulate the wear cycles of a run of a case, with
-    the kernels of all its laws; else None.
+    the kernels of all its laws and its rolling model; else None.
     """
     kernels = case.kernels(run) if run["ledger"] == "solver" else ()
-    return missing_program(executable) or missing_kernels(executable, kernels)
+    return (
+        missing_program(executable)
+        or missing_kernels(executable, kernels)
+        or missing_rolling_model(executable, run["solver"]["rolling_friction"])
+    )
 
 
 def solver_command(ranks: int, executable: str = EXECUTABLE, launcher: str = LAUNCHER) -> list[str]:

@@ -17,9 +17,7 @@ from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.ledgers import CONTACTS, PRODUCERS, SPINS, TOUCHING, SamplesError, producer
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.engine.solver import (
-    CYCLE_EXECUTABLES,
     EXECUTABLE,
-    LEDGER_EXECUTABLE,
     SolverError,
     missing_program,
     run_deck,
@@ -218,12 +216,11 @@ def test_only_sampled_contacts_seed_the_next_cycle(tmp_path):
 
 def test_a_missing_program_is_one_sentence(tmp_path, monkeypatch):
     """It says how to build or install it; nothing is run."""
-    assert CYCLE_EXECUTABLES == {"solver": LEDGER_EXECUTABLE, "dumps": EXECUTABLE}
     there = str(tmp_path / "solver" / "build" / "liggghts-ledger")
     monkeypatch.setattr("bulkwear.workflows.engine.solver.LEDGER_EXECUTABLE", there)
     assert missing_program(there) == (
         f"{there}: there is no such program, nor one of its name on the PATH; `make setup` (or `make -C solver`) "
-        "builds it, and a study with `ledger: dumps` does without."
+        "builds it, and a study with `ledger: dumps` and a rolling friction of LIGGGHTS does without."
     )
     with pytest.raises(SolverError, match="make -C solver"):
         run_deck(tmp_path, executable=there)
@@ -234,7 +231,7 @@ def test_a_missing_program_is_one_sentence(tmp_path, monkeypatch):
 
 def test_a_run_without_its_program_fails_before_its_first_cycle(tmp_path, monkeypatch):
     """The run-in needs the plain solver only, but nothing of it is simulated where the wear cycles cannot be."""
-    monkeypatch.setattr(cycles, "CYCLE_EXECUTABLES", {"solver": str(tmp_path / "liggghts-ledger")})
+    monkeypatch.setattr("bulkwear.workflows.engine.solver.LEDGER_EXECUTABLE", str(tmp_path / "liggghts-ledger"))
     chain = replace(chain_of(tmp_path, "solver"), folder=tmp_path / "run")
     for path in (chain.surface, chain.bed_restart):
         path.touch()

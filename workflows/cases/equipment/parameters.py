@@ -117,12 +117,11 @@ def derived_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
     largest, sampling = solver["rayleigh_fraction"] * rayleigh, parameters["sampling"]
     multiple = math.lcm(REPORTS, sampling["pictures_per_block"])
     steps, time_step = whole_steps(sampling["block_s"], largest, multiple)
-    convention = solver["rolling_radius"]
     return {
         "youngs_modulus_pa": {key: _modulus(section) for key, section in names.items()},
         "youngs_moduli_pa": [_modulus(section) for section in (particle, *walls)],
         "rolling_frictions": [
-            rolling_coefficient_for_solver(section["contact"]["rolling_friction"], convention, contact)
+            rolling_coefficient_for_solver(section["contact"]["rolling_friction"], solver, contact)
             for section, contact in zip(
                 (particle, *walls), ("particle_particle", *("particle_wall" for _ in walls)), strict=True
             )

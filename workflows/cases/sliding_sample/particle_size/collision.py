@@ -25,7 +25,7 @@ from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.bulk_tests import bulk_materials, time_step
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.derived import WALLS, derived_materials, youngs_modulus
-from bulkwear.workflows.engine.solver import DECK, run_deck
+from bulkwear.workflows.engine.solver import DECK, executable_of, run_deck
 from bulkwear.workflows.engine.templates import render
 
 DUMP = "collision.dump"
@@ -148,7 +148,7 @@ def simulate(test: Mapping[str, Any], folder: Path) -> Path:
     """Run a test in a folder and return the path of its dump. Raises SolverError."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / DECK).write_text(render("collision", collision_deck(test)))
-    run_deck(folder)
+    run_deck(folder, executable=executable_of(test))
     return folder / DUMP
 
 

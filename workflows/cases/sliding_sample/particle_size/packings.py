@@ -32,7 +32,7 @@ from bulkwear.workflows.engine.bulk_tests import Kind, fill_top, filled_box, mar
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.chain import RESTART
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
-from bulkwear.workflows.engine.solver import DECK, run_deck
+from bulkwear.workflows.engine.solver import DECK, executable_of, run_deck
 from bulkwear.workflows.engine.state import read_state
 from bulkwear.workflows.engine.templates import render, used_sections
 from bulkwear.workflows.engine.work import EMPTY_DIAMETERS, Stage, Work
@@ -148,7 +148,7 @@ def counted(run: Parameters, restart: Path, folder: Path) -> pd.DataFrame:
     """Return the particles of a restart file of a sliding sample with their contacts, as the solver counts them."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / DECK).write_text(render("bed_contacts", bed_contacts(run, str(restart.resolve()))))
-    run_deck(folder)
+    run_deck(folder, executable=executable_of(run))
     return read_snapshot(folder / "bed.dump")
 
 

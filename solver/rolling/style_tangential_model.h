@@ -1,0 +1,1 @@
+#include "tangential_model_history.h"

@@ -1,0 +1,226 @@
+"""Rolling models of our own on the real solver: torques by closed form, no energy made, and a sphere that stands."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from bulkwear.postproc.mesh import write_stl
+from bulkwear.workflows.engine.solver import (
+    DECK,
+    LEDGER_EXECUTABLE,
+    OWN_ROLLING_MODELS,
+    SolverError,
+    executable_of,
+    missing_rolling_model,
+    run_deck,
+)
+from tests.support.shapes import plate, shifted
+
+pytestmark = pytest.mark.solver
+
+RADII, DENSITY, COEFFICIENT, OVERLAP = (0.005, 0.008), 2500.0, 0.3, 1e-4  # m, kg/m3, -, m
+PAIRS, APART = 20, 0.05  # -, m
+SHORT, LONG = 1e-10, 5e-6  # s: within one short step nothing moves; a long one stops spins within hundreds
+TORQUE = 1e-5  # relative: the solver's normal at a wall is not quite of length 1
+STOPPED, GROWTH = 1e-9, 1e-12  # rad/s, and relative: rounding
+GRAVITY = 9.81  # m/s2
+ACCELERATION = 0.01  # relative: the lever of the contact is shorter than the radius by half of the overlap
+RESTARTED = 1e-9  # relative: rounding, which rolling does not amplify
+STANDS = 1e-9  # m in 0.1 s, after the deflection of the tangential spring has come to rest
+HEAD = """\
+units si
+atom_style sphere
+atom_modify map array sort 0 0
+boundary f f f
+newton off
+communicate single vel yes
+processors 1 {ranks} 1
+region room block -0.5 0.5 -0.5 1.1 -0.1 0.1 units box
+create_box 2 room
+fix youngs_modulus all property/global youngsModulus peratomtype 1e7 1e7
+fix poissons_ratio all property/global poissonsRatio peratomtype 0.3 0.3
+fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
+fix friction all property/global coefficientFriction peratomtypepair 2 {friction} {friction} {friction} {friction}
+fix rolling all property/global coefficientRollingFriction peratomtypepair 2 0.3 0.3 0.3 0.3
+pair_style gran model hertz tangential history rolling_friction {model}
+pair_coeff * *
+neighbor 0.002 bin
+neigh_modify delay 0
+timestep {step}
+"""
+WALL = "fix wall all wall/gran model hertz tangential history rolling_friction {model} "
+WALLS = {
+    "mesh": "fix plate all mesh/surface file plate.stl type 2\n" + WALL + "mesh n_meshes 1 meshes plate\n",
+    "plane": WALL + "primitive type 2 zplane 0.0\n",
+}
+DUMP = "dump spins all custom {every} spins_*.dump id x fx fy fz tqx tqy tqz omegax omegay omegaz\n" + (
+    'dump_modify spins sort id format "%d' + 10 * " %.15g" + '"\n'
+)
+
+
+def placed(centres, radii, spins):
+    """Lines of a deck that place spheres: centres (n, 3) m, radii (n,) m, spins (n, 3) rad/s."""
+    lines = []
+    for number, (at, radius, spin) in enumerate(zip(centres, radii, spins, strict=True), start=1):
+        lines.append("create_atoms 1 single {:.15g} {:.15g} {:.15g} units box".format(*at))
+        lines.append(f"set atom {number} diameter {2.0 * radius} density {DENSITY}")
+        lines.append("set atom {} omegax {:.15g} omegay {:.15g} omegaz {:.15g}".format(number, *spin))
+    return "\n".join(lines) + "\n"
+
+
+def simulated(folder, text, ranks=1):
+    """What was dumped: force, torque and spin, (times, n, 3) each, and x (times, n), of a deck that is run."""
+    folder.mkdir(exist_ok=True)
+    square = shifted(plate(0.8, 0.8, 2), (-0.4, -0.4, 0.0))
+    write_stl(folder / "plate.stl", square.points, square.triangles)
+    (folder / DECK).write_text(text)
+    run_deck(folder, ranks, executable=LEDGER_EXECUTABLE)
+    dumps = sorted(folder.glob("spins_*.dump"), key=lambda path: int(path.stem.split("_")[1]))
+    rows = np.array([np.loadtxt(path, skiprows=9, ndmin=2) for path in dumps])
+    return {"x": rows[..., 1], "force": rows[..., 2:5], "torque": rows[..., 5:8], "spin": rows[..., 8:11]}
+
+
+def unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def tangential(vectors, normal):
+    return vectors - np.einsum("ij,ij->i", vectors, normal)[:, None] * normal
+
+
+def pairs():
+    """Centres, radii and spins of pairs that touch in any direction, and the normals (n, 3) from each first sphere."""
+    random = np.random.default_rng(8)
+    normal, spins = unit(random.normal(size=(PAIRS, 3))), random.normal(0.0, 20.0, (2 * PAIRS, 3))
+    first = np.column_stack([np.zeros(PAIRS), APART * np.arange(PAIRS), np.zeros(PAIRS)])
+    centres = np.stack([first, first + (sum(RADII) - OVERLAP) * normal], axis=1).reshape(-1, 3)
+    return centres, np.tile(RADII, PAIRS), spins, normal
+
+
+def pair_deck(model, step, every, steps, ranks=1, hold=""):
+    centres, radii, spins, _ = pairs()
+    head = HEAD.format(model=model, step=step, friction=0.0, ranks=ranks)
+    motion = f"fix motion all nve/sphere\n{hold}{DUMP.format(every=every)}run {steps}\n"
+    return head + placed(centres, radii, spins) + motion
+
+
+def torques_meant(model, force, spin, normal):
+    """Torques (n, 2, 3) of pairs by the models' definitions; force (n,) N, spin (n, 2, 3) rad/s."""
+    if model == "own_spin":
+        return -COEFFICIENT * force[:, None, None] * np.array(RADII)[:, None] * unit(spin)
+    reduced = RADII[0] * RADII[1] / sum(RADII)
+    against = unit(tangential(spin.sum(axis=1), normal))
+    return np.repeat(-COEFFICIENT * reduced * force[:, None, None] * against[:, None], 2, axis=1)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_torques_between_particles(model, ranks, tmp_path):
+    """Unequal spheres with any spins at any angle to the normal, also where the two belong to two ranks."""
+    found = simulated(tmp_path, pair_deck(model, SHORT, 1, 1, ranks), ranks)
+    *_, spins, normal = pairs()
+    force = np.linalg.norm(found["force"][1].reshape(PAIRS, 2, 3)[:, 0], axis=1)
+    meant = torques_meant(model, force, spins.reshape(PAIRS, 2, 3), normal)
+    np.testing.assert_allclose(found["torque"][1].reshape(PAIRS, 2, 3), meant, atol=TORQUE * np.abs(meant).max())
+
+
+@pytest.mark.parametrize("wall", WALLS)
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_torques_at_walls(model, wall, tmp_path):
+    """Against the whole spin, or the tangential part of it, with the radius."""
+    random = np.random.default_rng(9)
+    radii, spins = np.resize(RADII, 6), random.normal(0.0, 20.0, (6, 3))
+    centres = np.column_stack([np.linspace(-0.3, 0.3, 6), np.full(6, 0.11), radii - OVERLAP])
+    head = HEAD.format(model=model, step=SHORT, friction=0.0, ranks=1)
+    motion = f"fix motion all nve/sphere\n{DUMP.format(every=1)}run 1\n"
+    found = simulated(tmp_path, head + placed(centres, radii, spins) + WALLS[wall].format(model=model) + motion)
+    against = spins if model == "own_spin" else spins * [1.0, 1.0, 0.0]
+    force = np.linalg.norm(found["force"][1], axis=1)
+    meant = -COEFFICIENT * (force * radii)[:, None] * unit(against)
+    np.testing.assert_allclose(found["torque"][1], meant, atol=TORQUE * np.abs(meant).max())
+
+
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_no_energy_is_made(model, tmp_path):
+    """Pairs that are held where they are: rotational energy falls from dump to dump, until nothing is resisted."""
+    hold = "fix hold all setforce 0.0 0.0 0.0\n"
+    spin = simulated(tmp_path, pair_deck(model, LONG, 20, 6000, hold=hold))["spin"]
+    inertia = np.tile(np.array(RADII) ** 5, PAIRS)  # in proportion
+    energy = (inertia * (spin**2).sum(axis=2)).reshape(len(spin), PAIRS, 2).sum(axis=2)
+    assert (np.diff(energy, axis=0) <= GROWTH * energy[0]).all()
+    last = spin[-1].reshape(PAIRS, 2, 3)
+    resisted = last.reshape(-1, 3) if model == "own_spin" else tangential(last.sum(axis=1), pairs()[3])
+    np.testing.assert_allclose(resisted, 0.0, atol=STOPPED)
+    assert np.abs(spin[0]).max() > 1.0
+
+
+def slope_deck(model, slope, step, seconds, wall="mesh"):
+    """A sphere at rest on a wall, gravity turned by a slope (-) about y; it lies as deep as its weight presses it."""
+    radius, mass = RADII[0], 4.0 / 3.0 * np.pi * RADII[0] ** 3 * DENSITY
+    angle, modulus = np.arctan(slope), 0.5 * 1e7 / (1.0 - 0.3**2)
+    deep = (0.75 * mass * GRAVITY * np.cos(angle) / (modulus * np.sqrt(radius))) ** (2.0 / 3.0)
+    steps = round(seconds / step)
+    return (
+        HEAD.format(model=model, step=step, friction=0.9, ranks=1)
+        + placed([[0.0, 0.11, radius - deep]], [radius], [[0.0, 0.0, 0.0]])
+        + WALLS[wall].format(model=model)
+        + f"fix weight all gravity {GRAVITY} vector {np.sin(angle)} 0.0 {-np.cos(angle)}\nfix motion all nve/sphere\n"
+        + f"{DUMP.format(every=steps // 2)}run {steps}\n"
+    )
+
+
+@pytest.mark.parametrize("step", [2e-6, 1e-5])
+def test_a_sphere_stands_on_a_slope(step, tmp_path):
+    """Below the coefficient of rolling friction nothing creeps on own_spin, whatever the time step; cdt lets it go."""
+    gone = {}
+    for model in ("own_spin", "cdt"):
+        x = simulated(tmp_path / model, slope_deck(model, 0.8 * COEFFICIENT, step, 0.2))["x"]
+        gone[model] = abs(x[-1, 0] - x[1, 0])
+    assert gone["own_spin"] < STANDS < gone["cdt"]
+
+
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_a_sphere_rolls_down_a_steeper_slope(model, tmp_path):
+    """With (sin - mu_r cos) g / (1 + 2/5)."""
+    slope, seconds = 2.0 * COEFFICIENT, 0.1
+    x = simulated(tmp_path, slope_deck(model, slope, 2e-6, seconds))["x"]
+    angle = np.arctan(slope)
+    meant = (np.sin(angle) - COEFFICIENT * np.cos(angle)) * GRAVITY / 1.4
+    assert 2.0 * (x[-1, 0] - x[0, 0]) / seconds**2 == pytest.approx(meant, rel=ACCELERATION)
+
+
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_a_restart_goes_on_as_if_nothing_had_been(model, tmp_path):
+    """They keep nothing from step to step: spins after a restart are those of a run in one piece."""
+    whole = slope_deck(model, 2.0 * COEFFICIENT, 1e-5, 0.04)
+    start, run = whole.rsplit("run ", 1)
+    first = f"{start}run {int(run) // 2}\nwrite_restart half.restart\n"
+    created = [
+        line for line in start.splitlines() if line.split()[0] in ("region", "create_box", "create_atoms", "set")
+    ]
+    again = "\n".join(line for line in start.splitlines() if line not in created)
+    again = again.replace("fix youngs", "read_restart half.restart\nfix youngs", 1)
+    expected = simulated(tmp_path / "whole", whole)
+    simulated(tmp_path / "pieces", first)
+    found = simulated(tmp_path / "pieces", f"{again}\nrun {int(run) // 2}\n")
+    np.testing.assert_allclose(found["spin"][-1], expected["spin"][-1], rtol=RESTARTED, atol=STOPPED)
+
+
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_multispheres_are_refused(model, tmp_path):
+    """Their spin and inertia are those of the body."""
+    text = slope_deck(model, 0.1, 1e-5, 1e-3).replace("fix motion all nve/sphere", "fix motion all multisphere")
+    with pytest.raises(SolverError, match=f"rolling_friction {model}: found multispheres, allowed are spheres"):
+        simulated(tmp_path, text)
+
+
+def test_which_program_has_them():
+    """Decks with these models run on our program, others where no ledger is summed on the plain one."""
+    assert executable_of({"solver": {"rolling_friction": "own_spin"}}) == LEDGER_EXECUTABLE
+    assert executable_of({"solver": {"rolling_friction": "cdt"}, "ledger": "solver"}) == "liggghts"
+    assert executable_of({"solver": {"rolling_friction": "cdt"}, "ledger": "solver"}, wears=True) == LEDGER_EXECUTABLE
+    assert executable_of({"solver": {"rolling_friction": "cdt"}, "ledger": "dumps"}, wears=True) == "liggghts"
+    assert all(missing_rolling_model(LEDGER_EXECUTABLE, model) is None for model in OWN_ROLLING_MODELS)
+    assert missing_rolling_model("liggghts", "cdt") is None
+    assert missing_rolling_model(sys.executable, "rvd").startswith(f"{sys.executable}: it has no rolling friction rvd,")
