@@ -26,7 +26,7 @@ TINY = {
     "sliding": {
         "angular_speed_deg_per_s": 235,
         "revolution_deg": 30,
-        "steady_revolutions": 1.0,
+        "steady_revolutions": 4.0,  # until the consolidator has levelled the bed
         "run_in_revolutions": 0.2,
         "revolutions": 2,
         "cycles_per_revolution": 2,

@@ -25,6 +25,7 @@ from bulkwear.workflows.engine.work import Stage, Work
 if TYPE_CHECKING:
     import pandas as pd
 
+    from bulkwear.workflows.engine.beds import BedMeasure
     from bulkwear.workflows.engine.schedule import Span
 
 CASES_PACKAGE = "bulkwear.workflows.cases"  # whose packages are the cases, each registered when it is imported
@@ -197,6 +198,10 @@ class Case:
     def bed_deck(self, bed: Parameters) -> dict[str, Any]:
         """Return the parameters of the deck of a bed, whose template is `bed_template`."""
         raise NotImplementedError
+
+    def bed_measures(self, bed: Parameters, log: Path) -> list[BedMeasure]:
+        """Return what was asked of a bed and what the log of its deck says it has; a bed that misses one is refused."""
+        return []
 
     def write_bed_files(self, bed: Parameters, folder: Path) -> None:
         """Write what the deck of a bed reads into its folder."""

@@ -18,6 +18,7 @@ from bulkwear.postproc.readers.load_ledger import announcement
 from bulkwear.postproc.readers.solver_log import solver_version, thermo_table, warnings
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.accounting import HISTORY, LEDGER, account_and_wear
+from bulkwear.workflows.engine.beds import bed_fault, write_measures
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.chain import (
     RESTART,
@@ -41,25 +42,20 @@ from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_piec
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code, write_provenance
 from bulkwear.workflows.engine.schedule import Span, first_span, known_spans
 from bulkwear.workflows.engine.solver import (
-    CYCLE_EXECUTABLES,
-    EXECUTABLE,
     LAUNCHER,
     LOG,
     SCREEN,
     SolverError,
     cycle_fault,
+    executable_of,
     processor_seconds,
     run_deck,
 )
 from bulkwear.workflows.engine.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"
-BED_STEPS = (
-    "settling_steps",
-    "relaxing_steps",
-    "packing_steps",
-    "steady_steps",
-)  # of the decks of beds, where they have them
+# Of the decks of beds, where they have them.
+BED_STEPS = ("settling_steps", "relaxing_steps", "packing_steps", "lowering_steps", "steady_steps")
 
 
 def run_chain(chain: Chain) -> None:
@@ -189,7 +185,7 @@ def simulate(
 
 def cycle_executable(chain: Chain, span: Span | None) -> str:
     """Return the program that simulates a cycle; only wear cycles have a ledger."""
-    return CYCLE_EXECUTABLES[chain.parameters["ledger"]] if span else EXECUTABLE
+    return executable_of(chain.parameters, wears=span is not None)
 
 
 def cost(
@@ -228,16 +224,30 @@ def write_products(chain: Chain, finished: int) -> None:
 def fill_bed(
     case: Case, name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1, launcher: str = LAUNCHER
 ) -> None:
-    """Fill and settle a bed; leaves bed.restart, provenance.json and cost.csv in the folder. Raises SolverError."""
+    """Fill and settle a bed; leaves bed.restart, provenance.json, cost.csv and its measures in the folder.
+
+    Raises SolverError, also for a bed that is not as asked.
+    """
     parameters = case.bed_deck(bed)
     total = sum(parameters.get(name, 0) for name in BED_STEPS)
     progress, code = Progress(name, total), simulating_code(case)
     with state.only_driver(folder, progress.say):
         write_bed(case, bed, folder)
         before = processor_seconds()
-        seconds = run_deck(folder, ranks, lambda step: progress.update(step, "filling and settling"), launcher=launcher)
+        program = executable_of(bed)
+        seconds = run_deck(
+            folder,
+            ranks,
+            lambda step: progress.update(step, "filling and settling"),
+            executable=program,
+            launcher=launcher,
+        )
+    measures = case.bed_measures(bed, folder / LOG)
+    write_measures(measures, folder)
+    if fault := bed_fault(measures):
+        raise SolverError(f"{folder / LOG}: {fault}.")
     particles = int(thermo_table(folder / LOG)["Atoms"][-1])
     processor = round(processor_seconds() - before, 3)
     row = {"solver_s": round(seconds, 3), "processor_s": processor, "steps": total, "particles": particles}
-    write_provenance(folder, provenance(code, EXECUTABLE, row) | {"solver": solver_version(folder / SCREEN)})
+    write_provenance(folder, provenance(code, program, row) | {"solver": solver_version(folder / SCREEN)})
     write_table(folder / "cost.csv", [row])

@@ -11,7 +11,7 @@ import numpy as np
 from bulkwear.meshes.tester import placed, sample_block
 from bulkwear.postproc.mesh import PLAIN, SurfaceMesh
 from bulkwear.postproc.readers.cycle_folders import LAYER_TABLE
-from bulkwear.postproc.readers.solver_log import thermo_rows
+from bulkwear.postproc.readers.solver_log import thermo_rows, thermo_table
 from bulkwear.postproc.wear.caps import GRAVITY, gap_closing_step
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import work as tester_work
@@ -28,6 +28,8 @@ from bulkwear.workflows.engine.work import Stage
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from bulkwear.workflows.engine.beds import BedMeasure
 
 
 VOLUME = "volume"  # series of the design
@@ -138,6 +140,12 @@ class CircularTester(SampleCase):
     def bed_deck(self, bed: Parameters) -> dict[str, Any]:
         """Return the parameters of the deck that fills the trough and turns it until the flow is steady."""
         return tester_deck.tester_bed(bed)
+
+    def bed_measures(self, bed: Parameters, log: Path) -> list[BedMeasure]:
+        """Return mass, level past the consolidator and the sample's depth under it, of the last revolution."""
+        from bulkwear.workflows.cases.circular_tester.beds import bed_measures
+
+        return bed_measures(bed, thermo_table(log))
 
     def write_bed_files(self, bed: Parameters, folder: Path) -> None:
         """Write consolidator, trough and the block of the sample."""

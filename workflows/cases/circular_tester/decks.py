@@ -23,13 +23,12 @@ from bulkwear.meshes.tester import (
     submerged_pose,
     turn_angles,
 )
-from bulkwear.postproc.mesh import SurfaceMesh, write_stl
+from bulkwear.postproc.mesh import SurfaceMesh, enclosed_volume, write_stl
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.decks import (
     DOMAIN_MARGIN_DIAMETERS,
     FILL_EXCESS,
     FILL_FRACTION,
-    RELAXING_TIME,
     exact_ledger,
     integration,
     material_tables,
@@ -45,9 +44,7 @@ HOLDER_SIZE = 0.01  # m, elements of sides and bottom of the sample, which do no
 WALL_GAP = 2e-3  # m, between the consolidator and the side walls: less than a particle
 TROUGH_ELEMENT = 0.05  # m, chords of the trough; at the outer wall they lie 0.6 mm inside the circle
 FREEBOARD = 1.0  # -, height of the trough's walls over the bed, in bed heights
-# Centres are cut off so far below the consolidator, in largest diameters: a grain that it overlaps by a millimetre when
-# it comes down is shot out at 17 m/s.
-LEVEL_DIAMETERS = 0.55
+LOWERING_TIME = 0.5  # s, in which the consolidator comes down on the turning bed, with about 0.1 m/s
 FILL_GAP_DIAMETERS = 0.6  # -, between centres of poured particles and walls or block, in largest diameters
 
 Parameters = Mapping[str, Any]
@@ -59,9 +56,10 @@ Parameters = Mapping[str, Any]
 def tester_bed(bed: Parameters) -> dict[str, Any]:
     """Return the parameters of the deck that fills the trough and turns it until the flow is steady."""
     particle, step = bed["particle"], bed["time_step_s"]
-    filled = _fill_height(bed)
-    settling = steps(FALLS * math.sqrt(2.0 * filled / GRAVITY), step)
-    gap = FILL_GAP_DIAMETERS * max(particle["diameters_m"])
+    gap = _fill_gap(bed)
+    settling = steps(FALLS * math.sqrt(2.0 * _fill_height(bed) / GRAVITY), step)
+    poured = poured_particles(particle, bed["seed"]) | {"poured_mass_kg": poured_mass(bed)}
+    poured.pop("fill_fraction")  # the mass is what is asked for
     ring = {
         "outer_fill_radius_m": bed["outer_radius_m"] - gap,
         "inner_fill_radius_m": bed["inner_radius_m"] + gap,
@@ -71,14 +69,14 @@ def tester_bed(bed: Parameters) -> dict[str, Any]:
         **material_tables(particle, bed["sample_material"], bed["floor_material"], bed),
         **_walls(bed, "bed", bed["coefficient_per_pa"], "", BLOCK),  # no mesh of a run may have these fix ids
         "report_steps": bed["report_steps"],
-        "level_m": bed["depth_m"] - LEVEL_DIAMETERS * max(particle["diameters_m"]),
-        **poured_particles(particle, bed["seed"]),
+        **poured,
         "settling_steps": settling,
-        "relaxing_steps": steps(RELAXING_TIME, step),
+        "lowering_steps": steps(LOWERING_TIME, step),
+        "largest_radius_m": 0.5 * max(particle["diameters_m"]),
         "steady_steps": bed["steady_steps"],
         "domain_m": domain(bed),
-        "fill_m": _fill_box(bed, gap),
-        "block_m": _block_box(bed, gap),
+        "fill_m": _fill_box(bed),
+        "block_m": _block_box(bed),
         **(ring if bed["shape"] == RING else {}),
     }
 
@@ -125,6 +123,8 @@ def _walls(bed: Parameters, cycle: int | str, coefficient: float, folder: str, s
         "half_sample_width_m": 0.5 * bed["sample_width_m"],
         "half_sample_length_m": 0.5 * bed["sample_length_m"],
         "depth_m": bed["depth_m"],
+        "floor_m": floor(bed),
+        "past_consolidator_m": past_consolidator(bed),
         "finnie_coefficient_per_pa": [[coefficient] * 3] * 3,
         "sample_file": sample,
         "consolidator_file": folder + CONSOLIDATOR,
@@ -138,7 +138,7 @@ def _walls(bed: Parameters, cycle: int | str, coefficient: float, folder: str, s
             "radius_m": mean,
             "angular_speed_rad_per_s": speed,
         }
-    return {**found, "half_width_m": half_width(bed), "floor_m": floor(bed)}
+    return {**found, "half_width_m": half_width(bed)}
 
 
 # ---------------------------------------------------------------- geometry, seen from the sample
@@ -180,19 +180,53 @@ def domain(bed: Parameters) -> list[float]:
     return [-mean - reach, -mean + reach, -reach, reach, lowest, top]
 
 
+def level_mass(bed: Parameters) -> float:
+    """Return the mass (kg) of a level bed round the block, at the bulk density of its material."""
+    particle, block = bed["particle"], block_mesh(bed)
+    volume = bed_area(bed) * bed["bed_height_m"] - enclosed_volume(block.points, block.triangles)
+    return particle["density_kg_per_m3"] * particle["bulk_solid_fraction"] * volume
+
+
+def poured_mass(bed: Parameters) -> float:
+    """Return the mass (kg) that is poured: a little more than the level bed's, which the consolidator pushes."""
+    return FILL_EXCESS * level_mass(bed)
+
+
+def bed_area(bed: Parameters, gap: float = 0.0) -> float:
+    """Return the area (m2) of the bed seen from above, of places that keep a gap (m) off walls and ends."""
+    if bed["shape"] == RING:
+        return math.pi * ((bed["outer_radius_m"] - gap) ** 2 - (bed["inner_radius_m"] + gap) ** 2)
+    return 4.0 * (half_width(bed) - gap) * (0.5 * channel_length(bed) - gap)
+
+
+def past_consolidator(bed: Parameters) -> list[float | str]:
+    """Return the ends (m) along x and y of the quarter of the bed that has just left the consolidator."""
+    if bed["shape"] == RING:
+        return ["INF", -mean_radius(bed), "INF", -bed["consolidator_flat_m"]]
+    return ["INF", "INF", -0.5 * channel_length(bed), -0.25 * channel_length(bed)]
+
+
+def _fill_gap(bed: Parameters) -> float:
+    return FILL_GAP_DIAMETERS * max(bed["particle"]["diameters_m"])
+
+
 def _fill_height(bed: Parameters) -> float:
-    return bed["bed_height_m"] * bed["particle"]["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
+    """Return how far (m) over the floor centres are poured, at FILL_FRACTION of the room off walls and block."""
+    low, high = np.array(_block_box(bed)).reshape(3, 2).T
+    room = poured_mass(bed) / (bed["particle"]["density_kg_per_m3"] * FILL_FRACTION) + float(np.prod(high - low))
+    return _fill_gap(bed) + room / bed_area(bed, _fill_gap(bed))
 
 
-def _fill_box(bed: Parameters, gap: float) -> list[float]:
+def _fill_box(bed: Parameters) -> list[float]:
     """Return the ends (m) of the box of poured centres along x, y and z; of a ring those of z count."""
+    gap = _fill_gap(bed)
     width, length = half_width(bed) - gap, 0.5 * bed_length(bed) - gap
     return [-width, width, -length, length, floor(bed) + gap, floor(bed) + _fill_height(bed)]
 
 
-def _block_box(bed: Parameters, gap: float) -> list[float]:
-    """Return the ends (m) of a box round the block in the sample's place, inclined as it is, and `gap` round it."""
-    points = block_mesh(bed).points
+def _block_box(bed: Parameters) -> list[float]:
+    """Return the ends (m) of a box round the block in the sample's place, inclined as it is, and the gap round it."""
+    points, gap = block_mesh(bed).points, _fill_gap(bed)
     low, high = points.min(axis=0) - gap, points.max(axis=0) + gap
     return [float(value) for pair in zip(low, high, strict=True) for value in pair]
 

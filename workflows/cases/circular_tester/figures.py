@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.circular_tester.beds import BEDS
 from bulkwear.workflows.cases.circular_tester.runs import (
     SIZE,
     VOLUME,
@@ -71,6 +72,14 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
 
     claims = claims_of("circular_tester", job.files.claims)
     return tables_of_runs(runs_of(job), *read(job, "published", "published_fits"), claims)
+
+
+@tables(inputs=WEAR, told=ALL_RUNS, tables={"beds": BEDS}, digits=DIGITS)
+def tester_beds(job: Job) -> dict[str, pd.DataFrame]:
+    """Make the table of the beds that runs started from."""
+    from bulkwear.workflows.cases.circular_tester.beds import beds_table
+
+    return {"beds": beds_table(runs_of(job))}
 
 
 # ---------------------------------------------------------------- volumes

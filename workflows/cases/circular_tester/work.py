@@ -11,21 +11,14 @@ from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester.decks import HOLDER_SIZE
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
-
-# Median diameters of the trough's width in which no particle's centre is: particles lie looser along its side walls.
-# Measured on beds of 9 and 13 diameters, within 1 % in particles; the bed's height is that of all beds.
-EMPTY_BESIDE_WALLS = 1.9
+from bulkwear.workflows.engine.work import Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
 Parameters = Mapping[str, Any]
 
 
 def settled_particles(run: Parameters) -> float:
-    """Return about how many particles are left of a run's bed when it is levelled."""
-    tester, diameter = run["tester"], run["particle"]["median_diameter_m"]
-    height = 1.0 - EMPTY_DIAMETERS * diameter / tester["bed_height_m"]
-    width = 1.0 - EMPTY_BESIDE_WALLS * diameter / (2.0 * tester_deck.half_width(tester))
-    return run["derived"]["bed_particles"] * height * width
+    """Return about how many particles are poured, all of which stay."""
+    return run["derived"]["bed_particles"] * deck.FILL_EXCESS
 
 
 def surface_triangles(run: Parameters) -> float:
@@ -61,8 +54,8 @@ def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
     particles, steady = settled_particles(run), bed["steady_steps"]
     meshes = trough_triangles(run)
     return (
-        Stage(1, parameters["settling_steps"], particles * deck.FILL_EXCESS, meshes),
-        Stage(0, parameters["relaxing_steps"], particles, meshes),
+        Stage(1, parameters["settling_steps"], particles, meshes),
+        Stage(0, parameters["lowering_steps"], particles, meshes),
         Stage(0, steady, particles, meshes, builds_per_step(run) * steady, True),
     )
 

@@ -13,6 +13,7 @@ from bulkwear.workflows.cases.circular_tester.work import surface_triangles
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain, bed_deck_text, deck_text, write_bed
+from bulkwear.workflows.engine.decks import FILL_EXCESS, FILL_FRACTION
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.forecast.forecast import work_of
 from tests import DATA
@@ -205,6 +206,31 @@ def test_rows_of_a_design_have_one_seed():
     assert case.design_fault(rows) is None
     rows.append({"row": "fine", "series": "mesh", "surface": "plain"})
     assert "seed is 20220317, none, allowed is one for all rows" in case.design_fault(rows)
+
+
+@pytest.mark.parametrize("scale", [2.0, 3.0, 4.0, 6.0])
+@pytest.mark.parametrize("shape", ["channel", "ring"])
+def test_the_poured_mass_is_that_of_a_level_bed(shape, scale):
+    """Whatever shape and particles: bulk density times the trough's volume less the block's; and the room it is poured
+    into, off walls and block, holds it at the fraction that can be placed.
+    """
+    study = load_study(
+        "circular_tester", overrides={"fidelity": "quick", "particle_scale": scale, "tester": {"shape": shape}}
+    )
+    bed = study.beds["bed_1"]
+    width, middle, turned = 0.21, 0.395, math.radians(66.0) if shape == "channel" else 2.0 * math.pi
+    block = 0.1 * 0.1 * (0.01 + bed["headroom_m"])
+    poured, particle = study.case.bed_deck(bed), bed["particle"]
+    level = 0.59 * 2460.0 * (width * middle * turned * 0.15 - block)
+    assert poured["poured_mass_kg"] == pytest.approx(FILL_EXCESS * level, rel=ROUND_OFF)
+    gap = 0.6 * max(particle["diameters_m"])
+    low, high = np.array(poured["block_m"]).reshape(3, 2).T
+    assert low[2] > poured["fill_m"][4] - 2.0 * gap and high[2] < poured["fill_m"][5]  # the block lies within
+    length = middle * turned - (2.0 * gap if shape == "channel" else 0.0)
+    room = (width - 2.0 * gap) * length * (poured["fill_m"][5] - poured["fill_m"][4]) - np.prod(high - low)
+    assert poured["poured_mass_kg"] == pytest.approx(
+        FILL_FRACTION * particle["density_kg_per_m3"] * room, rel=ROUND_OFF
+    )
 
 
 def test_work_is_that_of_beds_and_runs():

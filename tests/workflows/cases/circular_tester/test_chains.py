@@ -1,5 +1,6 @@
 """Two runs of a tiny circular wear tester with LIGGGHTS, and the tables and figures that are made of them."""
 
+import re
 import shutil
 from dataclasses import replace
 from types import SimpleNamespace
@@ -14,9 +15,11 @@ from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.postproc.statistics.verdicts import UNSAID
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import distribution as tester_distribution
+from bulkwear.workflows.cases.circular_tester.beds import MASS_TOLERANCE
 from bulkwear.workflows.cases.circular_tester.key_numbers import result_table
 from bulkwear.workflows.cases.circular_tester.page import sections
 from bulkwear.workflows.engine import cycles
+from bulkwear.workflows.engine.beds import MEASURES, bed_fault
 from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.job import write_table
 from bulkwear.workflows.engine.state import read_state
@@ -67,6 +70,22 @@ def test_no_particle_is_lost_and_revolutions_are_counted(finished, run):
     assert (bed["x_m"].abs() < tester_deck.half_width(chain.bed)).all()
     assert (bed["y_m"].abs() < 0.5 * tester_deck.channel_length(chain.bed) + skin).all()
     assert (bed["z_m"] > tester_deck.floor(chain.bed)).all()
+
+
+def test_the_bed_is_as_asked(finished):
+    """What is poured stays, and the consolidator levels it; asked to be deeper it is refused with three numbers."""
+    chain = next(iter(finished.chains.values()))
+    measures = pd.read_csv(chain.bed_restart.parent / MEASURES).set_index("measure")
+    assert measures.index.tolist() == ["mass", "level", "depth"] and not measures["missed"].any()
+    poured = chain.case.bed_deck(chain.bed)["poured_mass_kg"]
+    assert measures.loc["mass", "asked"] == poured == pytest.approx(measures.loc["mass", "found"], rel=MASS_TOLERANCE)
+    deeper = chain.bed | {"bed_height_m": chain.bed["bed_height_m"] + 0.02}
+    fault = bed_fault(chain.case.bed_measures(deeper, chain.bed_restart.parent / "log.liggghts"))
+    number = r"\d[\d.e-]* {} \(asked \d[\d.e-]* within \d[\d.e-]*\)"
+    words = ", ".join(
+        f"{name} {number.format(unit)}" for name, unit in (("mass", "kg"), ("level", "m"), ("depth", "m"))
+    )
+    assert re.fullmatch(f"the bed is not as asked: {words}", fault)
 
 
 def test_a_longer_run_goes_on_from_a_shorter_one(finished, tmp_path):
@@ -156,7 +175,7 @@ def test_snapshots_become_a_table_of_the_lowest_layer(finished):
 @pytest.fixture(scope="module")
 def tables(finished):
     """The tables of the study by name."""
-    make_products(finished.study, finished.root, ["tester_runs"], REMARKS)
+    make_products(finished.study, finished.root, ["tester_runs", "tester_beds"], REMARKS)
     return {path.stem: pd.read_csv(path) for path in (finished.folder / "tester").glob("*.csv")}
 
 
@@ -168,6 +187,7 @@ def test_tables_are_made_of_the_runs(finished, tables):
         of_run = lost[lost["run"] == run]
         np.testing.assert_allclose(of_run["volume_m3"].iloc[1:], wear["total_applied_volume_m3"], rtol=1e-6)
         assert of_run["volume_m3"].iloc[0] == 0.0
+    assert tables["beds"]["bed"].tolist() == ["bed_1"] and abs(tables["beds"]["level_found_mm"].iloc[0] - 72.0) < 5.3
     compared = tables["comparison"]
     plain = compared[(compared["hours"] == 56) & (compared["quantity"] == "plain volume")]
     assert np.isnan(plain["ours"].iloc[0]) and "more than 2 times" in plain["note"].iloc[0]  # it is 5000 revolutions
@@ -218,7 +238,10 @@ def test_every_figure_has_its_section(finished, drawn):
     empty = [section.title for section in shown if len(section.blocks) == 1]
     assert empty == ["Until the pattern is gone", "The lowest layer", "Elements"]
     alone = sections(page_parameters(finished.study) | {"told": {"paired": False}}, finished.folder)
-    assert [section.title for section in alone] == ["Every run"]  # whatever tables an earlier choice of rows has left
+    assert [section.title for section in alone] == [
+        "Every run",
+        "Beds",
+    ]  # whatever tables an earlier choice of rows has left
 
 
 def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
