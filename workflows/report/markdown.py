@@ -8,6 +8,7 @@ Its sections are those of the HTML page.
 from __future__ import annotations
 
 import argparse
+import sys
 import textwrap
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
@@ -27,7 +28,7 @@ from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.report.page import cost_totals, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_of, page_parameters
 from bulkwear.workflows.report.provenance_of_pages import FILE, LINE, Origin, keep_origin, recorded, with_banner
-from bulkwear.workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Table, Text, shown
+from bulkwear.workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Section, Table, Text, shown
 from bulkwear.workflows.report.simulated import Simulated, said_of, versions_of, warnings_of
 from bulkwear.workflows.report.text import number
 
@@ -96,11 +97,12 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
     """Write the page of a study that was run, its pictures beside it, and return its path.
 
     Where docs holds a list of the pages of results, what simulated the page is written down there. Raises
-    FileNotFoundError when the study is not finished.
+    FileNotFoundError, with one sentence, when the study is not finished or a figure is missing.
     """
     told, page = page_parameters(study), page_of(study.case.name)
     figures = [name for name, words in told["figures"].items() if words["file"].endswith(".png")]
     kept = [found for section in page.sections(told, folder) if (found := shown(section, figures))]
+    pictures = pictures_of(kept, folder)
     name = f"{study.name}_{study.fidelity}"
     parts = [HEAD.format(title=study.title, fidelity=study.fidelity, folder=study.name), provenance(folder, study)]
     for section in kept:
@@ -110,11 +112,20 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
     path = docs / f"{study.name}_results_{study.fidelity}.md"
     older = warnings_of(versions_in_folder(folder, study), simulating_code(study.case), package_cases(study.case))
     path.write_text(with_banner("\n".join(parts), older), encoding="utf-8")
-    for each in (each for section in kept for block in section.blocks for each in getattr(block, "names", ())):
-        save_small(folder / "figures" / f"{each}.png", docs / picture_file(name, each))
+    for picture in pictures:
+        save_small(picture, docs / picture_file(name, picture.stem))
     if (docs / FILE).is_file():
         keep_origin(docs, origin_of(path.name, folder, study))
     return path
+
+
+def pictures_of(sections: Iterable[Section], folder: Path) -> list[Path]:
+    """Return the files of the figures that a page shows; raises FileNotFoundError where one is missing."""
+    names = [each for section in sections for block in section.blocks for each in getattr(block, "names", ())]
+    files = [folder / "figures" / f"{name}.png" for name in names]
+    if missing := [str(path) for path in files if not path.is_file()]:
+        raise FileNotFoundError(f"{missing[0]} is missing; `snakemake {' '.join(missing)}` draws it again")
+    return files
 
 
 def provenance(folder: Path, study: Study) -> str:
@@ -192,10 +203,16 @@ def main() -> None:
     given = parser.parse_args()
     work_here()
     given.docs.mkdir(parents=True, exist_ok=True)
-    runs = pd.read_csv(given.folder / "design.csv", dtype={"row": str})
-    chosen = {"rows": runs["row"].unique().tolist(), "packings": int(runs["packing"].max())}
-    study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, **chosen})
-    print(write_results(given.folder, given.docs, study))
+    design = given.folder / "design.csv"
+    if not design.is_file():
+        sys.exit(f"{design} is missing; `snakemake {given.folder.name}` runs the study that has it")
+    try:
+        runs = pd.read_csv(design, dtype={"row": str})
+        chosen = {"rows": runs["row"].unique().tolist(), "packings": int(runs["packing"].max())}
+        study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, **chosen})
+        print(write_results(given.folder, given.docs, study))
+    except FileNotFoundError as fault:
+        sys.exit(str(fault))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 """The page of a study for the docs: its provenance and durations, in Markdown."""
 
 import pandas as pd
+import pytest
 
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.markdown import durations, markdown, provenance
+from bulkwear.workflows.report.markdown import durations, markdown, pictures_of, provenance
 from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.sections import Pictures, Section, Text
 from tests.support.finished_runs import leave_runs
 
 
@@ -34,3 +36,19 @@ def test_numbers_of_a_table_have_few_digits():
         "| --- | --- |",
         "| 1.23 | 0.9877 |",
     ]
+
+
+def test_a_missing_figure_is_named_with_what_draws_it(tmp_path):
+    """Figures are found in the order of the page, before anything of it is written."""
+    sections = [
+        Section("Wear", [Text("Depth."), Pictures(["depth", "volume"])]),
+        Section("Flow", [Pictures(["power"])]),
+    ]
+    files = [tmp_path / "figures" / f"{name}.png" for name in ("depth", "volume", "power")]
+    files[0].parent.mkdir()
+    files[0].touch()
+    with pytest.raises(FileNotFoundError, match=rf"^{files[1]} is missing; `snakemake {files[1]} {files[2]}` draws"):
+        pictures_of(sections, tmp_path)
+    for path in files:
+        path.touch()
+    assert pictures_of(sections, tmp_path) == files

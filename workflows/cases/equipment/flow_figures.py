@@ -37,6 +37,20 @@ def is_mill(study: Study) -> bool:
     return all(run["filling"] and not run["inlet"] and any(map(turns, run["parts"])) for run in every)
 
 
+def runs_in_panels(job: Job) -> Any:
+    """Return the runs of the designs that are drawn side by side."""
+    from bulkwear.workflows.cases.equipment.pictures import shown_runs
+
+    return shown_runs(job.told.runs, MOST_DESIGNS)
+
+
+def remarks_on_panels(job: Job) -> list[str]:
+    """Return what is said on a figure of panels: what is missing, and which packings and designs are not drawn."""
+    from bulkwear.workflows.cases.equipment.pictures import designs_remark, packings_remark
+
+    return [*job.remarks, *packings_remark(job.told.runs), *designs_remark(job.told.runs, MOST_DESIGNS)]
+
+
 @figure(
     "Flow",
     "Flow over time",
@@ -77,13 +91,10 @@ def flow_over_time(job: Job) -> Any:
 def flow_pictures(job: Job) -> Any:
     """Draw the particles of an instant as built and as worn."""
     from bulkwear.workflows.cases.equipment.flow_panels import panel_rows, particle_panels
-    from bulkwear.workflows.cases.equipment.pictures import designs_remark, packings_remark, shown_runs
     from bulkwear.workflows.cases.equipment.plots.flow import flow_pictures as draw
 
-    every = job.told.runs
-    panels = particle_panels(shown_runs(every, MOST_DESIGNS), folder_of(job))
-    remarks = [*job.remarks, *packings_remark(every), *designs_remark(every, MOST_DESIGNS)]
-    return draw(panels, remarks), panel_rows(panels)
+    panels = particle_panels(runs_in_panels(job), folder_of(job))
+    return draw(panels, remarks_on_panels(job)), panel_rows(panels)
 
 
 @figure(
@@ -100,13 +111,10 @@ def flow_pictures(job: Job) -> Any:
 def velocity_fields(job: Job) -> Any:
     """Draw mean velocities as built and as worn."""
     from bulkwear.workflows.cases.equipment.flow_panels import panel_rows, velocity_panels
-    from bulkwear.workflows.cases.equipment.pictures import designs_remark, packings_remark, shown_runs
     from bulkwear.workflows.cases.equipment.plots.flow import velocity_fields as draw
 
-    every = job.told.runs
-    panels = velocity_panels(shown_runs(every, MOST_DESIGNS), folder_of(job))
-    remarks = [*job.remarks, *packings_remark(every), *designs_remark(every, MOST_DESIGNS)]
-    return draw(panels, remarks), panel_rows(panels)
+    panels = velocity_panels(runs_in_panels(job), folder_of(job))
+    return draw(panels, remarks_on_panels(job)), panel_rows(panels)
 
 
 @figure(
@@ -126,9 +134,7 @@ def velocity_fields(job: Job) -> Any:
 def charge_shape(job: Job) -> Any:
     """Draw where the charge of a mill lies, with its toe and shoulder."""
     from bulkwear.workflows.cases.equipment.flow_panels import charge_panels, charge_rows
-    from bulkwear.workflows.cases.equipment.pictures import designs_remark, packings_remark, shown_runs
     from bulkwear.workflows.cases.equipment.plots.flow import charge_shape as draw
 
-    every, folder = job.told.runs, folder_of(job)
-    remarks = [*job.remarks, *packings_remark(every), *designs_remark(every, MOST_DESIGNS)]
-    return draw(charge_panels(shown_runs(every, MOST_DESIGNS), folder), remarks), charge_rows(every, folder)
+    folder = folder_of(job)
+    return draw(charge_panels(runs_in_panels(job), folder), remarks_on_panels(job)), charge_rows(job.told.runs, folder)

@@ -32,12 +32,15 @@ def _series_of(flow: pd.DataFrame) -> pd.DataFrame:
     inside = slice(half, len(flow) - half) if len(flow) > 2 * half else slice(None)
     time = flow["time_s"].to_numpy()
 
-    def smooth(column: str) -> np.ndarray:
+    def smooth(column: str, since_start: bool = False) -> np.ndarray:
         values = np.nan_to_num(flow[column].to_numpy(float))
-        return gaussian_filter1d(values, half / DEVIATIONS, mode="nearest", truncate=DEVIATIONS)
+        return gaussian_filter1d(
+            values - since_start * values[0], half / DEVIATIONS, mode="nearest", truncate=DEVIATIONS
+        )
 
     def rate(column: str) -> np.ndarray:
-        return np.gradient(smooth(column), time)[inside] * SECONDS_PER_HOUR / KG_PER_TONNE
+        counted = smooth(column, since_start=True)  # exactly none in a machine that is filled once
+        return np.gradient(counted, time)[inside] * SECONDS_PER_HOUR / KG_PER_TONNE
 
     powers = [name for name in flow if name.startswith("power_")]
     table = {

@@ -27,7 +27,7 @@ from bulkwear.workflows.engine.case import CycleError
 from bulkwear.workflows.engine.cycles import run_chain
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.schedule import Span
-from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES, solver_command, solver_environment
+from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, solver_command, solver_environment
 from bulkwear.workflows.engine.wear_step import wear
 from tests import REPOSITORY
 from tests.support.own_machine_project import CORNERS, SHAFT, SIZES, machine_chain, machine_study
@@ -212,7 +212,7 @@ def test_driver_does_what_the_deck_does_by_hand(finished, tmp_path):
     hand.mkdir()
     for path in (cycle(finished, 4) / "deck.in", *cycle(finished, 4).glob("*.stl")):
         shutil.copy(path, hand)
-    command = solver_command(1, CYCLE_EXECUTABLES["solver"])
+    command = solver_command(1, LEDGER_EXECUTABLE)
     subprocess.run(command, cwd=hand, env=solver_environment(), capture_output=True, check=True)
     assert (hand / flow.PRINTED).read_text() == (cycle(finished, 4) / flow.PRINTED).read_text()
 

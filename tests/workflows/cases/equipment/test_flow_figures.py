@@ -87,6 +87,14 @@ def test_a_feed_in_batches_is_even(chute, every):
     assert np.ptp(series["in_t_per_h"]) < EVENED * leap
 
 
+def test_nothing_flows_in_a_machine_that_is_filled_once(mill):
+    """Not even as much as rounding would have it, whatever is held."""
+    folder, runs = mill
+    read = read_runs(runs, folder)
+    series = flow_series(replace(read, flow=read.flow.assign(inserted_mass_kg=3799.7 / 3.0, out_mass_kg=0.0)))
+    assert (series[["in_t_per_h", "out_t_per_h"]] == 0.0).all(axis=None)
+
+
 def test_power_is_in_kilowatts(mill):
     folder, runs = mill
     np.testing.assert_allclose(flow_series(read_runs(runs, folder))["power_shell_kW"], 1.5)
