@@ -283,13 +283,15 @@ def test_equivalent_size_ratio_of_r9_at_scale_2(config):
 
 @pytest.mark.parametrize("diameter", [0.001, 0.004])
 def test_rolling_coefficients_keep_the_torque(diameter):
-    """mu (solver) x reduced radius = mu (calibrated) x its radius: equal spheres R/2, a wall R."""
+    """mu (solver) x the model's radius = mu (calibrated) x its radius; reduced: of equal spheres R/2, at a wall R."""
     radius, coefficient = diameter / 2, 0.4
-    between = rolling_coefficient_for_solver(coefficient, "full", "particle_particle")
-    assert between * (radius * radius / (radius + radius)) == pytest.approx(coefficient * radius, rel=ROUNDING)
-    assert rolling_coefficient_for_solver(coefficient, "full", "particle_wall") == coefficient
-    assert rolling_coefficient_for_solver(coefficient, "reduced", "particle_particle") == coefficient
-    assert rolling_coefficient_for_solver(coefficient, "reduced", "particle_wall") == coefficient
+    reduced = radius * radius / (radius + radius)
+    for model, acting in (("cdt", reduced), ("epsd2", reduced), ("rvd", reduced), ("own_spin", radius)):
+        for convention, meant in (("full", radius), ("reduced", reduced)):
+            solver = {"rolling_friction": model, "rolling_radius": convention}
+            between = rolling_coefficient_for_solver(coefficient, solver, "particle_particle")
+            assert between * acting == pytest.approx(coefficient * meant, rel=ROUNDING)
+            assert rolling_coefficient_for_solver(coefficient, solver, "particle_wall") == coefficient
 
 
 def test_rolling_coefficients_reach_the_runs(config):
@@ -306,7 +308,7 @@ def test_rolling_coefficients_reach_the_runs(config):
 def test_an_unknown_rolling_convention_is_refused():
     """Neither another radius nor another contact is guessed."""
     with pytest.raises(ValueError, match="rolling_radius is 'half'"):
-        rolling_coefficient_for_solver(0.4, "half", "particle_wall")
+        rolling_coefficient_for_solver(0.4, {"rolling_friction": "cdt", "rolling_radius": "half"}, "particle_wall")
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ from bulkwear.workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
 from bulkwear.workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
 from bulkwear.workflows.engine.cases import case_names, find_case
 from bulkwear.workflows.engine.ledgers import PRODUCERS
-from bulkwear.workflows.engine.solver import CYCLE_EXECUTABLES
 from bulkwear.workflows.report.page_parameters import page_of
 
 SETTINGS = "default.yaml"
@@ -254,7 +253,7 @@ BAD_VALUES = [
         "rolling_friction: cdt",
         "rolling_friction: epsd4",
         "config/default.yaml, line 17: solver.rolling_friction is 'epsd4', allowed is one of none, cdt, epsd, epsd2,"
-        " epsd3.",
+        " epsd3, own_spin, rvd.",
     ),
     (
         SETTINGS,
@@ -656,7 +655,7 @@ def test_every_law_and_every_producer_can_be_chosen():
     """The schema offers the wear laws and the producers of ledgers that there are, and no others."""
     properties = load_schema("settings")["properties"]
     assert set(properties["wear"]["properties"]["law"]["enum"]) == set(LAWS)
-    assert set(properties["ledger"]["enum"]) == set(PRODUCERS) == set(LEDGERS) == set(CYCLE_EXECUTABLES)
+    assert set(properties["ledger"]["enum"]) == set(PRODUCERS) == set(LEDGERS)
 
 
 def test_a_plain_sample_needs_elements_too(config):
