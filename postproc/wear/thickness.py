@@ -2,7 +2,8 @@
 
 The local thickness is given, as that of a liner, or measured on the pristine surface along the inward normal to the
 back of the same part. It stays with the nodes, and with them what is lost of it: in front, square to their faces, and
-where XX no thickness as drawn: it goes no further than it is, and is not called worn through.
+where it was measured also at the back, which may wear too. A place is worn through when nothing is left between. A
+sharp edge has no thickness as drawn: it goes no further than it is, and is not called worn through.
 """
 
 from __future__ import annotations
