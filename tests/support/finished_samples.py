@@ -12,11 +12,14 @@ import pandas as pd
 from bulkwear.postproc.tables.history import wear_history
 from bulkwear.postproc.tables.summary import summary_table
 from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.engine.beds import BedMeasure, write_measures
+from bulkwear.workflows.report.beds import BEDS, beds_table, values_of_beds
 from bulkwear.workflows.report.page import write_page
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.products import figures_of
 
 CYCLES = 2
+MEASURED = [BedMeasure("mass", "kg", 2.0, 2.01, 0.02), BedMeasure("level", "m", 0.04, 0.042, 0.003)]
 RUN_WALL, RUN_SOLVER, BED_WALL, BED_SOLVER, OTHER_WALL = 100.0, 90.0, 50.0, 48.0, 2.0  # s, of each job
 PICTURE = b"\x89PNG picture of "
 INNER_PAGE = "<!doctype html><html><body><script>const text = \"a < b && 'c'\";</script></body></html>"
@@ -88,6 +91,9 @@ def _write_costs(folder: Path, study: Study) -> None:
     for bed in study.beds:
         (folder / "beds" / bed).mkdir(parents=True)
         (folder / "beds" / bed / "cost.csv").write_text(f"solver_s,steps,particles\n{BED_SOLVER},1000,500\n")
+        write_measures(MEASURED, folder / "beds" / bed)
+    files = [folder / "beds" / bed / "cost.csv" for bed in study.beds]
+    beds_table(values_of_beds(study), files).to_csv(folder / BEDS, index=False)
     for job in page_parameters(study)["jobs"]:
         wall = next((wall for start, wall in (("worn", RUN_WALL), ("settled", BED_WALL)) if job.startswith(start)), 0.0)
         (folder / "logs" / f"{job}.benchmark.tsv").write_text(f"s\th:m:s\n{wall or OTHER_WALL}\t0:00:01\n")

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from bulkwear.workflows.engine.job import write_table
 
 MEASURES = "measures.csv"  # in a bed's folder
+MASS_TOLERANCE = 0.01  # -, of what is asked
+ROUNDED_PARTICLES = 2.0  # -, largest particles: the number of each size is rounded, which shows in small beds
+LEVEL_TOLERANCE = 0.5  # -, in median diameters: no plate levels a bed finer than half a grain
+DENSITY_TOLERANCE = 0.05  # -, of the height: by so much particles may settle looser or denser than their bulk density
 
 
 @dataclass(frozen=True)
@@ -29,6 +35,23 @@ class BedMeasure:
     def said(self) -> str:
         """Return what was found and asked in words."""
         return f"{self.measure} {self.found:.4g} {self.unit} (asked {self.asked:.4g} within {self.tolerance:.2g})"
+
+
+def mass_measure(particle: Mapping[str, Any], asked: float, found: float) -> BedMeasure:
+    """Return the measure of a bed's mass (kg)."""
+    largest = particle["density_kg_per_m3"] * math.pi / 6.0 * max(particle["diameters_m"]) ** 3
+    return BedMeasure("mass", "kg", asked, found, max(MASS_TOLERANCE * asked, ROUNDED_PARTICLES * largest))
+
+
+def level_measure(
+    particle: Mapping[str, Any], height: float, found: float, name: str = "level", covering: float = 0.0
+) -> BedMeasure:
+    """Return the measure of a bed's level (m), or of what of it lies over something.
+
+    height: asked of the whole bed; found: twice the height of its centre of mass; covering: m, of what it lies over
+    """
+    tolerance = max(LEVEL_TOLERANCE * particle["median_diameter_m"], DENSITY_TOLERANCE * height)
+    return BedMeasure(name, "m", height - covering, found - covering, tolerance)
 
 
 def write_measures(measures: Sequence[BedMeasure], folder: Path) -> None:

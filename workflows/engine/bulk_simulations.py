@@ -12,17 +12,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from bulkwear.postproc.flow.bed import read_snapshot
 from bulkwear.postproc.flow.bulk_test import HEAP
 from bulkwear.postproc.readers.solver_log import failure, last_step, solver_version, thermo_table, warnings
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.bulk_tests import deck_text, kind_of, write_test
+from bulkwear.workflows.engine.beds import BedMeasure, bed_fault, level_measure, mass_measure
+from bulkwear.workflows.engine.bulk_tests import deck_text, filled_mass, kind_of, write_test
 from bulkwear.workflows.engine.case import CASES_PACKAGE
 from bulkwear.workflows.engine.cases import find_case
+from bulkwear.workflows.engine.pouring import particles_of_mass
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code
 from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, executable_of, processor_seconds, run_deck
 from bulkwear.workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
 
-POURED = 1.04  # -, poured particles over those that fill the box, as counted
 FILLED = "filled.dump"
 
 
@@ -51,6 +53,7 @@ def simulated(test: Mapping[str, Any], root: Path, alone: bool = False) -> Path:
             if alone:
                 spent["processor_s"] = round(processor_seconds() - before, 3)
             check_rest(folder, test)
+            check_filling(folder, test)
             state.write_state(folder, inputs, (HEAP, FILLED, LOG), _record(test, folder, spent, code))
     return state.cycle_folder(kept, 0)
 
@@ -76,6 +79,27 @@ def check_rest(folder: Path, test: Mapping[str, Any]) -> None:
             )
 
 
+def check_filling(folder: Path, test: Mapping[str, Any]) -> None:
+    """Raise SolverError when a box does not hold the mass that was to be poured, with its level beside.
+
+    The level alone refuses none: how dense a filling settles is what its friction decides, which a calibration varies.
+    """
+    measures = filling_measures(folder, test)
+    if bed_fault(measures[:1]):
+        raise SolverError(f"{folder / FILLED}: {bed_fault(measures)}.")
+
+
+def filling_measures(folder: Path, test: Mapping[str, Any]) -> list[BedMeasure]:
+    """Return mass and level of a box that was filled and rests."""
+    particle, filled = test["particle"], read_snapshot(folder / FILLED)
+    volume = math.pi / 6.0 * (2.0 * filled["radius_m"]) ** 3
+    level = 2.0 * float((volume * filled["z_m"]).sum() / volume.sum())
+    return [
+        mass_measure(particle, filled_mass(test), particle["density_kg_per_m3"] * float(volume.sum())),
+        level_measure(particle, test["box"]["fill_height_m"], level),
+    ]
+
+
 def _simulating_code(test: Mapping[str, Any]) -> dict[str, Any]:
     """Return which code simulates a test: that of the case in whose folder its kind is."""
     words = kind_of(test).deck.__module__.removeprefix(f"{CASES_PACKAGE}.").split(".")
@@ -90,6 +114,7 @@ def _record(
     return {
         "test": test,
         "cost": cost,
+        "filling": {each.measure: each.found for each in filling_measures(folder, test)},
         PROVENANCE: provenance(code, executable_of(test), cost),
         "solver": solver_version(folder / SCREEN),
         "solver_warnings": warnings(folder / SCREEN),
@@ -98,10 +123,7 @@ def _record(
 
 def filled_particles(test: Mapping[str, Any]) -> float:
     """Return about how many particles fill the box of a test."""
-    particle, box = test["particle"], test["box"]
-    solid = box["length_m"] * box["width_m"] * box["fill_height_m"] * particle["bulk_solid_fraction"]
-    pairs = zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
-    return solid * math.fsum(fraction / (math.pi / 6.0 * diameter**3) for fraction, diameter in pairs)
+    return particles_of_mass(test["particle"], filled_mass(test))
 
 
 def simulation_bytes(stages: tuple[Stage, ...]) -> float:

@@ -3,7 +3,9 @@
 The parameters of a test, all SI:
 
     kind       of those registered
-    box        length_m, width_m, fill_height_m, and what its kind adds
+    box        length_m, width_m, fill_height_m; ends: periodic along y, else walls; front_and_back: walls, else
+               periodic; fill_mass_per_width_kg_per_m: mass of the filling, else by its height and the bulk density;
+               and what its kind adds
     rest       energy_fraction, check_interval_s, calm_checks, longest_s: when all counts as being at rest
     particle, wall_material, floor_material    as in Run.parameters
     solver, deck    those of the run, or what the test's template uses of them
@@ -24,11 +26,11 @@ from bulkwear.postproc.mesh import write_stl
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.derived import WALLS, derived_materials, rayleigh_time
+from bulkwear.workflows.engine.pouring import bulk_density, fill_gap, fill_height, periodic_gap, poured_particles
 from bulkwear.workflows.engine.solver import DECK
 from bulkwear.workflows.engine.templates import render
 
 MARGIN_DIAMETERS = 2.0  # -, room between the boxes and the domain, in largest diameters
-FILL_EXCESS = 1.1  # -, poured over levelled volume: loose packings of rough particles still fill the box
 Meshes = Mapping[str, tuple[np.ndarray, np.ndarray]]  # {name: (points (n, 3) in m, triangles (m, 3))}
 
 
@@ -110,27 +112,20 @@ def filled_box(test: Mapping[str, Any], type_names: Sequence[str]) -> dict[str, 
     materials = derived_materials(bulk_materials(test))
     integration = deck.integration(test, step, particle, 1)
     integration.pop("report_steps")  # the looks for rest are the lines of progress
-    gap = max(particle["diameters_m"]) * deck.FILL_GAP_DIAMETERS
     return {
         **integration,
         **deck.material_tables(particle, test["wall_material"], test["floor_material"], materials),
         "type_names": list(type_names),
-        "ends": WALLS,
+        "ends": box.get("ends", WALLS),
         "outflow": "weighed",
         "state_columns": deck.STATE_COLUMNS,
         "half_width_m": box["width_m"] / 2.0,
+        "fill_half_width_m": box["width_m"] / 2.0 - _gap_across(test),
         "box_length_m": box["length_m"],
-        "fill_bottom_m": gap,
+        "fill_bottom_m": fill_gap(particle),
         "fill_top_m": fill_top(test),
-        "fill_gap_m": gap,
-        "fill_fraction": deck.FILL_FRACTION,
-        "fall_speed_m_per_s": deck.FALL_SPEED,
-        "level_m": box["fill_height_m"] - particle["median_diameter_m"] / 2.0,
-        "density_kg_per_m3": particle["density_kg_per_m3"],
-        "particle_diameter_m": particle["diameters_m"],
-        "size_distribution": deck.size_distribution(particle["mass_fractions"]),
-        "size_count": len(particle["mass_fractions"]),
-        "seeds": deck.primes(test["seed"], len(particle["diameters_m"]) + 2),
+        "fill_gap_m": _gap_along(test),
+        **poured_particles(particle, test["seed"], filled_mass(test)),
         "check_steps": deck.steps(rest["check_interval_s"], step),
         "most_checks": math.ceil(rest["longest_s"] / rest["check_interval_s"]),
         "calm_checks": rest["calm_checks"],
@@ -144,7 +139,27 @@ def bulk_materials(test: Mapping[str, Any]) -> dict[str, Any]:
     return {**{name: test[key] for name, key in names.items()}, "solver": test["solver"]}
 
 
+def filled_mass(test: Mapping[str, Any]) -> float:
+    """Return the mass (kg) that is poured into a box: told per width, or that of its filling at the bulk density."""
+    box = test["box"]
+    told = box.get("fill_mass_per_width_kg_per_m")
+    per_width = bulk_density(test["particle"]) * box["length_m"] * box["fill_height_m"] if told is None else told
+    return per_width * box["width_m"]
+
+
 def fill_top(test: Mapping[str, Any]) -> float:
-    """Return the height (m) up to which a box is poured before it is levelled."""
-    height, packed = test["box"]["fill_height_m"], test["particle"]["bulk_solid_fraction"]
-    return height * packed / deck.FILL_FRACTION * FILL_EXCESS
+    """Return the height (m) up to which centres are poured; they keep off the walls."""
+    box = test["box"]
+    across, along = (gap or periodic_gap(test["particle"]) for gap in (_gap_across(test), _gap_along(test)))
+    area = (box["width_m"] - 2.0 * across) * (box["length_m"] - 2.0 * along)
+    return fill_height(test["particle"], filled_mass(test), area)
+
+
+def _gap_along(test: Mapping[str, Any]) -> float:
+    """Return how far (m) poured centres keep off the ends along y, where these are walls."""
+    return fill_gap(test["particle"]) if test["box"].get("ends", WALLS) == WALLS else 0.0
+
+
+def _gap_across(test: Mapping[str, Any]) -> float:
+    """Return how far (m) poured centres keep off front and back, where these are walls."""
+    return fill_gap(test["particle"]) if test["box"].get("front_and_back") == WALLS else 0.0

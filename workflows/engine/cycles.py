@@ -55,7 +55,7 @@ from bulkwear.workflows.engine.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"
 # Of the decks of beds, where they have them.
-BED_STEPS = ("settling_steps", "relaxing_steps", "packing_steps", "lowering_steps", "steady_steps")
+BED_STEPS = ("settling_steps", "packing_steps", "lowering_steps", "steady_steps")
 
 
 def run_chain(chain: Chain) -> None:

@@ -13,11 +13,6 @@ from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.derived import neighbour_skin, run_kernels
 from bulkwear.workflows.engine.templates import SOLVER, whole_sections
 
-FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
-FILL_EXCESS = 1.02  # -, poured over levelled volume, so that levelling finds something to take off everywhere
-FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
-RELAXING_TIME = 0.01  # s, after levelling
-FILL_GAP_DIAMETERS = 0.1  # -, between poured particles and the walls, in largest diameters
 DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
 REPORTS_PER_RUN = 50  # lines of progress per run command
 SMALLEST_SEED = 10_000  # LIGGGHTS refuses smaller ones
@@ -25,19 +20,6 @@ STATE_COLUMNS = "id x y z vx vy vz omegax omegay omegaz radius"  # of a dump of 
 STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, before the solver's check stops the run
 
 # ---------------------------------------------------------------- parameters of the three decks
-
-
-def poured_particles(particle: Mapping[str, Any], seed: int) -> dict[str, Any]:
-    """Return what decks that pour a bed say of its particles."""
-    return {
-        "fill_fraction": FILL_FRACTION,
-        "fall_speed_m_per_s": FALL_SPEED,
-        "density_kg_per_m3": particle["density_kg_per_m3"],
-        "particle_diameter_m": particle["diameters_m"],
-        "size_distribution": size_distribution(particle["mass_fractions"]),
-        "size_count": len(particle["mass_fractions"]),
-        "seeds": primes(seed, len(particle["diameters_m"]) + 2),
-    }
 
 
 def exact_ledger(run: Mapping[str, Any], history_steps: int = 0) -> dict[str, Any]:
@@ -51,9 +33,6 @@ def exact_ledger(run: Mapping[str, Any], history_steps: int = 0) -> dict[str, An
         "ledger_history": f" history {history_steps}" if history_steps else "",
         "ledger_kernels": " ".join(["", "kernels", *words]) if words else "",
     }
-
-
-# Producers of the load ledger -> what their part of the deck is filled with.
 
 
 def travelled(run: Mapping[str, Any], steps: int) -> float:

@@ -12,10 +12,6 @@ from typing import Any
 from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.state import DIGEST_LETTERS, digest
 
-# Median diameters of a bed's thickness in which no particle's centre is: half of one is taken off in levelling, the
-# rest is the looser layer on the floor. Measured on beds of 3 to 7.5 layers, within 1 % in particles.
-EMPTY_DIAMETERS = 0.72
-
 # bytes on disk, of files that the solver and the driver write; measured
 RESTART_PARTICLE, RESTART_TRIANGLE = 250.0, 120.0  # restart file
 PICTURE_PARTICLE = 110.0  # dump of all particles

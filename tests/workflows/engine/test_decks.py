@@ -137,7 +137,7 @@ def test_a_word_that_no_template_uses_is_refused(config):
     ("name", "word", "template"),
     [
         ("demo", "velocity_m_per_s", "lowered_bed"),
-        ("demo", "level_m", "settled_bed"),
+        ("demo", "poured_mass_kg", "settled_bed"),
         ("demo", "solver", "lowered_bed"),
         ("pin_on_disc", "pin_radius_m", "pin_set_down"),
         ("circular_tester", "steady_steps", "tester_bed"),

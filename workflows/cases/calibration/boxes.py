@@ -19,7 +19,7 @@ import numpy as np
 
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.bulk_simulations import POURED, filled_particles
+from bulkwear.workflows.engine.bulk_simulations import filled_particles
 from bulkwear.workflows.engine.bulk_tests import Kind, Meshes, fill_top, filled_box, margin_of, register, time_step
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.derived import PERIODIC, WALLS
@@ -237,7 +237,7 @@ def stages_of(test: Mapping[str, Any], number: int) -> tuple[Stage, ...]:
     triangles = sum(len(faces) for _, faces in kind.surfaces(test).values())
     left = STAYING[test["kind"]] * particles
     return (
-        Stage(number, number * deck.steps(filling, step), POURED * particles, triangles),
+        Stage(number, number * deck.steps(filling, step), particles, triangles),
         Stage(0, number * deck.steps(flowing, step), left, triangles, moving=True),
     )
 

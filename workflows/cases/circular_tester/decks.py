@@ -27,14 +27,12 @@ from bulkwear.postproc.mesh import SurfaceMesh, enclosed_volume, write_stl
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.decks import (
     DOMAIN_MARGIN_DIAMETERS,
-    FILL_EXCESS,
-    FILL_FRACTION,
     exact_ledger,
     integration,
     material_tables,
-    poured_particles,
     steps,
 )
+from bulkwear.workflows.engine.pouring import bulk_density, fill_gap, fill_height, poured_particles
 from bulkwear.workflows.engine.schedule import Span
 
 CHANNEL, RING = "channel", "ring"  # values of tester.shape
@@ -45,7 +43,7 @@ WALL_GAP = 2e-3  # m, between the consolidator and the side walls: less than a p
 TROUGH_ELEMENT = 0.05  # m, chords of the trough; at the outer wall they lie 0.6 mm inside the circle
 FREEBOARD = 1.0  # -, height of the trough's walls over the bed, in bed heights
 LOWERING_TIME = 0.5  # s, in which the consolidator comes down on the turning bed, with about 0.1 m/s
-FILL_GAP_DIAMETERS = 0.6  # -, between centres of poured particles and walls or block, in largest diameters
+FILL_EXCESS = 1.02  # -, poured mass over that of a level bed: the consolidator pushes a little
 
 Parameters = Mapping[str, Any]
 
@@ -56,10 +54,8 @@ Parameters = Mapping[str, Any]
 def tester_bed(bed: Parameters) -> dict[str, Any]:
     """Return the parameters of the deck that fills the trough and turns it until the flow is steady."""
     particle, step = bed["particle"], bed["time_step_s"]
-    gap = _fill_gap(bed)
+    gap = fill_gap(particle)
     settling = steps(FALLS * math.sqrt(2.0 * _fill_height(bed) / GRAVITY), step)
-    poured = poured_particles(particle, bed["seed"]) | {"poured_mass_kg": poured_mass(bed)}
-    poured.pop("fill_fraction")  # the mass is what is asked for
     ring = {
         "outer_fill_radius_m": bed["outer_radius_m"] - gap,
         "inner_fill_radius_m": bed["inner_radius_m"] + gap,
@@ -69,7 +65,7 @@ def tester_bed(bed: Parameters) -> dict[str, Any]:
         **material_tables(particle, bed["sample_material"], bed["floor_material"], bed),
         **_walls(bed, "bed", bed["coefficient_per_pa"], "", BLOCK),  # no mesh of a run may have these fix ids
         "report_steps": bed["report_steps"],
-        **poured,
+        **poured_particles(particle, bed["seed"], poured_mass(bed)),
         "settling_steps": settling,
         "lowering_steps": steps(LOWERING_TIME, step),
         "largest_radius_m": 0.5 * max(particle["diameters_m"]),
@@ -182,9 +178,9 @@ def domain(bed: Parameters) -> list[float]:
 
 def level_mass(bed: Parameters) -> float:
     """Return the mass (kg) of a level bed round the block, at the bulk density of its material."""
-    particle, block = bed["particle"], block_mesh(bed)
+    block = block_mesh(bed)
     volume = bed_area(bed) * bed["bed_height_m"] - enclosed_volume(block.points, block.triangles)
-    return particle["density_kg_per_m3"] * particle["bulk_solid_fraction"] * volume
+    return bulk_density(bed["particle"]) * volume
 
 
 def poured_mass(bed: Parameters) -> float:
@@ -206,27 +202,23 @@ def past_consolidator(bed: Parameters) -> list[float | str]:
     return ["INF", "INF", -0.5 * channel_length(bed), -0.25 * channel_length(bed)]
 
 
-def _fill_gap(bed: Parameters) -> float:
-    return FILL_GAP_DIAMETERS * max(bed["particle"]["diameters_m"])
-
-
 def _fill_height(bed: Parameters) -> float:
-    """Return how far (m) over the floor centres are poured, at FILL_FRACTION of the room off walls and block."""
+    """Return how far (m) over the floor centres are poured, off walls and block."""
     low, high = np.array(_block_box(bed)).reshape(3, 2).T
-    room = poured_mass(bed) / (bed["particle"]["density_kg_per_m3"] * FILL_FRACTION) + float(np.prod(high - low))
-    return _fill_gap(bed) + room / bed_area(bed, _fill_gap(bed))
+    area = bed_area(bed, fill_gap(bed["particle"]))
+    return fill_height(bed["particle"], poured_mass(bed), area, float(np.prod(high - low)))
 
 
 def _fill_box(bed: Parameters) -> list[float]:
     """Return the ends (m) of the box of poured centres along x, y and z; of a ring those of z count."""
-    gap = _fill_gap(bed)
+    gap = fill_gap(bed["particle"])
     width, length = half_width(bed) - gap, 0.5 * bed_length(bed) - gap
     return [-width, width, -length, length, floor(bed) + gap, floor(bed) + _fill_height(bed)]
 
 
 def _block_box(bed: Parameters) -> list[float]:
     """Return the ends (m) of a box round the block in the sample's place, inclined as it is, and the gap round it."""
-    points, gap = block_mesh(bed).points, _fill_gap(bed)
+    points, gap = block_mesh(bed).points, fill_gap(bed["particle"])
     low, high = points.min(axis=0) - gap, points.max(axis=0) + gap
     return [float(value) for pair in zip(low, high, strict=True) for value in pair]
 

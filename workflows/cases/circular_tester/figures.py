@@ -8,7 +8,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.circular_tester.beds import BEDS
 from bulkwear.workflows.cases.circular_tester.runs import (
     SIZE,
     VOLUME,
@@ -21,6 +20,7 @@ from bulkwear.workflows.cases.circular_tester.runs import (
     values_of_pairs,
     values_of_runs,
 )
+from bulkwear.workflows.report.beds import BEDS, beds_table, every_bed, values_of_beds
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
@@ -74,12 +74,10 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
     return tables_of_runs(runs_of(job), *read(job, "published", "published_fits"), claims)
 
 
-@tables(inputs=WEAR, told=ALL_RUNS, tables={"beds": BEDS}, digits=DIGITS)
-def tester_beds(job: Job) -> dict[str, pd.DataFrame]:
+@tables(inputs={"beds": every_bed}, told={"beds": values_of_beds}, tables={"beds": BEDS}, digits=DIGITS)
+def beds(job: Job) -> dict[str, pd.DataFrame]:
     """Make the table of the beds that runs started from."""
-    from bulkwear.workflows.cases.circular_tester.beds import beds_table
-
-    return {"beds": beds_table(runs_of(job))}
+    return {"beds": beds_table(job.told.beds, job.files.beds)}
 
 
 # ---------------------------------------------------------------- volumes

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -20,6 +19,7 @@ from bulkwear.workflows.engine.derived import (
     wear_section,
     whole_steps,
 )
+from bulkwear.workflows.engine.pouring import bulk_density, particles_of_mass
 from bulkwear.workflows.engine.templates import used_sections
 
 REPORTS_PER_REVOLUTION = 60  # lines of a log, of which the coefficient of variation of a revolution is made
@@ -55,7 +55,6 @@ def run_parameters(settings: Mapping[str, Any], materials: Mapping[str, Any]) ->
 def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
     """Return what follows from the other sections: moduli, bed, pressure on the sample, time steps."""
     tester, particle = parameters["tester"], parameters["particle"]
-    bulk = particle["density_kg_per_m3"] * particle["bulk_solid_fraction"]
     return {
         "equivalent_size_ratio": size_ratio(parameters),
         "physical_patch_factor": physical_patch_factor(parameters),
@@ -65,7 +64,7 @@ def derived_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
         / particle["median_diameter_m"],
         "bed_length_m": bed_length(tester),
         "bed_particles": bed_particles(parameters),
-        "bulk_pressure_pa": bulk * GRAVITY * tester["depth_m"],
+        "bulk_pressure_pa": bulk_density(particle) * GRAVITY * tester["depth_m"],
         "headroom_m": highest_point(parameters["pattern"]) + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
         **_derived_times(parameters),
     }
@@ -76,11 +75,7 @@ def bed_particles(parameters: Mapping[str, Any]) -> int:
     tester, particle, sample = (parameters[name] for name in ("tester", "particle", "sample"))
     volume = bed_length(tester) * 2.0 * half_width(tester) * tester["bed_height_m"]
     volume -= sample["width_m"] * sample["length_m"] * sample["thickness_m"]
-    per_volume = math.fsum(
-        fraction / (math.pi / 6.0 * diameter**3)
-        for fraction, diameter in zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
-    )
-    return round(volume * particle["bulk_solid_fraction"] * per_volume)
+    return round(particles_of_mass(particle, bulk_density(particle) * volume))
 
 
 def _derived_times(parameters: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from bulkwear.meshes.estimate import sample_triangles
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester.decks import HOLDER_SIZE
 from bulkwear.workflows.config.patterns import pattern_of
-from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.work import Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
 Parameters = Mapping[str, Any]
@@ -18,7 +17,7 @@ Parameters = Mapping[str, Any]
 
 def settled_particles(run: Parameters) -> float:
     """Return about how many particles are poured, all of which stay."""
-    return run["derived"]["bed_particles"] * deck.FILL_EXCESS
+    return run["derived"]["bed_particles"] * tester_deck.FILL_EXCESS
 
 
 def surface_triangles(run: Parameters) -> float:

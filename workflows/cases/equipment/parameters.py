@@ -22,6 +22,7 @@ from bulkwear.workflows.engine.derived import (
     whole_steps,
     youngs_modulus,
 )
+from bulkwear.workflows.engine.pouring import bulk_density, particles_of_mass
 
 REPORTS = 20  # rows of the table of the flow in a block
 SHARED = ("inlet", "filling", "outlets", "periodic", "domain")  # sections that a study may leave out
@@ -166,22 +167,13 @@ def operation_s(parameters: Mapping[str, Any]) -> float:
     return 0.0
 
 
-def mean_particle_mass(particle: Mapping[str, Any]) -> float:
-    """Return the mean mass of a particle by number (kg)."""
-    pairs = zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
-    per_mass = math.fsum(
-        fraction / (particle["density_kg_per_m3"] * math.pi / 6.0 * diameter**3) for fraction, diameter in pairs
-    )
-    return 1.0 / per_mass
-
-
 def filled_mass(parameters: Mapping[str, Any]) -> float:
     """Return the mass that the machine is filled with (kg); 0 without a filling."""
     filling, particle = parameters["filling"], parameters["particle"]
     if not filling:
         return 0.0
     volume = math.pi * filling["radius_m"] ** 2 * filling["length_m"]
-    return filling["fraction"] * volume * particle["bulk_solid_fraction"] * particle["density_kg_per_m3"]
+    return filling["fraction"] * volume * bulk_density(particle)
 
 
 def held_particles(parameters: Mapping[str, Any]) -> float:
@@ -190,4 +182,4 @@ def held_particles(parameters: Mapping[str, Any]) -> float:
     """
     inlet = parameters["inlet"]
     fed = inlet["rate_kg_per_s"] * 0.5 * parameters["start_up"]["most_s"] if inlet else 0.0
-    return (filled_mass(parameters) + fed) / mean_particle_mass(parameters["particle"])
+    return particles_of_mass(parameters["particle"], filled_mass(parameters) + fed)

@@ -11,23 +11,20 @@ from bulkwear.postproc.readers.cycle_folders import PACKING
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.decks import (
     DOMAIN_MARGIN_DIAMETERS,
-    FILL_EXCESS,
-    FILL_FRACTION,
-    FILL_GAP_DIAMETERS,
-    RELAXING_TIME,
     STATE_COLUMNS,
     exact_ledger,
     integration,
     material_tables,
-    poured_particles,
     steps,
     symmetric_table,
     travelled,
 )
 from bulkwear.workflows.engine.derived import ROUNDING, WALLS, WINDOW, neighbour_skin, window_lengths
+from bulkwear.workflows.engine.pouring import bulk_density, fill_gap, fill_height, periodic_gap, poured_particles
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.templates import whole_sections
 
+SETTLING_FREE_FALLS = 1.5  # -, times sqrt(2 h/g), of what is poured
 PACKING_FREE_FALLS = 7.5  # -, the same for a bed that nothing moves afterwards: after 6 the last grain had tumbled down
 LOWERING_FREE_FALLS = 2.5  # -, times sqrt(2 h/g): after 2 the pilot beds had lost 99 % of their kinetic energy
 PILE_UP = 3.0  # -, the bed's height where it piles up at a sample, over its thickness; room for it is left
@@ -37,26 +34,33 @@ ID_COLUMNS = range(13, 16)  # of these, counted from 1: mesh, triangle, particle
 
 def settled_bed(bed: Mapping[str, Any]) -> dict[str, Any]:
     """Return the parameters of the deck that fills and settles a bed; `bed` as in design.bed_parameters."""
-    particle = bed["particle"]
-    filled = bed["thickness_m"] * particle["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
-    gap = max(particle["diameters_m"]) * FILL_GAP_DIAMETERS
-    floor = bed["temporary_floor_m"]
-    step = bed["time_step_s"]
-    settling = steps(math.sqrt(2.0 * filled / GRAVITY), step)
+    particle, floor, step = (bed[name] for name in ("particle", "temporary_floor_m", "time_step_s"))
+    settling = steps(SETTLING_FREE_FALLS * math.sqrt(2.0 * _filled(bed) / GRAVITY), step)
     return {
         **integration(bed, step, particle, settling),
         **material_tables(particle, bed["floor_material"], bed["floor_material"], bed),
         **_domain(bed),
         "temporary_floor_m": floor,
-        "fill_bottom_m": floor + gap,
-        "fill_top_m": floor + gap + filled,
-        "fill_gap_m": gap if bed["ends"] == WALLS else 0.0,
-        "level_m": floor + bed["thickness_m"] - particle["median_diameter_m"] / 2.0,
-        **poured_particles(particle, bed["seed"]),
+        "fill_bottom_m": floor + fill_gap(particle),
+        "fill_top_m": floor + _filled(bed),
+        "fill_gap_m": fill_gap(particle) if bed["ends"] == WALLS else 0.0,
+        **poured_particles(particle, bed["seed"], bed_mass(bed)),
         "settling_steps": settling,
-        "relaxing_steps": steps(RELAXING_TIME, step),
         **({"packing_steps": falling_steps(bed, step, PACKING_FREE_FALLS)} if bed["ends"] == WINDOW else {}),
     }
+
+
+def bed_mass(bed: Mapping[str, Any]) -> float:
+    """Return the mass (kg) of a level bed of the thickness that is asked for."""
+    return bulk_density(bed["particle"]) * bed["length_m"] * bed["width_m"] * bed["thickness_m"]
+
+
+def _filled(bed: Mapping[str, Any]) -> float:
+    """Return how far (m) over the temporary floor centres are poured."""
+    particle = bed["particle"]
+    across, along = periodic_gap(particle), fill_gap(particle) if bed["ends"] == WALLS else periodic_gap(particle)
+    area = (bed["width_m"] - 2.0 * across) * (bed["length_m"] - 2.0 * along)
+    return fill_height(particle, bed_mass(bed), area)
 
 
 def lowered_bed(run: Mapping[str, Any], bed: Mapping[str, Any], bed_restart: str) -> dict[str, Any]:
@@ -144,7 +148,6 @@ def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
     """Return the box of a bed, long enough for its whole travel and high enough for bulk piling up at a sample."""
     margin = DOMAIN_MARGIN_DIAMETERS * max(bed["particle"]["diameters_m"])
     beyond = margin if bed["ends"] == WALLS else 0.0
-    filled = bed["thickness_m"] * bed["particle"]["bulk_solid_fraction"] / FILL_FRACTION * FILL_EXCESS
     return {
         "ends": bed["ends"],
         "half_width_m": bed["width_m"] / 2.0,
@@ -153,7 +156,7 @@ def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
         "domain_start_m": bed["start_m"] - beyond,
         "domain_end_m": bed["start_m"] + bed["length_m"] + bed["travel_m"] + beyond,
         "domain_margin_m": margin,
-        "domain_top_m": bed["temporary_floor_m"] + max(filled, PILE_UP * bed["thickness_m"]) + 2.0 * margin,
+        "domain_top_m": bed["temporary_floor_m"] + max(_filled(bed), PILE_UP * bed["thickness_m"]) + 2.0 * margin,
     }
 
 

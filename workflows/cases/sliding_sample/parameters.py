@@ -21,6 +21,7 @@ from bulkwear.workflows.engine.derived import (
     whole_steps,
     window_lengths,
 )
+from bulkwear.workflows.engine.pouring import bulk_density, particles_of_mass
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
 RAMP = ("height_above_floor_m", "skirt_slope_rad", "skirt_radius_m")  # what the sample's skirt depends on
@@ -79,11 +80,7 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
     travel = sliding["run_in_m"] + sliding["travel_m"] if bed["ends"] == WALLS else 0.0  # of the bed within its domain
     window = [bed["exchange_m"], *window_lengths(particle)] if bed["ends"] == WINDOW else []
     length = math.fsum([bed["ahead_m"], bed["behind_m"], sample["length_m"], travel, *window])
-    solid_volume = length * bed["width_m"] * bed["thickness_m"] * particle["bulk_solid_fraction"]
-    per_volume = math.fsum(
-        fraction / (math.pi / 6.0 * diameter**3)
-        for fraction, diameter in zip(particle["mass_fractions"], particle["diameters_m"], strict=True)
-    )
+    mass = bulk_density(particle) * length * bed["width_m"] * bed["thickness_m"]
     return {
         "ramp_hop_m": ramp_hop(sliding["velocity_m_per_s"], last_slope(sample)),
         "skirt_width_m": skirt_width(*(sample[key] for key in RAMP)),
@@ -93,8 +90,8 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
         "highest_point_m": sample["height_above_floor_m"]
         + highest_point(parameters["pattern"])
         + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
-        "bed_mass_kg": solid_volume * particle["density_kg_per_m3"],
-        "bed_particles": round(solid_volume * per_volume),
+        "bed_mass_kg": mass,
+        "bed_particles": round(particles_of_mass(particle, mass)),
     }
 
 

@@ -9,6 +9,7 @@ from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
 from bulkwear.workflows.config.design import FACTORS, Study
 from bulkwear.workflows.engine.case import Run
+from bulkwear.workflows.engine.pouring import bulk_density
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.text import name_and_unit
 
@@ -96,7 +97,7 @@ def _passing_bed(parameters: dict[str, Any]) -> dict[str, float]:
         "velocity": parameters["sliding"]["velocity_m_per_s"],
         "thickness": bed["thickness_m"],
         "width": bed["width_m"],
-        "bulk_density": particle["density_kg_per_m3"] * particle["bulk_solid_fraction"],
+        "bulk_density": bulk_density(particle),
     }
 
 

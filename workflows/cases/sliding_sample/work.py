@@ -13,7 +13,8 @@ from bulkwear.workflows.cases.sliding_sample.parameters import RAMP
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.derived import ADAPTIVE, WINDOW
-from bulkwear.workflows.engine.work import EMPTY_DIAMETERS, Stage, builds_per_step, bytes_of_bed, bytes_of_run
+from bulkwear.workflows.engine.pouring import bulk_density
+from bulkwear.workflows.engine.work import Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
 # Recession of the fastest node over the mean that Archard's law gives for the bed's weight on a plain floor. From the
 # 208 adaptive cycles of worn_bump at quick fidelity; the only number here that hangs on one run.
@@ -29,26 +30,22 @@ def surface_triangles(run: Parameters) -> float:
     return sample_triangles(*lengths, pattern_of(run["pattern"]), *(sample[key] for key in RAMP))
 
 
-def settled_particles(run: Parameters) -> float:
-    """Return about how many particles are left of a run's bed when it is levelled."""
-    empty = EMPTY_DIAMETERS * run["particle"]["median_diameter_m"]
-    return run["derived"]["bed_particles"] * max(1.0 - empty / run["bed"]["thickness_m"], 0.0)
-
-
 def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
-    """Return the stages of filling a bed, of which `run` is one that starts from it: settling, then levelled.
+    """Return the stages of filling a bed, of which `run` is one that starts from it: settling.
 
     In a window that travels it falls to the true floor once more.
     """
-    parameters = settled_bed(bed)
-    poured = run["derived"]["bed_particles"] * deck.FILL_EXCESS
-    levelled = parameters["relaxing_steps"] + parameters.get("packing_steps", 0)
-    return (Stage(1, parameters["settling_steps"], poured), Stage(0, levelled, settled_particles(run)))
+    parameters, particles = settled_bed(bed), run["derived"]["bed_particles"]
+    return (
+        Stage(1, parameters["settling_steps"], particles),
+        Stage(0, parameters.get("packing_steps", 0), particles),
+    )
 
 
 def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
     """Return the stages of a run: lowering, run-in, wear cycles."""
-    derived, particles, triangles = run["derived"], settled_particles(run), surface_triangles(run)
+    derived, triangles = run["derived"], surface_triangles(run)
+    particles = derived["bed_particles"]
     lowering = lowered_bed(run, bed, "")["lowering_steps"]
     travel, run_in = derived["travel_steps"], derived["run_in_steps"]
     often = builds_per_step(run) + exchanges_per_step(run)
@@ -71,18 +68,17 @@ def cycles(run: Parameters) -> int:
     sliding, particle, wear = run["sliding"], run["particle"], run["wear"]
     if sliding["cycles"] != ADAPTIVE:
         return sliding["cycles"]
-    bulk = particle["density_kg_per_m3"] * particle["bulk_solid_fraction"]
-    weight = bulk * GRAVITY * run["bed"]["thickness_m"]
+    weight = bulk_density(particle) * GRAVITY * run["bed"]["thickness_m"]
     recession = FASTEST_OVER_MEAN * wear["accelerated_wear_coefficient_per_pa"] * weight * sliding["travel_m"]
     return max(math.ceil(recession / (wear["largest_step_edge_fraction"] * run["sample"]["element_size_m"])), 1)
 
 
 def bed_bytes(run: Parameters) -> float:
     """Return what a bed leaves on disk."""
-    return bytes_of_bed(settled_particles(run))
+    return bytes_of_bed(run["derived"]["bed_particles"])
 
 
 def run_bytes(run: Parameters) -> float:
     """Return what a run leaves on disk."""
     triangles = surface_triangles(run)
-    return bytes_of_run(settled_particles(run), triangles, triangles, cycles(run))
+    return bytes_of_run(run["derived"]["bed_particles"], triangles, triangles, cycles(run))

@@ -13,7 +13,6 @@ from bulkwear.workflows.cases.circular_tester.work import surface_triangles
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain, bed_deck_text, deck_text, write_bed
-from bulkwear.workflows.engine.decks import FILL_EXCESS, FILL_FRACTION
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.forecast.forecast import work_of
 from tests import DATA
@@ -222,15 +221,13 @@ def test_the_poured_mass_is_that_of_a_level_bed(shape, scale):
     block = 0.1 * 0.1 * (0.01 + bed["headroom_m"])
     poured, particle = study.case.bed_deck(bed), bed["particle"]
     level = 0.59 * 2460.0 * (width * middle * turned * 0.15 - block)
-    assert poured["poured_mass_kg"] == pytest.approx(FILL_EXCESS * level, rel=ROUND_OFF)
+    assert poured["poured_mass_kg"] == pytest.approx(1.02 * level, rel=ROUND_OFF)
     gap = 0.6 * max(particle["diameters_m"])
     low, high = np.array(poured["block_m"]).reshape(3, 2).T
     assert low[2] > poured["fill_m"][4] - 2.0 * gap and high[2] < poured["fill_m"][5]  # the block lies within
     length = middle * turned - (2.0 * gap if shape == "channel" else 0.0)
     room = (width - 2.0 * gap) * length * (poured["fill_m"][5] - poured["fill_m"][4]) - np.prod(high - low)
-    assert poured["poured_mass_kg"] == pytest.approx(
-        FILL_FRACTION * particle["density_kg_per_m3"] * room, rel=ROUND_OFF
-    )
+    assert poured["poured_mass_kg"] == pytest.approx(0.34 * particle["density_kg_per_m3"] * room, rel=ROUND_OFF)
 
 
 def test_work_is_that_of_beds_and_runs():

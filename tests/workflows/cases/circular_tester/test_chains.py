@@ -15,11 +15,10 @@ from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.postproc.statistics.verdicts import UNSAID
 from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import distribution as tester_distribution
-from bulkwear.workflows.cases.circular_tester.beds import MASS_TOLERANCE
 from bulkwear.workflows.cases.circular_tester.key_numbers import result_table
 from bulkwear.workflows.cases.circular_tester.page import sections
 from bulkwear.workflows.engine import cycles
-from bulkwear.workflows.engine.beds import MEASURES, bed_fault
+from bulkwear.workflows.engine.beds import MASS_TOLERANCE, MEASURES, bed_fault
 from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.job import write_table
 from bulkwear.workflows.engine.state import read_state
@@ -175,7 +174,7 @@ def test_snapshots_become_a_table_of_the_lowest_layer(finished):
 @pytest.fixture(scope="module")
 def tables(finished):
     """The tables of the study by name."""
-    make_products(finished.study, finished.root, ["tester_runs", "tester_beds"], REMARKS)
+    make_products(finished.study, finished.root, ["tester_runs", "beds"], REMARKS)
     return {path.stem: pd.read_csv(path) for path in (finished.folder / "tester").glob("*.csv")}
 
 

@@ -20,12 +20,12 @@ from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.update import CARRIED_VOLUME, REMOVED_THICKNESS
 from bulkwear.workflows.cases.equipment import blocks, flow
 from bulkwear.workflows.cases.equipment.motions import motion_of
-from bulkwear.workflows.cases.equipment.parameters import mean_particle_mass
 from bulkwear.workflows.cases.equipment.surfaces import faces_of
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import CycleError
 from bulkwear.workflows.engine.cycles import run_chain
 from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.pouring import particles_of_mass
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, solver_command, solver_environment
 from bulkwear.workflows.engine.wear_step import wear
@@ -152,7 +152,7 @@ def test_feed_is_what_the_study_says(finished):
     last, rate = whole_flow(finished).iloc[-1], finished.parameters["inlet"]["rate_kg_per_s"]
     batch = whole_flow(finished)["inserted_mass_kg"].diff().max()
     assert abs(last["inserted_mass_kg"] - rate * last["time_s"]) < BATCHES * batch
-    count = last["inserted_mass_kg"] / mean_particle_mass(finished.parameters["particle"])
+    count = particles_of_mass(finished.parameters["particle"], last["inserted_mass_kg"])
     assert count == pytest.approx(last["inserted_particles"], rel=0.15)  # 300 particles of two sizes: 4 %
     taken = batch_places(finished)
     assert all(len(places) > 3 for places in taken)

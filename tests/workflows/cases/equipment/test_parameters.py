@@ -8,11 +8,11 @@ import pytest
 from bulkwear.workflows.cases.equipment.parameters import (
     REPORTS,
     filled_mass,
-    mean_particle_mass,
     most_blocks,
     start_up_blocks,
 )
 from bulkwear.workflows.config.design import ConfigError
+from bulkwear.workflows.engine.pouring import particles_of_mass
 from tests.support.own_machine_project import ORE, SETTINGS, SHAFT, SPEED_RPM, machine_study
 
 ROUND_OFF = 1e-12  # relative; a few products of decimal fractions
@@ -166,13 +166,13 @@ def test_travel_is_that_of_all_wear_cycles(run):
     assert run["derived"]["travel_steps"] == (most_blocks(run) - 1) * run["derived"]["first_cycle_steps"]
 
 
-def test_mean_particle_mass_counts_particles(run):
+def test_a_tonne_has_the_particles_of_its_classes(run):
     """A tonne has as many particles as its classes have together."""
     particle = run["particle"]
     masses = [2500 * math.pi / 6.0 * diameter**3 for diameter in particle["diameters_m"]]
     count = sum(1000.0 * share / mass for share, mass in zip(particle["mass_fractions"], masses, strict=True))
-    assert 1000.0 / mean_particle_mass(particle) == pytest.approx(count, rel=ROUND_OFF)
-    assert masses[0] < mean_particle_mass(particle) < masses[1]
+    assert particles_of_mass(particle, 1000.0) == pytest.approx(count, rel=ROUND_OFF)
+    assert masses[0] < 1000.0 / count < masses[1]
 
 
 def test_filled_mass_is_bulk_volume_times_bulk_density(tmp_path, run):
@@ -182,6 +182,6 @@ def test_filled_mass_is_bulk_volume_times_bulk_density(tmp_path, run):
     mass = 0.3 * math.pi * 0.2**2 * 0.1 * ORE["bulk_solid_fraction"] * ORE["density_kg_per_m3"]
     assert filled_mass(filled) == pytest.approx(mass, rel=ROUND_OFF)
     fed = run["inlet"]["rate_kg_per_s"] * 0.5 * 0.45
-    expected = np.array([fed, fed + mass]) / mean_particle_mass(run["particle"])
+    expected = [particles_of_mass(run["particle"], each) for each in (fed, fed + mass)]
     found = [each["derived"]["held_particles"] for each in (run, filled)]
     np.testing.assert_allclose(found, expected, rtol=ROUND_OFF)

@@ -8,6 +8,8 @@ from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_b
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.sources import list_studies, read_sources
 from bulkwear.workflows.engine import decks as deck
+from bulkwear.workflows.engine.beds import bed_fault
+from bulkwear.workflows.engine.cycles import fill_bed
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.engine.templates import DeckError, render
@@ -171,3 +173,45 @@ def test_a_periodic_bed_has_no_ends():
         assert "shear y ${velocity}" in text and "v_bed_pace" in text
     assert settled["domain_end_m"] - settled["domain_start_m"] == pytest.approx(0.02 + 0.04 + 0.08, rel=1e-12)
     assert settled["fill_gap_m"] == 0.0
+
+
+@pytest.mark.parametrize("scale", [2, 4, 6, 12])
+@pytest.mark.parametrize("ends", ["walls", "periodic", "window"])
+def test_the_poured_mass_is_that_of_a_level_bed(ends, scale):
+    """Whatever ends and particles: bulk density times width, length and thickness, and the room in which it is placed,
+    off floor and end walls, holds it at the fraction that can be placed; no grain sticks out of the domain.
+    """
+    wide = {
+        "ends": ends,
+        "ahead_mm": 500,
+        "behind_mm": 500,
+        "width_mm": 300,
+        "allow_thin_bed": True,
+        "exchange_mm": 200,
+    }
+    _, bed = run_and_bed(tiny_study(particle_scale=scale, bed=wide, sample={"length_mm": 40}))
+    settled, largest = settled_bed(bed), max(bed["particle"]["diameters_m"])
+    mass = 0.59 * 2460.0 * 0.3 * bed["length_m"] * bed["thickness_m"]
+    assert settled["poured_mass_kg"] == pytest.approx(mass, rel=1e-12)
+    gap = 0.6 * largest
+    length = bed["length_m"] - (2.0 * gap if ends == "walls" else largest)  # none is placed across periodic faces
+    room = (0.3 - largest) * length * (settled["fill_top_m"] - bed["temporary_floor_m"] - gap)
+    assert 0.34 * 2460.0 * room == pytest.approx(mass, rel=1e-12)
+    assert settled["fill_bottom_m"] - bed["temporary_floor_m"] == pytest.approx(gap, rel=1e-12)
+    assert settled["fill_top_m"] + 0.5 * largest < settled["domain_top_m"]
+    assert "delete_atoms" not in render("settled_bed", settled)
+
+
+@pytest.mark.solver
+@pytest.mark.parametrize("ends", ["walls", "periodic"])
+def test_a_settled_bed_has_its_mass_and_level(tmp_path, ends):
+    """The solver's bed is within its tolerances; asked for half the thickness, it is refused with both numbers."""
+    study = tiny_study(bed={"ends": ends, "ahead_mm": 80})
+    bed = study.beds["bed_1"]
+    fill_bed(study.case, "bed_1", bed, tmp_path)
+    mass, level = study.case.bed_measures(bed, tmp_path / "log.liggghts")
+    assert not mass.missed and not level.missed
+    assert 0.0 < level.found - level.asked < 0.5 * bed["particle"]["median_diameter_m"]
+    halved = study.case.bed_measures({**bed, "thickness_m": 0.5 * bed["thickness_m"]}, tmp_path / "log.liggghts")
+    assert [each.missed for each in halved] == [True, True]
+    assert "mass" in bed_fault(halved) and "level" in bed_fault(halved)

@@ -22,7 +22,6 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.bulk_simulations import (
     FILLED,
-    POURED,
     filled_particles,
     simulated,
     simulation_bytes,
@@ -35,7 +34,7 @@ from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
 from bulkwear.workflows.engine.solver import DECK, executable_of, run_deck
 from bulkwear.workflows.engine.state import read_state
 from bulkwear.workflows.engine.templates import render, used_sections
-from bulkwear.workflows.engine.work import EMPTY_DIAMETERS, Stage, Work
+from bulkwear.workflows.engine.work import Stage, Work
 
 REST_KEYS = ("energy_fraction", "check_interval_s", "calm_checks", "longest_s")
 END_DIAMETERS = 5.0  # -, of a bed next to its end walls, left out
@@ -58,7 +57,7 @@ def container(run: Parameters, packing: Mapping[str, Any]) -> dict[str, Any]:
     height = min(packing["fill_height_m"], packing["most_fill_diameters"] * diameter)
     return {
         "kind": CONTAINER,
-        "box": {"length_m": width, "width_m": width, "fill_height_m": height},
+        "box": {"length_m": width, "width_m": width, "fill_height_m": height, "ends": PERIODIC},
         "shaking": {
             "amplitude_m": packing["amplitude_diameters"] * diameter,
             "frequency_rad_per_s": packing["frequency_rad_per_s"],
@@ -82,10 +81,8 @@ def packed_container(test: Mapping[str, Any]) -> dict[str, Any]:
     shaking, margin = test["shaking"], margin_of(test)
     return {
         **filled_box(test, ("particle", "floor", "floor")),
-        "ends": PERIODIC,
         "outflow": "none",
         "state_columns": f"{deck.STATE_COLUMNS} c_contacts",
-        "fill_gap_m": 0.0,
         "domain_bottom_m": -margin,
         "domain_top_m": fill_top(test) + margin,
         "shaking_amplitude_m": shaking["amplitude_m"],
@@ -130,12 +127,11 @@ def container_stages(test: Mapping[str, Any]) -> tuple[Stage, ...]:
     """Return the stages of a container: filling until rest, then shaking and what follows until rest."""
     step, filled = time_step(test), filled_particles(test)
     height = test["box"]["fill_height_m"]
-    levelled = filled * (1.0 - EMPTY_DIAMETERS * test["particle"]["median_diameter_m"] / height)
     filling = FILLING_FREE_FALLS * free_fall(fill_top(test))
     shaking = test["shaking"]["duration_s"] + RESTING_FREE_FALLS * free_fall(height)
     return (
-        Stage(1, deck.steps(filling, step), POURED * filled),
-        Stage(0, deck.steps(shaking, step), levelled, moving=True),
+        Stage(1, deck.steps(filling, step), filled),
+        Stage(0, deck.steps(shaking, step), filled, moving=True),
     )
 
 

@@ -25,6 +25,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.bulk_simulations import FILLED, simulated
 from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
+from bulkwear.workflows.engine.derived import PERIODIC
 from bulkwear.workflows.engine.solver import DECK, run_deck
 from bulkwear.workflows.engine.templates import render, used_sections
 from tests.support.tiny import tiny_chain, tiny_study
@@ -62,7 +63,12 @@ def gravel_container(axis="y", seconds=0.1):
         "kind": "packed_container",
         "wall_material": walls,
         "floor_material": walls,
-        "box": {"length_m": 4.0 * diameter, "width_m": 4.0 * diameter, "fill_height_m": 13.5 * diameter},
+        "box": {
+            "length_m": 4.0 * diameter,
+            "width_m": 4.0 * diameter,
+            "fill_height_m": 13.5 * diameter,
+            "ends": PERIODIC,
+        },
         "rest": parameters["rest"],
         "shaking": {
             "amplitude_m": 0.1 * diameter,
