@@ -31,6 +31,7 @@ from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, 
 from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
 from bulkwear.postproc.plots.style import save
+from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, crossing
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.workflows.cases.sliding_sample.flow_history import (
@@ -170,6 +171,28 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     return table.assign(kind=kinds, place=place).sort_values(["particle_scale", "place"], ignore_index=True)
 
 
+def critical_scales(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return by candidate where its ratio passes one: critical_scale, its interval over forms, of which scales and how
+    many packings. Candidates of fewer than three scales are left out. See `postproc.statistics.crossing`.
+    """
+    pairs = runs.pivot(
+        index=["candidate", "particle_scale", "seed"], columns="surface", values="wear_mm3_per_m"
+    ).dropna()
+    over, rows = (pairs["convex"] / pairs["plain"]).rename("ratio").reset_index(), []
+    for candidate in [name for name in CANDIDATES if name in set(over["candidate"])]:
+        of = over[over["candidate"] == candidate]
+        scales = sorted(of["particle_scale"].unique())
+        if len(scales) < FEWEST_PLACES:
+            continue
+        found = crossing(of["particle_scale"].to_numpy(), of["ratio"].to_numpy())
+        ends = {"interval_low": found.low, "interval_high": found.high}
+        rows.append(
+            {"candidate": candidate, "scales": ", ".join(f"{scale:g}" for scale in scales), "packings": found.packings}
+            | {"critical_scale": found.value, **ends, "forms": found.forms, "reason": found.reason}
+        )
+    return pd.DataFrame(rows)
+
+
 # ---------------------------------------------------------------- page
 
 
@@ -195,7 +218,7 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
 def publish(output: Path, runs: pd.DataFrame) -> str:
     """Write figure and page of the runs; return the page."""
     table = comparison(runs)
-    page = results_page(table, runs)
+    page = results_page(table, critical_scales(runs), runs)
     (output / "critical_scale_results.md").write_text(page, encoding="utf-8")
     source = {scale: source_ratio(scale) for scale in table["particle_scale"]}
     save(ratio_by_candidate(table, source, remarks(runs, table)), output / "critical_scale.png")

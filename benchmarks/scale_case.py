@@ -12,7 +12,6 @@ from typing import Any
 
 from benchmarks.runs import FIRST_SEED, changed
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.workflows.cases.sliding_sample.work import settled_particles
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine import state
@@ -45,6 +44,22 @@ CANDIDATES: dict[str, Candidate] = {
         {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}},
         OPEN,
         "the source prints a curve; the study assumes 0.8, 1 and 1.2 of the median with 25, 50 and 25 % of the mass",
+    ),
+    "rolling on own spin": Candidate(
+        {"solver": {"rolling_friction": "own_spin"}},
+        OPEN,
+        "rolling friction against each particle's own spin, the standard model of the source's code, which does not say"
+        " which of its models ran; the study's `cdt` acts on the relative spin",
+    ),
+    "rolling as rvd": Candidate(
+        {"solver": {"rolling_friction": "rvd"}},
+        OPEN,
+        "rolling friction against the velocity of the surfaces over the contact, the other model of the source's code",
+    ),
+    "one size, rolling on own spin": Candidate(
+        {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}, "solver": {"rolling_friction": "own_spin"}},
+        OPEN,
+        "both",
     ),
     "sizes 0.5 to 1.5": Candidate(
         {"particle": {SIZES: [0.5, 0.75, 1.0, 1.25, 1.5], "mass_fractions": [0.1, 0.2, 0.4, 0.2, 0.1]}},
@@ -181,4 +196,4 @@ def with_change(run: Run, change: Mapping[str, Any], seed: int) -> Run:
 
 def particle_steps(chain: Chain) -> float:
     """Return about how many particle-steps a run has, known before it starts."""
-    return settled_particles(chain.parameters) * total_steps(chain)
+    return chain.parameters["derived"]["bed_particles"] * total_steps(chain)

@@ -99,8 +99,23 @@ def scatter_words(table: pd.DataFrame) -> str:
     )
 
 
-def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
-    """Return the page; table: as from `critical_scale.comparison`, runs: what it was made from."""
+def critical_part(critical: pd.DataFrame) -> list[str]:
+    """Return the section of the critical scales of candidates, if three scales of any were simulated."""
+    if critical.empty:
+        return []
+    return [
+        "## Critical particle scale",
+        prose(
+            "Where convex and plain sample wear alike, by the forms of the study's own page: those that the packings do"
+            " not reject leave the interval open together. Nothing is extended beyond the scales; the source has about"
+            " 4."
+        ),
+        markdown(critical),
+    ]
+
+
+def results_page(table: pd.DataFrame, critical: pd.DataFrame, runs: pd.DataFrame) -> str:
+    """Return the page; table: as from `critical_scale.comparison`, critical: from `critical_scales`, of the runs."""
     ratio = ["kind", "packings", "wear_over_plain", "ratio_low", "ratio_high", "over_reference"]
     ratio += ["over_reference_low", "over_reference_high"]
     parts_of = ["wear_mm3_per_m_convex", "wear_mm3_per_m_plain", "base_over_plain", "bumps_over_plain"]
@@ -131,6 +146,7 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
             " the sample, in % of the sample's; the source has 40 to 45 % (convex) and 10 to 15 % (plain)."
         ),
         markdown(table[[*names, *parts_of]]),
+        *critical_part(critical),
         "## What was changed",
         markdown(said),
         "## Triangles that one particle touches",

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.runs import FIRST_SEED, changed, simulated_run
-from bulkwear.workflows.cases.sliding_sample.work import settled_particles
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain, total_steps
@@ -116,7 +115,7 @@ def coarser(run: Run) -> Run:
 
 def particle_steps(chain: Chain) -> float:
     """Return about how many particle-steps a run has, known before it starts."""
-    return settled_particles(chain.parameters) * total_steps(chain)
+    return chain.parameters["derived"]["bed_particles"] * total_steps(chain)
 
 
 def said_beforehand(surfaces: Sequence[str], packings: int, settings: Mapping[str, Any]) -> str:

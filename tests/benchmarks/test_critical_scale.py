@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from benchmarks import critical_scale, scale_case, scale_page
-from benchmarks.critical_scale import comparison, finished, publish, remarks, simulate_all
+from benchmarks.critical_scale import comparison, critical_scales, finished, publish, remarks, simulate_all
 from benchmarks.runs import FIRST_SEED
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
 from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
@@ -150,3 +150,21 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     critical_scale.attempted(broken, lambda: (_ for _ in ()).throw(ValueError("no bed")))
     assert (broken.folder.parent / critical_scale.FAILED).read_text() == "no bed"
     critical_scale.attempted(broken, lambda: pytest.fail("failed before"))
+
+
+def test_a_candidate_has_a_critical_scale():
+    """Ratio 0.25 times the scale, with a scatter of a hundredth: one at scale 4. Two scales tell none."""
+    runs = [
+        {"candidate": name, "particle_scale": scale, "seed": seed, "surface": surface}
+        | {"wear_mm3_per_m": 1.0 if surface == "plain" else 0.25 * scale * (1.0 + 0.01 * (seed - 2))}
+        for name, scales in ((REFERENCE, (3, 4, 5, 6)), (OTHER, (3, 6)))
+        for scale in scales
+        for seed in (1, 2, 3)
+        for surface in ("plain", "convex")
+    ]
+    found = critical_scales(pd.DataFrame(runs))
+    assert found["candidate"].tolist() == [REFERENCE] and found["scales"].tolist() == ["3, 4, 5, 6"]
+    assert found["critical_scale"].iloc[0] == pytest.approx(4.0, abs=0.01)
+    assert found["interval_low"].iloc[0] < 4.0 < found["interval_high"].iloc[0]
+    text = "\n".join(scale_page.critical_part(found))
+    assert "critical scale" in text and scale_page.critical_part(found.iloc[:0]) == []

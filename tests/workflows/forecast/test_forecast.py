@@ -11,7 +11,7 @@ import yaml
 
 from bulkwear.workflows.cases.sliding_sample.particle_size.packings import container
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
-from bulkwear.workflows.cases.sliding_sample.work import cycles, settled_particles
+from bulkwear.workflows.cases.sliding_sample.work import cycles
 from bulkwear.workflows.config.design import list_studies, load_study
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.bulk_tests import time_step
@@ -159,7 +159,7 @@ def test_particles_of_levelled_beds(repository, name):
     study = load_study(name, overrides={"packings": 1, **settings})
     for run in study.runs:
         counted = counts[study.bed_of(run.name)]
-        assert settled_particles(run.parameters) == pytest.approx(counted, rel=PARTICLES)
+        assert run.parameters["derived"]["bed_particles"] == pytest.approx(counted, rel=PARTICLES)
 
 
 def test_adaptive_cycles_of_a_run_that_was_done(repository):
