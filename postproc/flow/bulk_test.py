@@ -27,13 +27,13 @@ HEAP, LOG = "heap.dump", "log.liggghts"
 class Boxes:
     """What of a test's geometry its measurement needs, m.
 
-    length: between the walls along y; width: across; slot: of a draw-down test, 0 without; diameter: median particle
+    length: between the walls along y; width: across; opening: of a draw-down test, 0 without; diameter: median particle
     """
 
     length: float
     width: float
     diameter: float
-    slot: float = 0.0
+    opening: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def measured_draw_down(folder: Path, boxes: Boxes, time_step: float) -> Measurem
     check_not_blocked(curve, folder / LOG)
     particles = read_snapshot(folder / HEAP)
     upper, lower = particles[particles["z_m"] > 0.0], particles[particles["z_m"] <= 0.0]
-    middle, edge = boxes.length / 2.0, boxes.slot / 2.0
+    middle, edge = boxes.length / 2.0, boxes.opening / 2.0
     slopes = {
         "draw_down_shear_angle_deg": [
             slope_between(upper, boxes, 0.0, middle - edge),

@@ -19,7 +19,7 @@ class OutflowError(ValueError):
 
 
 class BlockedError(OutflowError):
-    """An arch stands over the slot: this packing tells nothing, another one may flow."""
+    """An arch stands over the opening: this packing tells nothing, another one may flow."""
 
 
 def outflow_curve(log: str | Path, time_step: float) -> pd.DataFrame:
@@ -51,12 +51,12 @@ def check_count(curve: pd.DataFrame, removed: bool, log: str | Path) -> None:
 
 
 def check_not_blocked(curve: pd.DataFrame, log: str | Path) -> None:
-    """Raise BlockedError when less than a fifth of the particles flowed out: an arch stands over the slot."""
+    """Raise BlockedError when less than a fifth of the particles flowed out: an arch stands over the opening."""
     share = curve["count"].iloc[-1] / curve["particles"].iloc[0]
     if share < LEAST_OUTFLOW:
         raise BlockedError(
             f"{log}: {share:.0%} of the particles flowed out, allowed is {LEAST_OUTFLOW:.0%} or more; an arch blocks"
-            " the slot, a wider one or smaller particles let it flow."
+            " the opening, a wider one or smaller particles let it flow."
         )
 
 

@@ -4,7 +4,7 @@ The parameters of a test, all SI:
 
     kind       of those registered
     box        length_m, width_m, fill_height_m; ends: periodic along y, else walls; front_and_back: walls, else
-               periodic; fill_mass_per_width_kg_per_m: mass of the filling, else by its height and the bulk density;
+               periodic; fill_mass_kg_per_m: mass of the filling, else by its height and the bulk density;
                and what its kind adds
     rest       energy_fraction, check_interval_s, calm_checks, longest_s: when all counts as being at rest
     particle, wall_material, floor_material    as in Run.parameters
@@ -142,7 +142,7 @@ def bulk_materials(test: Mapping[str, Any]) -> dict[str, Any]:
 def filled_mass(test: Mapping[str, Any]) -> float:
     """Return the mass (kg) that is poured into a box: told per width, or that of its filling at the bulk density."""
     box = test["box"]
-    told = box.get("fill_mass_per_width_kg_per_m")
+    told = box.get("fill_mass_kg_per_m")
     per_width = bulk_density(test["particle"]) * box["length_m"] * box["fill_height_m"] if told is None else told
     return per_width * box["width_m"]
 

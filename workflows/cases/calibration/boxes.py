@@ -1,6 +1,6 @@
 """Bulk tests of a calibration: from a study's parameters to a test, its deck and meshes, and what it will cost.
 
-Tests are as in `workflows.engine.bulk_tests`; the box of a draw-down test has opening_m, lower_height_m and
+Tests are as in `workflows.engine.bulk_tests`; the box of a draw-down test has opening, opening_m, lower_height_m and
 front_and_back besides, and its floor_material is that of its front and back walls. That of a wall shear test has
 drag_speed_m_per_s and drag_m, its wall_material is that of its plate, and its floor_material that of its side walls.
 
@@ -30,13 +30,15 @@ SHEAR_BOX, DRAW_DOWN, WALL_SHEAR = "shear_box", "draw_down", "wall_shear"
 SECOND_WALL = {SHEAR_BOX: "floor_material", DRAW_DOWN: "front_material", WALL_SHEAR: "side_material"}
 SIMULATIONS = "simulations"  # folder of a study's
 PIT_DIAMETERS = 10.0  # -, domain below the floor of a shear box, where what flows out is taken out
-EMPTY_ANNULUS = 1.4  # -, of a slot no particle's centre passes, in particle diameters; Beverloo et al. 1961
+EMPTY_ANNULUS = 1.4  # -, of an opening no particle's centre passes, in particle diameters; Beverloo et al. 1961
 LEAST_WIDTH_DIAMETERS = 4.0  # -, of a periodic slice
 MESH_CLEARANCE = 1e-6  # m, between a mesh and the domain's faces
 FILLING_FREE_FALLS = 1.3  # -, until the poured box rests, in free falls through its filling; measured 1.2 to 1.4
 FLOWING_FREE_FALLS = 11.8  # -, until the heap rests, in free falls of the box's height; measured 9.3 to 14.7
+SLOT, SQUARE = "slot", "square"  # values of draw_down.opening
 SLOT_FLOW = 0.73  # -, of the flow from a slot, (D - k d)^1.5 sqrt(g); gives the 5.6 s that the slot was chosen for
-OUTFLOW_SHARE = 0.75  # -, of the content that a draw-down test's slot lets out: two slopes of some 30 degrees stay
+SQUARE_FLOW = 0.74  # -, the same of a square, (D - k d)^2.5 sqrt(g): Beverloo's 0.58 of a circle, by area
+OUTFLOW_SHARE = 0.75  # -, of the content that a draw-down test's opening lets out: two slopes of some 30 degrees stay
 FORCE_MEANS = 200  # means of a plate's forces over a drag
 STAYING = {
     SHEAR_BOX: 0.54,
@@ -77,11 +79,12 @@ def with_values(test: Mapping[str, Any], values: Mapping[str, float]) -> dict[st
     return changed
 
 
-def slot_length(test: Mapping[str, Any]) -> float:
-    """Return the length (m) of the simulated slot: that of the real one, wider for coarse-grained particles.
+def opening_length(test: Mapping[str, Any]) -> float:
+    """Return the length (m) of the simulated opening: that of the real one, wider for coarse-grained particles.
 
-    A slot of length D discharges as (D - k d)^(3/2): no centre passes within k d / 2 of its edges (W. A. Beverloo, H.
-    A. Leniger and J. van de Velde, Chemical Engineering Science 15 (1961) 260-269). D - k d is kept, k = 1.4.
+    A slot of length D discharges as (D - k d)^(3/2), a square as (D - k d)^(5/2): no centre passes within k d / 2 of
+    its edges (W. A. Beverloo, H. A. Leniger and J. van de Velde, Chemical Engineering Science 15 (1961) 260-269).
+    D - k d is kept, k = 1.4.
     """
     particle = test["particle"]
     real = particle["median_diameter_m"] / particle["scale"]
@@ -105,13 +108,13 @@ def walls_of(test: Mapping[str, Any]) -> list[tuple[tuple[float, float], tuple[f
         return [((0.0, 0.0), (0.0, height)), ((0.0, 0.0), (length, 0.0))]
     if test["kind"] == WALL_SHEAR:
         return [((0.0, 0.0), (0.0, height)), ((length, 0.0), (length, height)), ((0.0, 0.0), (length, 0.0))]
-    low, slot = -test["box"]["lower_height_m"], slot_length(test)
+    low, opening = -test["box"]["lower_height_m"], opening_length(test)
     return [
         ((0.0, low), (0.0, height)),
         ((length, low), (length, height)),
         ((0.0, low), (length, low)),
-        ((0.0, 0.0), ((length - slot) / 2.0, 0.0)),
-        (((length + slot) / 2.0, 0.0), (length, 0.0)),
+        ((0.0, 0.0), ((length - opening) / 2.0, 0.0)),
+        (((length + opening) / 2.0, 0.0), (length, 0.0)),
     ]
 
 
@@ -131,6 +134,7 @@ def draw_down(test: Mapping[str, Any]) -> dict[str, Any]:
         "half_domain_m": _half_domain(test),
         "lower_floor_m": -test["box"]["lower_height_m"],
         "front_and_back": test["box"]["front_and_back"],
+        "opening": test["box"]["opening"],
     }
 
 
@@ -184,37 +188,52 @@ def shear_box_surfaces(test: Mapping[str, Any]) -> Meshes:
     """Return the flat meshes that the deck of a shear box reads."""
     half = _half_domain(test)
     return {
-        "floor": _rectangle(half, 0.0, test["box"]["length_m"], 0.0),
+        "floor": _rectangle(-half, 0.0, test["box"]["length_m"], 0.0, half),
         "outflow": _outflow(test, _shear_box_domain(test)),
     }
 
 
 def draw_down_surfaces(test: Mapping[str, Any]) -> Meshes:
     """Return the flat meshes that the deck of a draw-down test reads."""
-    half, length = _half_domain(test), test["box"]["length_m"]
-    back, front = (length - slot_length(test)) / 2.0, (length + slot_length(test)) / 2.0
+    half, length, opening = _half_domain(test), test["box"]["length_m"], opening_length(test)
+    back, front = (length - opening) / 2.0, (length + opening) / 2.0
+    side = 0.5 * opening if test["box"]["opening"] == SQUARE else half
+    beside = [_rectangle(side, back, front, 0.0, half), _rectangle(-half, back, front, 0.0, -side)]
     return {
-        "back_floor": _rectangle(half, 0.0, back, 0.0),
-        "front_floor": _rectangle(half, front, length, 0.0),
-        "gate": _rectangle(half, back, front, 0.0),
+        "upper_floor": _together(
+            _rectangle(-half, 0.0, back, 0.0, half),
+            _rectangle(-half, front, length, 0.0, half),
+            *(beside if side < half else ()),
+        ),
+        "gate": _rectangle(-side, back, front, 0.0, side),
         "outflow": _outflow(test, _draw_down_domain(test)),
     }
 
 
 def wall_shear_surfaces(test: Mapping[str, Any]) -> Meshes:
     """Return the flat mesh that the deck of a wall shear test reads."""
-    return {"plate": _rectangle(_half_domain(test), 0.0, test["box"]["length_m"], 0.0)}
+    half = _half_domain(test)
+    return {"plate": _rectangle(-half, 0.0, test["box"]["length_m"], 0.0, half)}
 
 
 def _outflow(test: Mapping[str, Any], domain: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
     """Return the mesh below the floor, over the whole domain, that what flows out passes."""
     start, end = domain["domain_back_m"] + MESH_CLEARANCE, domain["domain_front_m"] - MESH_CLEARANCE
-    return _rectangle(_half_domain(test), start, end, -margin_of(test))
+    half = _half_domain(test)
+    return _rectangle(-half, start, end, -margin_of(test), half)
 
 
-def _rectangle(half_width: float, start: float, end: float, height: float) -> tuple[np.ndarray, np.ndarray]:
-    points = [(-half_width, start), (half_width, start), (half_width, end), (-half_width, end)]
+def _rectangle(left: float, start: float, end: float, height: float, right: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a level rectangle from left to right along x, from start to end along y (m)."""
+    points = [(left, start), (right, start), (right, end), (left, end)]
     return np.array([(x, y, height) for x, y in points]), np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def _together(*meshes: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return meshes as one."""
+    before = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    faces = [triangles + first for (_, triangles), first in zip(meshes, before, strict=False)]
+    return np.concatenate([points for points, _ in meshes]), np.concatenate(faces)
 
 
 KINDS = {
@@ -248,13 +267,14 @@ def _flowing_time(test: Mapping[str, Any]) -> float:
 
 
 def discharge_time(test: Mapping[str, Any]) -> float:
-    """Return about how long (s) the slot of a draw-down test flows; 0 for a shear box (Beverloo et al. 1961)."""
+    """Return about how long (s) the opening of a draw-down test flows; 0 for a shear box (Beverloo et al. 1961)."""
     if test["kind"] == SHEAR_BOX:
         return 0.0
-    diameter = test["particle"]["median_diameter_m"]
-    free = slot_length(test) - EMPTY_ANNULUS * diameter
-    content = OUTFLOW_SHARE * test["box"]["length_m"] * test["box"]["fill_height_m"]
-    return content / (SLOT_FLOW * math.sqrt(GRAVITY) * free**1.5)
+    box, diameter = test["box"], test["particle"]["median_diameter_m"]
+    free = opening_length(test) - EMPTY_ANNULUS * diameter
+    flow = SQUARE_FLOW * free**2.5 if box["opening"] == SQUARE else SLOT_FLOW * free**1.5 * box["width_m"]
+    content = OUTFLOW_SHARE * box["length_m"] * box["width_m"] * box["fill_height_m"]
+    return content / (flow * math.sqrt(GRAVITY))
 
 
 def calibration_stages(parameters: Parameters) -> tuple[Stage, ...]:

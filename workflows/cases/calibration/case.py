@@ -25,7 +25,9 @@ PUBLISHED = "config/published"
 DISCREPANCY = "model_discrepancy"  # column of a table of measured responses, where it is known
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
 LEAST_DRAG_DIAMETERS = 6.0  # -, of a plate's way. Measured: with friction 0.7 the bed slides after 2.8
-LEAST_SLOT_DIAMETERS = 5.0  # -, of a slot as simulated. Measured: at 4.0 an arch blocked it, friction 0.32 and 0.37
+LEAST_OPENING_DIAMETERS = (
+    5.0  # -, of an opening as simulated. Measured: a slot of 4.0 was blocked, friction 0.32 and 0.37
+)
 
 
 def published(name: str) -> pd.DataFrame:
@@ -65,17 +67,21 @@ def box_holds_particles(run: CheckedRun) -> Fault | None:
     return None
 
 
-def slot_lets_particles_pass(run: CheckedRun) -> Fault | None:
-    """A draw-down test's slot is at least five median diameters long as simulated, and shorter than half the box."""
+def opening_lets_particles_pass(run: CheckedRun) -> Fault | None:
+    """A draw-down test's opening is at least five median diameters long as simulated, shorter than half the box, and a
+    square one no wider than the box."""
     if "draw_down" not in run.parameters["calibration"]["tests"]:
         return None
     box, particle = run.parameters["draw_down"], run.parameters["particle"]
-    wider = boxes.slot_length({"box": box, "particle": particle}) - box["opening_m"]
-    low = LEAST_SLOT_DIAMETERS * particle["median_diameter_m"] - wider
+    wider = boxes.opening_length({"box": box, "particle": particle}) - box["opening_m"]
+    low = LEAST_OPENING_DIAMETERS * particle["median_diameter_m"] - wider
     if not low <= box["opening_m"] < box["length_m"] / 2.0:
         return "draw_down.opening_mm", (
             f"from {1e3 * max(low, 0.0):.4g} (five particle diameters as simulated) to half the box's length"
         )
+    widest = boxes.simulated_width(box, particle) - wider
+    if box["opening"] == boxes.SQUARE and box["opening_m"] > widest:
+        return "draw_down.opening_mm", f"at most {1e3 * widest:.4g} with draw_down.opening: square, the box's width"
     return None
 
 
@@ -165,7 +171,7 @@ class Calibration(Case):
     )
     checks: tuple[Check, ...] = (
         box_holds_particles,
-        slot_lets_particles_pass,
+        opening_lets_particles_pass,
         drag_makes_it_slide,
         one_wall_is_looked_for,
         ranges_in_order,

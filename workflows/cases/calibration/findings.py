@@ -136,7 +136,7 @@ def sentences(done: Calibrated) -> list[str]:
     blocked = int(sum(table[BLOCKED].sum() for table in (done.simulations, done.repeats) if BLOCKED in table))
     if blocked:
         said.append(
-            f"An arch blocked the slot in {blocked} packing(s), whose test was done again with another packing;"
+            f"An arch blocked the opening in {blocked} packing(s), whose test was done again with another packing;"
             f" {len(done.everything)} tests gave an answer."
         )
     unknown = [response_name(name) for name in done.problem.measured if name not in done.known.predicted]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.calibration.boxes import simulated_width
+from bulkwear.workflows.cases.calibration import boxes
 from bulkwear.workflows.cases.calibration.case import calibration_box
 from bulkwear.workflows.report.sections import Section
 
@@ -18,6 +18,10 @@ RUNS_NOTE = (
     "periodic slice as simulated, at least four particle diameters."
 )
 DECKS = ()  # `snakemake <study>_decks` renders them
+OPENINGS = {
+    boxes.SLOT: "slot of {:g} mm across the whole width",
+    boxes.SQUARE: "square of {:g} mm in the middle of the floor",
+}
 
 
 def told(study: Study) -> dict[str, Any]:
@@ -37,7 +41,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
 
 def run_columns(run: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the table of boxes tells of a box's parameters."""
-    width = simulated_width(run["shear_box"], run["particle"])
+    width = boxes.simulated_width(run["shear_box"], run["particle"])
     return {
         "particle_scale": run["particle"]["scale"],
         "simulated_width_mm": 1e3 * width,
@@ -55,11 +59,11 @@ def remarks(study: Study) -> list[str]:
         f"rolling friction {solver['rolling_friction']}, coefficients for the {solver['rolling_radius']} radius",
     ]
     for section in run["calibration"]["tests"]:
-        width, real = simulated_width(run[section], run["particle"]), run[section]["width_m"]
+        width, real = boxes.simulated_width(run[section], run["particle"]), run[section]["width_m"]
         widened = f" instead of {1e3 * real:g} mm" if width > real else ""
         said.append(f"{section.replace('_', ' ')} {1e3 * width:.3g} mm wide{widened}")
     if "draw_down" in run["calibration"]["tests"]:
-        said.append(f"slot of {1e3 * run['draw_down']['opening_m']:g} mm assumed")
+        said.append(f"{run['draw_down']['opening']} of {1e3 * run['draw_down']['opening_m']:g} mm assumed")
     return said
 
 
@@ -80,10 +84,10 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             "at rest: it changes sign at every step, and slopes creep, the faster the larger the time step.",
         ),
         (
-            "Slot of the draw-down test",
-            f"Its size is not published. A slot of {draw_down['opening_mm']:g} mm across the whole width is assumed, "
-            "chosen so that the published pair discharges in about the published time. How discharge times differ "
-            "between pairs is a result; their level is not.",
+            "Opening of the draw-down test",
+            f"Its size is not published. A {OPENINGS[draw_down['opening']].format(draw_down['opening_mm'])} "
+            "is assumed, chosen so that the published pair discharges in about the published time. How discharge "
+            "times differ between pairs is a result; their level is not.",
         ),
         (
             "Periodic slices",

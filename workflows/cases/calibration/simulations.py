@@ -1,7 +1,7 @@
 """Simulations of a calibration and what is measured on them: answers to tests, blocked packings done again, their cost.
 
 A simulation is kept by what it was made from (`workflows.engine.bulk_simulations`) and measured anew whenever it is
-asked for. A packing in which an arch blocks the slot is kept too, and another one takes its place.
+asked for. A packing in which an arch blocks the opening is kept too, and another one takes its place.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from bulkwear.postproc.flow.free_surface import FreeSurfaceError
 from bulkwear.postproc.flow.outflow import BlockedError, OutflowError
 from bulkwear.postproc.flow.wall_shear import WallShearError
 from bulkwear.postproc.inference.loop import packing_seed
-from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, slot_length
+from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, opening_length
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import time_step
@@ -35,14 +35,15 @@ BLOCKED = "blocked_packings"  # column of a table of simulations
 
 def boxes_of(test: Mapping[str, Any]) -> Boxes:
     """Return what the measurement of a test needs to know of its geometry."""
-    slot = slot_length(test) if test["kind"] == DRAW_DOWN else 0.0
-    return Boxes(test["box"]["length_m"], test["box"]["width_m"], test["particle"]["median_diameter_m"], slot)
+    opening = opening_length(test) if test["kind"] == DRAW_DOWN else 0.0
+    return Boxes(test["box"]["length_m"], test["box"]["width_m"], test["particle"]["median_diameter_m"], opening)
 
 
 def measured(test: Mapping[str, Any], folder: Path) -> Measurement:
     """Return the measurement on a finished simulation.
 
-    Raises BlockedError where an arch stands over the slot, SolverError naming the folder where nothing can be measured.
+    Raises BlockedError where an arch stands over the opening, SolverError with its folder where nothing can be
+    measured.
     """
     try:
         return MEASUREMENTS[test["kind"]](folder, boxes_of(test), time_step(test))
@@ -55,7 +56,7 @@ def measured(test: Mapping[str, Any], folder: Path) -> Measurement:
 def flowing(test: Mapping[str, Any], root: Path, say: Callable[[str], None]) -> tuple[Measurement, Path]:
     """Return the measurement of a test, simulated unless it was before, and its folder.
 
-    Where an arch blocks the slot those of the next packing, as in a laboratory, where the test is done again. Raises
+    Where an arch blocks the opening those of the next packing, as in a laboratory, where the test is done again. Raises
     SolverError when arches block PACKINGS of them.
     """
     for number in range(PACKINGS):
@@ -65,7 +66,8 @@ def flowing(test: Mapping[str, Any], root: Path, say: Callable[[str], None]) -> 
             return replace(measured(packing, folder), blocked=number), folder
         except BlockedError as blocked:
             fault = blocked
-            say(f"{test['kind']}: an arch blocks the slot in the packing of seed {packing['seed']}, it is kept as such")
+            said = f"an arch blocks the opening in the packing of seed {packing['seed']}, it is kept as such"
+            say(f"{test['kind']}: {said}")
     raise SolverError(f"{PACKINGS} packings of one test are blocked, the last one: {fault}")
 
 

@@ -230,7 +230,7 @@ class CircularTester(SampleCase):
         return gap_closing_step(parameters["wear"]["gap_closing_fraction"], duration, GRAVITY)
 
     def bed_stages(self, parameters: Parameters, bed: Parameters) -> tuple[Stage, ...]:
-        """Return filling, levelling and turning until the flow is steady."""
+        """Return filling, lowering of the consolidator and turning until the flow is steady."""
         return tester_work.bed_stages(parameters, bed)
 
     def bed_bytes(self, parameters: Parameters) -> float:

@@ -153,7 +153,7 @@ class SlidingSample(SampleCase):
         return (packing_work(packed_runs(study), to_si(study.settings)["packing"]),) if varies_scale(study) else ()
 
     def bed_stages(self, parameters: Parameters, bed: Parameters) -> tuple[Stage, ...]:
-        """Return settling and, levelled, relaxing."""
+        """Return settling, and in a window the fall to the true floor."""
         return sliding_work.bed_stages(parameters, bed)
 
     def bed_bytes(self, parameters: Parameters) -> float:

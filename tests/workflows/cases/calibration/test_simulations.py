@@ -1,4 +1,4 @@
-"""Simulations of a calibration: run until rest, measured, not done twice, done again where an arch blocks the slot."""
+"""Simulations of a calibration: until rest, measured, not done twice, done again where an arch blocks the opening."""
 
 import json
 import math
@@ -68,12 +68,12 @@ def test_the_state_tells_what_was_simulated(done):
 
 @pytest.fixture
 def arches(monkeypatch, tmp_path):
-    """A solver in whose first packings an arch blocks the slot: {seed: blocked}, filled by the test."""
+    """A solver in whose first packings an arch blocks the opening: {seed: blocked}, filled by the test."""
     blocked = {}
 
     def measure(test, folder):
         if blocked.get(test["seed"], False):
-            raise BlockedError(f"{folder}: an arch blocks the slot")
+            raise BlockedError(f"{folder}: an arch blocks the opening")
         return Measurement({"discharge_time_s": float(test["seed"])}, {}, {})
 
     monkeypatch.setattr(simulations, "simulated", lambda test, root: root / str(test["seed"]))
@@ -88,7 +88,7 @@ def test_a_blocked_packing_is_done_again_with_another(arches, tmp_path):
     found, folder = flowing(test, tmp_path, said.append)
     used = found.responses["discharge_time_s"]
     assert used != test["seed"] and folder.name == f"{used:.0f}"
-    assert answer(found)[BLOCKED] == 1 and "an arch blocks the slot" in said[0]
+    assert answer(found)[BLOCKED] == 1 and "an arch blocks the opening" in said[0]
     assert answer(simulate_all([test], tmp_path, 1, said.append)[0]) == answer(found)
     arches.clear()
     assert answer(flowing(test, tmp_path, said.append)[0]) == {"discharge_time_s": test["seed"], BLOCKED: 0}

@@ -100,7 +100,7 @@ def critical_scale_text(found: Crossing) -> str:
 
 
 def bed_sentences(plain: pd.DataFrame) -> list[str]:
-    """Return how beds that are levelled alike press at each scale, and at which ones they have few layers; nothing of
+    """Return how beds of one thickness press at each scale, and at which ones they have few layers; nothing of
     beds that are not.
 
     plain: a line per plain run: particle_scale, mean_normal_force_N, layers and bed_thickness_mm; packings are averaged
@@ -109,7 +109,7 @@ def bed_sentences(plain: pd.DataFrame) -> list[str]:
         return []
     means = plain.groupby("particle_scale")[["mean_normal_force_N", "layers"]].mean()
     over = (means["mean_normal_force_N"] / means["mean_normal_force_N"].iloc[0]).iloc[1:]
-    said = [f"All beds are levelled at {plain['bed_thickness_mm'].iloc[0]:g} mm."]
+    said = [f"All beds have the mass of a level one of {plain['bed_thickness_mm'].iloc[0]:g} mm."]
     if len(over):
         shares = ", ".join(f"{100.0 * share:.0f} % at scale {scale:g}" for scale, share in over.items())
         said.append(

@@ -116,14 +116,14 @@ def test_lighter_beds_are_told():
     than two layers by name, two layers are enough.
     """
     said = " ".join(bed_sentences(beds({12.0: 10.0, 6.0: 25.0, 8.0: 23.5}, layers=16.0)))
-    assert "levelled at 46 mm" in said
+    assert "a level one of 46 mm" in said
     assert "over that at scale 6, is 94 % at scale 8, 40 % at scale 12;" in said
     assert "Beds of scale 12 have fewer than 2 layers" in said
 
 
 def test_of_beds_that_cannot_be_compared_nothing_is_told():
     """One scale has no other to be set over; thicknesses that differ are another change; thick beds are beds."""
-    assert bed_sentences(beds({6.0: 25.0}, layers=16.0)) == ["All beds are levelled at 46 mm."]
+    assert bed_sentences(beds({6.0: 25.0}, layers=16.0)) == ["All beds have the mass of a level one of 46 mm."]
     assert bed_sentences(beds({6.0: 25.0, 8.0: 23.5}, layers=16.0, thicknesses=(46.0, 20.0))) == []
     assert "fewer" not in " ".join(bed_sentences(beds({6.0: 25.0, 8.0: 23.5}, layers=16.0)))
 
