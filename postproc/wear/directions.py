@@ -10,6 +10,8 @@ launches particles.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import sparse
 
@@ -18,7 +20,17 @@ from bulkwear.postproc.mesh import area_vectors, boundary_nodes, sum_over_nodes
 LEAST_LABEL_ANGLE_SINE = 0.34  # -, 20 degrees: flatter, two labels cannot be told apart by a motion
 OUTWARD_TOLERANCE = 1e-9  # -, cosine: rounding of normals stays far below
 MOST_REPAIRS = 60  # -, rounds in which directions that would lead out of a face are turned in
+ON_END = 1e-7  # m, from the end of a slice: drawings of four digits behind a millimetre
 OVERCORRECTION = 1.01  # -, of the part that leads out: ends after a few rounds instead of creeping up to zero
+
+
+@dataclass(frozen=True)
+class SliceEnds:
+    """The ends of a periodic slice: planes at low and high (m) along an axis (0, 1, 2)."""
+
+    axis: int
+    low: float
+    high: float
 
 
 def inward_directions(
@@ -60,6 +72,26 @@ def rim_directions(
     rim = np.union1d(boundary_nodes(triangles[worn]), triangles[worn][in_holder[triangles[worn]]])
     result = np.full((len(points), 3), np.nan)
     result[rim] = wall
+    return result
+
+
+def slice_directions(
+    points: np.ndarray, triangles: np.ndarray, ends: SliceEnds, worn: np.ndarray | None = None
+) -> np.ndarray:
+    """Directions (n, 3) for `displace`: within its end's plane at rim nodes on the ends of a periodic slice, else NaN.
+
+    Such a node goes on in its image at the other end. Along the normal of a rough face it would leave the slice, where
+    the solver has no room, or open a gap in which nothing holds particles. It goes along what of the mean inward normal
+    of the worn faces lies in the plane, out of no face; zero, where it stays, if there is no such way.
+    """
+    faces = triangles if worn is None else triangles[np.asarray(worn, dtype=bool)]
+    rim = np.zeros(len(points), dtype=bool)
+    rim[boundary_nodes(faces)] = True
+    rim &= (np.abs(points[:, [ends.axis]] - [ends.low, ends.high]) < ON_END).any(axis=1)
+    vectors = np.where(rim[:, None], inward_directions(points, faces), 0.0)
+    vectors[:, ends.axis] = 0.0
+    result = np.full((len(points), 3), np.nan)
+    result[rim] = _turned_in(_unit(vectors), faces, _unit(area_vectors(points, faces)), ends.axis)[rim]
     return result
 
 
@@ -178,8 +210,11 @@ def _corner_sum(faces, corner_values, face_vectors, n_points) -> np.ndarray:
     return sparse.csr_array((corner_values.ravel(), (faces.ravel(), column)), shape=shape) @ face_vectors
 
 
-def _turned_in(vectors, faces, normal) -> np.ndarray:
-    """Directions (n, 3) turned until none leads out of a face at its node; zero where that cannot be."""
+def _turned_in(vectors, faces, normal, flat: int | None = None) -> np.ndarray:
+    """Directions (n, 3) turned until none leads out of a face at its node; zero where that cannot be.
+
+    flat: axis along which the directions are 0 and stay so; None: none
+    """
     face, corner = np.nonzero(vectors.any(axis=1)[faces])
     node, out = faces[face, corner], normal[face]
     for _ in range(MOST_REPAIRS):
@@ -195,6 +230,8 @@ def _turned_in(vectors, faces, normal) -> np.ndarray:
         np.maximum.at(largest, node, outward)
         worst = outward == largest[node]
         np.subtract.at(vectors, node[worst], OVERCORRECTION * outward[worst, None] * out[worst])
+        if flat is not None:
+            vectors[node, flat] = 0.0
         vectors[node] = _unit(vectors[node])
     outward = np.einsum("ij,ij->i", vectors[node], out)
     vectors[node[outward > OUTWARD_TOLERANCE]] = 0.0

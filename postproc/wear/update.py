@@ -8,7 +8,7 @@ from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes, smallest_
 from bulkwear.postproc.wear.balance import check_growth, with_swept_rim
 from bulkwear.postproc.wear.built_shape import PRISTINE_RISE, face_labels, with_turned_shape
 from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, pristine_normal_depth, ray_depth
-from bulkwear.postproc.wear.directions import inward_directions, rim_directions
+from bulkwear.postproc.wear.directions import SliceEnds, inward_directions, rim_directions, slice_directions
 from bulkwear.postproc.wear.displacement import Displacement, volume_at_corners
 from bulkwear.postproc.wear.patch import ContactPatch, spread
 from bulkwear.postproc.wear.schemes import scheme_of
@@ -51,6 +51,7 @@ def wear_update(
     scheme: str = "conserving",
     pressed: tuple[np.ndarray, np.ndarray] | None = None,
     back: str = "go_on",
+    slice_ends: SliceEnds | None = None,
 ) -> tuple[SurfaceMesh, dict[str, float]]:
     """Wear the mesh by one cycle.
 
@@ -66,6 +67,8 @@ def wear_update(
     pressed : (m,) N s each, on front and back of the faces (`postproc.wear.ledger.pressed_sides`), by which pieces are
         turned first whose normals look away from the particles (`postproc.wear.side`); None: the normals are trusted
     back : "cap" stops nodes at the back where the thickness is known (`postproc.wear.thickness`), "go_on" does not
+
+    slice_ends : of a periodic slice, in whose planes the nodes there stay; None: there is none
 
     Returns
     -------
@@ -88,7 +91,8 @@ def wear_update(
     if back == "cap" and LOCAL_THICKNESS in mesh.point_data:
         room = room_to_back(mesh, worn & (np.asarray(worn_volume) > 0.0))
         step_limit = room if step_limit is None else np.fmin(step_limit, room)
-    moved = _moved(mesh, worn_volume, step_limit, wall, patch, scheme)
+    rim = _rim(mesh, wall, slice_ends)
+    moved = _moved(mesh, worn_volume, step_limit, rim, patch, scheme)
     thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
     fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
     result = SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields)
@@ -109,10 +113,19 @@ def _check_back(back: str) -> None:
         raise ValueError(f"back is '{back}', allowed are: {', '.join(BACKS)}")
 
 
-def _moved(mesh, worn_volume, step_limit, wall, patch, scheme) -> Displacement:
-    """Nodes moved by the scheme, every touched face into the body; arguments as in `wear_update`."""
+def _rim(mesh: SurfaceMesh, wall: tuple[float, float, float] | None, ends: SliceEnds | None) -> np.ndarray | None:
+    """Directions (n, 3) that nodes at the rim are given, NaN elsewhere; None where none are."""
     worn = worn_faces(mesh)
-    rim = None if wall is None else rim_directions(mesh.points, mesh.triangles, worn, wall)
+    if wall is not None:
+        return rim_directions(mesh.points, mesh.triangles, worn, wall)
+    return None if ends is None else slice_directions(mesh.points, mesh.triangles, ends, worn)
+
+
+def _moved(mesh, worn_volume, step_limit, rim, patch, scheme) -> Displacement:
+    """Nodes moved by the scheme, every touched face into the body; rim: directions at nodes that are given one, the
+    other arguments as in `wear_update`.
+    """
+    worn = worn_faces(mesh)
     volume = worn_volume if patch is None else spread(mesh.points, mesh.triangles, worn_volume, patch, worn)
     carried, label = _point_data(mesh, CARRIED_VOLUME), face_labels(mesh)
     rise = mesh.point_data.get(PRISTINE_RISE)

@@ -25,6 +25,7 @@ from bulkwear.workflows.engine.work import Stage, Work
 if TYPE_CHECKING:
     import pandas as pd
 
+    from bulkwear.postproc.wear.directions import SliceEnds
     from bulkwear.workflows.engine.beds import BedMeasure
     from bulkwear.workflows.engine.schedule import Span
 
@@ -198,6 +199,10 @@ class Case:
     def bed_deck(self, bed: Parameters) -> dict[str, Any]:
         """Return the parameters of the deck of a bed, whose template is `bed_template`."""
         raise NotImplementedError
+
+    def slice_ends(self, parameters: Parameters) -> SliceEnds | None:
+        """Return the ends of the periodic slice that a run's surface is cut by, if it is."""
+        return None
 
     def bed_measures(self, bed: Parameters, log: Path) -> list[BedMeasure]:
         """Return what was asked of a bed and what the log of its deck says it has; a bed that misses one is refused."""

@@ -112,6 +112,7 @@ def moved(
     limit = node_limits(case, parameters, surface, span)
     options = {
         "wall": case.rim_direction,
+        "slice_ends": case.slice_ends(parameters),
         "patch": contact_patch(parameters, ledger),
         "scheme": parameters["wear"]["scheme"],
         "pressed": pressed(surface, ledger),

@@ -12,11 +12,14 @@ from bulkwear.postproc.mesh import area_vectors, areas, enclosed_volume, shortes
 from bulkwear.postproc.wear.directions import (
     OUTWARD_TOLERANCE,
     LabelParting,
+    SliceEnds,
     inward_directions,
     loaded_directions,
     rim_directions,
+    slice_directions,
 )
 from bulkwear.postproc.wear.displacement import displace, swept_volume
+from tests.support.shapes import drum_with_lifters
 
 SEED = 20220317
 ROUNDING = 1e-12  # relative: sums over a few thousand numbers
@@ -194,3 +197,44 @@ def test_never_outward_of_any_face(seed, roughness, loaded):
     length = np.linalg.norm(direction, axis=1)
     assert (np.isclose(length, 1.0, atol=ROUNDING) | (length == 0.0)).all()
     assert (length == 0.0).mean() < 1.0
+
+
+def test_a_slice_stays_within_its_ends():
+    """Rough wear of a drum with lifters, round after round: nodes on the ends keep their place along the axis bit for
+    bit, no face grows, and the volume is the law's. Without the ends given they leave the slice.
+    """
+    drawn, _ = drum_with_lifters(0.5, 8, 0.04, 0.06, 0.1, 4)
+    axis = 1
+    along = drawn.points[:, axis]
+    ends = SliceEnds(axis, along.min(), along.max())
+    at_ends = (along == ends.low) | (along == ends.high)
+    rng = np.random.default_rng(SEED)
+    left = {}
+    for held in (True, False):
+        points = drawn.points
+        for _ in range(4):
+            volume = 2e-3 * areas(points, drawn.triangles) * rng.uniform(0.0, 2.0, len(drawn.triangles))
+            given_way = slice_directions(points, drawn.triangles, ends) if held else None
+            limit = 0.2 * shortest_edge_at_nodes(points, drawn.triangles)
+            result = displace(points, drawn.triangles, volume, None, limit, given_way)
+            motion = result.points - points
+            if held:
+                normals = unit_normals(points, drawn.triangles)
+                outward = np.einsum("mij,mj->mi", motion[drawn.triangles], normals)
+                assert outward.max() <= OUTWARD_TOLERANCE * np.abs(motion).max()
+                kept = result.applied_volume.sum() + result.carried_volume.sum()
+                assert kept == pytest.approx(volume.sum(), rel=ROUNDING)
+                assert swept_volume(points, motion, drawn.triangles).sum() > 0.5 * volume.sum()
+            points = result.points
+        left[held] = np.abs(points[at_ends, axis] - along[at_ends]).max()
+    assert left[True] == 0.0 and left[False] > 1e-4
+
+
+def test_only_the_rim_on_an_end_is_held():
+    """Inner nodes, and a rim off the ends, go their own way: NaN."""
+    drawn, _ = drum_with_lifters(0.5, 8, 0.04, 0.06, 0.1, 4)
+    axis = 1
+    along = drawn.points[:, axis]
+    found = slice_directions(drawn.points, drawn.triangles, SliceEnds(axis, along.min(), 1.0))
+    assert (np.isfinite(found).all(axis=1) == (along == along.min())).all()
+    assert (found[along == along.min(), axis] == 0.0).all()

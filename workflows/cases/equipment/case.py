@@ -23,6 +23,8 @@ from bulkwear.workflows.engine.work import Stage
 if TYPE_CHECKING:
     import pandas as pd
 
+    from bulkwear.postproc.wear.directions import SliceEnds
+
 SECONDS_PER_HOUR = 3600.0
 OF_WEAR = (*PART_DEFAULTS, "law_parameters")  # keys of a part
 OF_DURATION = ("time_step_s", "run_in_steps", "travel_steps")  # in which parts move, and particles fly
@@ -80,6 +82,13 @@ class Equipment(Case):
         remaining = parameters["operation"].get("change_out_remaining_m", 0.0)
         sections = super().surface_sections(parameters)
         return {**sections, "parts": parts, "derived": derived, "change_out_remaining_m": remaining}
+
+    def slice_ends(self, parameters: Parameters) -> SliceEnds | None:
+        """Return the ends of the slice in which a machine is periodic."""
+        from bulkwear.postproc.wear.directions import SliceEnds
+
+        ends = parameters["periodic"]
+        return SliceEnds("xyz".index(ends["axis"]), ends["low_m"], ends["high_m"]) if ends else None
 
     def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
         """Return all parts as one surface, each in the frame it was drawn in. Raises ConfigError for a machine that

@@ -12,6 +12,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import area_vectors, boundary_edges, read_surface
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.workflows.cases.equipment.life import (
     BY_MASS,
     WHOLE_PART,
@@ -23,7 +24,6 @@ from bulkwear.workflows.cases.equipment.life import (
 )
 from bulkwear.workflows.cases.equipment.machine_tables import rule_words
 from bulkwear.workflows.cases.equipment.motions import surface_runs
-from bulkwear.workflows.cases.equipment.surfaces import ON_END
 from bulkwear.workflows.cases.equipment.tables import (
     AT_A_PATCH,
     HOURS,

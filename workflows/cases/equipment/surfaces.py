@@ -14,12 +14,12 @@ import numpy as np
 from bulkwear.meshes.own.mesh import OwnMesh, own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.wear.bodies import body, together
+from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.workflows.cases.equipment.drawings import drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of, turn_s
 from bulkwear.workflows.config.layers import ConfigError
 
 POSES = 64  # of a moving part in a run, and in a turn, of which the room that it needs is made
-ON_END = 1e-7  # m, from the end of a slice: drawings of four digits behind a millimetre
 ALIKE = 1e-6  # relative, areas of a part's two ends
 FEED_CELLS = 8  # along each side of an inlet; still as large as a particle where it is eight particles wide
 PLACES = ("the whole of its motion", "where it stands")
