@@ -67,7 +67,6 @@ def wear_update(
     pressed : (m,) N s each, on front and back of the faces (`postproc.wear.ledger.pressed_sides`), by which pieces are
         turned first whose normals look away from the particles (`postproc.wear.side`); None: the normals are trusted
     back : "cap" stops nodes at the back where the thickness is known (`postproc.wear.thickness`), "go_on" does not
-
     slice_ends : of a periodic slice, in whose planes the nodes there stay; None: there is none
 
     Returns
@@ -89,28 +88,31 @@ def wear_update(
         round_about = np.isin(mesh.cell_data[PIECE], [piece.piece for piece in turned])
         mesh = with_turned_thickness(with_turned_shape(mesh, round_about), round_about)
     if back == "cap" and LOCAL_THICKNESS in mesh.point_data:
-        room = room_to_back(mesh, worn & (np.asarray(worn_volume) > 0.0))
-        step_limit = room if step_limit is None else np.fmin(step_limit, room)
+        step_limit = _limit_at_back(mesh, worn & (np.asarray(worn_volume) > 0.0), step_limit)
     rim = _rim(mesh, wall, slice_ends)
     moved = _moved(mesh, worn_volume, step_limit, rim, patch, scheme)
     thickness = add_removed_thickness(_point_data(mesh, REMOVED_THICKNESS), moved.step)
     fields = {REMOVED_THICKNESS: thickness, CARRIED_VOLUME: moved.carried_volume}
-    result = SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields)
-    result = with_lost_thickness(mesh, result)
+    moved_mesh = SurfaceMesh(moved.points, mesh.triangles, mesh.cell_data, mesh.point_data | fields)
+    result = with_lost_thickness(mesh, moved_mesh)
     through = worn_through(result)
     gone = through & (back == "cap")
     beyond = float(moved.carried_volume[gone].sum())
     result.point_data[CARRIED_VOLUME] = np.where(gone, 0.0, moved.carried_volume)
     record = _record(mesh, result, moved, float(np.sum(worn_volume, where=worn)), beyond)
-    return with_swept_rim(mesh, result), record | {
-        "turned_faces": sum(piece.faces for piece in turned),
-        "through_nodes": int(through.sum()),
-    }
+    counts = {"turned_faces": sum(piece.faces for piece in turned), "through_nodes": int(through.sum())}
+    return with_swept_rim(mesh, result), record | counts
 
 
 def _check_back(back: str) -> None:
     if back not in BACKS:
         raise ValueError(f"back is '{back}', allowed are: {', '.join(BACKS)}")
+
+
+def _limit_at_back(mesh: SurfaceMesh, worn: np.ndarray, step_limit: np.ndarray | None) -> np.ndarray:
+    """The limits (n,) m of the nodes' steps, none of which goes beyond the back."""
+    room = room_to_back(mesh, worn)
+    return room if step_limit is None else np.fmin(step_limit, room)
 
 
 def _rim(mesh: SurfaceMesh, wall: tuple[float, float, float] | None, ends: SliceEnds | None) -> np.ndarray | None:

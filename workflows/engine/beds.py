@@ -61,7 +61,12 @@ def write_measures(measures: Sequence[BedMeasure], folder: Path) -> None:
 
 
 def bed_fault(measures: Sequence[BedMeasure]) -> str | None:
-    """Return a phrase with all measures where one is missed, else None."""
-    if not any(each.missed for each in measures):
+    """Return a phrase with all measures where one is missed, else None; with the cause where the mass is as asked."""
+    missed = {each.measure: each for each in measures if each.missed}
+    if not missed:
         return None
-    return f"the bed is not as asked: {', '.join(each.said() for each in measures)}"
+    said = f"the bed is not as asked: {', '.join(each.said() for each in measures)}"
+    if "mass" in missed or "level" not in missed:
+        return said
+    density = missed["level"].asked / missed["level"].found
+    return f"{said}; it settles to {density:.2g} times the bulk density of its material (bulk_solid_fraction)"

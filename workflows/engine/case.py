@@ -94,7 +94,7 @@ class Case:
     seed_setting: that seeds the bed which a run starts from, a column of the design may have its place; "" without
         beds, where a setting has one packing, for the reason `one_packing`
     figure_modules: of its folder, that declare figures and tables (`workflows.report.products`), in a page's order
-    shared_figures: names of those of `workflows.report.surfaces` that it shows, after its own
+    shared_figures: names of those of `workflows.report.products.SHARED` that it shows, after its own
     run_rules: rules that make a job of every run
     solver_rules: those whose jobs call the solver
     counts_on: whether the solver's steps are counted through all cycles of a run, not from the start of each

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.engine.beds import MEASURES
+from bulkwear.workflows.report.products import Job, tables
 from bulkwear.workflows.report.sections import Block, Table
 
 if TYPE_CHECKING:
@@ -40,6 +41,12 @@ def values_of_beds(study: Study) -> dict[str, dict[str, Any]]:
     return found
 
 
+@tables(inputs={"beds": every_bed}, told={"beds": values_of_beds}, tables={"beds": BEDS}, digits=9)
+def beds(job: Job) -> dict[str, pd.DataFrame]:
+    """Make the table of the beds that runs started from."""
+    return {"beds": beds_table(job.told.beds, job.files.beds)}
+
+
 def beds_table(values: Mapping[str, Mapping[str, Any]], files: Sequence[str | Path]) -> pd.DataFrame:
     """Return a row per bed: asked, found and tolerance of each measure.
 
@@ -59,7 +66,7 @@ def beds_table(values: Mapping[str, Mapping[str, Any]], files: Sequence[str | Pa
     return pd.DataFrame(rows)
 
 
-def beds(folder: Path, note: str = NOTE) -> list[Block]:
+def blocks_of_beds(folder: Path, note: str = NOTE) -> list[Block]:
     """Return the table of a study's beds as a page shows it."""
     import pandas as pd
 

@@ -1,9 +1,9 @@
 """Figures and tables of a study: each is one declaration, and one rule and one script make them all.
 
-A declaration is a decorated function of a module `figures` of a case (`Case.figure_modules`), or of `surfaces` here,
-whose figures any case may show (`Case.shared_figures`). It says what files the function reads, what of the study's
-configuration it is told, and the caption; the function returns the figure and the table beside it. Modules that are
-slow to import are imported inside the function: Snakemake reads all declarations before the first job.
+A declaration is a decorated function of a module `figures` of a case (`Case.figure_modules`), or of those modules here
+(`SHARED`) whose figures and tables any case may show (`Case.shared_figures`). It says what files the function reads,
+what of the study's configuration it is told, and the caption; the function returns the figure and the table beside it.
+Modules that are slow to import are imported inside the function: Snakemake reads all declarations before the first job.
 
     @figure("Wear", "Wear against travel", inputs={"wear": every_run("wear.csv")}, caption="Volumes over travel.")
     def wear_against_travel(job):
@@ -32,7 +32,7 @@ from bulkwear.workflows.report.simulated import figure_remark, versions_of
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
-SHARED = "bulkwear.workflows.report.surfaces"  # figures that any case may show
+SHARED = ("bulkwear.workflows.report.beds", "bulkwear.workflows.report.surfaces")  # any case may show what is there
 OfStudy = Callable[["Study"], Any]
 Source = str | OfStudy  # a path, in which {study} stands for its name, or what gives one path or several
 
@@ -139,7 +139,7 @@ def products_of(case: Case) -> dict[str, Product]:
     """Return every figure and job of tables of a case by name, in the order in which pages show them."""
     modules = [case_module(case, name) for name in case.figure_modules]
     found = {name: product for module in modules for name, product in _declared(module).items()}
-    shared = _declared(importlib.import_module(SHARED))
+    shared = {name: product for each in SHARED for name, product in _declared(importlib.import_module(each)).items()}
     return found | {name: shared[name] for name in case.shared_figures}
 
 

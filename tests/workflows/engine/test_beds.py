@@ -14,7 +14,14 @@ def test_a_bed_that_misses_one_measure_is_told_with_all():
     """Found, asked and tolerance of each, with units."""
     assert bed_fault([MASS]) is None and bed_fault([]) is None
     said = "the bed is not as asked: mass 20.4 kg (asked 20.5 within 0.2), level 0.131 m (asked 0.15 within 0.008)"
-    assert bed_fault([MASS, LEVEL]) == said
+    cause = "it settles to 1.1 times the bulk density of its material (bulk_solid_fraction)"
+    assert bed_fault([MASS, LEVEL]) == f"{said}; {cause}"
+
+
+def test_a_bed_that_lacks_mass_says_nothing_of_its_density():
+    """Its level is low because particles are missing."""
+    said = bed_fault([BedMeasure("mass", "kg", 20.5, 17.0, 0.2), LEVEL])
+    assert said.startswith("the bed is not as asked: mass 17 kg") and "bulk_solid_fraction" not in said
 
 
 def test_no_number_is_missed():

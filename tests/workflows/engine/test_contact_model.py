@@ -39,8 +39,8 @@ ONE_BY_ONE = [{key: model} for key, models in CHOICES.items() for model in model
 SURFACE_TENSION, ANGLE, RADIUS = 0.07, 60.0, 5e-3  # N/m, degrees, m
 PROPERTIES = {  # what the models need beside their names
     "characteristic_velocity_m_per_s": 1.0,
-    "cohesion_energy_density_j_per_m3": 1e5,
-    "wall_cohesion_energy_density_j_per_m3": 2e4,
+    "cohesion_energy_density_j_per_m3": 2e4,
+    "wall_cohesion_energy_density_j_per_m3": 4e3,
     "rolling_viscous_damping": 0.3,
     "rolling_stiffness": 3.0,
     "liquid_volume_fraction": 0.05,

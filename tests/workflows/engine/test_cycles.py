@@ -42,6 +42,7 @@ STL_ROUNDING = 1e-9  # m; %.9g of coordinates below 0.1 m is good to 5e-11
 FORCE_TOLERANCE = 0.1  # relative; ledger and log sample the same fluctuating force at different steps
 RANKS_TOLERANCE = 1e-2  # relative; rounding differs between ranks and chaos lets it grow over 580 steps
 ROUND_OFF = 1e-9  # relative; sums of 580 equal time steps
+LEAST_EXCESS = 0.01  # -, of the wear due: the per-triangle rule takes more, seen 0.06 to 0.15; others by rounding
 STRETCH_TOLERANCE = 0.05  # relative; a stretch is a whole number of some 58 time steps, the last one what is left
 VELOCITY = 1.0  # m/s, of the demo's row
 # Relative, of totals: a dump evaluates forces once more, with the velocities of the end of the step, and damping is
@@ -251,7 +252,7 @@ def test_other_ways_to_wear_run_too(finished, tmp_path, wear):
     row = wear_step.wear(chain, first_span(chain.parameters), tmp_path, read_surface(chain.surface), ledger)
     assert row["applied_volume_m3"] > 0
     excess = row["total_excess_volume_m3"] / row["worn_volume_m3"]
-    assert (excess > 0.1) == (wear.get("scheme") == "per_triangle")
+    assert (excess > LEAST_EXCESS) == (wear.get("scheme") == "per_triangle")
 
 
 @pytest.mark.parametrize("then", ["stop", "cap", "go_on"])

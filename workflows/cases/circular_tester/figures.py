@@ -20,7 +20,6 @@ from bulkwear.workflows.cases.circular_tester.runs import (
     values_of_pairs,
     values_of_runs,
 )
-from bulkwear.workflows.report.beds import BEDS, beds_table, every_bed, values_of_beds
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
@@ -72,12 +71,6 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
 
     claims = claims_of("circular_tester", job.files.claims)
     return tables_of_runs(runs_of(job), *read(job, "published", "published_fits"), claims)
-
-
-@tables(inputs={"beds": every_bed}, told={"beds": values_of_beds}, tables={"beds": BEDS}, digits=DIGITS)
-def beds(job: Job) -> dict[str, pd.DataFrame]:
-    """Make the table of the beds that runs started from."""
-    return {"beds": beds_table(job.told.beds, job.files.beds)}
 
 
 # ---------------------------------------------------------------- volumes

@@ -10,7 +10,7 @@ from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import key_numbers
 from bulkwear.workflows.cases.circular_tester.beds import NOTE
 from bulkwear.workflows.cases.circular_tester.runs import has_pairs
-from bulkwear.workflows.report.beds import beds
+from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.sections import Pictures, Section, Text
 from bulkwear.workflows.report.text import range_text
 
@@ -41,7 +41,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """
     if not study["told"]["paired"]:
         runs = [Text(UNPAIRED), *key_numbers.every_run(folder), Pictures(("worn_surface",))]
-        return [Section("Every run", runs), Section("Beds", beds(folder, NOTE))]
+        return [Section("Every run", runs), Section("Beds", blocks_of_beds(folder, NOTE))]
     places = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
     parts = (
@@ -54,7 +54,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ("Volume by revolution", key_numbers.rates(folder), ("tester_volume", "tester_increments")),
         ("Patterned over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
         ("Every run", key_numbers.every_run(folder), ("worn_surface",)),
-        ("Beds", beds(folder, NOTE), ()),
+        ("Beds", blocks_of_beds(folder, NOTE), ()),
         ("Steadiness", key_numbers.steadiness(folder), ("tester_steadiness",)),
         ("Where it wears", key_numbers.by_column(folder), places),
         ("Until the pattern is gone", key_numbers.until_worn_out(folder), ("tester_worn_out",)),

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, plain_runs, published_rows
-from bulkwear.workflows.report.beds import BEDS, beds_table, every_bed, values_of_beds
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
@@ -44,12 +43,6 @@ def intervals(job: Job) -> dict[str, pd.DataFrame]:
     from bulkwear.postproc.tables.summary import read_summary
 
     return {"intervals": relative_wear_of_settings(read_summary(job.files.summary))}
-
-
-@tables(inputs={"beds": every_bed}, told={"beds": values_of_beds}, tables={"beds": BEDS}, digits=6)
-def beds(job: Job) -> dict[str, pd.DataFrame]:
-    """Make the table of the beds that runs started from."""
-    return {"beds": beds_table(job.told.beds, job.files.beds)}
 
 
 @figure(

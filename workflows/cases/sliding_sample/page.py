@@ -12,7 +12,7 @@ from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.cases.sliding_sample import key_numbers
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
-from bulkwear.workflows.report.beds import beds
+from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.sections import Pictures, Section
 from bulkwear.workflows.report.text import range_text
 
@@ -89,7 +89,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
             ),
             *(screening.sections(study, folder) if of_study["finds_regimes"] else []),
             *(Section(title, [Pictures(names)]) for title, names in FIGURES_OF_ALL.items()),
-            Section("Beds", beds(folder)),
+            Section("Beds", blocks_of_beds(folder)),
         ]
     )
 

@@ -22,6 +22,7 @@ from bulkwear.workflows.engine.beds import MASS_TOLERANCE, MEASURES, bed_fault
 from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.job import write_table
 from bulkwear.workflows.engine.state import read_state
+from bulkwear.workflows.report.beds import BEDS
 from bulkwear.workflows.report.markdown import write_results
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.products import figures_of
@@ -175,7 +176,8 @@ def test_snapshots_become_a_table_of_the_lowest_layer(finished):
 def tables(finished):
     """The tables of the study by name."""
     make_products(finished.study, finished.root, ["tester_runs", "beds"], REMARKS)
-    return {path.stem: pd.read_csv(path) for path in (finished.folder / "tester").glob("*.csv")}
+    written = [*(finished.folder / "tester").glob("*.csv"), finished.folder / BEDS]
+    return {path.stem: pd.read_csv(path) for path in written}
 
 
 def test_tables_are_made_of_the_runs(finished, tables):
