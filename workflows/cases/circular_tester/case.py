@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from bulkwear.workflows.engine.beds import BedMeasure
 
 
-VOLUME = "volume"  # series of the design
+VOLUME, VARIED = "volume", "varied"  # series of the design
 
 
 class CircularTester(SampleCase):
@@ -51,7 +51,7 @@ class CircularTester(SampleCase):
     run_templates = ("tester_run_in", "circular_tester")
     bed_template = "tester_bed"
     seed_setting = "bed.seed"
-    figure_modules = ("figures", "place_figures", "flow_figures")
+    figure_modules = ("figures", "place_figures", "flow_figures", "sensitivity_figures")
     shared_figures = ("beds", "worn_surface", "wear_updates")
     geometry = ("sample", "pattern")
     consumed = ("wear", "remeshing", "sliding", "tester")
@@ -77,7 +77,9 @@ class CircularTester(SampleCase):
         found = sorted(row["surface"] for row in main)
         if len(found) == 2 and found.count(PLAIN) == 1:
             apart = [name for name in ("shape", "particle_scale") if main[0].get(name) != main[1].get(name)]
-            return f"rows of series {VOLUME} differ in {' and '.join(apart)}, allowed are equal ones" if apart else None
+            if apart:
+                return f"rows of series {VOLUME} differ in {' and '.join(apart)}, allowed are equal ones"
+            return _varied_fault([row for row in rows if row["series"] == VARIED])
         return f"series {VOLUME} has {' and '.join(found) or 'no row'}, allowed is one patterned and one plain row"
 
     def run_parameters(
@@ -260,6 +262,22 @@ class CircularTester(SampleCase):
 
 
 register(CircularTester())
+
+
+def _varied_fault(rows: Sequence[Mapping[str, Any]]) -> str | None:
+    """Return a phrase unless rows of series varied are pairs by name, alike in all but row and surface."""
+    of_pair: dict[str, list[Mapping[str, Any]]] = {}
+    for row in rows:
+        of_pair.setdefault(row.get("pair") or "", []).append(row)
+    for name, pair in of_pair.items():
+        surfaces = sorted(row["surface"] for row in pair)
+        if not name or len(pair) != 2 or surfaces.count(PLAIN) != 1:
+            what = f"pair {name}" if name else f"no pair in row {pair[0]['row']}"
+            return f"series {VARIED} has {what} with {' and '.join(surfaces)}, allowed is a patterned and a plain row"
+        apart = [key for key in pair[0] if key not in ("row", "surface") and pair[0].get(key) != pair[1].get(key)]
+        if apart:
+            return f"rows of pair {name} differ in {' and '.join(apart)}, allowed are row and surface"
+    return None
 
 
 def revolution(parameters: Parameters, steps: Any) -> Any:

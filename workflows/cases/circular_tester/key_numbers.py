@@ -179,11 +179,16 @@ def every_run(folder: Path) -> list[Block]:
     return [Table(results, "key_numbers", RESULTS_NOTE, digits, RESULT_HEADS)]
 
 
-def result_table(summary: pd.DataFrame) -> pd.DataFrame:
-    """Return the key numbers of each run in display units.
+def sliding_over_travel(summary: Any) -> Any:
+    """Return how far contacts slide over how far the trough goes (-), from sliding work and normal force.
 
-    sliding_over_travel (-): how far contacts slide over how far the trough goes, from sliding work and normal force
+    summary: rows of a summary, or one of them
     """
+    return summary["sliding_work_J"] / (summary["mean_normal_force_N"] * summary["travel_m"])
+
+
+def result_table(summary: pd.DataFrame) -> pd.DataFrame:
+    """Return the key numbers of each run in display units."""
     names = ["run", "series", "surface", "shape", "particle_scale", "element_size_mm", "wear_coefficient_per_pa"]
     volume = summary["worn_volume_m3"]
     return summary[[*names, "revolutions"]].assign(
@@ -191,7 +196,7 @@ def result_table(summary: pd.DataFrame) -> pd.DataFrame:
         lost_per_revolution_mm3=volume * CUBIC_MILLIMETRES / summary["revolutions"],
         pattern_share_percent=100.0 * summary["pattern_worn_volume_m3"] / volume,
         mean_normal_force_N=summary["mean_normal_force_N"],
-        sliding_over_travel=summary["sliding_work_J"] / (summary["mean_normal_force_N"] * summary["travel_m"]),
+        sliding_over_travel=sliding_over_travel(summary),
         bed_over_floor_velocity=summary["bed_over_floor_velocity"],
         carried_share_percent=100.0 * (summary["carried_volume_m3"] / volume).abs(),
     )

@@ -10,8 +10,9 @@ from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import key_numbers
 from bulkwear.workflows.cases.circular_tester.beds import NOTE
 from bulkwear.workflows.cases.circular_tester.runs import has_pairs
+from bulkwear.workflows.cases.circular_tester.sensitivity_figures import EFFECTS, SENSITIVITY, SETTINGS_SAID
 from bulkwear.workflows.report.beds import blocks_of_beds
-from bulkwear.workflows.report.sections import Pictures, Section, Text
+from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
@@ -20,6 +21,14 @@ if TYPE_CHECKING:
 RUNS_NOTE = (
     "Layers: over the sample, its depth over the median diameter of the (scaled) particles, and under it. Particles: "
     "estimate from the trough's volume; the solver's number is under Cost. Pressure: of a bed at rest of that depth."
+)
+SENSITIVITY_NOTE = (
+    "Over: value over the nearest one that agrees, 1 where it does itself. Reached: whether the value agrees; of one "
+    "packing that is this packing's, and there is no verdict."
+)
+EFFECTS_NOTE = (
+    "Factor: by which a change multiplies a number, least squares of the logarithm over all settings; interval: 95 %, "
+    "from how far the settings are off a product of such factors, packings included."
 )
 UNPAIRED = "No packing of these rows has a plain and a patterned run of series volume: nothing is compared."
 DECKS = (  # {bed} and {run} are those of the first run
@@ -61,7 +70,20 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ("The lowest layer", [], layer),
         ("Elements", key_numbers.by_elements(folder), ("tester_mesh", "tester_mesh_contours")),
     )
+    if (folder / SENSITIVITY).is_file():
+        parts = (("What the source does not tell", what_is_open(folder), ("tester_sensitivity",)), *parts)
     return [Section(title, [*blocks, Pictures(pictures)]) for title, blocks, pictures in parts]
+
+
+def what_is_open(folder: Path) -> list[Block]:
+    """Return what each setting reaches of the published numbers, and what each change does to them."""
+    import pandas as pd
+
+    table, effects = (pd.read_csv(folder / name) for name in (SENSITIVITY, EFFECTS))
+    said = (folder / SETTINGS_SAID).read_text(encoding="utf-8").splitlines()
+    shown = table.drop(columns=["key", "published_low", "published_high"])
+    blocks: list[Block] = [Points(tuple(said)), Table(shown, "sensitivity", SENSITIVITY_NOTE)]
+    return [*blocks, Table(effects.drop(columns="key"), "effects", EFFECTS_NOTE)] if len(effects) else blocks
 
 
 def remarks(study: Study) -> list[str]:

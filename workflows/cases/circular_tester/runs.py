@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 LOG, SURFACE = "log.liggghts", "surface.vtu"  # files of a run
 VOLUME, SIZE, MESH, WORN_OUT, RING = "volume", "size", "mesh", "worn_out", "ring"  # series of the design
+VARIED = "varied"  # another one: pairs in machines of their own
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +35,7 @@ class TesterRun:
     width, length, layer_height: m, of the sample and of the lowest layer over it; rotation: (3, 3) of the sample
     coefficient: 1/Pa; patch: over what a contact wears, in words
     distance_per_revolution: m of the bed past the sample's middle
+    pair: name of the machine of a run of series `varied`
     """
 
     name: str
@@ -57,6 +59,7 @@ class TesterRun:
     layer_height: float
     rotation: np.ndarray
     distance_per_revolution: float
+    pair: str = ""
 
     @property
     def case(self) -> dict[str, object]:
@@ -99,13 +102,15 @@ def values_of_pairs(study: Study) -> list[dict[str, Any]]:
 
 def _values(study: Study, run: Run) -> dict[str, Any]:
     parameters, bed = run.parameters, study.beds[study.bed_of(run.name)]
+    design_row = next(row for row in study.design_rows if row["row"] == run.row)
     sample, sliding, derived = (parameters[name] for name in ("sample", "sliding", "derived"))
     columns = study.case.table_columns(parameters)
     return {
         "name": run.name,
         "bed": study.bed_of(run.name),
         "packing": study.packing_of[run.row],
-        "series": next(row["series"] for row in study.design_rows if row["row"] == run.row),
+        "series": design_row["series"],
+        "pair": design_row.get("pair") or "",
         **{name: columns[name] for name in ("surface", "shape", "particle_scale", "element_size_mm")},
         "coefficient": columns["wear_coefficient_per_pa"],
         "patch": patch_words(parameters["wear"]),
@@ -142,8 +147,8 @@ def _run_of_values(values: dict[str, Any], results: Path) -> TesterRun:
     return TesterRun(**values | folders | {"rotation": np.array(values["rotation"])})
 
 
-def pairs_of(runs: Sequence[TesterRun]) -> list[tuple[TesterRun, TesterRun]]:
-    """Return the run with a pattern and the plain one of every packing of series `volume` that has both.
+def pairs_of(runs: Sequence[TesterRun], series: str = VOLUME) -> list[tuple[TesterRun, TesterRun]]:
+    """Return the run with a pattern and the plain one of every packing of a series that has both.
 
     Raises ValueError where no packing has both.
     """
@@ -151,11 +156,11 @@ def pairs_of(runs: Sequence[TesterRun]) -> list[tuple[TesterRun, TesterRun]]:
 
     of_packing: dict[int, dict[bool, TesterRun]] = {}
     for run in runs:
-        if run.series == VOLUME:
+        if run.series == series:
             of_packing.setdefault(run.packing, {}).setdefault(run.surface == PLAIN, run)
     pairs = [(both[False], both[True]) for _, both in sorted(of_packing.items()) if len(both) == 2]
     if not pairs:
-        raise ValueError(f"no packing of series {VOLUME} has a plain and a patterned run, allowed is one or more")
+        raise ValueError(f"no packing of series {series} has a plain and a patterned run, allowed is one or more")
     return pairs
 
 

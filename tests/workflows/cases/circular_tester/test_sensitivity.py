@@ -1,0 +1,129 @@
+"""What the source does not tell of its tester: settings, numbers reached, effects of changes, figure, sentences."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bulkwear.postproc.statistics.verdicts import AGREES, UNSAID
+from bulkwear.workflows.cases.circular_tester.plots.sensitivity import reached_by_setting
+from bulkwear.workflows.cases.circular_tester.sensitivity import (
+    REFERENCE,
+    changes_of,
+    effects_table,
+    sensitivity_table,
+    sentences,
+    settings_of_pairs,
+)
+from bulkwear.workflows.cases.circular_tester.sensitivity_figures import CLAIMS_PART
+from bulkwear.workflows.config.claims import claims_of
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.cases import find_case
+
+CLAIMS = claims_of(CLAIMS_PART)
+MIDDLE = {key: 0.5 * sum(claim.magnitude) if claim.magnitude else claim.reference for key, claim in CLAIMS.items()}
+FACTORS = {"friction": 1.3, "rolling": 1.1, "bed": 0.8, "thin": 1.02}  # what each change does to every number
+EXACT = 1e-9
+
+
+@pytest.fixture(scope="module")
+def settings():
+    return settings_of_pairs(load_study("tester_sensitivity", overrides={"fidelity": "quick"}))
+
+
+@pytest.fixture(scope="module")
+def table(settings):
+    """Numbers that are the reference's times the factors of the changes, of three packings and of one."""
+    numbers = {}
+    for pair in settings:
+        times = math.prod(factor for name, factor in FACTORS.items() if name in pair.split("-"))
+        scatter = (0.99, 1.0, 1.0 / 0.99) if pair == REFERENCE else (1.0,)
+        numbers[pair] = [{key: each * times * value for key, value in MIDDLE.items()} for each in scatter]
+    return sensitivity_table(numbers, CLAIMS)
+
+
+def test_each_thing_is_changed_alone_and_with_two_others(settings):
+    """Four changes of one thing, and of the others three at a time: no two of the four go together more often."""
+    changes = changes_of(settings)
+    assert sorted(map(len, changes.values())) == [0, 1, 1, 1, 1, 3, 3, 3, 3] and not changes[REFERENCE]
+    names = sorted({name for each in changes.values() for name in each})
+    signs = np.array([[1 if name in each else -1 for name in names] for pair, each in changes.items() if each])
+    assert (signs.T @ signs == 8 * np.eye(4)).all()
+
+
+def test_what_a_change_does_comes_back(table, settings):
+    """Of numbers that are products of factors the factors are found, without an error left."""
+    effects = effects_table(table, changes_of(settings))
+    words = {"friction of": "friction", "rolling": "rolling", "height of the bed": "bed", "thickness": "thin"}
+    assert len(effects) == len(CLAIMS) * len(FACTORS)
+    for row in effects.itertuples():
+        name = next(name for start, name in words.items() if row.change.startswith(start))
+        assert row.factor == pytest.approx(FACTORS[name], rel=EXACT)
+        assert row.low == pytest.approx(row.high, rel=1e-6)
+
+
+def test_effects_need_settings_that_tell_them_apart(table, settings):
+    """Of the reference and a setting with three changes nothing can be said of one; of single changes no interval."""
+    changes = changes_of(settings)
+    three = next(pair for pair, each in changes.items() if len(each) == 3)
+    assert effects_table(table[table["pair"].isin([REFERENCE, three])], changes).empty
+    single = effects_table(table[table["pair"].isin([REFERENCE, "friction"])], changes)
+    assert single["factor"].to_numpy() == pytest.approx(FACTORS["friction"], rel=EXACT)
+    assert single[["low", "high"]].isna().all().all()
+
+
+def test_a_number_is_reached_within_its_margin(table):
+    """The reference lies in the middle of every magnitude and is judged; one packing is reached or not, unjudged."""
+    usual = table[(table["pair"] == REFERENCE) & table["published_low"].notna()]
+    assert usual["reached"].all() and (usual["over"] == 1.0).all() and (usual["verdict"] == AGREES).all()
+    more = table[table["pair"] == "friction"].set_index("key")
+    assert (more["verdict"] == UNSAID).all()
+    _, high = CLAIMS["bump_share"].region
+    assert 1.3 * MIDDLE["bump_share"] > high and not more.loc["bump_share", "reached"]
+    assert more.loc["bump_share", "over"] == pytest.approx(1.3 * MIDDLE["bump_share"] / high, rel=EXACT)
+    assert more.loc["plain_velocity", "reached"] and not more.loc["convex_velocity", "reached"]
+
+
+def test_sentences_name_the_best_setting_and_what_it_misses(table, settings):
+    """Counts are those of the table; the factor in the plain volume is the published one over ours."""
+    said = sentences(table, changes_of(settings))
+    counts = table.groupby("pair", sort=False)["reached"].sum()
+    assert f"reaches {counts[REFERENCE]} of {len(CLAIMS)}" in said[0] and said[0].endswith(f"{counts.max()}.")
+    published = CLAIMS["plain_volume"].magnitude[0]
+    assert f"loses {published / MIDDLE['plain_volume']:.2g} times what ours does in the reference" in said[1]
+
+
+def test_the_figure_shows_every_value_and_setting(table, settings):
+    """A cell per number and setting; below them what is varied, and how many each setting reaches."""
+    figure = reached_by_setting(table, settings, changes_of(settings), ["tiny"])
+    texts = [text.get_text() for text in figure.axes[0].texts]
+    assert sum(text == f"{MIDDLE['plain_force']:.3g}" for text in texts) >= 1
+    assert texts.count("own_spin") == 4 and texts.count("cdt") == 5
+    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    assert labels[len(CLAIMS)] == f"reached, of {len(CLAIMS)}" and "height of the bed, mm" in labels
+    assert "Convex over plain: 0.426 to 0.65" in labels
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({}, None),
+        ({"pair": "b"}, "series varied has pair a with plain, allowed is a patterned and a plain row"),
+        ({"pair": None}, "series varied has pair a with plain, allowed is a patterned and a plain row"),
+        ({"surface": "plain"}, "series varied has pair a with plain and plain, allowed is a patterned and a plain row"),
+        ({"thickness_mm": 3.0}, "rows of pair a differ in thickness_mm, allowed are row and surface"),
+    ],
+)
+def test_pairs_are_alike(change, said):
+    """A varied row has a twin that differs in its surface alone."""
+    main = [{"row": name, "series": "volume", "surface": name} for name in ("plain", "convex")]
+    varied = {"series": "varied", "pair": "a", "thickness_mm": 2.0}
+    pair = [{**varied, "row": f"a-{name}", "surface": name} for name in ("plain", "convex")]
+    assert find_case("circular_tester").design_fault([*main, pair[0], pair[1] | change]) == said
+
+
+def test_a_row_without_a_pair_is_told():
+    """Its name stands in the sentence."""
+    main = [{"row": name, "series": "volume", "surface": name} for name in ("plain", "convex")]
+    fault = find_case("circular_tester").design_fault([*main, {"row": "x", "series": "varied", "surface": "plain"}])
+    assert fault == "series varied has no pair in row x with plain, allowed is a patterned and a plain row"
