@@ -42,16 +42,16 @@ GRAIN = {"diameters_m": [0.008, 0.012], "median_diameter_m": 0.01, "density_kg_p
 
 
 def test_tolerances_are_those_of_grains():
-    """A hundredth of the mass, or two of the largest grains; half a grain of level, or a twentieth of the height."""
+    """A hundredth of the mass, or two of the largest grains; half a grain of level and a twentieth of the height."""
     grain = 2500.0 * math.pi / 6.0 * 0.012**3
     assert mass_measure(GRAIN, 20.0, 20.0).tolerance == pytest.approx(0.2, rel=1e-12)
     assert mass_measure(GRAIN, 0.1, 0.1).tolerance == pytest.approx(2.0 * grain, rel=1e-12)
-    assert level_measure(GRAIN, 0.05, 0.05).tolerance == pytest.approx(0.005, rel=1e-12)
-    assert level_measure(GRAIN, 0.3, 0.3).tolerance == pytest.approx(0.015, rel=1e-12)
+    assert level_measure(GRAIN, 0.05, 0.05).tolerance == pytest.approx(0.0075, rel=1e-12)
+    assert level_measure(GRAIN, 0.3, 0.3).tolerance == pytest.approx(0.02, rel=1e-12)
 
 
 def test_depth_is_what_lies_over_something():
     """0.15 m of bed over a sample whose middle is 0.09 m deep; the level's fault is the depth's."""
-    depth = level_measure(GRAIN, 0.15, 0.14, "depth", covering=0.06)
-    assert (depth.measure, depth.asked, depth.found) == ("depth", pytest.approx(0.09), pytest.approx(0.08))
+    depth = level_measure(GRAIN, 0.15, 0.13, "depth", covering=0.06)
+    assert (depth.measure, depth.asked, depth.found) == ("depth", pytest.approx(0.09), pytest.approx(0.07))
     assert depth.missed
