@@ -153,16 +153,17 @@ def sensitivity_table(
     direction alone), value (mean over packings), packings, interval_low, interval_high, over (-, value over the nearest
     value that agrees, 1 where it does itself), reached (whether it agrees), verdict, reason, source.
 
-    numbers: by pair, those of each packing. One packing has a value and no verdict: reached is then of that packing.
+    numbers: by pair, those of each packing; a claim that none has a number of is left out. One packing has a value and
+    no verdict: reached is then of that packing.
     """
     import pandas as pd
 
     from bulkwear.postproc.statistics.intervals import estimate
     from bulkwear.postproc.statistics.verdicts import judged
 
-    rows = []
+    there, rows = {key for packings in numbers.values() for each in packings for key in each}, []
     for pair, packings in numbers.items():
-        for key, claim in claims.items():
+        for key, claim in ((key, claim) for key, claim in claims.items() if key in there):
             found = estimate([each.get(key, np.nan) for each in packings], log=True)
             verdict, (low, high) = judged(claim, found), found.interval()
             nearest = float(np.clip(found.value, *claim.region))
@@ -217,7 +218,7 @@ def sentences(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]]) -> 
     return [
         f"The reference reaches {reached[REFERENCE]} of {count} published numbers, the best setting"
         f" ({words_of(changes[best])}) {reached[best]}.",
-        f"The source's plain sample loses {usual:.2g} times what ours does in the reference, and {found:.2g} times in"
+        f"The source's plain sample loses {usual:.3g} times what ours does in the reference, and {found:.3g} times in"
         " the best setting.",
         f"Not reached there: {listed or 'none'}.",
     ]
