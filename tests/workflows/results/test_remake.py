@@ -2,6 +2,7 @@
 
 import json
 import os
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -42,6 +43,21 @@ def test_every_page_of_results_is_listed_and_there():
     cases = {each.case for each in origins}
     for change in read_changes(DOCS):
         assert {*change.concerns.split()} <= cases | {each.page for each in origins}
+
+
+def test_known_changes_are_commits():
+    """Each change that is told of a page is one of the repository's commits, made at the time that is told."""
+    git = ("git", "-C", str(DOCS.parent))
+    if (
+        subprocess.run([*git, "rev-parse", "--is-shallow-repository"], capture_output=True, text=True).stdout
+        != "false\n"
+    ):
+        pytest.skip("no whole history here")
+    for change in read_changes(DOCS):
+        shown = ("show", "--no-patch", "--format=%cd", "--date=format-local:%Y-%m-%d %H:%M", change.commit)
+        utc = os.environ | {"TZ": "UTC"}
+        found = subprocess.run([*git, *shown], capture_output=True, text=True, check=True, env=utc)
+        assert found.stdout.strip() == change.date, change
 
 
 @pytest.mark.parametrize(
