@@ -20,6 +20,9 @@ KEYS = {
 }
 NEEDED = ("finding", "source", "quantity")
 DIRECTIONS = ("above", "below")
+# -, margin of a value told as "about": what is read off a figure's axis and told in whole tens of per cent; since
+# 2026-11-23, as in config/published/verdicts.yaml
+ABOUT = 0.15
 
 
 def claims_of(part: str, path: str | Path | None = None) -> dict[str, Claim]:
@@ -29,6 +32,14 @@ def claims_of(part: str, path: str | Path | None = None) -> dict[str, Claim]:
     if part not in parts:
         raise ConfigError(f"{path.name}: found no claims of {part}, allowed are {', '.join(parts) or 'none'}.")
     return {key: _claim(key, told, f"{path.name}: claims.{part}.{key}") for key, told in parts[part].items()}
+
+
+def about(quantity: str, low: float, high: float, unit: str, source: str = "", margin: float | None = None) -> Claim:
+    """Return a published value or range as a claim of its sign and size; its margin is ABOUT of it where none is given."""
+    middle = 0.5 * (low + high)
+    size = {"magnitude": (low, high), "margin": ABOUT * abs(middle) if margin is None else margin}
+    words = f"about {low:g}" if low == high else f"{low:g} to {high:g}"
+    return Claim(quantity, words, source, quantity, unit, "above" if middle > 0.0 else "below", **size)
 
 
 def date_of_rules(path: str | Path | None = None) -> str:

@@ -28,6 +28,7 @@ from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.report.page import cost_totals, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_of, page_parameters
 from bulkwear.workflows.report.provenance_of_pages import FILE, LINE, Origin, keep_origin, recorded, with_banner
+from bulkwear.workflows.report.published import write_published_numbers
 from bulkwear.workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Section, Table, Text, shown
 from bulkwear.workflows.report.simulated import Simulated, said_of, versions_of, warnings_of
 from bulkwear.workflows.report.text import number
@@ -96,8 +97,9 @@ def picture_file(name: str, figure: str) -> str:
 def write_results(folder: Path, docs: Path, study: Study) -> Path:
     """Write the page of a study that was run, its pictures beside it, and return its path.
 
-    Where docs holds a list of the pages of results, what simulated the page is written down there. Raises
-    FileNotFoundError, with one sentence, when the study is not finished or a figure is missing.
+    Where docs holds a list of the pages of results, what simulated the page is written down there, and its published
+    numbers beside ours (`published`). Raises FileNotFoundError, with one sentence, when the study is not finished or
+    a figure is missing.
     """
     told, page = page_parameters(study), page_of(study.case.name)
     figures = [name for name, words in told["figures"].items() if words["file"].endswith(".png")]
@@ -116,6 +118,7 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
         save_small(picture, docs / picture_file(name, picture.stem))
     if (docs / FILE).is_file():
         keep_origin(docs, origin_of(path.name, folder, study))
+        write_published_numbers(docs, path.name, kept)
     return path
 
 

@@ -1,4 +1,6 @@
-"""The list of all pages of results with where they come from, and the warnings that stand on the pages themselves."""
+"""The list of all pages of results with where they come from, the warnings that stand on the pages themselves, and the
+page of all published numbers.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +9,7 @@ from pathlib import Path
 
 from bulkwear.workflows.engine.provenance import code_of_cases
 from bulkwear.workflows.report.provenance_of_pages import Change, Origin, older, read_origins, with_banner
+from bulkwear.workflows.results.published_numbers import write_published
 
 INDEX = "results.md"
 HEAD = """# Where every result comes from
@@ -22,7 +25,9 @@ not known until the page is redone.
 
 
 def mark(docs: Path, changes: Sequence[Change]) -> None:
-    """Write the warnings below the titles of all pages that have them, and the list of all pages."""
+    """Write the warnings below the titles of all pages that have them, the list of all pages, and the page of all
+    published numbers.
+    """
     origins = read_origins(docs)
 
     def sentences(origin: Origin) -> list[str]:
@@ -33,6 +38,7 @@ def mark(docs: Path, changes: Sequence[Change]) -> None:
         if path.suffix == ".md" and path.is_file():
             path.write_text(with_banner(path.read_text(encoding="utf-8"), sentences(origin)), encoding="utf-8")
     (docs / INDEX).write_text(index_page(origins, sentences, changes), encoding="utf-8")
+    write_published(docs, origins)
 
 
 def index_page(origins: Sequence[Origin], sentences: Callable[[Origin], list[str]], changes: Sequence[Change]) -> str:

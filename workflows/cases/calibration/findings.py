@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pandas as pd
 
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE
 from bulkwear.postproc.inference.told import told_table
+from bulkwear.postproc.statistics.intervals import CONFIDENCE
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.case import PUBLISHED, published
 from bulkwear.workflows.cases.calibration.checked_pairs import CHECKED, checked_means
@@ -33,6 +35,12 @@ INSIDE = (
     "simulated mean's own uncertainty together. Deviations: simulated minus measured, in standard deviations of the "
     "measurement. Denser share: of the posterior in pairs that fit better; a pair belongs to the family when it is at "
     "most 0.95."
+)
+MARGIN_DEVIATIONS = 2.0  # -, standard deviations of the measurement that a pair's response may be off
+NORMAL = NormalDist().inv_cdf(0.5 + 0.5 * CONFIDENCE)  # -, standard deviations to each side
+AT_PUBLISHED = (
+    "Computed: mean of the surrogate, low and high its 95 % interval; margin: two standard deviations of the source's "
+    "measurement of that response."
 )
 LEFT_NOTE = (
     "Low to high: 95 % of the posterior, with measurement, model and surrogate all in doubt. Left: of the range's 95 % "
@@ -151,12 +159,22 @@ def at_published(done: Calibrated) -> Block:
     names = done.problem.names
     if not set(names) <= set(done.published):
         return Text("The published pairs have other parameters.")
-    table = done.published[["row", *names, *(name for name in done.known.surrogates if name in done.published)]].copy()
-    points = done.problem.to_unit(table[names].to_numpy(float))
-    for name, surrogate in done.known.surrogates.items():
-        mean, variance = surrogate.predict(points)
-        table[f"{name}_here"], table[f"{name}_doubt"] = mean, np.sqrt(variance)
-    return Table(_named(table), note="Here: mean of the surrogate; doubt: its standard deviation.")
+    points = done.problem.to_unit(done.published[names].to_numpy(float))
+    rows = []
+    for response in (name for name in done.known.surrogates if name in done.published):
+        mean, variance = done.known.surrogates[response].predict(points)
+        reach = NORMAL * np.sqrt(variance)
+        name, _, unit = response_name(response).removesuffix(")").rpartition(" (")
+        measured = done.problem.measured.get(response)
+        margin = MARGIN_DEVIATIONS * measured.deviation if measured else np.nan
+        for number, pair in enumerate(done.published.to_dict("records")):
+            if np.isfinite(pair[response]):
+                words = ", ".join(f"{parameter_name(each).removesuffix(' (-)')} {pair[each]:g}" for each in names)
+                row = {"quantity": name, "setting": words, "unit": unit, "published_value": pair[response]}
+                ends = {"computed_low": mean[number] - reach[number], "computed_high": mean[number] + reach[number]}
+                row |= {"computed_value": mean[number], **ends, "margin": margin, "source": pair["source"]}
+                rows.append(row)
+    return Table(pd.DataFrame(rows), "published_pairs", AT_PUBLISHED, beside_source=True)
 
 
 def checked_pairs(done: Calibrated) -> list[Block]:

@@ -153,7 +153,7 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
         *([REDUCED] if study["remarks"] else []),
     ]
     shown = ["verdict", "finding", "claim", "found", "reason", "factor", "source"]
-    return [Text(" ".join(said)), Table(table[shown], "findings")]
+    return [Text(" ".join(said)), Table(table[shown], "findings", beside_source=True)]
 
 
 def rates(folder: Path) -> list[Block]:

@@ -172,6 +172,7 @@ ANCHOR_COLUMNS = {
     "published_value": ("published", ""),
     "published_low": ("from", ""),
     "published_high": ("to", ""),
+    "margin": ("margin", ""),
     "computed_value": ("computed", ""),
     "computed_low": ("from", ""),
     "computed_high": ("to", ""),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +46,11 @@ LIFTER_NOTE = (
     "middle, of the straight line through a face between 20 and 80 % of its height; the leading face looks ahead in "
     f"the sense of rotation. Means over lifters; hours, too, are means over packings. {INTERVALS}"
 )
-ANCHOR_NOTE = "Difference: computed over published, less 1. Without a computed value the study has no such number."
+ANCHOR_NOTE = (
+    "Difference: computed over published, less 1. Without a computed value the study has none. Margin: within "
+    "which both count as one on the page of all published numbers; of angles as far as two published codes differ on "
+    "one mill, else 15 %."
+)
 
 
 def read_tables(folder: Path) -> dict[str, pd.DataFrame]:
@@ -173,4 +178,4 @@ def anchors(found: Tables) -> list[Block]:
     """Return published values beside computed ones; nothing where the study has none."""
     if found["anchors"].empty:
         return []
-    return [shown(found["anchors"], heads.ANCHOR_COLUMNS, "anchors", ANCHOR_NOTE)]
+    return [replace(shown(found["anchors"], heads.ANCHOR_COLUMNS, "anchors", ANCHOR_NOTE), beside_source=True)]

@@ -228,7 +228,7 @@ def verdict_blocks(folder: Path) -> list[Block]:
         f"Rules and margins: config/published/verdicts.yaml, of {date_of_rules()}. No run is repeated: intervals are"
         " of the run that was simulated, and verdicts hold for it."
     )
-    return [Text(said), Table(found.drop(columns="key"), "findings")]
+    return [Text(said), Table(found.drop(columns="key"), "findings", beside_source=True)]
 
 
 def p_values(tested: pd.DataFrame, normality: pd.DataFrame) -> pd.DataFrame:

@@ -18,9 +18,9 @@ from bulkwear.postproc.tables.packings import SETTING, over_packings
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
 from bulkwear.workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
 from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Pattern
-from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import ABOUT
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import bed_sentences
+from bulkwear.workflows.config.claims import ABOUT
 from bulkwear.workflows.report.sections import Block, Pictures, Section, Table, Text
 
 if TYPE_CHECKING:
@@ -140,6 +140,7 @@ def beside_the_source(folder: Path) -> list[Block]:
             "A number is claimed of every scale in question, of each of which there is an estimate over packings; of"
             " the critical scale its interval over forms counts. Relative velocity and wear rate are means, or standard"
             f" deviations, over steady windows. About: within {100.0 * ABOUT:.0f} %. Factor: ours over the source's.",
+            beside_source=True,
         ),
     ]
 

@@ -13,10 +13,8 @@ from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.postproc.statistics.intervals import Ends, Estimate, estimates
 from bulkwear.postproc.statistics.verdicts import Claim, judged
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import CONVEX, critical_scale_text
+from bulkwear.workflows.config.claims import about
 
-# -, margin of a value told as "about": what is read off a figure's axis and told in whole tens of per cent; since
-# 2026-11-23, as in config/published/verdicts.yaml
-ABOUT = 0.15
 GRADIENT, VELOCITY = "relative_gradient", "relative_velocity_percent"
 DIFFERENCE = "difference"  # dense minus loose
 COLUMNS = [
@@ -118,11 +116,10 @@ def claim_of(each: Any) -> Claim:
 
     each: a row of a table of published numbers: quantity, relation, value, unit and source
     """
-    told = {"key": each.quantity, "finding": f"{each.relation} {each.value:g}", "source": each.source}
-    told |= {"quantity": each.quantity, "unit": each.unit}
     if each.relation == "about":
-        return Claim(**told, direction="above", magnitude=(each.value, each.value), margin=ABOUT * each.value)
-    return Claim(**told, direction=each.relation, reference=each.value)
+        return about(each.quantity, each.value, each.value, each.unit, each.source)
+    told = {"key": each.quantity, "finding": f"{each.relation} {each.value:g}", "source": each.source}
+    return Claim(**told, quantity=each.quantity, unit=each.unit, direction=each.relation, reference=each.value)
 
 
 def _words(found: Mapping[Any, Estimate | Ends]) -> str:

@@ -118,7 +118,7 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Section]:
         "high: 95 % interval of wear over plain."
     )
     return [
-        Section("Findings of the source", [Text(asked), Table(verdicts, "findings", note)]),
+        Section("Findings of the source", [Text(asked), Table(verdicts, "findings", note, beside_source=True)]),
         Section("Run by run beside the source", [Table(runs, "findings_runs", beside)]),
     ]
 

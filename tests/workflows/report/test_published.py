@@ -1,0 +1,114 @@
+"""Published numbers beside ours: tables of pages in one set of columns, and the page of all of them."""
+
+import math
+
+import pandas as pd
+import pytest
+
+from bulkwear.postproc.statistics.verdicts import AGREES, OTHER_SIZE, UNSAID
+from bulkwear.workflows.config.claims import ABOUT, about
+from bulkwear.workflows.report.provenance_of_pages import Origin
+from bulkwear.workflows.report.published import (
+    COLUMNS,
+    NOT_COMPUTED,
+    published_file,
+    published_numbers,
+    write_published_numbers,
+)
+from bulkwear.workflows.report.sections import Section, Table, Text
+from bulkwear.workflows.report.text import number
+from bulkwear.workflows.results.published_numbers import PAGE, published_page
+from tests import REPOSITORY
+
+SAID = {"found": "0.9 (0.8 to 1.0)", "verdict": AGREES, "reason": None, "factor": math.nan, "source": "Yan 2022"}
+CLAIM = {"verdict": AGREES, "finding": "It is so", "claim": "above 1", **SAID}
+NUMBER = {
+    "quantity": "critical_scale",
+    "surface": "convex",
+    "scales": "4",
+    "relation": "about",
+    "value": 4.0,
+    "unit": "-",
+}
+VALUE = {"quantity": "toe_pristine", "setting": "n77", "unit": "degrees", "published_value": 128.0, "source": "Kalala"}
+DOCS = REPOSITORY / "docs"
+
+
+def section(*tables, beside=True):
+    return Section("Numbers", [Text("said"), *(Table(pd.DataFrame([row]), beside_source=beside) for row in tables)])
+
+
+def test_tables_of_three_kinds_are_told_alike():
+    """Claims, numbers with a relation, values beside values: one set of columns, in the order of the page."""
+    table = published_numbers([section(CLAIM), section(NUMBER | SAID), section(VALUE | {"computed_value": 130.0})])
+    assert list(table) == COLUMNS
+    assert table["finding"].tolist() == ["It is so", "critical scale, convex", "toe pristine, n77"]
+    assert table["published"].tolist() == ["above 1", "about 4 at scale 4", "128 degrees"]
+    assert table["reason"].tolist()[:2] == ["", ""]
+
+
+def test_tables_that_are_not_marked_are_left_out():
+    """Not every table with a source is a comparison."""
+    assert published_numbers([section(CLAIM, beside=False)]).empty
+
+
+@pytest.mark.parametrize(
+    ("computed", "low", "high", "verdict"),
+    [
+        (130.0, 126.0, 134.0, AGREES),
+        (170.0, 165.0, 175.0, OTHER_SIZE),
+        (146.0, 140.0, 152.0, UNSAID),  # past the end of the margin, 147.2
+        (130.0, math.nan, math.nan, UNSAID),
+    ],
+)
+def test_values_are_judged_by_the_margin_of_about(computed, low, high, verdict):
+    """Inside 15 %, outside, across its end, and of one packing."""
+    ours = {"computed_value": computed, "computed_low": low, "computed_high": high}
+    row = published_numbers([section(VALUE | ours)]).iloc[0]
+    assert row["verdict"] == verdict and row["factor"] == pytest.approx(computed / 128.0, rel=1e-12)
+
+
+def test_a_margin_of_its_own_counts():
+    """Narrower than 15 %: what agreed is of another size; the study's own reason stands behind."""
+    ours = {"computed_value": 130.0, "computed_low": 129.5, "computed_high": 130.5, "margin": 1.0, "reason": "balls"}
+    row = published_numbers([section(VALUE | ours)]).iloc[0]
+    assert row["verdict"] == OTHER_SIZE and row["reason"] == "balls"
+    assert about("x", 2.0, 2.0, "").margin == 2.0 * ABOUT and about("x", -2.0, -2.0, "").direction == "below"
+
+
+def test_what_the_study_does_not_compute_is_told():
+    """It is no contradiction."""
+    row = published_numbers([section(VALUE | {"computed_value": math.nan})]).iloc[0]
+    assert (row["verdict"], row["reason"]) == (UNSAID, NOT_COMPUTED)
+
+
+def test_a_published_range_is_a_magnitude():
+    """Its margin is that of its middle; a table may have no column of single values at all."""
+    ranged = {name: value for name, value in VALUE.items() if name != "published_value"}
+    ranged |= {"published_low": 1.0, "published_high": 2.0, "computed_value": 2.1}
+    sure = published_numbers([section(ranged | {"computed_low": 2.05, "computed_high": 2.2})]).iloc[0]
+    assert (sure["published"], sure["verdict"]) == ("1 to 2 degrees", AGREES)  # up to 2.225
+    assert published_numbers([section(ranged)])["verdict"].tolist() == [UNSAID]
+
+
+def test_the_page_has_the_numbers_of_every_page_that_left_some(tmp_path):
+    """Counts of the verdicts first; a page without published numbers leaves no file and has no section."""
+    origins = [Origin("a_results_quick.md", "equipment"), Origin("b_results_quick.md", "equipment")]
+    write_published_numbers(tmp_path, origins[0].page, [section(CLAIM), section(NUMBER | SAID)])
+    write_published_numbers(tmp_path, origins[1].page, [section(CLAIM, beside=False)])
+    assert [path.name for path in (tmp_path / "published").iterdir()] == ["a_results_quick.csv"]
+    page = published_page(tmp_path, origins)
+    assert "| [a_results_quick.md](a_results_quick.md) | 2 | 2 | 0 | 0 | 0 |" in page
+    none = number(math.nan)
+    assert f"| critical scale, convex | about 4 at scale 4 | 0.9 (0.8 to 1.0) | {none} | agrees |  | Yan 2022 |" in page
+    assert "b results" not in page
+
+
+def test_the_page_in_docs_is_that_of_its_tables():
+    """Tables, the list of pages and the page of all numbers were committed together."""
+    from bulkwear.workflows.report.provenance_of_pages import read_origins
+
+    origins = read_origins(DOCS)
+    assert (DOCS / PAGE).read_text(encoding="utf-8") == published_page(DOCS, origins)
+    known = {published_file(each.page) for each in origins}
+    assert {str(path.relative_to(DOCS)) for path in (DOCS / "published").glob("*.csv")} <= known

@@ -1,0 +1,110 @@
+"""Every published number beside ours: taken from the tables of a page that are marked so, in one set of columns.
+
+Three kinds of tables are: claims with their verdicts (finding, claim, found, verdict, reason, factor, source), numbers
+with a relation (quantity, surface, scales, relation, value, unit, and the same from found on), and values beside values
+(published_value, computed_value with its interval, source), which are judged here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from bulkwear.postproc.statistics.intervals import Ends
+from bulkwear.postproc.statistics.verdicts import Claim, Verdict, judged, not_said
+from bulkwear.workflows.config.claims import about
+from bulkwear.workflows.report.sections import Section, Table
+
+COLUMNS = ["finding", "published", "found", "factor", "verdict", "reason", "source"]
+FOLDER = "published"  # in docs
+NOT_COMPUTED = "the study computes no such number"
+COMPUTED = "computed_value"  # column of values beside values
+
+
+def published_file(page: str) -> str:
+    """Return the path in docs of the table that a page of results leaves."""
+    return f"{FOLDER}/{Path(page).stem}.csv"
+
+
+def write_published_numbers(docs: Path, page: str, sections: Iterable[Section]) -> None:
+    """Leave the published numbers of a page of results in docs; nothing for a page without any."""
+    table, path = published_numbers(sections), docs / published_file(page)
+    if len(table):
+        path.parent.mkdir(exist_ok=True)
+        table.to_csv(path, index=False, float_format="%.4g")
+
+
+def published_numbers(sections: Iterable[Section]) -> pd.DataFrame:
+    """Return COLUMNS of all tables of a page's sections that are marked as beside the source, in their order."""
+    blocks = [block for section in sections for block in section.blocks]
+    tables = [_alike(block.data) for block in blocks if isinstance(block, Table) and block.beside_source]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=COLUMNS)
+
+
+def _alike(table: pd.DataFrame) -> pd.DataFrame:
+    if COMPUTED in table:
+        return pd.DataFrame([_judged_value(row) for row in table.to_dict("records")], columns=COLUMNS)
+    if "relation" in table:
+        finding = [_words(row, "quantity", "surface") for row in table.to_dict("records")]
+        published = [_number_words(row) for row in table.to_dict("records")]
+        table = table.assign(finding=finding, published=published)
+    else:
+        table = table.rename(columns={"claim": "published", "claimed": "published"})
+    return table.reindex(columns=COLUMNS).fillna({"found": "", "reason": ""})
+
+
+def _judged_value(row: dict[str, Any]) -> dict[str, Any]:
+    """Return a published value beside the computed one; its margin is that of the row, else that of what is about."""
+    value, low, high = (_number(row, f"published_{name}") for name in ("value", "low", "high"))
+    computed, ends = row[COMPUTED], [_number(row, f"computed_{end}") for end in ("low", "high")]
+    unit = "" if row["unit"] == "-" else row["unit"]
+    between = (low, high) if math.isnan(value) else (value, value)
+    margin = _number(row, "margin")
+    claim = about(row["quantity"], *between, unit, margin=None if math.isnan(margin) else margin)
+    verdict = _verdict(claim, computed, ends)
+    return {
+        "finding": _words(row, "quantity", "setting"),
+        "published": f"{_range(value, low, high)} {unit}".strip(),
+        "found": verdict.found,
+        "factor": computed / value if value else math.nan,
+        "verdict": verdict.verdict,
+        "reason": "; ".join(filter(None, (verdict.reason, _text(row.get("reason"))))),
+        "source": row["source"],
+    }
+
+
+def _verdict(claim: Claim, computed: float, ends: list[float]) -> Verdict:
+    if not math.isfinite(computed):
+        return not_said(NOT_COMPUTED)
+    return judged(claim, Ends(computed, *ends, packings=1 if math.isnan(ends[0]) else 2))
+
+
+def _range(value: float, low: float, high: float) -> str:
+    """Return a published value, its range where it has one, or both."""
+    between = "" if math.isnan(low) else f"{low:g} to {high:g}"
+    if math.isnan(value):
+        return between
+    return f"{value:g} ({between})" if between else f"{value:g}"
+
+
+def _number_words(row: dict[str, Any]) -> str:
+    unit, scales = ("" if row["unit"] == "-" else f" {row['unit']}"), _text(row.get("scales"))
+    return f"{row['relation']} {row['value']:g}{unit}{f' at scale {scales}' if scales else ''}"
+
+
+def _words(row: dict[str, Any], *names: str) -> str:
+    return ", ".join(filter(None, (_text(row.get(name)).replace("_", " ") for name in names)))
+
+
+def _text(value: Any) -> str:
+    return "" if value is None or value != value else str(value)
+
+
+def _number(row: dict[str, Any], name: str) -> float:
+    """Return a number of a row, NaN where it has none."""
+    value = row.get(name)
+    return math.nan if value is None else float(value)
