@@ -35,7 +35,7 @@ def claims_of(part: str, path: str | Path | None = None) -> dict[str, Claim]:
 
 
 def about(quantity: str, low: float, high: float, unit: str, source: str = "", margin: float | None = None) -> Claim:
-    """Return a published value or range as a claim of its sign and size; its margin is ABOUT of it where none is given."""
+    """Return a published value or range as a claim of its sign and size; without a margin of its own it is ABOUT."""
     middle = 0.5 * (low + high)
     size = {"magnitude": (low, high), "margin": ABOUT * abs(middle) if margin is None else margin}
     words = f"about {low:g}" if low == high else f"{low:g} to {high:g}"
