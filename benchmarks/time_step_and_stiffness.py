@@ -1,12 +1,13 @@
-"""How far time step and softness of particles can go before wear changes by 2 %: a small bed slides round a channel.
+"""How far time step and softness of particles can go before wear changes by 2 %: a small bed slides round a channel,
+over a plain sample, and with each time step over a convex one as well, whose front ends particles strike.
 
     python -m benchmarks.time_step_and_stiffness --output docs        # in the root of the repository
     python -m benchmarks.time_step_and_stiffness --output docs --redraw
 
-Every packing (a seed) slides once with each time step, at the modulus of the studies, and once with each modulus, at
-the Rayleigh fraction of the studies. Packings are done one after another until `--minutes` of processor time are spent;
-started again it goes on where it was. Writes time_step_and_stiffness.csv (every run), .png and .md; `--redraw` makes
-the last two from the first.
+Every packing (a seed) slides over the plain sample once with each time step, at the modulus of the studies, and once
+with each modulus, at the Rayleigh fraction of the studies; over the convex one with each time step. Packings are done
+one after another until `--minutes` of processor time are spent; started again it goes on where it was. Writes
+time_step_and_stiffness.csv (every run), .png and .md; `--redraw` makes the last two from the first.
 """
 
 from __future__ import annotations
@@ -19,13 +20,12 @@ from datetime import date
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
 import pandas as pd
-from scipy import stats
 
+from benchmarks.changes import BEYOND, FAILED, WITHIN, changes
 from benchmarks.plots.figures import Panel, deviation_figure
 from benchmarks.runs import FIRST_SEED, changed
-from bulkwear.postproc.mesh import write_surface
+from bulkwear.postproc.mesh import PLAIN, write_surface
 from bulkwear.postproc.plots.style import save
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
@@ -34,9 +34,10 @@ from bulkwear.workflows.engine.cycles import fill_bed, run_chain
 from bulkwear.workflows.engine.solver import SolverError
 from bulkwear.workflows.report.markdown import bullet, prose
 
-STUDY, RUN = "demo", "R9_plain"
+STUDY, ROW = "demo", "R9"
+CONVEX = "convex"
 BED_THICKNESS = 0.022  # m: four layers, because only the lowest wear the sample
-ELEMENT_SIZE = 0.005  # m, coarser than studies allow: the sum over the sample is all that counts
+ELEMENT_SIZE = 0.005  # m, of the plain sample, coarser than studies allow: the sum over the sample is all that counts
 VELOCITY = 2.0  # m/s, the fastest of the study `screening`
 FRACTION, MODULUS = 0.2, 7.0e7  # -, Pa: those of the studies
 MINUTES = 60.0  # of processor time
@@ -44,7 +45,6 @@ MOST_PACKINGS = 12
 PERCENT = 100.0
 LIMIT = 0.02  # -, change of wear that matters
 SOURCE_STEP = 5e-6  # s (Yan 2022, section 3.4)
-CONFIDENCE = 0.95
 CASE = {
     "fidelity": "quick",
     "particle_scale": 2.0,
@@ -72,22 +72,27 @@ MODULI = {**dict.fromkeys((2.5e6, 7.0e6, 2.0e7, 7.0e7, 2.8e8), FRACTION), 2.8e9:
 
 @dataclass(frozen=True)
 class Variant:
-    """A way to simulate a packing: Rayleigh fraction (-), shear modulus of the particles (Pa), seed of the packing."""
+    """A way to simulate a packing: Rayleigh fraction (-), shear modulus of the particles (Pa), seed of the packing, and
+    the sample's surface.
+    """
 
     fraction: float
     modulus: float
     seed: int
+    surface: str = PLAIN
 
     @property
     def folder(self) -> str:
         """Name of its folder."""
-        return f"seed_{self.seed}/fraction_{self.fraction:g}_modulus_{self.modulus:g}"
+        ending = "" if self.surface == PLAIN else f"_{self.surface}"
+        return f"seed_{self.seed}/fraction_{self.fraction:g}_modulus_{self.modulus:g}{ending}"
 
 
 def variants(seed: int) -> list[Variant]:
     """Return all variants of a packing, cheap ones first."""
     found = {Variant(fraction, MODULUS, seed) for fraction in FRACTIONS}
     found |= {Variant(fraction, modulus, seed) for modulus, fraction in MODULI.items()}
+    found |= {Variant(fraction, MODULUS, seed, CONVEX) for fraction in FRACTIONS}
     return sorted(found, key=lambda each: math.sqrt(each.modulus) / each.fraction)
 
 
@@ -95,7 +100,7 @@ def with_derived(run: Run, fraction: float, modulus: float, seed: int) -> Run:
     """Return the run with that Rayleigh fraction, shear modulus and packing, whatever the configuration allows."""
     change = {
         "bed": {"thickness_m": BED_THICKNESS, "seed": seed},
-        "sample": {"element_size_m": ELEMENT_SIZE},
+        **({"sample": {"element_size_m": ELEMENT_SIZE}} if run.surface == PLAIN else {}),
         "particle": {"shear_modulus_pa": modulus},
         "sliding": {"velocity_m_per_s": VELOCITY},
         "solver": {"rayleigh_fraction": fraction},
@@ -110,13 +115,13 @@ def chain_of(variant: Variant, folder: Path) -> Chain:
     particles.
     """
     study = load_study(STUDY, overrides=CASE)
-    run = with_derived(study.run(RUN), variant.fraction, variant.modulus, variant.seed)
-    at_rest = with_derived(study.run(RUN), FRACTION, MODULUS, variant.seed)
+    run = with_derived(study.run(f"{ROW}_{variant.surface}"), variant.fraction, variant.modulus, variant.seed)
+    at_rest = with_derived(study.run(f"{ROW}_{PLAIN}"), FRACTION, MODULUS, variant.seed)
     (bed,) = study.case.beds([at_rest])[0].values()
     bed_folder = folder / f"seed_{variant.seed}" / "bed"
     if not (bed_folder / "cost.csv").exists():
         fill_bed(study.case, "bed", bed, bed_folder)
-    surface = folder / "surface.vtu"
+    surface = folder / f"{variant.surface}.vtu"
     if not surface.exists():
         write_surface(surface, study.case.surface_mesh(run.parameters))
     place = folder / variant.folder
@@ -136,6 +141,7 @@ def row_of(variant: Variant, folder: Path) -> dict[str, float]:
     derived = chain.parameters["derived"]
     row = {
         "seed": variant.seed,
+        "surface": variant.surface,
         "rayleigh_fraction": variant.fraction,
         "shear_modulus_pa": variant.modulus,
         "time_step_s": derived["time_step_s"],
@@ -167,26 +173,31 @@ def rows(folder: Path, minutes: float, packings: int) -> Iterator[dict[str, floa
 
 
 def answers(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """Return what time steps and what moduli change, by column of the table; wear per metre in J, times in s.
+    """Return what time steps change, also over the convex sample, and what moduli; wear per metre in J, times in s.
 
     What each is compared with, the smallest time step and the stiffest particle, comes first.
     """
-    kept = {"rayleigh_fraction": table["shear_modulus_pa"] == MODULUS}
-    kept["shear_modulus_pa"] = table["rayleigh_fraction"] == table["shear_modulus_pa"].map(MODULI)
+    plain, usual = table["surface"] == PLAIN, table["shear_modulus_pa"] == MODULUS
+    of_modulus = table["rayleigh_fraction"] == table["shear_modulus_pa"].map(MODULI)
+    kept = {
+        "rayleigh_fraction": ("rayleigh_fraction", plain & usual),
+        CONVEX: ("rayleigh_fraction", ~plain & usual),
+        "shear_modulus_pa": ("shear_modulus_pa", plain & of_modulus),
+    }
     found = {}
-    for column, chosen in kept.items():
+    for name, (column, chosen) in kept.items():
         runs = table[chosen]
         wear, stiffness = runs["sliding_work_J"] / runs["travel_m"], column == "shear_modulus_pa"
         done = runs.loc[wear.notna(), column]
         told = changes(runs[column], wear, runs["seed"], done.max() if stiffness else done.min(), LIMIT)
         means = runs.groupby(column)[["time_step_s", "processor_s"]].mean().reset_index(names="value")
-        found[column] = told.merge(means, on="value").sort_values("value", ascending=not stiffness, ignore_index=True)
+        found[name] = told.merge(means, on="value").sort_values("value", ascending=not stiffness, ignore_index=True)
     return found
 
 
 def source_fraction() -> float:
     """Return the source's time step over the Rayleigh time of the smallest particle of real size (-)."""
-    particle = load_study(STUDY, overrides=CASE | {"particle_scale": 1.0}).run(RUN).parameters["derived"]
+    particle = load_study(STUDY, overrides=CASE | {"particle_scale": 1.0}).run(f"{ROW}_{PLAIN}").parameters["derived"]
     return SOURCE_STEP / particle["rayleigh_time_s"]
 
 
@@ -195,7 +206,7 @@ def setting(table: pd.DataFrame) -> str:
     bed, sample, first = CASE["bed"], CASE["sample"], table.iloc[0]
     return (
         f"some {first['particles']:.0f} particles of {CASE['particle_scale']:g} times the real size, four layers, in a"
-        f" channel {bed['width_mm']} mm wide that is closed on itself; plain sample of {sample['width_mm']} mm by"
+        f" channel {bed['width_mm']} mm wide that is closed on itself; samples of {sample['width_mm']} mm by"
         f" {sample['length_mm']} mm, {first['travel_m']:g} m of travel at {VELOCITY:g} m/s per run,"
         f" {table['seed'].nunique()} packings"
     )
@@ -206,7 +217,8 @@ def draw(table: pd.DataFrame, path: Path) -> None:
     found = answers(table)
     marks = {"studies": FRACTION, f"source, {SOURCE_STEP:g} s at real size": source_fraction()}
     panels = [
-        Panel("Time step over Rayleigh time (-)", found["rayleigh_fraction"], marks),
+        Panel("Time step over Rayleigh time (-), plain", found["rayleigh_fraction"], marks),
+        Panel("Time step over Rayleigh time (-), convex", found[CONVEX], marks),
         Panel("Shear modulus of the particles (Pa)", found["shear_modulus_pa"], {"studies and source": MODULUS}),
     ]
     remarks = [
@@ -221,7 +233,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
 def page(table: pd.DataFrame) -> str:
     """Return the page of the answers (Markdown)."""
     found = answers(table)
-    steps, moduli = found["rayleigh_fraction"], found["shear_modulus_pa"]
+    steps, convex, moduli = (found[name] for name in ("rayleigh_fraction", CONVEX, "shear_modulus_pa"))
     rolling, phrase = load_study(STUDY, overrides=CASE).settings["solver"]["rolling_friction"], setting(table)
     columns = "packings | sliding work (J/m) | change (%) | 95 % interval | verdict | processor time of a run (s) |"
     return "\n".join(
@@ -233,7 +245,7 @@ def page(table: pd.DataFrame) -> str:
                 " [time_step_and_stiffness.csv](time_step_and_stiffness.csv)."
             ),
             "",
-            *conclusions(steps, moduli),
+            *conclusions(steps, convex, moduli),
             "",
             "![Change of the sliding work with the time step and with the modulus](time_step_and_stiffness.png)",
             "",
@@ -243,10 +255,8 @@ def page(table: pd.DataFrame) -> str:
                 " work on the sample, to which Archard's wear is proportional."
             ),
             "",
-            f"| time step over Rayleigh time (-) | time step (s) | {columns}",
-            "|---|---|---|---|---|---|---|---|",
-            *(f"| {row.value:g} | {row.time_step_s:.2g} | {cells(row)} |" for row in steps.itertuples()),
-            "",
+            *step_table("plain sample", steps, columns),
+            *step_table("convex sample", convex, columns),
             f"| shear modulus (Pa) | time step (s) | {columns}",
             "|---|---|---|---|---|---|---|---|",
             *(f"| {row.value:.2g} | {row.time_step_s:.2g} | {cells(row)} |" for row in moduli.itertuples()),
@@ -255,9 +265,19 @@ def page(table: pd.DataFrame) -> str:
     )
 
 
-def conclusions(steps: pd.DataFrame, moduli: pd.DataFrame) -> list[str]:
+def step_table(name: str, steps: pd.DataFrame, columns: str) -> list[str]:
+    """Return the lines of a table of time steps; name: of the sample."""
+    return [
+        f"| {name}: time step over Rayleigh time (-) | time step (s) | {columns}",
+        "|---|---|---|---|---|---|---|---|",
+        *(f"| {row.value:g} | {row.time_step_s:.2g} | {cells(row)} |" for row in steps.itertuples()),
+        "",
+    ]
+
+
+def conclusions(steps: pd.DataFrame, convex: pd.DataFrame, moduli: pd.DataFrame) -> list[str]:
     """Return how far each choice can go, and the defaults beside it."""
-    scatter, limit = max(steps["scatter"].max(), moduli["scatter"].max()), f"{PERCENT * LIMIT:g} %"
+    scatter, limit = max(table["scatter"].max() for table in (steps, convex, moduli)), f"{PERCENT * LIMIT:g} %"
     step = steps.set_index("value")["time_step_s"][FRACTION]
     softened = PERCENT * moduli.set_index("value")["change"][MODULUS]
     off = "" if moduli["value"][0] == MODULUS else f", whose wear is {softened:+.1f} % off"
@@ -268,11 +288,12 @@ def conclusions(steps: pd.DataFrame, moduli: pd.DataFrame) -> list[str]:
         ),
         "",
         bullet(
-            f"Time step: against {steps['value'][0]:g} of the Rayleigh time of the smallest particle, wear is within"
-            f" {limit}, its 95 % interval included, up to {within(steps):g}; {beyond(steps)}. Default:"
+            f"Time step, plain sample: against {steps['value'][0]:g} of the Rayleigh time of the smallest particle,"
+            f" wear is within {limit}, its 95 % interval included, up to {within(steps):g}; {beyond(steps)}. Default:"
             f" `solver.rayleigh_fraction: {FRACTION:g}`, here {step:.2g} s; the source's {SOURCE_STEP:g} s are"
             f" {source_fraction():.2g} of that time at its particle size."
         ),
+        bullet(f"Time step, convex sample: within {limit} up to {within(convex):g}; {beyond(convex)}."),
         bullet(
             f"Shear modulus: against {moduli['value'][0]:.2g} Pa, wear is within {limit} down to"
             f" {within(moduli):.2g} Pa; {beyond(moduli)}. Default: {MODULUS:.2g} Pa, that of the source{off}."
@@ -318,62 +339,3 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
-
-
-WITHIN, BEYOND, UNDECIDED, FAILED = "within", "beyond", "undecided", "a run failed"
-
-
-def changes(
-    values: np.ndarray, responses: np.ndarray, packings: np.ndarray, reference: float, limit: float
-) -> pd.DataFrame:
-    """Return what each value of a choice changes, a row per value in rising order.
-
-    values, responses, packings: (n,), a run each: value of the choice, its positive response, NaN where the solver
-    failed, and label of its packing; reference: value that the others are compared with; limit: change (-) that matters
-
-    A packing has more or fewer particles than another, which all of its runs share, so ln(response) is the sum of an
-    effect of the value, one of the packing and chance (randomised blocks: Montgomery, Design and Analysis of
-    Experiments, chapter 4; least squares where not every packing has every value).
-
-    runs: with a response; failed: without; mean: geometric, over the same packings; change, change_low, change_high:
-    over the reference, less 1, with its interval by Student's t, NaN where too few runs tell of chance; scatter:
-    standard deviation of chance; verdict: whether the interval lies `within` the limit, `beyond` it, or neither, or
-    that a run failed. The reference changes nothing, by definition. Raises ValueError without a run at the reference.
-    """
-    table = pd.DataFrame({"value": values, "log": np.log(np.asarray(responses, float)), "packing": packings})
-    runs = table.groupby("value")["log"].agg(runs="count", failed=lambda logs: int(logs.isna().sum()))
-    done = table.dropna(subset=["log"])
-    if reference not in done["value"].to_numpy():
-        raise ValueError(
-            f"no run at the reference {reference:g}, allowed are {', '.join(f'{v:g}' for v in runs.index)}"
-        )
-    of_value, of_packing = (pd.get_dummies(done[name], dtype=float) for name in ("value", "packing"))
-    shared = of_packing.to_numpy()[:, 1:] - of_packing.to_numpy()[:, :1]  # effects of packings add up to nothing
-    matrix = np.hstack([of_value.to_numpy(), shared])
-    effects, _, rank, _ = np.linalg.lstsq(matrix, done["log"].to_numpy(), rcond=None)
-    freedom = len(done) - rank
-    rest = done["log"].to_numpy() - matrix @ effects
-    scatter = np.sqrt(rest @ rest / freedom) if freedom else np.nan
-    against = np.eye(len(effects))[: of_value.shape[1]] - np.eye(len(effects))[of_value.columns.get_loc(reference)]
-    spread = np.einsum("ij,jk,ik->i", against, np.linalg.pinv(matrix.T @ matrix), against)
-    reach = stats.t.ppf(0.5 + CONFIDENCE / 2.0, max(freedom, 1)) * scatter * np.sqrt(np.maximum(spread, 0.0))
-    reach[of_value.columns.get_loc(reference)] = 0.0
-    change = against @ effects
-    found = {
-        "change": np.expm1(change),
-        "change_low": np.expm1(change - reach),
-        "change_high": np.expm1(change + reach),
-    }
-    told = pd.DataFrame({"mean": np.exp(effects[: of_value.shape[1]]), **found}, index=of_value.columns)
-    told = runs.join(told).assign(scatter=scatter)
-    told["verdict"] = [
-        FAILED if row.failed else verdict(row.change_low, row.change_high, limit) for row in told.itertuples()
-    ]
-    return told.rename_axis("value").reset_index()
-
-
-def verdict(low: float, high: float, limit: float) -> str:
-    """Return what the interval of a change (-) says about a limit (-)."""
-    if -limit <= low and high <= limit:
-        return WITHIN
-    return BEYOND if low > limit or high < -limit else UNDECIDED

@@ -5,26 +5,23 @@ import pandas as pd
 import pytest
 from scipy import stats
 
+from benchmarks.changes import BEYOND, FAILED, UNDECIDED, WITHIN, changes, verdict
 from benchmarks.time_step_and_stiffness import (
-    BEYOND,
     CASE,
-    FAILED,
+    CONVEX,
     FRACTION,
     FRACTIONS,
     MODULI,
     MODULUS,
-    RUN,
+    ROW,
     STUDY,
-    UNDECIDED,
-    WITHIN,
     answers,
-    changes,
     page,
     source_fraction,
     variants,
-    verdict,
     with_derived,
 )
+from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.config.design import load_study
 
 SEEDS = (1, 1001, 2001)
@@ -36,14 +33,20 @@ SURE = 4.0  # standard deviations of a count of trials
 
 @pytest.fixture
 def table():
-    """Three packings: wear follows neither choice up to 0.8, is 5 % less at 1, and the solver fails beyond."""
+    """Three packings: no time step matters up to 0.8, over the convex sample up to 0.3; the solver fails at 1.25."""
     random = np.random.default_rng(20220317)
     rows = []
     for seed in SEEDS:
         for each in variants(seed):
             work = {1.0: 0.95, 1.25: np.nan}.get(each.fraction, 1.0) * (1.1 if each.modulus < 1e7 else 1.0)
+            work *= 0.9 if each.surface == CONVEX and 0.3 < each.fraction < 1.0 else 1.0
             work *= (1.0 + 0.1 * SEEDS.index(seed)) * np.exp(random.normal(0.0, 1e-3))
-            row = {"seed": seed, "rayleigh_fraction": each.fraction, "shear_modulus_pa": each.modulus}
+            row = {
+                "seed": seed,
+                "surface": each.surface,
+                "rayleigh_fraction": each.fraction,
+                "shear_modulus_pa": each.modulus,
+            }
             rows.append({**row, "time_step_s": 1e-5, "particles": 2000, "travel_m": 1.0, "sliding_work_J": work})
     return pd.DataFrame(rows).assign(processor_s=10.0)
 
@@ -51,7 +54,9 @@ def table():
 def test_each_choice_is_varied_alone():
     """Every time step at the studies' modulus, every modulus at its own time step, once; dear ones last."""
     found = variants(1)
-    assert sorted(each.fraction for each in found if each.modulus == MODULUS) == sorted(FRACTIONS)
+    for surface in (PLAIN, CONVEX):
+        of = [each.fraction for each in found if each.modulus == MODULUS and each.surface == surface]
+        assert sorted(of) == sorted(FRACTIONS)
     assert {each.modulus: each.fraction for each in found if each.modulus != MODULUS} == {
         modulus: fraction for modulus, fraction in MODULI.items() if modulus != MODULUS
     }
@@ -61,7 +66,7 @@ def test_each_choice_is_varied_alone():
 
 def test_time_step_and_modulus_reach_the_run():
     """Half the fraction halves the time step, a hundredth of the modulus makes it ten times as long."""
-    run = load_study(STUDY, overrides=CASE).run(RUN)
+    run = load_study(STUDY, overrides=CASE).run(f"{ROW}_plain")
     largest = [
         with_derived(run, fraction, modulus, 1).parameters["derived"]["largest_time_step_s"]
         for fraction, modulus in ((FRACTION, MODULUS), (0.5 * FRACTION, MODULUS), (FRACTION, 0.01 * MODULUS))
@@ -76,12 +81,16 @@ def test_the_page_answers_what_the_table_holds(table):
     found = answers(table)
     steps, moduli = (found[name].set_index("value")["verdict"] for name in ("rayleigh_fraction", "shear_modulus_pa"))
     assert steps.to_dict() == {**dict.fromkeys(FRACTIONS, WITHIN), 1.0: BEYOND, 1.25: FAILED}
+    convex = found[CONVEX].set_index("value")["verdict"]
+    assert {convex[each] for each in (0.4, 0.6, 0.8, 1.0)} == {BEYOND} and convex[0.3] == WITHIN
     assert list(moduli.index) == sorted(MODULI, reverse=True)
     assert moduli.to_dict() == {modulus: BEYOND if modulus < 1e7 else WITHIN for modulus in MODULI}
     text = " ".join(page(table).split())
     assert "up to 0.8; surely beyond that it is first at 1 (beyond)" in text
     assert "down to 2e+07 Pa; surely beyond that it is first at 7e+06 (beyond)" in text
-    assert text.count("| 1.25 |") == 1 and text.count("| within |") == len(FRACTIONS) - 2 + len(MODULI) - 2
+    assert "convex sample: within 2 % up to 0.3; surely beyond that it is first at 0.4 (beyond)" in text
+    told = sum((table["verdict"] == WITHIN).sum() for table in found.values())
+    assert text.count("| 1.25 |") == 2 and text.count("| within |") == told
 
 
 def test_changes_of_known_runs():
