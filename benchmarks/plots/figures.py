@@ -27,6 +27,7 @@ NARROW = 0.15  # -, of the panel of ratios below and above 1, at least
 PACKING_LINE = {"linewidth": 0.6, "alpha": 0.45}  # of a single packing
 SOURCE_COLOUR = "#009E73"
 LINE_HEIGHT = 0.19  # inches
+LEGEND_AND_REMARKS = 2.4  # inches
 TITLES = {
     "conserving": "conserving, patch spread twice",
     "spread_once": "conserving, patch spread once",
@@ -182,7 +183,7 @@ def ratio_by_candidate(table: pd.DataFrame, source: Mapping[int, float], remarks
     source: the source's ratio by particle scale
     """
     names = list(dict.fromkeys(table["candidate"]))
-    figure = new_figure(remarks, 1.6 + LINE_HEIGHT * len(names))
+    figure = new_figure(remarks, LEGEND_AND_REMARKS + LINE_HEIGHT * len(names))
     scales = list(dict.fromkeys(table["particle_scale"]))
     panels = figure.subplots(1, len(scales), sharey=True, squeeze=False)[0]
     for axes, scale in zip(panels, scales, strict=True):
