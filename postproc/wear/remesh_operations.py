@@ -1,11 +1,11 @@
 """Split, collapse, flip and shift: the local operations of remeshing, many independent ones at a time.
 
 Every round picks operations that share no face (each is the most urgent one near it), tries all of them at once and
-takes back those that make the patch worse: a smaller angle, a turned face, or a place outside the old surface. A split
-leaves the shape as it is. A shift keeps the volume exactly: a node alone sweeps w . G, where G, the gradient of the
-volume, depends on the ring round the node only, so w is chosen square to G. A collapse of two free nodes puts the new
-one where the volume stays (P. Lindstrom and G. Turk, IEEE Visualization 1998, 279). What flips and collapses on to a
-curve change in volume is left to `postproc.wear.remesh`.
+takes back those that make the patch worse: a smaller angle, a turned face, a place outside the old surface, or one more
+face without a node that may move. A split leaves the shape as it is. A shift keeps the volume exactly: a node alone
+sweeps w . G, where G, the gradient of the volume, depends on the ring round the node only, so w is chosen square to G.
+A collapse of two free nodes puts the new one where the volume stays (P. Lindstrom and G. Turk, IEEE Visualization 1998,
+279). What flips and collapses on to a curve change in volume is left to `postproc.wear.remesh`.
 """
 
 from __future__ import annotations
@@ -316,8 +316,10 @@ def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: Ol
     np.add.at(mean, group, vectors)
     cosine_before = np.full(count, np.inf)
     np.minimum.at(cosine_before, group, _cosines(vectors, mean[group]))
+    held = np.bincount(group, _all_fixed(before, rows), count)
     left = np.flatnonzero((of_face >= 0) & alive)
     group = of_face[left]
+    good[np.bincount(group, _all_fixed(after, left), count) > held] = False
     angle = smallest_angles(after.points, after.triangles[left])
     good[group[angle < np.minimum(angle_before, GOOD_ANGLE)[group]]] = False
     cosine = _cosines(area_vectors(after.points, after.triangles[left]), mean[group])
@@ -326,6 +328,11 @@ def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: Ol
     reach = old.range_over_faces(after.points, after.triangles[left], after.size)
     good[of_face[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
     return good
+
+
+def _all_fixed(patch: Patch, faces: np.ndarray) -> np.ndarray:
+    """Mask (k,) of faces none of whose nodes may move: what becomes of such a face nothing can mend."""
+    return patch.fixed[patch.triangles[faces]].all(axis=1)
 
 
 def _cosines(vectors: np.ndarray, others: np.ndarray) -> np.ndarray:

@@ -23,6 +23,8 @@ from bulkwear.postproc.mesh import (
 from bulkwear.postproc.wear.depth import height_loss
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, mesh_faults, with_target_edges
 from bulkwear.postproc.wear.remesh import RemeshError, remesh
+from bulkwear.postproc.wear.remesh_operations import Limits, flip
+from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch
 from bulkwear.postproc.wear.remesh_transfer import labels_at_nodes
 from bulkwear.postproc.wear.update import wear_update
 
@@ -206,6 +208,17 @@ def test_faces_that_have_not_moved_are_not_looked_at():
         with pytest.raises(RemeshError, match="cut one another"):
             remesh(mesh, moved=moved)
     assert remesh(mesh, moved=np.zeros(2, dtype=bool)).mesh is mesh
+
+
+@pytest.mark.parametrize(("held", "flipped"), [((True, True, True), 0), ((True, True, False), 1)])
+def test_no_face_between_nodes_that_stay(held, flipped):
+    """Such a face on the end of a slice may lie in the end plane, where nothing can mend it later."""
+    points = np.array([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 9.0, 0.0]])
+    triangles = np.array([[0, 1, 3], [1, 2, 3]])  # two thin faces; the other diagonal has larger angles
+    patch = Patch(points, triangles, np.zeros(2, dtype=int), np.ones(4), np.array([*held, False]), np.arange(4))
+    limits = Limits(OUTWARD, 1.0, acute_deg=20.0)
+    _, done = flip(patch, OldSurface(points, triangles), limits)
+    assert done == flipped
 
 
 def test_hopeless_mesh_is_refused():
