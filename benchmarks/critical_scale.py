@@ -14,6 +14,7 @@ two from the first.
 from __future__ import annotations
 
 import argparse
+import math
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -31,7 +32,7 @@ from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, 
 from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
 from bulkwear.postproc.plots.style import save
-from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, crossing
+from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing, crossing
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.workflows.cases.sliding_sample.flow_history import (
@@ -171,9 +172,11 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     return table.assign(kind=kinds, place=place).sort_values(["particle_scale", "place"], ignore_index=True)
 
 
-def critical_scales(runs: pd.DataFrame) -> pd.DataFrame:
+def critical_scales(runs: pd.DataFrame, table: pd.DataFrame) -> pd.DataFrame:
     """Return by candidate where its ratio passes one: critical_scale, its interval over forms, of which scales and how
-    many packings. Candidates of fewer than three scales are left out. See `postproc.statistics.crossing`.
+    many packings, and in words what an end beyond the scales means. Candidates of fewer than three scales are left out.
+
+    runs: as from `run_row`; table: as from `comparison`. See `postproc.statistics.crossing`.
     """
     pairs = runs.pivot(
         index=["candidate", "particle_scale", "seed"], columns="surface", values="wear_mm3_per_m"
@@ -186,11 +189,26 @@ def critical_scales(runs: pd.DataFrame) -> pd.DataFrame:
             continue
         found = crossing(of["particle_scale"].to_numpy(), of["ratio"].to_numpy())
         ends = {"interval_low": found.low, "interval_high": found.high}
+        said = where_it_lies(found, table[table["candidate"] == candidate])
         rows.append(
             {"candidate": candidate, "scales": ", ".join(f"{scale:g}" for scale in scales), "packings": found.packings}
-            | {"critical_scale": found.value, **ends, "forms": found.forms, "reason": found.reason}
+            | {"critical_scale": found.value, **ends, "forms": found.forms, "where": said}
         )
     return pd.DataFrame(rows)
+
+
+def where_it_lies(found: Crossing, rows: pd.DataFrame) -> str:
+    """Return in words where a ratio passes one; rows: of `comparison`, of one candidate, a scale each."""
+    scales = rows["particle_scale"]
+    least, most = scales.min(), scales.max()
+    if not math.isnan(found.low):
+        low = f"{found.low:.3g}" if math.isfinite(found.low) else f"below {least:g}"
+        return f"{low} to {found.high:.3g}" if math.isfinite(found.high) else f"{low} to beyond {most:g}"
+    if (rows["ratio_high"] < 1.0).all():
+        return f"above {most:g}, if anywhere: the convex sample wears less at every scale"
+    if (rows["ratio_low"] > 1.0).all():
+        return f"below {least:g}, if anywhere: the convex sample wears more at every scale"
+    return f"not told: {found.reason}"
 
 
 # ---------------------------------------------------------------- page
@@ -218,7 +236,7 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
 def publish(output: Path, runs: pd.DataFrame) -> str:
     """Write figure and page of the runs; return the page."""
     table = comparison(runs)
-    page = results_page(table, critical_scales(runs), runs)
+    page = results_page(table, critical_scales(runs, table), runs)
     (output / "critical_scale_results.md").write_text(page, encoding="utf-8")
     source = {scale: source_ratio(scale) for scale in table["particle_scale"]}
     save(ratio_by_candidate(table, source, remarks(runs, table)), output / "critical_scale.png")

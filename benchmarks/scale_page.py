@@ -107,10 +107,10 @@ def critical_part(critical: pd.DataFrame) -> list[str]:
         "## Critical particle scale",
         prose(
             "Where convex and plain sample wear alike, by the forms of the study's own page: those that the packings do"
-            " not reject leave the interval open together. Nothing is extended beyond the scales; the source has about"
-            " 4."
+            " not reject leave an interval together, which stands under where. Nothing is extended beyond the scales;"
+            " the source has about 4."
         ),
-        markdown(critical),
+        markdown(critical[["candidate", "scales", "packings", "critical_scale", "where", "forms"]]),
     ]
 
 

@@ -7,10 +7,19 @@ import pandas as pd
 import pytest
 
 from benchmarks import critical_scale, scale_case, scale_page
-from benchmarks.critical_scale import comparison, critical_scales, finished, publish, remarks, simulate_all
+from benchmarks.critical_scale import (
+    comparison,
+    critical_scales,
+    finished,
+    publish,
+    remarks,
+    simulate_all,
+    where_it_lies,
+)
 from benchmarks.runs import FIRST_SEED
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
 from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
+from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.workflows.config.design import load_study
 
 OTHER = "neighbouring rows 40 mm apart"
@@ -152,6 +161,29 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     critical_scale.attempted(broken, lambda: pytest.fail("failed before"))
 
 
+def table_of(ends):
+    """Of `comparison`, what tells a side: lowest and highest ratio of each candidate at scales 4 and 8."""
+    rows = [(name, scale, low, high) for name, (low, high) in ends.items() for scale in (4, 8)]
+    return pd.DataFrame(rows, columns=["candidate", "particle_scale", "ratio_low", "ratio_high"])
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "ends", "words"),
+    [
+        (4.5, 6.0, (0.5, 2.0), "4.5 to 6"),
+        (4.5, np.inf, (0.5, 2.0), "4.5 to beyond 8"),
+        (-np.inf, 6.0, (0.5, 2.0), "below 4 to 6"),
+        (np.nan, np.nan, (0.5, 0.9), "above 8, if anywhere: the convex sample wears less at every scale"),
+        (np.nan, np.nan, (1.1, 2.0), "below 4, if anywhere: the convex sample wears more at every scale"),
+        (np.nan, np.nan, (0.9, 1.1), "not told: none between the places"),
+    ],
+)
+def test_an_open_end_is_told_with_its_side(low, high, ends, words):
+    """An end beyond the scales, and no crossing at all, say on which side of them it would be."""
+    found = Crossing(np.nan, low, high, np.nan, np.nan, 3, 3, 2, "none between the places" if np.isnan(low) else "")
+    assert where_it_lies(found, table_of({REFERENCE: ends})) == words
+
+
 def test_a_candidate_has_a_critical_scale():
     """Ratio 0.25 times the scale, with a scatter of a hundredth: one at scale 4. Two scales tell none."""
     runs = [
@@ -162,7 +194,7 @@ def test_a_candidate_has_a_critical_scale():
         for seed in (1, 2, 3)
         for surface in ("plain", "convex")
     ]
-    found = critical_scales(pd.DataFrame(runs))
+    found = critical_scales(pd.DataFrame(runs), table_of({REFERENCE: (1.0, 1.0)}))
     assert found["candidate"].tolist() == [REFERENCE] and found["scales"].tolist() == ["3, 4, 5, 6"]
     assert found["critical_scale"].iloc[0] == pytest.approx(4.0, abs=0.01)
     assert found["interval_low"].iloc[0] < 4.0 < found["interval_high"].iloc[0]
