@@ -2,7 +2,7 @@
 
 Three kinds of tables are: claims with their verdicts (finding, claim, found, verdict, reason, factor, source), numbers
 with a relation (quantity, surface, scales, relation, value, unit, and the same from found on), and values beside values
-(published_value, computed_value with its interval, source), which are judged here.
+(published_value, computed_value with its interval, packings, source), which are judged here unless they are `given`.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ import pandas as pd
 from bulkwear.postproc.statistics.intervals import Ends
 from bulkwear.postproc.statistics.verdicts import Claim, Verdict, judged, not_said
 from bulkwear.workflows.config.claims import about
-from bulkwear.workflows.report.sections import Section, Table
+from bulkwear.workflows.report.sections import DIGITS, Section, Table
 
 COLUMNS = ["finding", "published", "found", "factor", "verdict", "reason", "source"]
 FOLDER = "published"  # in docs
 NOT_COMPUTED = "the study computes no such number"
 COMPUTED = "computed_value"  # column of values beside values
+GIVEN = "given"  # column of what is put in and no result of ours, and what stands there instead of a verdict
 
 
 def published_file(page: str) -> str:
@@ -65,7 +66,10 @@ def _judged_value(row: dict[str, Any]) -> dict[str, Any]:
     between = (low, high) if math.isnan(value) else (value, value)
     margin = _number(row, "margin")
     claim = about(row["quantity"], *between, unit, margin=None if math.isnan(margin) else margin)
-    verdict = _verdict(claim, computed, ends)
+    if _text(row.get(GIVEN)):
+        verdict = Verdict(f"{computed:.{DIGITS}g} {unit}".strip(), GIVEN)
+    else:
+        verdict = _verdict(claim, computed, ends, _number(row, "packings"))
     return {
         "finding": _words(row, "quantity", "setting"),
         "published": f"{_range(value, low, high)} {unit}".strip(),
@@ -77,10 +81,13 @@ def _judged_value(row: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _verdict(claim: Claim, computed: float, ends: list[float]) -> Verdict:
+def _verdict(claim: Claim, computed: float, ends: list[float], packings: float) -> Verdict:
+    """Return the verdict on a value; packings: NaN where what has the interval is no mean over packings."""
     if not math.isfinite(computed):
         return not_said(NOT_COMPUTED)
-    return judged(claim, Ends(computed, *ends, packings=1 if math.isnan(ends[0]) else 2))
+    if packings == 1.0:  # ends, if any, are those of its blocks
+        ends = [math.nan, math.nan]
+    return judged(claim, Ends(computed, *ends, packings=0 if math.isnan(packings) else int(packings)))
 
 
 def _range(value: float, low: float, high: float) -> str:

@@ -5,11 +5,13 @@ import math
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.statistics.verdicts import AGREES, OTHER_SIZE, UNSAID
 from bulkwear.workflows.config.claims import ABOUT, about
 from bulkwear.workflows.report.provenance_of_pages import Origin
 from bulkwear.workflows.report.published import (
     COLUMNS,
+    GIVEN,
     NOT_COMPUTED,
     published_file,
     published_numbers,
@@ -76,6 +78,15 @@ def test_a_margin_of_its_own_counts():
     assert about("x", 2.0, 2.0, "").margin == 2.0 * ABOUT and about("x", -2.0, -2.0, "").direction == "below"
 
 
+def test_one_packing_decides_nothing_and_what_is_given_is_no_result():
+    """An interval over the blocks of one packing is none; a value that was put in has no verdict."""
+    ours = {"computed_value": 130.0, "computed_low": 126.0, "computed_high": 134.0}
+    found = published_numbers([section(VALUE | ours | extra) for extra in ({"packings": 3.0}, {"packings": 1.0})])
+    assert found["verdict"].tolist() == [AGREES, UNSAID] and found["reason"].iloc[1] == UNKNOWN
+    row = published_numbers([section(VALUE | ours | {"given": "given"})]).iloc[0]
+    assert (row["verdict"], row["found"], row["factor"]) == (GIVEN, "130 degrees", pytest.approx(130.0 / 128.0))
+
+
 def test_what_the_study_does_not_compute_is_told():
     """It is no contradiction."""
     row = published_numbers([section(VALUE | {"computed_value": math.nan})]).iloc[0]
@@ -98,7 +109,7 @@ def test_the_page_has_the_numbers_of_every_page_that_left_some(tmp_path):
     write_published_numbers(tmp_path, origins[1].page, [section(CLAIM, beside=False)])
     assert [path.name for path in (tmp_path / "published").iterdir()] == ["a_results_quick.csv"]
     page = published_page(tmp_path, origins)
-    assert "| [a_results_quick.md](a_results_quick.md) | 2 | 2 | 0 | 0 | 0 |" in page
+    assert "| [a_results_quick.md](a_results_quick.md) | 2 | 2 | 0 | 0 | 0 | 0 |" in page
     none = number(math.nan)
     assert f"| critical scale, convex | about 4 at scale 4 | 0.9 (0.8 to 1.0) | {none} | agrees |  | Yan 2022 |" in page
     assert "b results" not in page

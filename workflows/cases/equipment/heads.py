@@ -176,6 +176,8 @@ ANCHOR_COLUMNS = {
     "computed_value": ("computed", ""),
     "computed_low": ("from", ""),
     "computed_high": ("to", ""),
+    "packings": ("packings", "-"),
+    "given": ("put in", ""),
     "difference_percent": ("difference", "%"),
     "where": ("of the published range", ""),
     "source": ("source", ""),

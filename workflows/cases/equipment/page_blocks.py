@@ -19,7 +19,7 @@ from bulkwear.workflows.report.text import range_text
 
 WORDS = (  # columns of text
     *("how", "reason", "verdict", "answer", "said", "rule"),
-    *("where", "setting", "unit", "note", "source"),
+    *("where", "setting", "unit", "note", "source", "given"),
 )
 LEAST_CARRIED = 0.01  # -, of the wear law's volume; less changes no digit that is shown
 INTERVALS = "Intervals: 95 %, over packings; of one packing the scatter is unknown."
@@ -47,7 +47,8 @@ LIFTER_NOTE = (
     f"the sense of rotation. Means over lifters; hours, too, are means over packings. {INTERVALS}"
 )
 ANCHOR_NOTE = (
-    "Difference: computed over published, less 1. Without a computed value the study has none. Margin: within "
+    "Difference: computed over published, less 1. Without a computed value the study has none. Given: put in by the "
+    "study, so no result of it. Margin: within "
     "which both count as one on the page of all published numbers; of angles as far as two published codes differ on "
     "one mill, else 15 %."
 )

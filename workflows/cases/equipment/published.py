@@ -18,9 +18,10 @@ from bulkwear.postproc.statistics.intervals import estimate
 from bulkwear.workflows.cases.equipment.comparison import FIRST
 from bulkwear.workflows.cases.equipment.lifters import HEIGHT, LEADING, LOSS
 from bulkwear.workflows.cases.equipment.machine_tables import RPM
-from bulkwear.workflows.cases.equipment.tables import KEPT
+from bulkwear.workflows.cases.equipment.tables import KEPT, PRISTINE
 
-COLUMNS = ["quantity", "setting", "value", "low", "high", "unit", "packings"]
+COLUMNS = ["quantity", "setting", "value", "low", "high", "unit", "packings", "given"]
+GIVEN = "given"  # in the column of its name: put in by the study, as a coefficient or a size as drawn; else ""
 LOAD_ANGLE = "load_angle_deg"
 PER_PACKING = {  # table with a row per packing and phase: its columns and their units
     "flow": {"out_t_per_h": "t/h", "held_kg": "kg", "residence_s": "s", "power_W": "W"},
@@ -53,7 +54,7 @@ def key_numbers(found: Mapping[str, pd.DataFrame], runs: Sequence[Mapping[str, A
     for name, columns in PER_PACKING.items():
         if name in found:
             rows += _over_packings(found[name], columns)
-    return pd.DataFrame(rows, columns=COLUMNS)
+    return pd.DataFrame(rows, columns=COLUMNS).fillna({"given": ""})
 
 
 def _given(runs: Sequence[Mapping[str, Any]]) -> Rows:
@@ -61,7 +62,7 @@ def _given(runs: Sequence[Mapping[str, Any]]) -> Rows:
     rows = []
     for run in {run["setting"]: run for run in reversed(runs)}.values():
         for name, part in run["parts"].items():
-            own = {"setting": run["setting"]}
+            own = {"setting": run["setting"], "given": GIVEN}
             if part["wears"]:
                 coefficient = {"value": part["wear_coefficient_per_pa"], "unit": "1/Pa"}
                 rows.append({"quantity": f"wear_coefficient_{name}", **own, **coefficient})
@@ -108,8 +109,9 @@ def _lifters(lifters: pd.DataFrame) -> Rows:
     for (_, part), updates in lifters.groupby(["setting", "part"], sort=False):
         last = updates.iloc[-1]
         for phase, row in zip(KEPT, (updates.iloc[0], last) if len(updates) > 1 else (last,), strict=False):
-            rows.append(_row(row, f"lifter_height_{part}_{phase}", "mm", *_ends(row, HEIGHT)))
-            rows.append(_row(row, f"lifter_face_angle_{part}_{phase}", "degrees", *_ends(row, LEADING)))
+            drawn = {"given": GIVEN if phase == PRISTINE else ""}
+            rows.append(_row(row, f"lifter_height_{part}_{phase}", "mm", *_ends(row, HEIGHT)) | drawn)
+            rows.append(_row(row, f"lifter_face_angle_{part}_{phase}", "degrees", *_ends(row, LEADING)) | drawn)
         rows.append(_row(last, f"lifter_height_loss_{part}", "mm per 1,000 h", *_ends(last, LOSS)))
     return [row for row in rows if np.isfinite(row["value"])]
 

@@ -76,6 +76,13 @@ def test_numbers_by_name(numbers, quantity, value, unit):
     assert row["value"] == pytest.approx(value, rel=1e-3) and row["unit"] == unit
 
 
+def test_what_the_study_puts_in_is_marked(numbers):
+    """Coefficients, speeds, and lifters as drawn; what the solver tells is not."""
+    marked = set(numbers.loc[numbers["given"] == published.GIVEN, "quantity"])
+    assert {"wear_coefficient_liner", "speed_wheel", "lifter_height_wheel_pristine"} <= marked
+    assert not marked & {"lifter_height_wheel_worn", "life_liner", "toe_worn", "held_worn"}
+
+
 def test_life_in_weeks_of_service(numbers):
     """The life in hours over those that a year has, of 52.18 weeks, with its interval."""
     table = numbers[numbers["setting"] == "plain"].set_index("quantity")
