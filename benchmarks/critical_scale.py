@@ -153,7 +153,9 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     pairs["base_over_plain"] = pairs["wear_over_plain"] - pairs["bumps_over_plain"]
     pairs["share_of_bumps_percent"] = PERCENT * pairs["bumps_over_plain"] / pairs["wear_over_plain"]
     pairs["force_over_plain"] = pairs["normal_force_N_convex"] / pairs["normal_force_N_plain"]
+    pairs["processor_s"] = pairs["processor_s_convex"] + pairs["processor_s_plain"]
     kept = [
+        "processor_s",
         *("wear_mm3_per_m_convex", "wear_mm3_per_m_plain", "base_over_plain", "bumps_over_plain"),
         *("share_of_bumps_percent", "force_over_plain", "slip_percent_convex", "slip_percent_plain"),
         *("velocity_percent_convex", "velocity_percent_plain"),
@@ -165,11 +167,17 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
         ends = {"setting": "candidate", "mean": "wear_over_plain", "low": "ratio_low", "high": "ratio_high"}
         told = told.rename(columns=names | ends)
         means = of.groupby("candidate", sort=False)[kept].mean().reset_index()
+        means["processor_over_reference"] = means["processor_s"] / of_reference(means, "processor_s")
         parts.append(told.merge(means, on="candidate").assign(particle_scale=scale))
     table = pd.concat(parts, ignore_index=True)
     kinds = table["candidate"].map({name: candidate.kind for name, candidate in CANDIDATES.items()})
     place = table["candidate"].map(list(CANDIDATES).index)
     return table.assign(kind=kinds, place=place).sort_values(["particle_scale", "place"], ignore_index=True)
+
+
+def of_reference(rows: pd.DataFrame, column: str) -> float:
+    """Return the value of the reference in a column of rows by candidate, NaN where it is not among them."""
+    return float(rows.loc[rows["candidate"] == REFERENCE, column].mean())
 
 
 def critical_scales(runs: pd.DataFrame, table: pd.DataFrame) -> pd.DataFrame:

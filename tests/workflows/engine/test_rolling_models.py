@@ -27,6 +27,8 @@ STOPPED, GROWTH = 1e-9, 1e-12  # rad/s, and relative: rounding
 GRAVITY = 9.81  # m/s2
 ACCELERATION = 0.01  # relative: the lever of the contact is shorter than the radius by half of the overlap
 RESTARTED = 1e-9  # relative: rounding, which rolling does not amplify
+AT_REST = 1e-9  # rad/s in a bed at rest
+MOST_ENERGY = 1e-3  # relative to that of the drop: what the solver's steps add to an elastic contact
 STANDS = 1e-9  # m in 0.1 s, after the deflection of the tangential spring has come to rest
 HEAD = """\
 units si
@@ -188,6 +190,55 @@ def test_a_sphere_rolls_down_a_steeper_slope(model, tmp_path):
     angle = np.arctan(slope)
     meant = (np.sin(angle) - COEFFICIENT * np.cos(angle)) * GRAVITY / 1.4
     assert 2.0 * (x[-1, 0] - x[0, 0]) / seconds**2 == pytest.approx(meant, rel=ACCELERATION)
+
+
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_torques_of_two_contacts(model, tmp_path):
+    """Spheres in a groove of two walls: under own_spin the sum of both forces resists the spin, under rvd each force
+    the spin's part in its own wall.
+    """
+    random = np.random.default_rng(11)
+    radii, spins = np.resize(RADII, 6), random.normal(0.0, 20.0, (6, 3))
+    centres = np.column_stack([np.linspace(-0.3, 0.3, 6), radii - 0.5 * OVERLAP, radii - OVERLAP])
+    floor = WALLS["plane"].format(model=model)
+    walls = floor + floor.replace("fix wall", "fix side").replace("zplane", "yplane")
+    head = HEAD.format(model=model, step=SHORT, friction=0.0, ranks=1)
+    motion = f"fix motion all nve/sphere\n{DUMP.format(every=1)}run 1\n"
+    found = simulated(tmp_path, head + placed(centres, radii, spins) + walls + motion)
+    lever = COEFFICIENT * np.abs(found["force"][1]) * radii[:, None]  # (n, 3): none along x, of the side, of the floor
+    parts = [spins, spins] if model == "own_spin" else [spins * [1.0, 0.0, 1.0], spins * [1.0, 1.0, 0.0]]
+    meant = -sum(lever[:, [axis]] * unit(part) for axis, part in zip((1, 2), parts, strict=True))
+    np.testing.assert_allclose(found["torque"][1], meant, atol=TORQUE * np.abs(meant).max())
+    assert (lever[:, 1:] > 0.0).all()
+
+
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_a_bed_falls_and_comes_to_rest(model, tmp_path):
+    """Many contacts at once: kinetic and potential energy never exceed those of the drop, and under own_spin nothing
+    turns in the end; rvd lets a particle spin on about the normal of its contacts.
+    """
+    random = np.random.default_rng(10)
+    cells = np.stack(np.meshgrid(*[0.012 * np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    centres = cells + np.array([0.006, 0.106, 0.012]) + random.uniform(-3e-4, 3e-4, cells.shape)
+    box = "".join(
+        WALLS["plane"].replace("fix wall", f"fix {side}").replace("zplane 0.0", f"{axis}plane {at}")
+        for side, axis, at in (("a", "x", 0.0), ("b", "x", 0.05), ("c", "y", 0.1), ("d", "y", 0.15), ("e", "z", 0.0))
+    )
+    energy = (
+        "variable height equal xcm(all,z)\ncompute kinetic all ke\ncompute turning all erotate/sphere\n"
+        f"variable energy equal c_kinetic+c_turning+mass(all)*{GRAVITY}*v_height\nthermo_style custom step v_energy\n"
+        'thermo 100\nfix energy all print 100 "${energy}" file energy.txt screen no\n'
+    )
+    deck = HEAD.format(model=model, step=1e-5, friction=0.5, ranks=1) + placed(
+        centres, np.full(len(centres), RADII[0]), random.normal(0.0, 20.0, centres.shape)
+    )
+    motion = f"fix weight all gravity {GRAVITY} vector 0 0 -1\nfix motion all nve/sphere\n"
+    dump = DUMP.format(every=60000)
+    found = simulated(tmp_path, deck + box.format(model=model) + motion + energy + f"{dump}run 60000\n")
+    told = np.loadtxt(tmp_path / "energy.txt")
+    assert told.max() <= told[0] * (1.0 + MOST_ENERGY) and told[-1] < 0.7 * told[0]
+    if model == "own_spin":
+        assert np.abs(found["spin"][-1]).max() < AT_REST < np.abs(found["spin"][0]).max()
 
 
 @pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
