@@ -36,26 +36,49 @@ def read_cad_solids(path: Path, unit: str, edges: Mapping[str, float] | float | 
     """
     if edges is None:
         raise ValueError(f"{path}: a CAD file has no triangles, allowed is a target edge that they are made with")
-    _check_unit(path, unit)
-    scale = 1e-3 if path.suffix.lower() in WITH_UNIT else metres_per(unit)
+    scale = _metres_of_file(path, unit)
     with gmsh_model() as gmsh:
-        try:
-            gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
-            gmsh.model.occ.synchronize()
-            _sew_faces(gmsh)
-        except Exception as error:  # gmsh has no kind of its own
-            raise ValueError(f"{path}: not a readable {path.suffix} file ({error})") from error
-        bodies = _bodies(gmsh, path.stem)
-        if not bodies:
-            raise ValueError(f"{path}: no body and no face found, allowed are one or more")
-        names = distinct([name for name, _ in bodies])
-        targets = _targets(gmsh, path, names, [faces for _, faces in bodies], edges, scale)
-        _set_sizes(gmsh, [faces for _, faces in bodies], targets / scale)
+        names, faces = _imported(gmsh, path)
+        targets = _targets(path, names, scale**2 * _areas(gmsh, faces), edges)
+        _set_sizes(gmsh, faces, targets / scale)
         try:
             gmsh.model.mesh.generate(2)
         except Exception as error:
             raise ValueError(f"{path}: a face cannot be meshed with that target edge ({error})") from error
-        return _meshed(gmsh, names, [faces for _, faces in bodies]), scale
+        return _meshed(gmsh, names, faces), scale
+
+
+def cad_areas(path: Path, unit: str) -> dict[str, float]:
+    """Area (m2) of the true surface of each part of a CAD file; nothing is meshed. Raises as `read_cad_solids`."""
+    scale = _metres_of_file(path, unit)
+    with gmsh_model() as gmsh:
+        names, faces = _imported(gmsh, path)
+        return dict(zip(names, (scale**2 * _areas(gmsh, faces)).tolist(), strict=True))
+
+
+def _metres_of_file(path: Path, unit: str) -> float:
+    """Metres of the numbers that OpenCASCADE hands over. Raises ValueError where the file says another unit."""
+    _check_unit(path, unit)
+    return 1e-3 if path.suffix.lower() in WITH_UNIT else metres_per(unit)
+
+
+def _imported(gmsh, path: Path) -> tuple[tuple[str, ...], list[list[int]]]:
+    """Names of the parts of a file, and the tags of the faces of each. Raises ValueError where it has none."""
+    try:
+        gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+        gmsh.model.occ.synchronize()
+        _sew_faces(gmsh)
+    except Exception as error:  # gmsh has no kind of its own
+        raise ValueError(f"{path}: not a readable {path.suffix} file ({error})") from error
+    bodies = _bodies(gmsh, path.stem)
+    if not bodies:
+        raise ValueError(f"{path}: no body and no face found, allowed are one or more")
+    return distinct([name for name, _ in bodies]), [faces for _, faces in bodies]
+
+
+def _areas(gmsh, faces: list[list[int]]) -> np.ndarray:
+    """Area of the faces of each part, (parts,) in the square of its unit."""
+    return np.array([sum(gmsh.model.occ.getMass(2, tag) for tag in tags) for tags in faces])
 
 
 def _check_unit(path: Path, unit: str) -> None:
@@ -118,14 +141,16 @@ def _entity_name(gmsh, dimension: int, tag: int) -> str:
     return "" if name in NO_NAMES or name.startswith(NAMED_BY_PROGRAM) else name
 
 
-def _targets(gmsh, path: Path, names: tuple[str, ...], faces: list[list[int]], edges, scale: float) -> np.ndarray:
-    """Target edge of each part, (parts,) m. Raises ValueError where there is none, or one for too many triangles."""
+def _targets(path: Path, names: tuple[str, ...], area: np.ndarray, edges) -> np.ndarray:
+    """Target edge of each part, (parts,) m; area: (parts,) m2.
+
+    Raises ValueError where there is none, or one for too many triangles.
+    """
     targets = target_edges(names, edges)
     if not np.isfinite(targets).all():
         name = names[int(np.argmax(~np.isfinite(targets)))]
         raise ValueError(f"part '{name}' of a CAD file has no target edge, allowed is one for each part")
-    area = [sum(gmsh.model.occ.getMass(2, tag) for tag in tags) for tags in faces]
-    check_count(str(path), names, scale**2 * np.array(area), targets)
+    check_count(str(path), names, area, targets)
     return targets
 
 

@@ -11,11 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from bulkwear.meshes.own.cad import CAD_FORMATS, read_cad_solids
+from bulkwear.meshes.own.cad import CAD_FORMATS, cad_areas, read_cad_solids
 from bulkwear.meshes.own.obj import read_obj_solids
 from bulkwear.meshes.own.ply import read_ply_solids
 from bulkwear.meshes.own.solids import PART_DATA, Solids, distinct, metres_per
 from bulkwear.meshes.own.stl import read_stl_solids
+from bulkwear.postproc.mesh import areas
 
 FLAT_CELLS = {"triangle": 3, "quad": 4}  # cells that are a surface, and their corners
 SIGNATURES = {  # how a file begins: the formats that do
@@ -58,6 +59,17 @@ def read_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None
         solids, scale = READERS[suffix](path), metres_per(unit)
     _check_numbers(path, solids)
     return replace(solids, source=str(path)), scale
+
+
+def part_areas(path: Path, unit: str) -> dict[str, float]:
+    """Area (m2) of each part of a file that `check_file` lets pass, by name; nothing is meshed. Raises ValueError."""
+    suffix = path.suffix.lower()
+    if suffix in CAD_FORMATS:
+        return cad_areas(path, unit)
+    solids = READERS[suffix](path)
+    _check_numbers(path, solids)
+    of_part = np.bincount(solids.part, areas(solids.points, solids.triangles), len(solids.names))
+    return dict(zip(solids.names, (metres_per(unit) ** 2 * of_part).tolist(), strict=True))
 
 
 def _check_signature(path: Path, suffix: str) -> None:

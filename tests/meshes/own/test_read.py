@@ -5,6 +5,7 @@ import pytest
 
 from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own.mesh import own_mesh
+from bulkwear.meshes.own.read import part_areas
 from tests.support.own_solids import (
     AREA,
     BOX,
@@ -57,6 +58,16 @@ def test_every_format_gives_the_same_surface(folder, name):
     assert sum(part.volume_m3 for part in found.parts) == pytest.approx(sum(VOLUMES), rel=tolerance)
     points = found.surface.points
     np.testing.assert_allclose([points.min(axis=0), points.max(axis=0)], BOX, atol=tolerance * np.ptp(BOX))
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_areas_are_told_without_meshing(folder, name):
+    """Part by part, under the names of the mesh."""
+    told, meshed = part_areas(folder / name, "mm"), own_mesh(folder / name, "mm", EDGE).parts
+    assert list(told) == [part.name for part in meshed]
+    np.testing.assert_allclose(list(told.values()), [part.area_m2 for part in meshed], rtol=FORMATS[name])
+    if name == "ascii.stl":  # numbers without a unit of their own
+        assert sum(part_areas(folder / name, "m").values()) == pytest.approx(1e6 * sum(told.values()))
 
 
 @pytest.mark.parametrize("name", WITH_PARTS)

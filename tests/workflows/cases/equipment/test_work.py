@@ -2,8 +2,10 @@
 
 import pytest
 
+from bulkwear.workflows.cases.equipment import work
 from bulkwear.workflows.cases.equipment.parameters import most_blocks
-from bulkwear.workflows.cases.equipment.work import MOVING_OVER_RESTING, TRIANGLES_PER_PART, run_bytes, run_stages
+from bulkwear.workflows.cases.equipment.surfaces import machine_surface
+from bulkwear.workflows.cases.equipment.work import MOVING_OVER_RESTING, run_bytes, run_stages, triangles_of
 from bulkwear.workflows.forecast.forecast import work_of
 from tests.support.own_machine_project import machine_study
 
@@ -42,8 +44,24 @@ def test_a_mesh_that_moves_costs_more_than_one_at_rest(run):
         moved = {**run, "parts": [{**parts[0], "motion": motion}, *parts[1:]]}
         triangles[kind] = run_stages(moved)[1].triangles
     assert triangles["rest"] == triangles["turning_surface"]
-    more = (MOVING_OVER_RESTING - 1.0) * TRIANGLES_PER_PART
+    more = (MOVING_OVER_RESTING - 1.0) * triangles_of(parts[0])
     assert triangles["rotation"] - triangles["rest"] == pytest.approx(more)
+
+
+COUNT = 0.2  # relative: `work.OVER_EQUILATERAL` is the middle of 1.04 to 1.19, and edges of plates are not finer
+
+
+def test_triangles_are_counted_by_the_area_of_the_drawing(run):
+    """About as many as the mesh has that is made later; four times as many with half the edge."""
+    part = run["parts"][0]
+    assert triangles_of(part) == pytest.approx(len(machine_surface([part]).triangles), rel=COUNT)
+    assert triangles_of({**part, "edge_m": 0.5 * part["edge_m"]}) == pytest.approx(4.0 * triangles_of(part))
+
+
+def test_a_drawing_that_cannot_be_read_stops_no_forecast(run):
+    """The job that meshes it says what is wrong."""
+    assert triangles_of({**run["parts"][0], "file": "nothing.step"}) == work.UNREADABLE
+    assert triangles_of({**run["parts"][0], "solid": "nobody"}) == work.UNREADABLE
 
 
 def test_jobs_of_a_study_are_its_runs(tmp_path):
