@@ -42,7 +42,8 @@ def _next_phase(run: Parameters, spans: Sequence[Span], row: Mapping[str, float]
     phase, updates = phase_of(spans[-1]), run["updates"]
     count = sum(phase_of(span) == phase for span in spans)
     if phase == START_UP:
-        return PRISTINE if row["steady"] or count + 1 >= start_up_blocks(run) else START_UP
+        steady = row["steady"] and _began_at_full_speed(run, spans[-1])
+        return PRISTINE if steady or count + 1 >= start_up_blocks(run) else START_UP
     if phase == PRISTINE and not _sampled(run, count, row["deciding_width"]):
         return PRISTINE
     if phase in (PRISTINE, WEARING) and _wears_on(run, spans, row):
@@ -51,6 +52,14 @@ def _next_phase(run: Parameters, spans: Sequence[Span], row: Mapping[str, float]
         return None
     worn = sum(span.phase == WORN for span in spans)
     return WORN if worn < updates["worn_blocks"] else None
+
+
+def _began_at_full_speed(run: Parameters, span: Span) -> bool:
+    """Return whether every part had its full speed when a block began: before, a machine may rest steadily."""
+    motions = [part["motion"] for part in run["parts"] if part["motion"]]
+    full = max((motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0) for motion in motions), default=0.0)
+    derived = run["derived"]
+    return (derived["first_cycle_steps"] + span.first_step) * derived["time_step_s"] >= full
 
 
 def _sampled(run: Parameters, blocks: int, width: float) -> bool:

@@ -15,13 +15,14 @@ SLOW, IDLE = {"fastest_step_per_s": 1e-12}, {"fastest_step_per_s": 0.0}
 MOST = 100  # blocks, none of the runs here is longer
 
 
-def run_of(start_up=1.0, fewest=3, most=6, updates=4, worn=2, hours=1000.0):
-    """Parameters of a run with blocks of 0.2 s."""
+def run_of(start_up=1.0, fewest=3, most=6, updates=4, worn=2, hours=1000.0, motion=None):
+    """Parameters of a run with blocks of 0.2 s, which are 1000 steps."""
     return {
+        "parts": [{"motion": motion}, {"motion": None}],
         "start_up": {"most_s": start_up},
         "sampling": {"block_s": 0.2, "fewest_blocks": fewest, "most_blocks": most, "width_fraction": 0.4},
         "updates": {"most": updates, "worn_blocks": worn},
-        "derived": {"operation_s": hours * HOUR},
+        "derived": {"operation_s": hours * HOUR, "time_step_s": 2e-4, "first_cycle_steps": 1000},
     }
 
 
@@ -49,6 +50,15 @@ def test_start_up_ends_when_the_flow_is_steady():
     for steady_from in (1, 2, 3):
         found = phases(run_of(start_up=10.0), lambda span, k=steady_from: STEADY if span.cycle >= k else UNSTEADY)
         assert count(found, "start_up") == steady_from
+
+
+def test_start_up_does_not_end_before_parts_have_their_speed():
+    """A machine that rests is steady, but not yet at work: behind the first block, which leaves no row, the fourth one
+    begins at 0.8 s.
+    """
+    for motion, blocks in (({"start_s": 0.5, "ramp_s": 0.2}, 4), ({"ramp_s": 0.1}, 1), ({"kind": "belt"}, 1)):
+        found = phases(run_of(start_up=10.0, motion=motion))
+        assert count(found, "start_up") == blocks
 
 
 def test_start_up_ends_with_its_longest_time():

@@ -1,10 +1,9 @@
 """The tutorial of docs/equipment.md, done as it is written there, with the package as a wheel installs it.
 
-Its files and commands are taken from the page. The drawing is made here, and sizes are less than the page's.
+Its files and commands are taken from the page; less is simulated than on the page.
 """
 
 import html
-import math
 import os
 import re
 import subprocess
@@ -16,8 +15,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from bulkwear.meshes.drawing import prism, write_step
-from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.transfer import draw
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.readme import readme
 from bulkwear.workflows.engine.project import enter_project, leave_project
@@ -43,24 +41,10 @@ TIMEOUT = 1800.0  # s, for what takes a minute or two on two idle cores
 NEEDED = ("parts", "bulk", "inlet", "outlets", "operation")
 
 
-def draw(path, slope):
-    """Draw the tutorial's chute: an impact plate, a liner that falls by `slope` per length, two walls; mm."""
-    s, c = (30.0 * f(math.atan(slope)) for f in (math.sin, math.cos))
-    foot = 500.0 + 600.0 * slope
-    with gmsh_model() as gmsh:
-        names = {prism(gmsh, [(400, -490), (430, -490), (430, 150), (400, 150)], -250, 250): "impact_plate"}
-        corners = [(432, -500), (432 + s, -500 - c), (-168 + s, -foot - c), (-168, -foot)]
-        names[prism(gmsh, corners, -250, 250)] = "liner"
-        for y, name in ((-271, "left_wall"), (251, "right_wall")):
-            names[prism(gmsh, [(-200, -1200), (500, -1200), (500, 200), (-200, 200)], y, y + 20)] = name
-        write_step(gmsh, path, names)
-
-
 @pytest.fixture(scope="module")
 def home(tmp_path_factory):
-    """The home of someone with a drawing and the installed package."""
+    """The home of someone with the installed package."""
     folder = tmp_path_factory.mktemp("home")
-    draw(folder / "transfer.step", slope=1.0)
     build = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", str(folder)]
     subprocess.run(build, cwd=REPOSITORY, check=True, capture_output=True)
     (wheel,) = folder.glob("bulkwear-*.whl")
@@ -138,9 +122,7 @@ def test_the_run_goes_through_all_phases(finished):
 
 def test_a_second_design_is_a_row(tmp_path):
     """The step with two designs: B has another drawing, all else is A's."""
-    (tmp_path / "meshes").mkdir()
-    draw(tmp_path / "meshes/transfer.step", slope=1.0)
-    draw(tmp_path / "meshes/transfer_steep.step", slope=1.1)
+    draw.main(tmp_path / "meshes")
     for name, text in FILES:  # the second design takes the place of the first
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)

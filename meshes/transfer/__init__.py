@@ -1,0 +1,1 @@
+"""Transfer chute of the tutorial: the script that draws it."""
