@@ -316,10 +316,10 @@ def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: Ol
     np.add.at(mean, group, vectors)
     cosine_before = np.full(count, np.inf)
     np.minimum.at(cosine_before, group, _cosines(vectors, mean[group]))
-    held = np.bincount(group, _all_fixed(before, rows), count)
+    held = np.bincount(group, all_fixed(before, rows), count)
     left = np.flatnonzero((of_face >= 0) & alive)
     group = of_face[left]
-    good[np.bincount(group, _all_fixed(after, left), count) > held] = False
+    good[np.bincount(group, all_fixed(after, left), count) > held] = False
     angle = smallest_angles(after.points, after.triangles[left])
     good[group[angle < np.minimum(angle_before, GOOD_ANGLE)[group]]] = False
     cosine = _cosines(area_vectors(after.points, after.triangles[left]), mean[group])
@@ -330,7 +330,7 @@ def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: Ol
     return good
 
 
-def _all_fixed(patch: Patch, faces: np.ndarray) -> np.ndarray:
+def all_fixed(patch: Patch, faces: np.ndarray | slice = slice(None)) -> np.ndarray:
     """Mask (k,) of faces none of whose nodes may move: what becomes of such a face nothing can mend."""
     return patch.fixed[patch.triangles[faces]].all(axis=1)
 

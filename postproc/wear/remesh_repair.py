@@ -23,6 +23,7 @@ from bulkwear.postproc.wear.remesh_operations import (
     LARGEST_OUTWARD,
     OUTWARD_BY_OPERATIONS,
     Limits,
+    all_fixed,
     flipped_faces,
     improve,
 )
@@ -136,7 +137,7 @@ def merged(patch: Patch, old: OldSurface, bounds: Bounds) -> Patch:
             break
         tried = [candidate for edge in _candidates(patch, bounds) for candidate in _merges(patch, *edge)]
         tried += _flips(patch, bounds)
-        costs = [_cost(patch, candidate, old, bounds) for candidate in tried]
+        costs = [repair_cost(patch, candidate, old, bounds) for candidate in tried]
         best = min(range(len(tried)), key=costs.__getitem__, default=None)
         if best is None or costs[best][0] >= count:
             break
@@ -193,8 +194,12 @@ def _flips(patch: Patch, bounds: Bounds) -> list[Patch]:
     return result
 
 
-def _cost(before: Patch, after: Patch, old: OldSurface, bounds: Bounds) -> tuple[float, bool, float]:
-    """(tangled faces, is one very acute, change of volume in m3); infinite where it stands outside the old surface."""
+def repair_cost(before: Patch, after: Patch, old: OldSurface, bounds: Bounds) -> tuple[float, bool, float]:
+    """(tangled faces, is one very acute, change of volume in m3); infinite where it stands outside the old surface, or
+    has one more face that nothing can mend.
+    """
+    if all_fixed(after).sum() > all_fixed(before).sum():
+        return np.inf, True, np.inf
     if old.range_over_faces(after.points, after.triangles, after.size)[:, 1].max(initial=0.0) > OUTWARD_BY_OPERATIONS:
         return np.inf, True, np.inf
     origin = before.points[0]

@@ -21,10 +21,11 @@ from bulkwear.postproc.mesh import (
     worn_faces,
 )
 from bulkwear.postproc.wear.depth import height_loss
-from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, mesh_faults, with_target_edges
+from bulkwear.postproc.wear.mesh_faults import DEFAULT_BOUNDS, TARGET_EDGE, mesh_faults, with_target_edges
 from bulkwear.postproc.wear.remesh import RemeshError, remesh
 from bulkwear.postproc.wear.remesh_operations import Limits, flip
 from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch
+from bulkwear.postproc.wear.remesh_repair import repair_cost
 from bulkwear.postproc.wear.remesh_transfer import labels_at_nodes
 from bulkwear.postproc.wear.update import wear_update
 
@@ -216,9 +217,11 @@ def test_no_face_between_nodes_that_stay(held, flipped):
     points = np.array([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 9.0, 0.0]])
     triangles = np.array([[0, 1, 3], [1, 2, 3]])  # two thin faces; the other diagonal has larger angles
     patch = Patch(points, triangles, np.zeros(2, dtype=int), np.ones(4), np.array([*held, False]), np.arange(4))
-    limits = Limits(OUTWARD, 1.0, acute_deg=20.0)
-    _, done = flip(patch, OldSurface(points, triangles), limits)
+    old = OldSurface(points, triangles)
+    _, done = flip(patch, old, Limits(OUTWARD, 1.0, acute_deg=20.0))
     assert done == flipped
+    turned = patch.changed(triangles=np.array([[0, 1, 2], [0, 2, 3]]))
+    assert np.isfinite(repair_cost(patch, turned, old, DEFAULT_BOUNDS)[0]) == bool(flipped)
 
 
 def test_hopeless_mesh_is_refused():
