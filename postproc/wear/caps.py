@@ -5,17 +5,24 @@ Two limits, the smaller one counts:
 * geometry: a fraction of the shortest edge at the node, so that no triangle folds;
 * time: particles that rested on the surface fall the gap d in sqrt(2 d / g); that fall may take at most a
   stated fraction of the cycle, hence d <= g (fraction * duration)^2 / 2.
+
+Where the worn surface would be beyond repair, steps become smaller (`Caps`).
 """
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from bulkwear.postproc.mesh import shortest_edge_at_nodes
+from bulkwear.postproc.mesh import SurfaceMesh, shortest_edge_at_nodes
+from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, with_target_edges
 
 GRAVITY = 9.81  # m/s2
 AIMED_DEMAND = 0.8  # -, of the cap, that the next cycle is planned for: rates change from cycle to cycle
 LEAST_CYCLE_FACTOR, LARGEST_CYCLE_FACTOR = 0.2, 2.0  # -, of the length of the cycle before
+CAP_SHARES = (1.0, 0.5, 0.25, 0.1)  # of the cap on a step, one after the other while the worn surface is beyond repair
+HELD_BACK = 3.0  # -, target edges round a face that is at fault, within which nodes get the next smaller cap, or stay
+MOST_TRIES = 12  # with smaller caps here and there, before they become smaller everywhere
 LARGEST_EDGE_FRACTION = 0.5  # -, two neighbours moving half an edge each towards one another meet
 
 
@@ -109,3 +116,35 @@ def next_cycle_factor(wanted: np.ndarray, limit: np.ndarray, gap: float = np.inf
     if aimed > gap * factor**2:
         factor = np.sqrt(aimed / gap)
     return float(np.clip(factor, LEAST_CYCLE_FACTOR, LARGEST_CYCLE_FACTOR))
+
+
+class Caps:
+    """Caps on a step, which become smaller where a worn surface was beyond repair: what is not lost now is carried.
+
+    limit: (n,) m, of each node; surface: before the step
+    """
+
+    def __init__(self, limit: np.ndarray, surface: SurfaceMesh):
+        self._limit, self._points = limit, surface.points
+        sized = surface if TARGET_EDGE in surface.point_data else with_target_edges(surface)
+        self._reach = HELD_BACK * np.asarray(sized.point_data[TARGET_EDGE])
+        self._level, self._tries = np.zeros(len(limit), dtype=int), 0
+
+    @property
+    def cap(self) -> np.ndarray:
+        """The caps (n,) m as they are now."""
+        return np.array([*CAP_SHARES, 0.0])[self._level] * self._limit
+
+    def shrunk(self, places: np.ndarray | None) -> bool:
+        """Make the caps near places (k, 3) m smaller, down to nothing; everywhere, down to the last share, where that
+        does not help, none is told, or it went on for too long. Return whether any became smaller.
+        """
+        self._tries += 1
+        near = np.zeros(len(self._level), dtype=bool)
+        if places is not None and self._tries <= MOST_TRIES:
+            near = cKDTree(places).query(self._points)[0] <= self._reach
+        lowered = near & (self._level < len(CAP_SHARES))
+        if not lowered.any():
+            lowered = self._level < len(CAP_SHARES) - 1
+        self._level[lowered] += 1
+        return bool(lowered.any())

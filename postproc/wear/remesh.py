@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bulkwear.postproc.mesh import SurfaceMesh, worn_faces
+from bulkwear.postproc.mesh import SurfaceMesh, centroids, worn_faces
 from bulkwear.postproc.wear.mesh_faults import (
     DEFAULT_BOUNDS,
     TARGET_EDGE,
@@ -89,7 +89,8 @@ def remesh(mesh: SurfaceMesh, bounds: Bounds = DEFAULT_BOUNDS, moved: np.ndarray
         present, ahead, faults = _improved(present, faults, bounds, old, widen is not None)
         advanced += ahead
     if faults.tangled.any():
-        raise RemeshError(f"the worn surface cannot be repaired: {tangle_message(present, faults)}")
+        places = centroids(present.points, present.triangles[faults.tangled])
+        raise RemeshError(f"the worn surface cannot be repaired: {tangle_message(present, faults)}", places)
     changed = _changed(start, present)
     gained = volume_gained(start, present, worn_faces(start), worn_faces(present))
     reach = old.range_over_faces(present.points, present.triangles[changed], present.point_data[TARGET_EDGE])

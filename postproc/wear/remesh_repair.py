@@ -50,7 +50,14 @@ SINK_COLLAPSE = 0.8  # -, edges over their target that are merged on the way
 
 
 class RemeshError(RuntimeError):
-    """The worn surface cannot be repaired; the message names the cause and the place in mm."""
+    """The worn surface cannot be repaired; the message names the cause and the place in mm.
+
+    places: (k, 3) m, of all faces that are at fault; None where they are not told
+    """
+
+    def __init__(self, message: str, places: np.ndarray | None = None):
+        super().__init__(message)
+        self.places = places
 
 
 def untangled(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, old: OldSurface):

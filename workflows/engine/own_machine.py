@@ -19,7 +19,7 @@ from bulkwear.postproc.motion import AT_REST, Motion
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.balance import BalanceError, GrowthError, lost_volume, volume_balance
 from bulkwear.postproc.wear.built_shape import with_built_shape
-from bulkwear.postproc.wear.caps import edge_limit
+from bulkwear.postproc.wear.caps import Caps, edge_limit
 from bulkwear.postproc.wear.displacement import StepTooLargeError
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.ledger import columns_of_solver, pressed_sides
@@ -28,7 +28,7 @@ from bulkwear.postproc.wear.remesh import RemeshError, remesh
 from bulkwear.postproc.wear.side import TouchedSideError
 from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
-from bulkwear.workflows.engine.wear_step import CAP_SHARES, WearError
+from bulkwear.workflows.engine.wear_step import WearError
 
 CURED_BY_SMALLER_STEPS = (GrowthError, StepTooLargeError, RemeshError)
 RESTART = "after.restart"
@@ -128,13 +128,11 @@ def receded(
     surface: SurfaceMesh, volume: np.ndarray, pressed: tuple[np.ndarray, np.ndarray], bounds: Bounds | None
 ) -> SurfaceMesh:
     """The surface after a volume (m,) m3 is worn off, remeshed if bounds are given; smaller steps where it must be."""
-    limit = edge_limit(surface.points, surface.triangles, EDGE_SHARE)
-    for share in CAP_SHARES:
+    caps = Caps(edge_limit(surface.points, surface.triangles, EDGE_SHARE), surface)
+    while True:
         try:
-            worn, _ = wear_update(surface, volume, share * limit, pressed=pressed)
-            worn = worn if bounds is None else remesh(worn, bounds).mesh
-            break
-        except CURED_BY_SMALLER_STEPS:
-            if share == CAP_SHARES[-1]:
+            worn, _ = wear_update(surface, volume, caps.cap, pressed=pressed)
+            return worn if bounds is None else remesh(worn, bounds).mesh
+        except CURED_BY_SMALLER_STEPS as fault:
+            if not caps.shrunk(getattr(fault, "places", None)):
                 raise
-    return worn

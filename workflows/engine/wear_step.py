@@ -25,7 +25,7 @@ from bulkwear.postproc.mesh import (
 from bulkwear.postproc.mesh_checks import LEAST_SOLVER_ANGLE
 from bulkwear.postproc.wear.balance import GrowthError, lost_volume, volume_balance
 from bulkwear.postproc.wear.bodies import body, together
-from bulkwear.postproc.wear.caps import next_cycle_factor, wanted_step
+from bulkwear.postproc.wear.caps import Caps, next_cycle_factor, wanted_step
 from bulkwear.postproc.wear.displacement import StepTooLargeError
 from bulkwear.postproc.wear.ledger import pressed_sides
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
@@ -41,7 +41,6 @@ from bulkwear.workflows.engine.schedule import Span
 
 SUMMED = ("sliding_work_J", "normal_impulse_N_s", "rolling_work_J", "impact_energy_J")
 SUMS = (*SUMMED, "finnie_volume_m3", "worn_volume_m3")  # cell data of the surface, over all cycles so far
-CAP_SHARES = (1.0, 0.5, 0.25, 0.1)  # of the cap on a step, one after the other while the worn surface is beyond repair
 MEANS = ("contact_position", "contact_radius")  # columns of a ledger that are no sums: nothing where nothing touched
 TOTALS = {  # columns of wear.csv that are sums over all cycles -> what each cycle adds
     "total_worn_volume_m3": "worn_volume_m3",
@@ -59,7 +58,14 @@ IMPULSE = "impulse_x_N_s"  # a column of ledgers that know from which side a fac
 
 
 class WearError(RuntimeError):
-    """The worn surface cannot go back into the solver; the message names run and cycle."""
+    """The worn surface cannot go back into the solver; the message names run and cycle.
+
+    places: (k, 3) m, of the faces at fault; None where they are not told
+    """
+
+    def __init__(self, message: str, places: np.ndarray | None = None):
+        super().__init__(message)
+        self.places = places
 
 
 def wear(
@@ -105,11 +111,11 @@ def moved(
 ) -> tuple[SurfaceMesh, dict[str, float], dict[str, float | int]]:
     """Return the surface after a cycle's wear, remeshed, the record of the update, and what caps and remeshing tell.
 
-    A surface that would grow, fold or be beyond repair is worn again with a smaller cap; what it does not lose now is
-    carried. Raises WearError when the smallest one does not help.
+    A surface that would grow, fold or be beyond repair is worn again with smaller caps there, or everywhere; what it
+    does not lose now is carried. Raises WearError when the smallest ones do not help.
     """
     parameters, case = chain.parameters, chain.case
-    limit = node_limits(case, parameters, surface, span)
+    caps = Caps(node_limits(case, parameters, surface, span), surface)
     options = {
         "wall": case.rim_direction,
         "slice_ends": case.slice_ends(parameters),
@@ -118,16 +124,16 @@ def moved(
         "pressed": pressed(surface, ledger),
         "back": "go_on" if parameters["wear"].get("worn_through") == "go_on" else "cap",
     }
-    for share in CAP_SHARES:
-        cap = share * limit
+    while True:
+        cap = caps.cap
         try:
             worn, update = update_of_cycle(chain, span, surface, volume, cap, options)
             asked = {"step_limit_m": float(cap.max()), **planned(case, parameters, span, surface, worn)}
             asked |= case.geometry_columns(surface, worn, volume > 0.0)
             worn, remeshing = remeshed(chain, span, with_sums(worn, surface, ledger, volume), surface)
             break
-        except WearError:
-            if share == CAP_SHARES[-1]:
+        except WearError as fault:
+            if not caps.shrunk(fault.places):
                 raise
     return worn, update, asked | remeshing
 
@@ -194,10 +200,10 @@ def remeshed(
         apart = (worn.points != before.points).any(axis=1)[worn.triangles].any(axis=1) if span.cycle > 1 else None
         outcome = remesh(as_densities(worn), bounds(chain.parameters), apart)
     except RemeshError as fault:
-        raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}") from fault
+        raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}", fault.places) from fault
     mesh = as_sums(outcome.mesh, worn) if outcome.faces_changed else worn
     if fault := sliver(mesh):
-        raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}")
+        raise WearError(f"{chain.name}, cycle {span.cycle}: {fault}", slivers(mesh))
     return mesh, {
         "carried_volume_m3": float(mesh.point_data[CARRIED_VOLUME].sum()),
         "smallest_angle_deg": outcome.faults.smallest_angle_deg,
@@ -229,8 +235,11 @@ def on_whole_surface(ledger: pd.DataFrame, triangles: int) -> pd.DataFrame:
 
 
 def node_limits(case: Case, parameters: Mapping[str, Any], surface: SurfaceMesh, span: Span) -> np.ndarray:
-    """Return how far (m) each node may move in a cycle; nowhere when the study keeps the surface rigid."""
-    if not parameters["wear"]["deform"]:
+    """Return how far (m) each node may move in a cycle; nowhere when the study keeps the surface rigid, or the cycle
+    stands for no operation: it keeps the shape, and what is carried stays so.
+    """
+    keeps = bool(span.phase) and not span.stands_for_s
+    if keeps or not parameters["wear"]["deform"]:
         return np.zeros(len(surface.points))
     gap = case.closing_gap(parameters, span.steps * parameters["derived"]["time_step_s"])
     return np.fmin(case.lasting_limit(parameters, surface), gap)
@@ -242,6 +251,12 @@ def with_sums(worn: SurfaceMesh, before: SurfaceMesh, ledger: pd.DataFrame, volu
     added = [*(ledger[name].to_numpy() for name in SUMMED), finnie, volume]
     sums = {name: before.cell_data.get(name, 0.0) + values for name, values in zip(SUMS, added, strict=True)}
     return replace(worn, cell_data={**worn.cell_data, **sums})
+
+
+def slivers(mesh: SurfaceMesh) -> np.ndarray:
+    """Return the places (k, 3) m of the worn triangles that the solver would refuse."""
+    refused = worn_faces(mesh) & (smallest_angles(mesh.points, mesh.triangles) <= LEAST_SOLVER_ANGLE)
+    return mesh.points[mesh.triangles[refused]].mean(axis=1)
 
 
 def sliver(mesh: SurfaceMesh) -> str | None:

@@ -6,7 +6,11 @@ import pytest
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.wear.caps import (
     AIMED_DEMAND,
+    CAP_SHARES,
+    HELD_BACK,
     LARGEST_CYCLE_FACTOR,
+    MOST_TRIES,
+    Caps,
     gap_closing_step,
     next_cycle_factor,
     step_limit,
@@ -88,3 +92,23 @@ def test_next_cycle_is_not_shortened_where_the_gap_is_what_holds_back():
     factor = next_cycle_factor(np.array([1e-6]), np.array([limit]), gap)
     assert factor == pytest.approx(min(np.sqrt(AIMED_DEMAND * limit / gap), LARGEST_CYCLE_FACTOR))
     assert factor > 1.0
+
+
+def test_caps_shrink_near_places_down_to_nothing_and_everywhere_down_to_the_last_share():
+    """Three edges round a place; where that does not help, or after too many tries, all of them."""
+    mesh = flat_plate(1.0, 1.0, 0.05)
+    limit, place = np.full(len(mesh.points), 2.0), np.array([[0.5, 0.5, 0.0]])
+    caps = Caps(limit, mesh)
+    away = np.linalg.norm(mesh.points - place, axis=1) > (HELD_BACK + 1.0) * np.sqrt(2.0) / 20
+    here = np.linalg.norm(mesh.points - place, axis=1) < 1.0 / 20
+    for share in (*CAP_SHARES[1:], 0.0):
+        assert caps.shrunk(place)
+        assert (caps.cap[away] == 2.0).all() and (caps.cap[here] == 2.0 * share).all()
+    for share in CAP_SHARES[1:]:
+        assert caps.shrunk(place)
+        assert (caps.cap[away] == 2.0 * share).all() and (caps.cap[here] == 0.0).all()
+    assert not caps.shrunk(place) and not caps.shrunk(None)
+    tired = Caps(limit, mesh)
+    for turn in range(MOST_TRIES):
+        tired.shrunk(mesh.points[[7 * turn]])
+    assert (tired.cap == limit).any() and tired.shrunk(place) and (tired.cap < limit).all()

@@ -1,10 +1,13 @@
 """One wear step on a synthetic ledger: what is handed on, what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface, write_surface
+from bulkwear.postproc.wear.caps import CAP_SHARES
 from bulkwear.postproc.wear.mesh_faults import with_target_edges
 from bulkwear.postproc.wear.remesh import RemeshError
 from bulkwear.workflows.config.patterns import sample_surface
@@ -117,6 +120,35 @@ def test_a_surface_beyond_repair_is_worn_by_less(chain, monkeypatch):
     assert 0.0 < less["applied_volume_m3"] < 0.5 * whole["applied_volume_m3"]
     due = [row["applied_volume_m3"] + row["carried_volume_m3"] for row in (less, whole)]
     assert due == pytest.approx([whole["worn_volume_m3"]] * 2, rel=EXACT)
+
+
+def test_a_spot_beyond_repair_is_held_back_alone(chain, monkeypatch):
+    """Only nodes near the place that is told lose less, down to nothing; the cap of others stays."""
+    mesh, span = read_surface(chain.surface), first_span(chain.parameters)
+    whole = wear_step.wear(chain, span, chain.folder / FOLDER, mesh, ledger_of(mesh, 1e3))
+    repair, refused = wear_step.remesh, iter([True] * len(CAP_SHARES) + [False])
+    spot = mesh.points[mesh.triangles[mesh.cell_data["part"] == 0][0]].mean(axis=0)
+
+    def refuses_a_spot(*of_remesh):
+        if next(refused):
+            raise RemeshError("faces cut one another at (1, 2, 3) mm", spot[None])
+        return repair(*of_remesh)
+
+    monkeypatch.setattr(wear_step, "remesh", refuses_a_spot)
+    less = wear_step.wear(chain, span, chain.folder / FOLDER, mesh, ledger_of(mesh, 1e3))
+    assert less["step_limit_m"] == whole["step_limit_m"]
+    assert 0.5 * whole["applied_volume_m3"] < less["applied_volume_m3"] < whole["applied_volume_m3"]
+    worn = read_surface(chain.folder / FOLDER / "surface.vtu")
+    near = np.linalg.norm(mesh.points - spot, axis=1) < with_target_edges(mesh).point_data["target_edge_m"]
+    assert near.any() and np.isin(mesh.points[near].view("V24"), worn.points.view("V24")).all()
+
+
+def test_a_block_that_stands_for_no_operation_keeps_the_shape(chain):
+    """Nor does what an earlier update held back move it."""
+    mesh, span = read_surface(chain.surface), first_span(chain.parameters)
+    kept, worn = replace(span, phase="worn"), replace(span, phase="wearing", stands_for_s=1.0)
+    limits = [wear_step.node_limits(chain.case, chain.parameters, mesh, each) for each in (kept, worn, span)]
+    assert [limit.any() for limit in limits] == [False, True, True]
 
 
 def test_a_sliver_stops_before_the_solver_refuses_it(chain, monkeypatch):
