@@ -1,40 +1,37 @@
 // LIGGGHTS with a load ledger and rolling models: the solver of the shared library, unchanged, plus a fix style
 // (load/ledger) and two models of rolling friction (own_spin, rvd).
-// Used like the plain program: liggghts-ledger -in deck.in
+// Used like the plain program: liggghts-ledger -in deck.in; -search stock leaves the search for contacts with meshes to
+// the library.
 // liggghts-ledger -kernels lists its contact kernels: name, column of the ledger, parameters; -rolling its models of
 // rolling friction.
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <map>
-#include <string>
 
 #include "fix_load_ledger.h"
 #include "input.h"
 #include "lammps.h"
 #include "modify.h"
+#include "private_member.h"
 #include "rolling/fix_spin_friction.h"
 #include "rolling/rolling_models.h"
+#include "search/wall_search.h"
 #include "signal_handling.h"
+
+// The solver offers no call to add a fix style.
+struct FixMap {
+  friend auto member(FixMap);
+};
+template struct PrivateMember<FixMap, &LAMMPS_NS::Modify::fix_map>;
 
 namespace {
 
 using LAMMPS_NS::Fix;
 using LAMMPS_NS::LAMMPS;
-using LAMMPS_NS::Modify;
-using FixStyles = std::map<std::string, Fix* (*)(LAMMPS*, int, char**)>;
-
-// The solver offers no call to add a fix style, and its list of styles is a private member. An explicit instantiation
-// may name private members (C++ standard, [temp.spec]), which hands the list out without touching the solver's headers.
-template <FixStyles* Modify::* list>
-struct StyleListAccess {
-  friend FixStyles* style_list(Modify* modify) { return modify->*list; }
-};
-FixStyles* style_list(Modify* modify);
-template struct StyleListAccess<&Modify::fix_map>;
 
 Fix* create_load_ledger(LAMMPS* lammps, int narg, char** arg) {
   return new load_ledger::FixLoadLedger(lammps, narg, arg);
@@ -50,6 +47,24 @@ void list_kernels() {
     for (int k = 0; k < load_ledger::parameter_count(kernel); ++k) std::printf(" %s", kernel.parameters[k]);
     std::printf("\n");
   }
+}
+
+// Takes "-search ours" or "-search stock" out of the words, which the solver would not know. Returns whether they are well.
+bool take_search(int& argc, char** argv) {
+  for (int k = 1; k + 1 < argc; ++k) {
+    if (std::strcmp(argv[k], "-search")) continue;
+    const bool stock = !std::strcmp(argv[k + 1], wall_search::STOCK);
+    if (!stock && std::strcmp(argv[k + 1], wall_search::OURS)) {
+      std::fprintf(stderr, "-search: found %s, allowed are %s and %s.\n", argv[k + 1], wall_search::OURS,
+                   wall_search::STOCK);
+      return false;
+    }
+    if (stock) wall_search::use_stock();
+    std::copy(argv + k + 2, argv + argc, argv + k);
+    argc -= 2;
+    return true;
+  }
+  return true;
 }
 
 // As the plain program does: a first signal ends the run after the next step, with a restart file if the deck asks for
@@ -71,12 +86,14 @@ int main(int argc, char** argv) {
     for (const char* name : rolling::MODELS) std::printf("%s\n", name);
     return 0;
   }
+  if (!take_search(argc, argv)) return 1;
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // or a fatal message would vanish in a pipe
   handle_signals();
   MPI_Init(&argc, &argv);
   LAMMPS* lammps = new LAMMPS(argc, argv, MPI_COMM_WORLD);
-  (*style_list(lammps->modify))["load/ledger"] = create_load_ledger;
-  (*style_list(lammps->modify))["rolling/own_spin"] = create_spin_friction;
+  auto& styles = *(lammps->modify->*member(FixMap{}));
+  styles["load/ledger"] = create_load_ledger;
+  styles["rolling/own_spin"] = create_spin_friction;
   rolling::add_rolling_models();
   lammps->input->file();
   delete lammps;

@@ -1,0 +1,125 @@
+"""The search for contacts with meshes: ours finds what the solver's library finds, to the last bit."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bulkwear.meshes.plate import closed_box, flat_plate
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.workflows.engine.own_machine import write_update
+from tests.verification.ledger_cases import SOLVER, command, environment, write_case
+from tests.verification.machines.four import MACHINES
+from tests.verification.test_solver_ledger_beds import BOX, LOOSE, POURED
+
+pytestmark = pytest.mark.solver
+
+SEARCHES = ("ours", "stock")
+PLATE = flat_plate(0.026, 0.026, 1e-3)
+STEPS, DRAGGED = 1500, 0.05  # -, m/s
+FALLEN = {**BOX, "domain": "-0.04 0.04 -0.03 0.03 -0.02 0.03", "settling": 4000, "steps": STEPS}
+SWING = "fix swing all move/mesh mesh sample wiggle amplitude 0.001 0.0005 0.0005 period 0.007"
+TURN = "fix turn all move/mesh mesh sample rotate origin 0. 0. 0. axis 0. 0.2 1. period 0.5"
+DRAG = f"fix drag all move/mesh mesh sample linear -{DRAGGED} 0. 0."
+STATE = [
+    "dump state all custom 500 *.state id x y z vx vy vz omegax omegay omegaz fx fy fz",
+    'dump_modify state sort id format "%d' + 12 * " %.17g" + '"',
+]
+RESTARTED = ["restart 500 a.restart b.restart"]
+RESUMED = FALLEN["settling"] + 2 * STEPS  # steps
+
+
+def searched(folder: Path, search: str, ranks: int = 1, **variables) -> str:
+    """Run the deck of a folder by a search; what it said."""
+    words = [*command(ranks, **variables), "-search", search]
+    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    assert f"Wall search of wall: {search}, " in done.stdout
+    return done.stdout
+
+
+def written(folder: Path, *patterns: str) -> dict[str, bytes]:
+    """{name: content} of what a run wrote."""
+    found = sorted(path for pattern in patterns for path in folder.glob(pattern))
+    return {path.name: path.read_bytes() for path in found}
+
+
+def wavy(mesh: SurfaceMesh) -> SurfaceMesh:
+    """The plate in waves, its facets' longest edges anywhere: edges in and out, obtuse corners."""
+    points = mesh.points.copy()
+    points[:, 2] += 4e-4 * np.sin(points[:, 0] / 1.1e-3) * np.cos(points[:, 1] / 0.7e-3)
+    points[:, 0] += 3e-4 * np.sin(points[:, 1] / 0.5e-3)
+    return SurfaceMesh(points, mesh.triangles)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "lines", "ranks"),
+    [
+        (PLATE, (), 1),
+        (wavy(PLATE), (SWING,), 1),
+        (wavy(PLATE), (TURN,), 2),
+        (wavy(PLATE), (DRAG,), 1),
+        pytest.param(closed_box(0.02, 0.02, 0.004, 1.5e-3), (TURN,), 1, marks=pytest.mark.verify),
+        pytest.param(wavy(PLATE), (SWING,), 2, marks=pytest.mark.verify),
+    ],
+)
+def test_same_to_the_last_bit(tmp_path, mesh, lines, ranks):
+    """Ledger, motion of every particle and its force, of a bed that falls on a mesh and is moved by it."""
+    found = {}
+    for search in SEARCHES:
+        folder = tmp_path / search
+        write_case(folder, mesh, POURED, LOOSE, mesh_lines=lines, outputs=STATE, **FALLEN)
+        searched(folder, search, ranks)
+        found[search] = written(folder, "load_ledger.bin", "*.state")
+    assert len(found["ours"]) > STEPS // 500
+    assert found["ours"] == found["stock"]
+    ledger = read_load_ledger(tmp_path / "ours" / "load_ledger.bin", "sample", len(mesh.triangles))
+    assert ledger.columns["sliding_work_J"].sum() > 0.0
+
+
+def test_same_after_a_restart(tmp_path):
+    """A run that goes on from a restart file, by either search from either's file."""
+    found = {}
+    for search in SEARCHES:
+        folder = tmp_path / search
+        write_case(folder, wavy(PLATE), POURED, LOOSE, outputs=RESTARTED, **FALLEN)
+        searched(folder, search)
+        max(folder.glob("?.restart"), key=lambda path: path.stat().st_mtime).rename(folder / "half.restart")
+        for by in SEARCHES:
+            searched(folder, by, resumed=1, restart_file="half.restart", particles="nothing", settling=0, steps=RESUMED)
+            found[search, by] = (folder / "load_ledger.bin").read_bytes()
+    assert len(set(found.values())) == 1
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.verify) for name in MACHINES])
+def test_same_on_machines(tmp_path, name):
+    """Chute with obtuse facets, case with shelves, moving bucket and conveyor, over their first cycles."""
+    machine = MACHINES[name]()
+    found = {}
+    for search in SEARCHES:
+        folder = tmp_path / search
+        write_update(folder, machine.deck, machine.parts, 0, 0.0, 3 * machine.cycle_steps)
+        searched_machine(folder, search, machine.time_step_s)
+        found[search] = written(folder, *(f"{part.name}.bin" for part in machine.parts))
+    assert len(found["ours"]) == len(machine.parts)
+    assert found["ours"] == found["stock"]
+
+
+def searched_machine(folder: Path, search: str, time_step: float) -> None:
+    """Run the first update of a machine by a search."""
+    variables = {"update": 0, "before": "none", "time_step": time_step}
+    done = subprocess.run(
+        [*command(**variables), "-search", search], cwd=folder, env=environment(), capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+
+
+def test_another_word_is_refused():
+    """One sentence, before a deck is read."""
+    done = subprocess.run([SOLVER, "-search", "fast"], env=environment(), capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stderr == "-search: found fast, allowed are ours and stock.\n"
