@@ -1,6 +1,7 @@
 """Commands and settings that pages name are there: targets of make, modules, studies, keys of the configuration."""
 
 import re
+import shlex
 
 import pytest
 import yaml
@@ -37,6 +38,14 @@ def fits(key, known):
     parts, wanted = key.split("."), known.split(".")
     alike = (a == b or b.startswith("<") for a, b in zip(parts, wanted, strict=False))
     return len(parts) <= len(wanted) and all(alike)
+
+
+def settings_of(line):
+    """Paths of the keys that a command line sets by --config."""
+    given = line.partition("--config ")[2].partition(" --")[0]
+    for word in shlex.split(given) if line.startswith("snakemake") else ():
+        key, _, value = word.partition("=")
+        yield from paths({key: yaml.safe_load(value)})
 
 
 def paths(block, before=""):
@@ -84,6 +93,19 @@ def test_keys_are_in_a_schema(path):
     free = ("deck.", "wear.parameters.")  # whose words are the user's own
     unknown = {key for key in named if not key.startswith(free) and not any(fits(key, known) for known in KEYS)}
     assert unknown == set()
+
+
+@pytest.mark.parametrize("path", own_pages(), ids=name_of)
+def test_settings_of_command_lines_are_in_a_schema(path):
+    """`snakemake x --config key=value`, blocks included."""
+    given = [setting for line in commands(path) for setting in settings_of(line)]
+    assert {key for key in given if not any(fits(key, known) for known in KEYS)} == set()
+
+
+def test_settings_of_a_command_line_are_read():
+    """Single ones, lists and blocks, quoted anyhow; what follows another option is none."""
+    line = "snakemake a --config fidelity=paper 'rows=[R5,R9]' bed='{ends: window}' --dry-run b=c"
+    assert list(settings_of(line)) == ["fidelity", "rows", "bed", "bed.ends"]
 
 
 def test_what_is_not_there_is_found():
