@@ -20,7 +20,7 @@ SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 
-.PHONY: help setup doctor demo study forecast project rates test verify screening report decks results lint format lock clean
+.PHONY: help setup doctor demo study forecast project rates test verify screening report decks results docs lint format lock clean
 
 help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
@@ -60,6 +60,9 @@ report: setup ## Build results/<STUDY>/report.html and Snakemake's own snakemake
 results: setup ## Remake every page of results in docs from its runs, or say which are stale and what redoing costs (RUN=1: do it, PAGE=one)
 	@.venv/bin/python -m bulkwear.workflows.results.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE))
 
+docs: setup ## Build the documentation as a site, docs/site/build/index.html
+	.venv/bin/sphinx-build -q -W --keep-going -b html -c docs/site -d docs/site/build/.doctrees . docs/site/build
+
 test: setup ## Run the tests and every check a submission must pass
 	$(PYTEST)
 	@$(MAKE) --no-print-directory lint
@@ -84,5 +87,5 @@ lock: setup ## Resolve the dependencies of pyproject.toml again into requirement
 	awk '/^[^ ]/ {keep = /^uv==/} keep' requirements.txt >requirements-bootstrap.txt
 
 clean: ## Remove caches (never results)
-	rm -rf .pytest_cache .ruff_cache .hypothesis .numba_cache
+	rm -rf .pytest_cache .ruff_cache .hypothesis .numba_cache docs/site/build
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

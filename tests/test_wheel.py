@@ -1,4 +1,4 @@
-"""The wheel in a bare environment: the public names, the README's notebook, the workflow's own files."""
+"""The wheel in a bare environment: the public names, the notebook of the docs, the workflow's own files."""
 
 import os
 import re
@@ -68,7 +68,7 @@ def test_the_wheel_holds_the_whole_package(wheel):
     wanted = {name_of(path) for path in tracked() if name_of(path).split("/")[0] in SHIPPED}
     placed = {name if name.startswith("bulkwear/") else f"bulkwear/{name}" for name in wanted}
     profiles = {f"bulkwear/profiles/{name}/config.yaml" for name in ("default", "slurm")}
-    told = {f"bulkwear/docs/{name}.md" for name in ("project", "equipment")}
+    told = {f"bulkwear/docs/{name}.md" for name in ("project", "tutorial_chute", "equipment")}
     assert names == placed | profiles | told | {"bulkwear/Snakefile"}
 
 
@@ -106,7 +106,7 @@ def test_importing_costs_nothing(python, tmp_path):
     assert said.split() == ["False", "False"]
 
 
-def test_the_notebook_of_the_readme_runs(python, tmp_path):
+def test_the_notebook_of_the_docs_runs(python, tmp_path):
     """A ledger read, a surface worn and drawn; on a uniformly loaded plate the depth is the law's."""
     run_folder = tmp_path / "results/demo/R9_convex"
     cycle = run_folder / "cycle_001"
@@ -115,8 +115,8 @@ def test_the_notebook_of_the_readme_runs(python, tmp_path):
     write_surface(run_folder / "surface.vtu", plate)
     work = WORK * areas(plate.points, plate.triangles)
     pd.DataFrame({"triangle": np.arange(len(work)), "sliding_work_J": work}).to_parquet(cycle / "ledger.parquet")
-    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
-    (code,) = re.findall(r"```python\n(.*?)```", readme, re.DOTALL)
+    page = (REPOSITORY / "docs" / "notebook.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     coefficient, repeated = (
         float(found) for found in re.search(r"_per_pa\": (\S+)}.*?, (\S+) \*", code, re.S).groups()
     )

@@ -1,4 +1,4 @@
-"""Draw the transfer chute of the tutorial in docs/equipment.md as STEP: python -m bulkwear.meshes.transfer.draw FOLDER
+"""Draw the transfer chute of docs/tutorial_chute.md as STEP: python -m bulkwear.meshes.transfer.draw FOLDER
 
 transfer.step has four bodies with names: an upright impact plate, a liner of 45 degrees and two side walls;
 transfer_steep.step has the same with a steeper liner. Plate and liner are 30 mm thick. Lengths are in mm, z is up, the

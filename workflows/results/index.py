@@ -1,5 +1,5 @@
-"""The list of all pages of results with where they come from, the warnings that stand on the pages themselves, and the
-page of all published numbers.
+"""The list of all pages of results with where they come from, the warnings that stand on the pages themselves, their
+gallery, and the page of all published numbers.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from bulkwear.workflows.engine.provenance import code_of_cases
 from bulkwear.workflows.report.provenance_of_pages import Change, Origin, older, read_origins, with_banner
+from bulkwear.workflows.results.gallery import GALLERY, gallery
 from bulkwear.workflows.results.published_numbers import write_published
 
 INDEX = "results.md"
@@ -25,8 +26,8 @@ not known until the page is redone.
 
 
 def mark(docs: Path, changes: Sequence[Change]) -> None:
-    """Write the warnings below the titles of all pages that have them, the list of all pages, and the page of all
-    published numbers.
+    """Write the warnings below the titles of all pages that have them, the list of all pages, their gallery, and the
+    page of all published numbers.
     """
     origins = read_origins(docs)
 
@@ -38,6 +39,7 @@ def mark(docs: Path, changes: Sequence[Change]) -> None:
         if path.suffix == ".md" and path.is_file():
             path.write_text(with_banner(path.read_text(encoding="utf-8"), sentences(origin)), encoding="utf-8")
     (docs / INDEX).write_text(index_page(origins, sentences, changes), encoding="utf-8")
+    (docs / GALLERY).write_text(gallery(docs, origins), encoding="utf-8")
     write_published(docs, origins)
 
 

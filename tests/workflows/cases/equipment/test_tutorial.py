@@ -1,4 +1,4 @@
-"""The tutorial of docs/equipment.md, done as it is written there, with the package as a wheel installs it.
+"""The tutorial of a chute in docs, done as it is written there, with the package as a wheel installs it.
 
 Its files and commands are taken from the page; less is simulated than on the page.
 """
@@ -21,8 +21,8 @@ from bulkwear.workflows.config.readme import readme
 from bulkwear.workflows.engine.project import enter_project, leave_project
 from tests import REPOSITORY
 
-PAGE = (REPOSITORY / "docs/equipment.md").read_text(encoding="utf-8")
-TUTORIAL = PAGE.partition("\n## Parts\n")[0]
+TUTORIAL = (REPOSITORY / "docs/tutorial_chute.md").read_text(encoding="utf-8")
+REFERENCE = (REPOSITORY / "docs/equipment.md").read_text(encoding="utf-8")
 FILES = re.findall(r"`(config/[\w/.]+)`[^`\n]*\n\n```(?:yaml|csv)\n(.*?)```", TUTORIAL, re.DOTALL)
 COMMANDS = "".join(re.findall(r"```sh\n(.*?)```", TUTORIAL, re.DOTALL))
 SENTENCES = re.findall(r"^> (\S.*)$", TUTORIAL, re.MULTILINE)  # of the page, numbers left out
@@ -137,11 +137,13 @@ def test_a_second_design_is_a_row(tmp_path):
 
 
 def test_told_defaults_are_those_of_the_case():
-    """The page's table of defaults."""
+    """The table of defaults of the reference."""
     layers = [
         yaml.safe_load((REPOSITORY / f"config/{name}.yaml").read_text()) for name in ("default", "cases/equipment")
     ]
-    told = re.findall(r"^\| `([\w.]+)` \| (\S+) \|$", PAGE.split("| key | default |")[1].split("\n\n")[0], re.MULTILINE)
+    told = re.findall(
+        r"^\| `([\w.]+)` \| (\S+) \|$", REFERENCE.split("| key | default |")[1].split("\n\n")[0], re.MULTILINE
+    )
     assert len(told) > 10
     for path, value in told:
         found = [reduce(lambda block, key: (block or {}).get(key), path.split("."), layer) for layer in layers]
@@ -149,12 +151,14 @@ def test_told_defaults_are_those_of_the_case():
 
 
 def test_named_keys_are_there():
-    """Every key with a point that the page names is one of the configuration."""
+    """Every key with a point that tutorial and reference name is one of the configuration."""
     known = set(re.findall(r"^\| `([\w.<>]+)` \|", readme(), re.MULTILINE))
     known |= {re.sub(r"<name>", "shell", key) for key in known} | {re.sub(r"<name>", "liner", key) for key in known}
     named = {
         key
-        for key in re.findall(r"`((?:parts|bulk|start_up|sampling|updates|operation|wear|inlet|solver)\.[\w.]+)`", PAGE)
+        for key in re.findall(
+            r"`((?:parts|bulk|start_up|sampling|updates|operation|wear|inlet|solver)\.[\w.]+)`", TUTORIAL + REFERENCE
+        )
         if not key.endswith((".csv", ".vtu"))
     }
     assert len(named) > 10 and named <= known | {"wear.parameters"}
