@@ -17,17 +17,18 @@ from typing import Any
 import igl
 import numpy as np
 
-from bulkwear.meshes.own.read import read_solids
+from bulkwear.meshes.own.read import check_file, read_solids
 from bulkwear.meshes.own.solids import UNITS
 from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
 from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.side import connected_pieces
 from bulkwear.postproc.wear.thickness import thickness_to_back
 from bulkwear.workflows.cases.equipment.checks import thin_phrase
-from bulkwear.workflows.cases.equipment.decks import domain, longest_s, skin
+from bulkwear.workflows.cases.equipment.decks import domain, longest_s, moving_mesh, skin
 from bulkwear.workflows.cases.equipment.drawings import drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of
 from bulkwear.workflows.cases.equipment.placing import filling_box, largest_diameter, placing_room
+from bulkwear.workflows.cases.equipment.stream_checks import check_stream
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, looks, room_needed
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.run_checks import millimetres
@@ -39,6 +40,7 @@ OUTSIDE = 1e-8  # m; a facet whose middle is farther out is lost to the solver (
 GRAZING = 0.05  # -, of the smallest diameter: particles that overlap a wall by less are not thrown off
 FINEST = 0.01  # -, of half the longest side of such room: parts that are narrower there may be missed
 MEASURED = 0.1  # -, by which a thickness along normals may be less than the one drawn: a flight leans, a vault is bent
+WAY_OF_RADIUS = 0.5  # -, that a part may go in a time step
 WITHIN = 0.5  # -, winding number of a place within a closed body: 1, outside 0
 AXES = "xyz"
 
@@ -56,7 +58,9 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     _check_cells(run, surface)
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_within(run, surface, part, mesh)
+        _check_speed(run, part, mesh)
     _check_inlet(run, parts)
+    check_stream(run, parts)
     _check_filling(run, surface, parts)
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_thickness(run, part, mesh)
@@ -73,7 +77,8 @@ def check_units(run: Parameters) -> None:
     with tempfile.TemporaryDirectory() as folder:
         for part in run["parts"]:
             try:
-                solids, scale = read_solids(drawing(part["file"], Path(folder)), part["unit"], None)
+                check_file(path := drawing(part["file"], Path(folder)))
+                solids, scale = read_solids(path, part["unit"], None)
             except (ValueError, OSError):
                 continue
             _check_size(run, part, scale * _diagonal(solids.points))
@@ -140,6 +145,24 @@ def _check_within(run: Parameters, surface: SurfaceMesh, part: Parameters, mesh:
                 f"parts.{part['name']}.file: {found}, from {millimetres(low[k])} to {millimetres(high[k])}, allowed is"
                 f" {millimetres(first)} to {millimetres(last)}, {section}.low_mm and {section}.high_mm: {mend}."
             )
+
+
+def _check_speed(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> None:
+    """Raise ConfigError for a part that goes through particles within a time step."""
+    if not moving_mesh(part):
+        return
+    motion, step = motion_of(part["motion"]), run["derived"]["time_step_s"]
+    ways = [
+        np.linalg.norm(motion.placed(mesh.points, time + step) - motion.placed(mesh.points, time), axis=1).max()
+        for time in looks(part["motion"], longest_s(run))
+    ]
+    most = WAY_OF_RADIUS * 0.5 * min(run["particle"]["diameters_m"])
+    if max(ways) > most:
+        raise ConfigError(
+            f"parts.{part['name']}.motion takes {part['file']} {1e3 * max(ways):.4g} mm far in a time step, at"
+            f" {max(ways) / step:.4g} m/s, allowed are {1e3 * most:.4g} mm, {WAY_OF_RADIUS:g} of the smallest radius:"
+            " it would go through particles."
+        )
 
 
 # ---------------------------------------------------------------- where material is placed

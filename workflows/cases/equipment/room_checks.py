@@ -17,6 +17,7 @@ from bulkwear.workflows.cases.equipment.placing import (
     normal_velocity,
     placing_room,
 )
+from bulkwear.workflows.cases.equipment.surfaces import rectangle
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres
 
 LEAST_NORMAL_VELOCITY = 1e-3  # m/s, through an inlet: below it the solver stops
@@ -24,6 +25,8 @@ LEAST_NORMAL_VELOCITY = 1e-3  # m/s, through an inlet: below it the solver stops
 # and the solver mixes what it knows of the two contacts.
 LEAST_SLICE_DIAMETERS = 2.5
 TOUCHING = 1e-6  # m; ends that are equal in the drawing and in the settings
+LOOKING_UP = 0.5  # -, z of the unit normal of a rectangle that looks up
+GRAVITY = 9.81  # m/s2
 T_PER_H = 3.6  # of a kg/s
 AXES = "xyz"
 
@@ -40,6 +43,62 @@ def outlet_there(run: CheckedRun) -> Fault | None:
     if run.parameters["outlets"] or not run.parameters["inlet"]:
         return None
     return "outlets", "one outlet or more where there is an inlet, else material heaps up for ever"
+
+
+def particles_fit_outlets(run: CheckedRun) -> Fault | None:
+    """The sides of outlets are the diameter of the largest particles or more."""
+    least = largest_diameter(run.parameters)
+    for name, given in (run.parameters["outlets"] or {}).items():
+        if min(given["size_m"]) < least:
+            reason = "the largest particles, as coarse-grained; far larger ones cost nothing"
+            return f"outlets.{name}.size_mm", f"sides of at least {millimetres(least)}, {reason}"
+    return None
+
+
+def outlets_are_reached(run: CheckedRun) -> Fault | None:
+    """Where nothing moves, material falls: not all outlets are above it, and none below the inlet looks up."""
+    outlets, inlet = run.parameters["outlets"] or {}, run.parameters["inlet"]
+    if not inlet or any(part["motion"] for part in run.parameters["parts"]):
+        return None
+    for name, given in outlets.items():
+        upward = given["normal"][2] / np.linalg.norm(given["normal"])
+        if upward > LOOKING_UP and _heights(given).max() < _heights(inlet).min():
+            reason = "whither material leaves: it falls, against the normal it would not be counted; turn it round"
+            return f"outlets.{name}.normal", reason
+    rise = 0.5 * float(np.dot(inlet["velocity_m_per_s"], inlet["velocity_m_per_s"])) / GRAVITY
+    highest = float(max(placing_room(run.parameters)[:, 2].max(), _filled_up_to(run.parameters))) + rise
+    if outlets and min(_heights(given).min() for given in outlets.values()) > highest:
+        reason = "as high as material gets where no part moves"
+        return f"outlets.{next(iter(outlets))}.centre_mm", f"a place below z = {millimetres(highest)}, {reason}"
+    return None
+
+
+def _heights(given: Mapping[str, Any]) -> np.ndarray:
+    """Return z (m) of the corners of a rectangle."""
+    return rectangle(given).points[:, 2]
+
+
+def _filled_up_to(parameters: Mapping[str, Any]) -> float:
+    return float(filling_box(parameters)[1, 2]) if parameters["filling"] else -np.inf
+
+
+def filling_before_outlets(run: CheckedRun) -> Fault | None:
+    """No part of the cylinder that is filled lies beyond an outlet, where particles are placed and never counted."""
+    if not run.parameters["filling"]:
+        return None
+    low, high = filling_box(run.parameters)
+    box = np.array([[(low, high)[k][axis] for axis, k in enumerate(each)] for each in np.ndindex(2, 2, 2)])
+    for name, given in (run.parameters["outlets"] or {}).items():
+        corners = rectangle(given).points
+        sides, normal = corners[[1, 3]] - corners[0], np.asarray(given["normal"]) / np.linalg.norm(given["normal"])
+        along = (box - corners[0]) @ sides.T / (sides**2).sum(axis=1)
+        beyond = float(((box - corners[0]) @ normal).max())
+        if beyond > TOUCHING and (along.min(axis=0) < 1.0).all() and (along.max(axis=0) > 0.0).all():
+            return "filling.centre_mm", (
+                f"a place from which the cylinder that is filled does not stand out through outlets.{name}, as it does"
+                f" by {millimetres(beyond)}"
+            )
+    return None
 
 
 def rectangles_look_somewhere(run: CheckedRun) -> Fault | None:
@@ -198,6 +257,9 @@ ROOM_CHECKS: tuple[Check, ...] = (
     material_comes_in,
     outlet_there,
     rectangles_look_somewhere,
+    particles_fit_outlets,
+    outlets_are_reached,
+    filling_before_outlets,
     velocity_through_inlet,
     particles_fit_inlet,
     rate_fits_inlet,

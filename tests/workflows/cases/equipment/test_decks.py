@@ -98,7 +98,10 @@ def test_names_of_parts_and_outlets_take_no_other_name(tmp_path):
     """A part called size, an outlet called held or fed: every id and every variable is defined once."""
     rigid = {"file": "hood.stl", "unit": "mm", "role": "rigid", "edge_mm": 30, "material": "steel"}
     changes = {
-        "parts": {name: rigid for name in ("size", "outlet_held", "walls", "feed", "load_ledger")},
+        "parts": {
+            name: {**rigid, "motion": {"kind": "belt", "velocity_m_per_s": [k, 0, 0]}}
+            for k, name in enumerate(("size", "outlet_held", "walls", "feed", "load_ledger"), start=1)
+        },
         "outlets": {name: HELD for name in ("held", "fed", "filled", "liner")},
         "filling": FILLING,
     }
@@ -130,7 +133,7 @@ def test_all_ledgers_sum_what_any_part_needs(tmp_path):
         text = texts_of(study.runs[0].parameters, tmp_path)[1]
     lines = re.findall(r"^fix +load_ledger_\w+ all load/ledger .*$", text, re.MULTILINE)
     assert len(lines) == 4 and all(line.endswith(" kernels finnie_work") for line in lines)
-    with machine_study(tmp_path / "b", parts={"plate": {"role": "rigid"}}) as study:
+    with machine_study(tmp_path / "b", "row,parts.plate.role\nA,rigid\n") as study:
         assert "kernels" not in texts_of(study.runs[0].parameters, tmp_path)[1]
 
 

@@ -110,6 +110,9 @@ def test_other_faults_of_a_drawing_are_told_as_they_are(tmp_path, run):
         (tmp_path / "meshes/liner.stl").write_text("solid nothing\nendsolid\n")
         (tmp_path / "meshes/plate.stl").unlink()
         check_units(parameters)
+        (tmp_path / "meshes/hood.stl").rename(tmp_path / "meshes/hood.sldprt")
+        renamed = [{**part, "file": "hood.sldprt"} if part["name"] == "hood" else part for part in parameters["parts"]]
+        check_units({**parameters, "parts": renamed})
         with pytest.raises(ConfigError, match=r"^parts\.liner: .*liner\.stl") as caught:
             study.case.surface_mesh(study.case.surface_sections(parameters))
     assert ".unit is" not in str(caught.value)
@@ -153,6 +156,19 @@ def test_a_part_that_leaves_the_domain_on_its_way(run):
     far = {"motion": {"kind": "translation", "velocity_m_per_s": [1.0, 0.0, 0.0]}}
     message = message_of(run, ("plate", PLATE, far), domain=DOMAIN)
     assert "plate.stl stands out by" in message and "along x on its way, from -200 mm to" in message
+
+
+def test_a_part_that_goes_through_particles(run):
+    """In a time step of 0.12 ms a part goes no farther than half of the smallest radius of 4.8 mm, 19.5 m/s."""
+    step = run["derived"]["time_step_s"]
+    slow, fast = (
+        {"kind": "translation", "velocity_m_per_s": [0.0, 0.0, -factor * 0.0024 / step], "stop_s": 0.001}
+        for factor in (0.99, 1.01)
+    )
+    check_machine(*machine(run, ("plate", PLATE, {"motion": slow})))
+    message = message_of(run, ("plate", PLATE, {"motion": fast}))
+    assert message.startswith("parts.plate.motion takes plate.stl 2.424 mm far in a time step, at 19.")
+    assert "allowed are 2.4 mm, 0.5 of the smallest radius" in message
 
 
 def test_a_part_that_stands_out_of_the_slice(run):
