@@ -38,8 +38,7 @@ def _part_row(part: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "part": part["name"],
         "role": "wears" if wears else "rigid",
-        "file": part["file"],
-        "solid": part.get("solid", ""),
+        "file": ": ".join(filter(None, [part["file"], part.get("solid")])),  # which is no word, and told as it is
         "material": part["material"],
         "thickness_mm": part.get("thickness_m", math.nan) * MILLIMETRES,
         "edge_mm": part["edge_m"] * MILLIMETRES,
