@@ -15,7 +15,7 @@ from bulkwear.workflows.cases.equipment.motions import motion_of
 from bulkwear.workflows.cases.equipment.parameters import PART_DEFAULTS, laws_of, run_parameters
 from bulkwear.workflows.cases.equipment.phases import next_block
 from bulkwear.workflows.config.layers import ConfigError
-from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, register
+from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, Run, register
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import Stage
@@ -82,6 +82,11 @@ class Equipment(Case):
         remaining = parameters["operation"].get("change_out_remaining_m", 0.0)
         sections = super().surface_sections(parameters)
         return {**sections, "parts": parts, "derived": derived, "change_out_remaining_m": remaining}
+
+    def check_files(self, runs: Sequence[Run]) -> None:
+        """Raise ConfigError for a drawing without the solid that is named, or in a unit that makes it far too large."""
+        for run in runs:
+            self.run_stages(run.parameters, None)
 
     def slice_ends(self, parameters: Parameters) -> SliceEnds | None:
         """Return the ends of the slice in which a machine is periodic."""

@@ -78,7 +78,7 @@ def check_units(run: Parameters) -> None:
         for part in run["parts"]:
             try:
                 check_file(path := drawing(part["file"], Path(folder)))
-                solids, scale = read_solids(path, part["unit"], None)
+                solids, scale = read_solids(path, part["unit"], LARGEST_PART)  # few elements, of CAD files
             except (ValueError, OSError):
                 continue
             _check_size(run, part, scale * _diagonal(solids.points))

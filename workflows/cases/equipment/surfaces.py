@@ -15,7 +15,7 @@ from bulkwear.meshes.own.mesh import OwnMesh, own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.wear.bodies import body, together
 from bulkwear.postproc.wear.directions import ON_END
-from bulkwear.workflows.cases.equipment.drawings import drawing
+from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of, turn_s
 from bulkwear.workflows.config.layers import ConfigError
 
@@ -57,8 +57,7 @@ def part_surface(
     surface = found.surface
     if "solid" in part:
         names = [each.name for each in found.parts]
-        if part["solid"] not in names:
-            raise ConfigError(f"{name}.solid is '{part['solid']}', allowed is one of {', '.join(names)}.")
+        check_solid(part, names)
         surface = body(surface, surface.cell_data["part"] == names.index(part["solid"]))
     labels = np.full(len(surface.triangles), label_of(number, part), dtype=np.int64)
     return SurfaceMesh(surface.points, surface.triangles, {"part": labels})

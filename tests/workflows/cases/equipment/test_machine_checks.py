@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bulkwear.meshes.drawing import write_step
+from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.postproc.mesh import SurfaceMesh, enclosed_volume
 from bulkwear.postproc.wear.bodies import together
 from bulkwear.workflows.cases.equipment.machine_checks import (
@@ -94,6 +96,18 @@ def test_a_wrong_unit_is_named_with_the_one_that_makes_sense(tmp_path, unit, sca
         f"parts.liner.unit is {unit}, in which liner.stl is {size} large, allowed are 12 mm, a median particle as"
         f" coarse-grained, to 200 m: {hint}."
     )
+
+
+def test_a_chute_of_three_kilometres_as_step(tmp_path):
+    """A CAD file says its unit itself; drawn in thousandths of it, it is too large before anything is meshed."""
+    with machine_study(tmp_path, parts={"liner": {"file": "liner.step"}}) as study:
+        with gmsh_model() as gmsh:
+            body = gmsh.model.occ.addBox(0, 0, 0, 3e6, 1e5, 3e4)
+            write_step(gmsh, tmp_path / "meshes/liner.step", {body: "liner"})
+        run = study.runs[0].parameters
+        for look in (study.case.check_files, lambda runs: study.case.surface_mesh(study.case.surface_sections(run))):
+            with pytest.raises(ConfigError, match=r"^parts\.liner\.unit is mm, in which liner\.step is 3002 m large"):
+                look(study.runs)
 
 
 def test_a_part_that_no_unit_makes_sense_of(run):
