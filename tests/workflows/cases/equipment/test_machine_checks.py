@@ -100,10 +100,11 @@ def test_a_wrong_unit_is_named_with_the_one_that_makes_sense(tmp_path, unit, sca
 
 def test_a_chute_of_three_kilometres_as_step(tmp_path):
     """A CAD file says its unit itself; drawn in thousandths of it, it is too large before anything is meshed."""
+    (tmp_path / "meshes").mkdir()
+    with gmsh_model() as gmsh:
+        body = gmsh.model.occ.addBox(0, 0, 0, 3e6, 1e5, 3e4)
+        write_step(gmsh, tmp_path / "meshes/liner.step", {body: "liner"})
     with machine_study(tmp_path, parts={"liner": {"file": "liner.step"}}) as study:
-        with gmsh_model() as gmsh:
-            body = gmsh.model.occ.addBox(0, 0, 0, 3e6, 1e5, 3e4)
-            write_step(gmsh, tmp_path / "meshes/liner.step", {body: "liner"})
         run = study.runs[0].parameters
         for look in (study.case.check_files, lambda runs: study.case.surface_mesh(study.case.surface_sections(run))):
             with pytest.raises(ConfigError, match=r"^parts\.liner\.unit is mm, in which liner\.step is 3002 m large"):
