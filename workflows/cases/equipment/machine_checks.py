@@ -21,6 +21,7 @@ from bulkwear.meshes.own.read import check_file, read_solids
 from bulkwear.meshes.own.solids import UNITS
 from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
 from bulkwear.postproc.wear.bodies import body
+from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.postproc.wear.side import connected_pieces
 from bulkwear.postproc.wear.thickness import thickness_to_back
 from bulkwear.workflows.cases.equipment.checks import thin_phrase
@@ -50,7 +51,7 @@ Parameters = Mapping[str, Any]
 def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     """Raise ConfigError, one sentence with part and key, for a machine that cannot be simulated.
 
-    run: the sections of its parameters that its surface depends on; surface: all parts as one, as they are drawn
+    run: the sections that `surface_sections` returns; surface: all parts as one, as they are drawn
     """
     parts = [body(surface, faces_of(surface, number, part)) for number, part in enumerate(run["parts"])]
     for part, mesh in zip(run["parts"], parts, strict=True):
@@ -304,7 +305,14 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
     """Raise ConfigError for a liner that is thinner, over half of its area, than its elements are long, or no thicker
     than what shall remain of it.
     """
-    if not part["wears"] or "thickness_m" in part:
+    if not part["wears"]:
+        return
+    if run.get("change_out_by_mass") and not _is_closed(run, mesh):
+        raise ConfigError(
+            f"operation.change_out_worn_mass_fraction is given, and parts.{part['name']} has no mass, allowed are"
+            f" closed bodies: the surface of {part['file']} is open; change it by change_out_remaining_mm."
+        )
+    if "thickness_m" in part:
         return
     thickness, source = thickness_of(mesh), f"the thickness in {part['file']}"
     if thickness < part["edge_m"] * (1.0 - MEASURED):
@@ -315,6 +323,15 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
             f"operation.change_out_remaining_mm is {1e3 * remaining:.6g}, allowed is below {millimetres(thickness)},"
             f" {source}, of parts.{part['name']}."
         )
+
+
+def _is_closed(run: Parameters, mesh: SurfaceMesh) -> bool:
+    """Return whether a part has no open edge but at an end of the slice."""
+    rim, periodic = mesh.points[boundary_nodes(mesh.triangles)], run["periodic"]
+    if not len(rim) or not periodic:
+        return not len(rim)
+    along = rim[:, AXES.index(periodic["axis"])]
+    return bool((np.minimum(abs(along - periodic["low_m"]), abs(along - periodic["high_m"])) < ON_END).all())
 
 
 def thickness_of(mesh: SurfaceMesh) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
@@ -22,6 +23,7 @@ from bulkwear.workflows.config.layers import ConfigError
 POSES = 64  # of a moving part in a run, and in a turn, of which the room that it needs is made
 ALIKE = 1e-6  # relative, areas of a part's two ends
 FEED_CELLS = 8  # along each side of an inlet; still as large as a particle where it is eight particles wide
+TOLD = ("facets turned round", "open pieces", "warning")  # repairs of a drawing that its owner should know of
 PLACES = ("the whole of its motion", "where it stands")
 
 Part = Mapping[str, Any]
@@ -55,6 +57,11 @@ def part_surface(
     except (ValueError, OSError) as fault:
         raise ConfigError(f"{name}: {fault}.") from fault
     surface = found.surface
+    for repair in found.repairs:
+        if repair.repair.startswith(TOLD) and repair.part == part.get("solid", repair.part):
+            place = ", ".join(f"{1e3 * value:.4g}" for value in repair.place_m)
+            words = f"{repair.repair}, {repair.count} times, the first at ({place}) mm"
+            print(f"{name}: {part['file']}, {repair.part}: {words}.", file=sys.stderr)
     if "solid" in part:
         names = [each.name for each in found.parts]
         check_solid(part, names)

@@ -243,16 +243,20 @@ def test_an_inlet_within_a_body_is_refused_however_its_facets_look(run):
     check_machine(*machine(run, ("hollow", hollow, {"edge_m": 0.1, "wears": False})))
 
 
-def test_facets_of_a_closed_body_that_look_inward_are_turned_when_it_is_read(tmp_path, run):
-    """An inside-out file gives the surface of the right one."""
+def test_facets_of_a_closed_body_that_look_inward_are_turned_when_it_is_read(tmp_path, capsys):
+    """An inside-out file gives the surface of the right one, and its owner is told."""
     with machine_study(tmp_path) as study:
         part = study.runs[0].parameters["parts"][0]
         points, triangles = corners_of_box((240.0, 100.0, 30.0))
-        volumes = []
+        volumes, said = [], []
         for each in (triangles, triangles[:, ::-1]):
             write_ascii(tmp_path / "meshes/liner.stl", {"liner": (points, each)})
             found = part_surface(0, part, tmp_path)
             volumes.append(enclosed_volume(found.points, found.triangles))
+            said.append(capsys.readouterr().err)
+    assert said[0] == "" and said[1].startswith(
+        "parts.liner: liner.stl, liner: facets turned round, 12 times, the first"
+    )
     assert volumes == pytest.approx([0.24 * 0.1 * 0.03] * 2)
 
 
@@ -314,6 +318,17 @@ def test_a_drawn_liner_of_which_more_shall_remain_than_there_is(run):
     check_machine(*machine(run, ("liner", thick, {}), change_out_remaining_m=0.039))
     check_machine(*machine(run, ("liner", thick, {"wears": False}), change_out_remaining_m=0.05))
     check_machine(*machine(run, ("liner", thick, {"thickness_m": 0.06}), change_out_remaining_m=0.05))
+
+
+def test_a_liner_without_a_mass_is_not_changed_by_it(run):
+    """An open body has none; one that is open at the ends of a slice has that of the slice."""
+    open_box = without_lid((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.3))
+    message = message_of(run, ("tray", open_box, {}), change_out_by_mass=True)
+    assert message.startswith("operation.change_out_worn_mass_fraction is given, and parts.tray has no mass")
+    check_machine(*machine(run, ("tray", open_box, {"thickness_m": 0.03})))
+    ends = np.abs(PLATE.points[PLATE.triangles][:, :, 1]).min(axis=1) > SLICE["high_m"] - 1e-9
+    sliced = SurfaceMesh(PLATE.points, PLATE.triangles[~ends])
+    check_machine(*machine(run, ("tray", sliced, {}), periodic=SLICE, change_out_by_mass=True))
 
 
 def test_thickness_is_that_of_half_the_area():
