@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -205,7 +206,7 @@ def _hours_told(updates: np.ndarray, worn_for: float, operation: Mapping[str, An
     """Return those hours in order, each once: sums of updates and what is asked for differ by rounding."""
     asked = operation.get("duration_s", 0.0) / SECONDS_PER_HOUR
     told = sorted({*(float(hours) for hours in updates if hours <= worn_for), float(worn_for), float(asked)})
-    same = [after - hours <= HOURS_OF_REMAINING * after for hours, after in zip(told, told[1:], strict=False)]
+    same = [after - hours <= HOURS_OF_REMAINING * after for hours, after in pairwise(told)]
     return [hours for hours, again in zip(told, [*same, False], strict=True) if not again]
 
 
