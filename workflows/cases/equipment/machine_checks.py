@@ -313,6 +313,11 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
             f" closed bodies: the surface of {part['file']} is open; change it by change_out_remaining_mm."
         )
     if "thickness_m" in part:
+        if part["thickness_m"] > (size := _diagonal(mesh.points)):
+            raise ConfigError(
+                f"parts.{part['name']}.thickness_mm is {1e3 * part['thickness_m']:.6g}, allowed is at most"
+                f" {millimetres(size)}, the size of {part['file']}."
+            )
         return
     thickness, source = thickness_of(mesh), f"the thickness in {part['file']}"
     if thickness < part["edge_m"] * (1.0 - MEASURED):

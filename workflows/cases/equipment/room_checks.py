@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from bulkwear.workflows.cases.equipment.decks import SHELL_SHARE, room_round
+from bulkwear.workflows.cases.equipment.decks import FASTEST, SHELL_SHARE, room_round
 from bulkwear.workflows.cases.equipment.placing import (
     LEAST_SIDE_DIAMETERS,
     filling_box,
@@ -82,23 +83,41 @@ def _filled_up_to(parameters: Mapping[str, Any]) -> float:
     return float(filling_box(parameters)[1, 2]) if parameters["filling"] else -np.inf
 
 
+def outlets_apart(run: CheckedRun) -> Fault | None:
+    """No two outlets lie on each other: the solver ends where it takes a particle out twice in a step."""
+    least, seen = FASTEST * run.parameters["derived"]["time_step_s"], {}
+    for name, given in (run.parameters["outlets"] or {}).items():
+        for other, before in seen.items():
+            away = _over(before, rectangle(given).points)
+            if away is not None and np.abs(away).max() < least:
+                key = f"outlets.{name}.centre_mm"
+                return key, f"a place at least {millimetres(least)} before or behind outlets.{other}, or beside it"
+        seen[name] = given
+    return None
+
+
 def filling_before_outlets(run: CheckedRun) -> Fault | None:
     """No part of the cylinder that is filled lies beyond an outlet, where particles are placed and never counted."""
     if not run.parameters["filling"]:
         return None
-    low, high = filling_box(run.parameters)
-    box = np.array([[(low, high)[k][axis] for axis, k in enumerate(each)] for each in np.ndindex(2, 2, 2)])
+    box = np.array(list(itertools.product(*filling_box(run.parameters).T)))
     for name, given in (run.parameters["outlets"] or {}).items():
-        corners = rectangle(given).points
-        sides, normal = corners[[1, 3]] - corners[0], np.asarray(given["normal"]) / np.linalg.norm(given["normal"])
-        along = (box - corners[0]) @ sides.T / (sides**2).sum(axis=1)
-        beyond = float(((box - corners[0]) @ normal).max())
-        if beyond > TOUCHING and (along.min(axis=0) < 1.0).all() and (along.max(axis=0) > 0.0).all():
+        away = _over(given, box)
+        if away is not None and away.max() > TOUCHING:
             return "filling.centre_mm", (
                 f"a place from which the cylinder that is filled does not stand out through outlets.{name}, as it does"
-                f" by {millimetres(beyond)}"
+                f" by {millimetres(float(away.max()))}"
             )
     return None
+
+
+def _over(given: Mapping[str, Any], points: np.ndarray) -> np.ndarray | None:
+    """Return how far (n,) m places (n, 3) m lie beyond the plane of a rectangle; None where they lie beside it."""
+    corners = rectangle(given).points
+    sides, normal = corners[[1, 3]] - corners[0], np.asarray(given["normal"]) / np.linalg.norm(given["normal"])
+    along = (points - corners[0]) @ sides.T / (sides**2).sum(axis=1)
+    beside = (along.min(axis=0) >= 1.0).any() or (along.max(axis=0) <= 0.0).any()
+    return None if beside else (points - corners[0]) @ normal
 
 
 def rectangles_look_somewhere(run: CheckedRun) -> Fault | None:
@@ -259,6 +278,7 @@ ROOM_CHECKS: tuple[Check, ...] = (
     rectangles_look_somewhere,
     particles_fit_outlets,
     outlets_are_reached,
+    outlets_apart,
     filling_before_outlets,
     velocity_through_inlet,
     particles_fit_inlet,

@@ -233,6 +233,11 @@ ROOM = [
         "whither material leaves: it falls, against the normal it would not be counted; turn it round",
     ),
     (
+        {"outlets": {"again": {**SETTINGS["outlets"]["below"], "centre_mm": [300, 0, -345.5]}}},
+        "outlets.again.centre_mm is [300, 0, -345.5]",
+        "mm before or behind outlets.below, or beside it",  # 1.2 mm, at 10 m/s in a step
+    ),
+    (
         {"filling": {**FILLING, "centre_mm": [0, 0, -320]}},
         "filling.centre_mm is [0, 0, -320]",
         "does not stand out through outlets.below, as it does by 35 mm",
@@ -437,10 +442,14 @@ def test_kernels_of_a_part_s_own_law_are_asked_of_the_solver(tmp_path):
         STILL,
         {**STILL, "outlets": {"side": {"centre_mm": [400, 0, 345], "normal": [1, 0, 0], "size_mm": [900, 800]}}},
         {"sampling": {"pictures_per_block": 7}},
+        *(
+            {"outlets": {"other": {**SETTINGS["outlets"]["below"], "centre_mm": centre}}}
+            for centre in ([0, 0, -347], [900, 0, -345])
+        ),
         {"inlet": {"normal": [0, 0, -5], "velocity_m_per_s": [3, 0, -0.5]}},
         {
             "parts": {"hood": None, "inlet": SETTINGS["parts"]["hood"]},
-            "outlets": {"liner": SETTINGS["outlets"]["below"]},
+            "outlets": {"below": None, "liner": SETTINGS["outlets"]["below"]},
         },
         *(motion(**given) for given in ({**TURNS, "ramp_s": 0.2}, {"kind": "belt", "velocity_m_per_s": [0, 1, 0]})),
     ],

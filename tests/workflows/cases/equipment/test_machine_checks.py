@@ -331,6 +331,13 @@ def test_a_liner_without_a_mass_is_not_changed_by_it(run):
     check_machine(*machine(run, ("tray", sliced, {}), periodic=SLICE, change_out_by_mass=True))
 
 
+def test_a_thickness_that_no_part_of_that_size_has(run):
+    """A plate with a diagonal of 413 mm is not 414 mm thick."""
+    message = message_of(run, ("plate", PLATE, {"thickness_m": 0.414}))
+    assert message.startswith("parts.plate.thickness_mm is 414, allowed is at most 413.")
+    check_machine(*machine(run, ("plate", PLATE, {"thickness_m": 0.413})))
+
+
 def test_thickness_is_that_of_half_the_area():
     """Of a plate through its thin side, of a bulky body across; a sheet has no back."""
     assert thickness_of(box((0.4, 0.3, 0.03), 0.03)) == pytest.approx(0.03, rel=MEASURED)
