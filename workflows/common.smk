@@ -65,7 +65,10 @@ def checked_studies():
         return dict(filter(None, (sound_study(name, settings) for name in list_studies())))
     try:
         names = named or requested_studies(GIVEN.targets, GIVEN.target_jobs, names=NAMING)
-        return {name: load_study(name, overrides=settings) for name in names}
+        studies = {name: load_study(name, overrides=settings) for name in names}
+        for study in studies.values() if not GIVEN.target_jobs else ():
+            study.case.check_files(study.runs)
+        return studies
     except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None
 

@@ -133,7 +133,8 @@ def allowed_text(schema: dict[str, Any]) -> str:
         return "one of " + ", ".join(map(str, schema["enum"]))
     if kind in NUMBERS:
         return f"{'a number' if kind == 'number' else 'a whole number'} {_range_text(schema)}".rstrip()
-    return {"boolean": "true or false", "string": "text", "array": "a list"}.get(str(kind), "a block of keys")
+    block = "a block of one key or more" if "minProperties" in schema else "a block of keys"
+    return {"boolean": "true or false", "string": "text", "array": "a list"}.get(str(kind), block)
 
 
 def _range_text(schema: dict[str, Any]) -> str:

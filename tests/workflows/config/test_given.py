@@ -20,8 +20,8 @@ def message_of(folder, overrides=None, **changes) -> str:
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"parts": None}, "parts is missing, allowed is a block of keys."),
-        ({"bulk": None}, "bulk.material is missing, allowed is text."),
+        ({"parts": None}, "parts is missing, allowed is a block of one key or more."),
+        ({"bulk": None}, "bulk.material is missing, allowed is a particle in materials.yaml."),
         ({"parts": {"liner": {"unit": None}}}, "parts.liner.unit is missing, allowed is one of m, mm, cm, um, in, ft."),
         (
             {"inlet": {"normal": None}},
