@@ -15,6 +15,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bulkwear.postproc.readers.solver_log import last_step
+from bulkwear.workflows.engine.chain import RESTART
+from bulkwear.workflows.engine.disk import whole_restart
 from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds
 
 PIECES, CHECKPOINT = "pieces.json", "checkpoint.restart"  # the second as the decks name it
@@ -40,14 +42,20 @@ def piece_ends(first: int, steps: int, interval: int) -> list[int]:
 
 
 def simulate_in_pieces(
-    folder: Path, origin: str, ends: list[int], run: Callable[[Mapping[str, str]], float]
+    folder: Path,
+    origin: str,
+    ends: list[int],
+    run: Callable[[Mapping[str, str]], float],
+    check_restart: Callable[[Path], object] = whole_restart,
 ) -> list[Piece]:
     """Run the pieces of a cycle that are missing and return all of them.
 
     run: starts the solver with these variables of its deck and returns its wall time in s
     origin: hash of all that the cycle starts from
+    check_restart: raises a fault for a restart file that is not whole; only one that is finishes a piece
 
-    The folder then holds one log and one screen of the cycle; `forget_pieces` removes the rest. Raises SolverError.
+    The folder then holds one log and one screen of the cycle; `forget_pieces` removes the rest. Raises SolverError, and
+    what `check_restart` does.
     """
     done = finished_pieces(folder, origin)
     for forced in folder.glob(FORCED):
@@ -56,6 +64,7 @@ def simulate_in_pieces(
         before = processor_seconds()
         wall = run(_variables(done, end) if len(ends) > 1 else {})
         check_end(folder, end)
+        check_restart(folder / (RESTART if end == ends[-1] else CHECKPOINT))
         done.append(Piece(end, wall, processor_seconds() - before))
         if len(ends) > 1:
             _keep(folder, origin, done)
@@ -98,7 +107,7 @@ def _keep(folder: Path, origin: str, done: list[Piece]) -> None:
     count = len(done)
     for name in (LOG, SCREEN):
         os.replace(folder / name, _of_piece(folder, name, count))
-    if (folder / CHECKPOINT).exists():  # the last piece leaves none
+    if (folder / CHECKPOINT).exists():  # the last piece leaves none, but the restart file of the cycle
         os.replace(folder / CHECKPOINT, folder / _checkpoint(count))
     part = folder / f"{PIECES}.part"
     part.write_text(json.dumps({"origin": origin, "pieces": [asdict(piece) for piece in done]}) + "\n")

@@ -98,18 +98,28 @@ def read_state(run_folder: Path, cycle: int) -> dict[str, Any]:
     return json.loads((cycle_folder(run_folder, cycle) / STATE).read_text())
 
 
-def finished_cycles(run_folder: Path, inputs: str, needed: tuple[str, ...] = ()) -> int:
+def finished_cycles(
+    run_folder: Path,
+    inputs: str,
+    needed: tuple[str, ...] = (),
+    usable: Callable[[Path], bool] = lambda folder: True,
+) -> int:
     """Return how many cycles, counted from 0 without a gap, were made from these inputs and are undamaged.
 
     needed: files of the last wear cycle from which the next one goes on; where they were dropped, as from all but the
     newest cycle, an earlier one that still has them is the last.
+    usable: whether the next cycle can go on from a folder; from one that is not, as written on a full disk, none does
     """
     count = 0
     while _holds(cycle_folder(run_folder, count), inputs):
         count += 1
-    while count > 1 and not all((cycle_folder(run_folder, count - 1) / name).exists() for name in needed):
+    while count > 0 and not _goes_on(cycle_folder(run_folder, count - 1), needed if count > 1 else (), usable):
         count -= 1
     return count
+
+
+def _goes_on(folder: Path, needed: tuple[str, ...], usable: Callable[[Path], bool]) -> bool:
+    return all((folder / name).exists() for name in needed) and usable(folder)
 
 
 def _holds(folder: Path, inputs: str) -> bool:
