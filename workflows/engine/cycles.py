@@ -45,6 +45,7 @@ from bulkwear.workflows.engine.ledgers import SamplesError, producer
 from bulkwear.workflows.engine.patience import PATIENCE, Patience
 from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code, write_provenance
+from bulkwear.workflows.engine.row_check import RowCheck
 from bulkwear.workflows.engine.schedule import Span, first_span, known_spans
 from bulkwear.workflows.engine.solver import (
     LAUNCHER,
@@ -94,13 +95,17 @@ def run_chain(chain: Chain) -> None:
             announce(f"resumes after {title(chain, finished - 1)}")
         if not finished:
             run_cycle(chain, None, inputs, progress)
-            finished, span = 1, span_of(chain, 1)
+            finished = finished_cycles(chain, inputs, announce)
+            span = span_of(chain, finished)
         for cycle in range(1, finished - 1):
             drop_files(chain, cycle)
         while span:
             run_cycle(chain, span, inputs, progress)
             drop_files(chain, span.cycle - 1)
-            finished, span = finished + 1, span_of(chain, span.cycle + 1)
+            finished += 1
+            if state.cycle_folder(chain.folder, finished).exists():  # they follow one that was damaged
+                finished = finished_cycles(chain, inputs, announce)
+            span = span_of(chain, finished)
         write_products(chain, finished)
 
 
@@ -118,7 +123,7 @@ def finished_cycles(chain: Chain, inputs: str, announce: Callable[[str], None]) 
             return False
         return True
 
-    return state.finished_cycles(chain.folder, inputs, (RESTART, SURFACE), usable)
+    return state.finished_cycles(chain.folder, inputs, (RESTART, SURFACE), usable, RowCheck().fault, announce)
 
 
 def cycles_of(chain: Chain) -> int | None:
@@ -159,7 +164,7 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         if inputs_digest(chain) != inputs:
             raise state.StateError(f"{chain.name}: its inputs changed while {title(chain, cycle)} ran; start again.")
         kept = (*producer(chain.parameters).kept, *chain.case.kept)
-        files = (RESTART, SURFACE, LEDGER, HISTORY, *kept) if span else (RESTART,)
+        files = (RESTART, SURFACE, LEDGER, HISTORY, chain.case.forces_table, *kept) if span else (RESTART,)
         if span is None:
             found = simulated_from(chain.case, chain.parameters, chain.bed)
             (folder / SIMULATED_FROM).write_text(json.dumps(found, indent=1) + "\n")

@@ -8,7 +8,6 @@ cycle is accounted and its state written, so that a fault on the way there costs
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
@@ -17,7 +16,9 @@ from pathlib import Path
 from bulkwear.postproc.readers.solver_log import last_step
 from bulkwear.workflows.engine.chain import RESTART
 from bulkwear.workflows.engine.disk import whole_restart
+from bulkwear.workflows.engine.records import RecordError, read_record, write_record
 from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds
+from bulkwear.workflows.engine.state import file_digest
 
 PIECES, CHECKPOINT = "pieces.json", "checkpoint.restart"  # the second as the decks name it
 FORCED = "restart_forced_*"  # left by a solver that was asked to end
@@ -74,12 +75,16 @@ def simulate_in_pieces(
 
 
 def finished_pieces(folder: Path, origin: str) -> list[Piece]:
-    """Return the finished pieces of a cycle; those that started from something else, or a torn list, do not count."""
+    """Return the finished pieces of a cycle; those that started from something else, that a torn list tells, or whose
+    restart file has changed do not count.
+    """
     try:
-        found = json.loads((folder / PIECES).read_text())
-        return [Piece(**piece) for piece in found["pieces"]] if found["origin"] == origin else []
-    except (OSError, ValueError, KeyError, TypeError):
+        found = read_record(folder / PIECES)
+        pieces = [Piece(**piece) for piece in found["pieces"]] if found["origin"] == origin else []
+    except (OSError, RecordError, KeyError, TypeError):
         return []
+    checkpoint, digest = folder / _checkpoint(len(pieces)), found.get("checkpoint")
+    return pieces if not digest or (checkpoint.is_file() and file_digest(checkpoint) == digest) else []
 
 
 def check_end(folder: Path, end: int) -> None:
@@ -109,9 +114,9 @@ def _keep(folder: Path, origin: str, done: list[Piece]) -> None:
         os.replace(folder / name, _of_piece(folder, name, count))
     if (folder / CHECKPOINT).exists():  # the last piece leaves none, but the restart file of the cycle
         os.replace(folder / CHECKPOINT, folder / _checkpoint(count))
-    part = folder / f"{PIECES}.part"
-    part.write_text(json.dumps({"origin": origin, "pieces": [asdict(piece) for piece in done]}) + "\n")
-    os.replace(part, folder / PIECES)
+    kept = folder / _checkpoint(count)
+    digest = {"checkpoint": file_digest(kept)} if kept.exists() else {}
+    write_record(folder / PIECES, {"origin": origin, "pieces": [asdict(piece) for piece in done], **digest})
     for earlier in folder.glob("checkpoint_*.restart"):
         if earlier.name != _checkpoint(count):
             earlier.unlink()
