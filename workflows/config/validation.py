@@ -9,11 +9,12 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterator, Sequence
-from functools import reduce
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial, reduce
 from pathlib import Path
 from typing import Any
 
+from bulkwear.workflows.config.bounded import LONGEST_NUMBER
 from bulkwear.workflows.config.layers import (
     INTEGER,
     NUMBER,
@@ -68,11 +69,11 @@ LONGEST_VALUE = 60  # characters of a value that a message shows
 
 def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
     """Raise ConfigError for the first fault of a layer against a schema by lines, missing keys last."""
-    faults = [(path, text, False) for path, text in _faults(layer.values, schema)]
-    faults += [(path, text, True) for path, text in _missing(layer.values, schema)]
+    faults = [(path, said, False) for path, said in _faults(layer.values, schema)]
+    faults += [(path, said, True) for path, said in _missing(layer.values, schema)]
     if faults:
-        path, text, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
-        raise ConfigError(f"{layer.where(path)}: {text}.")
+        path, said, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
+        raise ConfigError(f"{layer.where(path)}: {said()}.")
 
 
 def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required: bool) -> None:
@@ -86,25 +87,25 @@ def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required
         raise ConfigError(f"{where}: {names} {found}, allowed is one of them.")
 
 
-def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
-    """Yield (key path, sentence without its end) for every value that is wrong and every unknown key."""
+def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
+    """Yield (key path, what makes the sentence without its end) for every value that is wrong and every unknown key."""
     for error in Validator(schema).iter_errors(values):
         path = tuple(error.absolute_path)
         if error.validator == "additionalProperties":
             for key in [key for key in error.instance if key not in error.schema.get("properties", {})]:
-                yield (*path, key), unknown_key((*path, key), schema, found=show(error.instance[key]))
+                yield (*path, key), partial(unknown_key, (*path, key), schema, found=show(error.instance[key]))
         elif error.validator != "required":
-            yield path, wrong_value(path, error.instance, error.schema)
+            yield path, partial(wrong_value, path, error.instance, error.schema)
 
 
-def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
-    """Yield (path of the block, sentence without its end) for every block in which a key is missing."""
+def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
+    """Yield (path of the block, what makes the sentence) for every block in which a key is missing."""
     for error in Validator(schema).iter_errors(values):
         if error.validator == "required":
             path = tuple(error.absolute_path)
             key = next(key for key in error.validator_value if key not in error.instance)
             allowed = allowed_text(error.schema["properties"][key])
-            yield path, f"{dotted((*path, key))} is missing, allowed is {allowed}"
+            yield path, partial(str, f"{dotted((*path, key))} is missing, allowed is {allowed}")
 
 
 def check_given(
@@ -256,7 +257,7 @@ def _cell(text: str, schema: dict[str, Any]) -> Any:
     """Return the value of a cell: a number or a boolean where it spells one and the column is no text."""
     if schema.get("type") == "boolean":
         return {"true": True, "false": False}.get(text, text)
-    if schema.get("type") == "integer" and INTEGER.match(text):
+    if schema.get("type") == "integer" and INTEGER.match(text) and len(text) <= LONGEST_NUMBER:
         return int(text)
     return float(text) if schema.get("type") in NUMBERS and NUMBER.match(text) else text
 

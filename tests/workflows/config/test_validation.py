@@ -577,7 +577,7 @@ def test_broken_yaml_is_refused_with_its_line(config):
 def test_a_file_that_is_no_mapping_is_refused(config):
     """A list where keys are expected is refused."""
     config.write(STUDY, "- a\n")
-    assert message_of(config) == "config/studies/small.yaml: found ['a'], allowed is a mapping of keys to values."
+    assert message_of(config) == "config/studies/small.yaml: found a list, allowed is a mapping of keys to values."
 
 
 def test_a_missing_file_is_named(config):
