@@ -24,7 +24,14 @@ from bulkwear.workflows.config.layers import (
     display_name,
 )
 from bulkwear.workflows.config.packings import PACKINGS, Packings, with_packings, without_packings
-from bulkwear.workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
+from bulkwear.workflows.config.run_checks import (
+    COMMON_CHECKS,
+    LAST_CHECKS,
+    CheckedRun,
+    check_needed,
+    check_own_words,
+    check_run,
+)
 from bulkwear.workflows.config.schema import case_schema, load_schema
 from bulkwear.workflows.config.sources import (
     DESIGN,
@@ -351,6 +358,6 @@ def _checked_run(
     check_calibrated_for(stack, of_row, materials, named)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
-    check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks))
+    check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks, *LAST_CHECKS))
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)

@@ -7,6 +7,7 @@ run_checks.py. Nothing here needs the solver.
 from __future__ import annotations
 
 import difflib
+import itertools
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -64,6 +65,8 @@ MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 NEEDED = "x-needed"  # of the schema of a block: keys that a study gives, for which there are no defaults
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
+LONGEST_ROW = 60  # letters of a row's name
+MEDIAN_FACTOR = 2.0  # -, within which the classes of a size distribution have their median diameter
 LONGEST_VALUE = 60  # characters of a value that a message shows
 
 
@@ -240,6 +243,11 @@ def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
     checked = []
     for line, cells in rows:
         name = cells["row"]
+        if len(name) > LONGEST_ROW:
+            raise ConfigError(
+                f"{source}, line {line}: row is a name of {len(name)} letters, allowed are {LONGEST_ROW}, for it names"
+                " folders and files."
+            )
         if name in lines:
             raise ConfigError(
                 f"{source}, line {line}: row is '{name}', which stands in line {lines[name]} too,"
@@ -301,6 +309,25 @@ def _check_distributions(layer: Layer) -> None:
             raise ConfigError(
                 f"{layer.where(path)}: {dotted(path)} has the sum {math.fsum(fractions):.10g}, allowed is 1."
             )
+        if fault := _fault_of_diameters(distribution["relative_diameter"], fractions):
+            path = (*path[:-1], "relative_diameter")
+            raise ConfigError(f"{layer.where(path)}: {dotted(path)} {fault}.")
+
+
+def _fault_of_diameters(diameters: Sequence[float], fractions: Sequence[float]) -> str | None:
+    """Return what is wrong with relative diameters: they are over the median by mass, which they so have about 1."""
+    if any(later <= earlier for earlier, later in itertools.pairwise(diameters)):
+        return f"is {show(list(diameters))}, allowed are rising numbers"
+    below = list(itertools.accumulate(fractions))
+    half = 0.5 - MASS_FRACTION_TOLERANCE
+    least = next(d for d, share in zip(diameters, below, strict=True) if share >= half)
+    most = next(d for d, share in zip(diameters, below, strict=True) if share > 1.0 - half)
+    if least <= MEDIAN_FACTOR and most >= 1.0 / MEDIAN_FACTOR:
+        return None
+    return (
+        f"is {show(list(diameters))} with a median of {least:.4g} by mass, allowed are diameters over the median, whose"
+        f" own median is 1 within a factor of {MEDIAN_FACTOR:g}"
+    )
 
 
 def unknown_name(source: str, noun: str, name: str, known: list[str]) -> str:
