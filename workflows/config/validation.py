@@ -7,11 +7,9 @@ run_checks.py. Nothing here needs the solver.
 from __future__ import annotations
 
 import difflib
-import itertools
-import math
 import re
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial, reduce
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +24,7 @@ from bulkwear.workflows.config.layers import (
     dotted,
     read_csv_rows,
 )
-from bulkwear.workflows.config.schema import Validator, coerce_numbers, leaves, load_schema, subschema
-
-CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
+from bulkwear.workflows.config.schema import Validator, leaves, subschema
 
 # Suffix of a key -> unit as written in the schemas (x-unit); no suffix: "-".
 UNIT_OF_SUFFIX = {
@@ -60,13 +56,11 @@ FOREIGN_SUFFIXES = (
 )
 ALL_SUFFIXES = sorted([*UNIT_OF_SUFFIX, *FOREIGN_SUFFIXES], key=len, reverse=True)
 VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z")
-MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 
 NEEDED = "x-needed"  # of the schema of a block: keys that a study gives, for which there are no defaults
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
 LONGEST_ROW = 60  # letters of a row's name
-MEDIAN_FACTOR = 2.0  # -, within which the classes of a size distribution have their median diameter
 LONGEST_VALUE = 60  # characters of a value that a message shows
 
 
@@ -230,11 +224,15 @@ def _nearest(path: KeyPath, known: dict[str, Any], schema: dict[str, Any]) -> st
     return f"the nearest is {near[0]}" if near else f"allowed are {', '.join(known)}"
 
 
-def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
+def read_design(
+    path: Path, root: Path, schema: dict[str, Any], wanted: Callable[[str], bool] = lambda row: True
+) -> list[Layer]:
     """Return the rows of a design table as layers that know their lines, after all checks of single values.
 
-    An empty cell of a column that the schema does not require gives no value. Raises ConfigError naming file, line, row
-    and column.
+    An empty cell of a column that the schema does not require gives no value.
+    wanted: whether a row of that name is to be simulated; one that is not, and has a fault, is left out
+
+    Raises ConfigError naming file, line, row and column.
     """
     source = display_name(path, root)
     header, rows = read_csv_rows(path, root)
@@ -256,7 +254,12 @@ def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
         lines[name] = line
         values = {c: _cell(v, schema["properties"][c]) for c, v in cells.items() if v or c in schema["required"]}
         layer = Layer(source, values, {(): line}, f"row {name}" if name else "")
-        check_layer(layer, schema)
+        try:
+            check_layer(layer, schema)
+        except ConfigError:
+            if wanted(name):
+                raise
+            continue
         checked.append(layer)
     return checked
 
@@ -280,99 +283,11 @@ def _check_columns(header: list[str], schema: dict[str, Any], source: str) -> No
             raise ConfigError(f"{source}, header: column {column} is missing, allowed are {allowed}.")
 
 
-def check_materials(layers: Sequence[Layer]) -> dict[str, Any]:
-    """Return the materials of all files as floats after all checks; those of a later file stand for the earlier's of
-    their name. Raises ConfigError.
-    """
-    schema = load_schema("materials")
-    check_layer(layers[0], schema)
-    for layer in layers[1:]:
-        check_layer(layer, {**schema, "required": []})
-    for layer in layers:
-        _check_distributions(layer)
-    kinds = dict.fromkeys(kind for layer in layers for kind in layer.values)
-    together = {kind: {k: v for each in layers for k, v in each.values.get(kind, {}).items()} for kind in kinds}
-    return coerce_numbers(together, schema)
-
-
-def _check_distributions(layer: Layer) -> None:
-    for name, particle in layer.values.get("particles", {}).items():
-        distribution = particle["size_distribution"]
-        path = ("particles", name, "size_distribution", "mass_fraction")
-        fractions, count = distribution["mass_fraction"], len(distribution["relative_diameter"])
-        if len(fractions) != count:
-            raise ConfigError(
-                f"{layer.where(path)}: {dotted(path)} has {len(fractions)} values, allowed are {count},"
-                " one per relative_diameter."
-            )
-        if abs(math.fsum(fractions) - 1.0) > MASS_FRACTION_TOLERANCE:
-            raise ConfigError(
-                f"{layer.where(path)}: {dotted(path)} has the sum {math.fsum(fractions):.10g}, allowed is 1."
-            )
-        if fault := _fault_of_diameters(distribution["relative_diameter"], fractions):
-            path = (*path[:-1], "relative_diameter")
-            raise ConfigError(f"{layer.where(path)}: {dotted(path)} {fault}.")
-
-
-def _fault_of_diameters(diameters: Sequence[float], fractions: Sequence[float]) -> str | None:
-    """Return what is wrong with relative diameters: they are over the median by mass, which they so have about 1."""
-    if any(later <= earlier for earlier, later in itertools.pairwise(diameters)):
-        return f"is {show(list(diameters))}, allowed are rising numbers"
-    below = list(itertools.accumulate(fractions))
-    half = 0.5 - MASS_FRACTION_TOLERANCE
-    least = next(d for d, share in zip(diameters, below, strict=True) if share >= half)
-    most = next(d for d, share in zip(diameters, below, strict=True) if share > 1.0 - half)
-    if least <= MEDIAN_FACTOR and most >= 1.0 / MEDIAN_FACTOR:
-        return None
-    return (
-        f"is {show(list(diameters))} with a median of {least:.4g} by mass, allowed are diameters over the median, whose"
-        f" own median is 1 within a factor of {MEDIAN_FACTOR:g}"
-    )
-
-
 def unknown_name(source: str, noun: str, name: str, known: list[str]) -> str:
     """Return the sentence for a name that is not there."""
     near = difflib.get_close_matches(name, known, n=1)
     hint = f" (the nearest is {near[0]})" if near else ""
     return f"{source}: {noun} is {show(name)}, allowed is one of {', '.join(known) or 'none'}{hint}."
-
-
-def check_material_names(
-    layers: tuple[Layer, ...],
-    settings: dict[str, Any],
-    materials: dict[str, Any],
-    keys: tuple[tuple[str, ...], ...],
-) -> None:
-    """Raise ConfigError if a setting names a material that config/materials.yaml does not have.
-
-    keys: path of the settings that name one, and its kind of material
-    """
-    for *path, kind in keys:
-        value, known = reduce(dict.__getitem__, path, settings), materials.get(kind, {})
-        if value not in known:
-            raise ConfigError(unknown_name(locate(layers, tuple(path)), dotted(tuple(path)), value, sorted(known)))
-
-
-def check_calibrated_for(
-    layers: tuple[Layer, ...],
-    settings: dict[str, Any],
-    materials: dict[str, Any],
-    keys: tuple[tuple[str, ...], ...],
-) -> None:
-    """Raise ConfigError if a bulk material was calibrated in another rolling friction model or convention.
-
-    A rolling coefficient is a number of the model and of the radius that it was found with; keys as for
-    `check_material_names`.
-    """
-    for *path, kind in keys:
-        name = reduce(dict.__getitem__, path, settings)
-        found = materials.get(kind, {}).get(name, {}).get("calibrated")
-        for word in CALIBRATED_WITH if found and kind == "particles" else ():
-            if settings["solver"][word] != found[word]:
-                raise ConfigError(
-                    f"{locate(layers, ('solver', word))}: solver.{word} is '{settings['solver'][word]}', allowed is"
-                    f" {found[word]}, in which study {found['study']} calibrated {name}."
-                )
 
 
 def files_of(layers: tuple[Layer, ...]) -> tuple[Layer, ...]:
