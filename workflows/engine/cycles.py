@@ -18,7 +18,7 @@ from bulkwear.postproc.readers.dump_text import ContactDumpError
 from bulkwear.postproc.readers.load_ledger import LoadLedgerError, announcement
 from bulkwear.postproc.readers.mesh_loads import MeshLoadsError
 from bulkwear.postproc.readers.restart_file import RestartFileError, read_restart
-from bulkwear.postproc.readers.solver_log import SolverLogError, solver_version, thermo_table, warnings
+from bulkwear.postproc.readers.solver_log import SolverLogError, last_step, solver_version, thermo_table, warnings
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.accounting import HISTORY, LEDGER, account_and_wear
 from bulkwear.workflows.engine.beds import bed_fault, write_measures
@@ -298,6 +298,9 @@ def fill_bed(
             launcher=launcher,
             patience=replace(patience, say=progress.say),
         )
+        if not (folder / BED_RESTART).exists():  # asked to end, the solver ends without a fault
+            step = last_step(folder / SCREEN)
+            raise SolverError(f"{folder / SCREEN}: LIGGGHTS ended at step {step} without {BED_RESTART}; start again.")
         whole_restart(folder / BED_RESTART)
     measures = case.bed_measures(bed, folder / LOG)
     write_measures(measures, folder)

@@ -53,8 +53,8 @@ def working_folder(run_folder: Path, cycle: int, begun: Callable[[Path], bool] =
     part.mkdir(parents=True, exist_ok=True)
     yield part
     if final.exists():  # a damaged cycle, done again
-        later = [folder for folder in cycle_folders(run_folder) if folder.name > final.name]
-        for folder in [] if _same_files(part, final) else reversed(later):
+        every = cycle_folders(run_folder)
+        for folder in [] if _same_files(part, final) else reversed(every[every.index(final) + 1 :]):
             set_aside(folder)
         set_aside(final)
     os.replace(part, final)
@@ -177,19 +177,19 @@ def _link(source: Path, target: Path) -> None:
 def set_aside_others(run_folder: Path, inputs: str) -> str | None:
     """Move cycles of other inputs to superseded/<digest> and bring back those of these inputs, if there are any.
 
-    What was left unfinished of other inputs is removed.
+    What was left unfinished goes with them, for inputs may have changed by mistake.
     Returns a sentence about what was moved, or None.
     """
     said = []
     first = cycle_folder(run_folder, 0)
     if first.exists() and (other := _inputs_of(run_folder)) != inputs:
         target = run_folder / "superseded" / other[:DIGEST_LETTERS]
-        for part in run_folder.glob("cycle_*.part"):
-            shutil.rmtree(part)
+        _move(sorted(run_folder.glob("cycle_*.part")), target)
         _move(reversed(cycle_folders(run_folder)), target)
         said.append(f"its inputs changed, earlier cycles are kept in {target}")
     stored = run_folder / "superseded" / inputs[:DIGEST_LETTERS]
     if stored.exists() and not first.exists():
+        _move(sorted(stored.glob("cycle_*.part")), run_folder)
         _move(reversed(cycle_folders(stored)), run_folder)
         said.append(f"cycles of the same inputs were brought back from {stored}")
     return "; ".join(said) or None
