@@ -7,6 +7,8 @@ imported when they are first used, so that `import bulkwear` costs nothing.
 from importlib import import_module
 from pathlib import Path
 
+from bulkwear.compiled import choose_cache
+
 PUBLIC = {  # name: module that has it
     "SurfaceMesh": "bulkwear.postproc.mesh",  # points (m), triangles, labels and fields of a surface
     "read_surface": "bulkwear.postproc.mesh",  # from a .vtu of a run
@@ -25,6 +27,7 @@ __all__ = list(PUBLIC)
 _HERE = Path(__file__).resolve().parent
 if not (_HERE / "postproc").is_dir():  # a clone: the package's folders stand beside this one, installed they are in it
     __path__.append(str(_HERE.parent))
+choose_cache(next(Path(folder) / "postproc" for folder in __path__ if (Path(folder) / "postproc").is_dir()))
 
 
 def __getattr__(name: str):

@@ -35,6 +35,12 @@ def main(words: list[str] | None = None) -> int:
     except ValueError as fault:
         print(fault, file=sys.stderr)
         return 1
+    except MemoryError:
+        print("the memory is exhausted, allowed are surfaces of fewer triangles: a longer --edge", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("stopped by Ctrl-C, nothing was written; the same command begins again", file=sys.stderr)
+        return 130
     return 0
 
 

@@ -65,7 +65,10 @@ def checked_studies():
         return dict(filter(None, (sound_study(name, settings) for name in list_studies())))
     try:
         names = named or requested_studies(GIVEN.targets, GIVEN.target_jobs, names=NAMING)
-        return {name: load_study(name, overrides=settings) for name in names}
+        studies = {name: load_study(name, overrides=settings) for name in names}
+        for study in studies.values() if not GIVEN.target_jobs else ():
+            study.case.check_files(study.runs)
+        return studies
     except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None
 
@@ -101,7 +104,12 @@ onstart:
             case, parameters = study_of(job.wildcards).case, run_parameters(job.wildcards)
             if fault := cycle_fault(executable_of(parameters, wears=True), case, parameters):
                 raise WorkflowError(fault)
-    for study, jobs in jobs_by_study(workflow.dag.needrun_jobs()).items():
+    needed = jobs_by_study(workflow.dag.needrun_jobs())
+    if workflow.local_exec:  # a cluster's nodes are others
+        for study in STUDIES:
+            if fault := beyond_machine(study, needed.get(study, ()), workflow.dag.needrun_jobs()):
+                raise WorkflowError(fault)
+    for study, jobs in needed.items():
         announce_cost(study, jobs)
         if STUDIES[study].until:
             logger.info(STUDIES[study].until.said(study))
@@ -130,6 +138,20 @@ def jobs_by_study(jobs):
             words = dict(job.wildcards.items())
             found.setdefault(words.pop("study"), set()).add("_".join([kind, *words.values()]))
     return found
+
+
+def beyond_machine(study, jobs, all_jobs):
+    """Why this machine cannot do those jobs of a study, and make the meshes among all jobs; None where it can."""
+    meshed = [
+        job.wildcards.run
+        for job in all_jobs
+        if NAMING.ours(job.rule.name) == "surface_mesh" and job.wildcards.study == study
+    ]
+    if not (jobs or meshed):
+        return None
+    from bulkwear.workflows.forecast.limits import fault_here  # slow to import, and jobs need none
+
+    return fault_here(STUDIES[study], jobs, meshed)
 
 
 def announce_cost(study, jobs):

@@ -17,6 +17,7 @@ TYPES = {
     **{"float": "f4", "double": "f8", "float32": "f4", "float64": "f8"},
 }
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+LARGEST_COORDINATE = 1e9  # of a vertex, in any unit of length
 INDICES = ("vertex_indices", "vertex_index")
 
 
@@ -92,6 +93,8 @@ def _binary_rows(body: bytes, elements: list[Element], order: str) -> Iterator[t
         else:
             rows, start = _uneven_rows(element, body, start, order)
         yield element.name, rows
+    if left := body[start:].strip():
+        raise ValueError(f"{len(left)} bytes are left behind its last face; a binary file may have been copied as text")
 
 
 def _row_type(element: Element, body: bytes, start: int, order: str) -> np.dtype:
@@ -126,6 +129,11 @@ def _solids(rows: dict, stem: str) -> Solids:
     indices = next((name for name in INDICES if name in names), INDICES[0])
     label = next((name for name in PART_DATA if name in names), None)
     column = [np.array([row[axis] for row in vertices], dtype=np.float64) for axis in "xyz"]
+    if not all((np.abs(values) <= LARGEST_COORDINATE).all() for values in column):
+        raise ValueError(
+            f"coordinates beyond {LARGEST_COORDINATE:g}: the numbers are not those of the header, as in a binary file"
+            " that was copied as text, which changes its line ends"
+        )
     if even:
         polygons = faces[indices].astype(np.int64)
         triangles = np.stack([polygons[:, [0, a, b]] for a, b in pairwise(range(1, polygons.shape[1]))], axis=1)

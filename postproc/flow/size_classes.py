@@ -96,6 +96,7 @@ def _checked(sieves: Sequence[float] | np.ndarray, passing: Sequence[float] | np
         )
     first = int(np.searchsorted(shares, shares[0], side="right")) - 1  # the coarsest sieve that still stops as much
     last = int(np.searchsorted(shares, 1.0 - ROUNDING))
+    first = min(first, last)  # where all passes them all
     return sizes[first : last + 1], shares[first : last + 1]
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+LONGEST_COUNT = 12  # digits
 _IDENTITY = "meshid"
 _NAMES = {
     "normal_stress_average": "normal_stress_Pa",
@@ -32,11 +33,11 @@ def _cell_fields(text: str, path: Path) -> dict[str, np.ndarray]:
     words = text.partition("CELL_DATA")[2].split()
     if len(words) < 4 or words[1] != "FIELD":
         raise MeshLoadsError(f"{path}: no cell data, allowed is a text file of `dump mesh/vtk ... id`.")
-    fields, place, cells = {}, 4, int(words[0])
-    for _ in range(int(words[3])):
+    fields, place, cells = {}, 4, _count(words[0], path)
+    for _ in range(_count(words[3], path)):
         if len(words) < place + 4:
             raise MeshLoadsError(f"{path}: the cell data ends early, allowed are {words[3]} whole fields.")
-        name, components, tuples = words[place], int(words[place + 1]), int(words[place + 2])
+        name, components, tuples = words[place], *(_count(words[place + k], path) for k in (1, 2))
         values = words[place + 4 : place + 4 + components * tuples]
         if tuples != cells or len(values) != components * tuples:
             found = f"{len(values)} values of field '{name}'"
@@ -45,6 +46,12 @@ def _cell_fields(text: str, path: Path) -> dict[str, np.ndarray]:
         if components == 1:
             fields[name] = _finite(values, name, path)
     return fields
+
+
+def _count(word: str, path: Path) -> int:
+    if not (word.isascii() and word.isdigit() and len(word) <= LONGEST_COUNT):
+        raise MeshLoadsError(f"{path}: found '{word[:LONGEST_COUNT]}' as a count, allowed is a whole number.")
+    return int(word)
 
 
 def _finite(words: list[str], name: str, path: Path) -> np.ndarray:
@@ -67,9 +74,14 @@ def read_mesh_loads(path: Path | str, n_triangles: int | None = None) -> dict[st
     Raises MeshLoadsError when the file is cut off, lacks the ids, or does not hold each triangle once.
     """
     path = Path(path)
-    fields = _cell_fields(path.read_text("ascii", "replace"), path)
+    try:
+        fields = _cell_fields(path.read_text("ascii", "replace"), path)
+    except OSError as fault:
+        raise MeshLoadsError(f"{path}: the dump cannot be read ({fault.strerror}).") from fault
     if _IDENTITY not in fields:
         raise MeshLoadsError(f"{path}: no field '{_IDENTITY}', allowed is a dump with the keyword `id`.")
+    if np.abs(fields[_IDENTITY]).max(initial=0.0) > fields[_IDENTITY].size:
+        raise MeshLoadsError(f"{path}: found ids beyond its {fields[_IDENTITY].size} triangles, allowed is each once.")
     triangle = fields[_IDENTITY].astype(np.int64)
     order = np.argsort(triangle)
     expected = np.arange(triangle.size if n_triangles is None else n_triangles)

@@ -89,6 +89,10 @@ def random_points(blocks: Iterable[np.ndarray], count: int, seed: int = 0) -> tu
     return points, total
 
 
+LOOSE_BYTES = 2  # that may follow the last point: a line end
+LARGEST_COORDINATE = 1e9  # of a point, in any unit of length: no scan reaches so far
+
+
 def _ply_header(path: Path) -> tuple[str, list[tuple[str, int, list[list[str]]]], int]:
     """Return format, elements (name, count, properties as words) and the byte where the data begin."""
     with open(path, "rb") as file:
@@ -142,9 +146,22 @@ def _ply_blocks(path: Path) -> Iterator[np.ndarray]:
             lines = (line.decode("latin-1") for line in islice(file, count))
             yield from _counted(path, _rows(path, lines, 0, len(layout.names), columns), count)
             return
+        _check_ply_size(path, start, elements)
         sizes = [number * _ply_type(path, name, each, "<").itemsize for name, number, each in before]
         file.seek(start + sum(sizes))
         yield from _counted(path, _records(file, layout, count), count)
+
+
+def _check_ply_size(path: Path, start: int, elements: list[tuple[str, int, list[list[str]]]]) -> None:
+    """Raise ValueError for a binary file that is longer than its header says, where that tells its length."""
+    if any(words[0] not in PLY_TYPES for _, _, properties in elements for words in properties):  # lists tell none
+        return
+    expected = start + sum(number * _ply_type(path, name, each, "<").itemsize for name, number, each in elements)
+    if (size := path.stat().st_size) > expected + LOOSE_BYTES:
+        raise ValueError(
+            f"{path}: the header tells of {expected} bytes, found {size}: a binary file that was copied as text, which"
+            " changes its line ends, cannot be read"
+        )
 
 
 def _records(file, layout: np.dtype, count: int) -> Iterator[np.ndarray]:
@@ -153,7 +170,13 @@ def _records(file, layout: np.dtype, count: int) -> Iterator[np.ndarray]:
         if not len(data):
             return
         count -= len(data)
-        yield np.column_stack([data[axis].astype(float) for axis in "xyz"])
+        points = np.column_stack([data[axis].astype(float) for axis in "xyz"])
+        if not (np.abs(points) <= LARGEST_COORDINATE).all():
+            raise ValueError(
+                f"{file.name}: found coordinates beyond {LARGEST_COORDINATE:g}: the numbers are not as the header says,"
+                " as in a binary file that was copied as text, which changes its line ends"
+            )
+        yield points
 
 
 def _counted(path: Path, blocks: Iterator[np.ndarray], count: int) -> Iterator[np.ndarray]:

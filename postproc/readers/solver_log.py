@@ -26,6 +26,7 @@ _BUILDS = re.compile(r"^Neighbor list builds = (\d+)", re.MULTILINE)
 
 
 KNOWN_CAUSES = (
+    (r"[Ff]ailed to (?:re)?allocate", "the memory is exhausted: run fewer simulations side by side"),
     (
         r"Lost atoms",
         "particles left the domain: too large a time step, overlapping insertion or a leaking wall",

@@ -189,6 +189,7 @@ def bump_sections(
             section = _section(scan, middle, axis, half, pristine, worn, accuracy)
             parts.append(section.assign(bump=bump.bump, view=view)[["bump", "view", *section.columns]])
     columns = ["bump", "view", "along_mm", "pristine_height_mm", "measured_height_mm", "points", "band_mm"]
+    columns += [f"{name}_height_mm" for name in worn]
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
 
 

@@ -53,6 +53,12 @@ def missing_programs() -> list[str]:
     return [name for name in PROGRAMS if shutil.which(name, path=SEARCHED) is None]
 
 
+def missing_cgroups() -> bool:
+    """Return whether this machine has no cgroup file system, as a bare chroot: slurmd does not start without one."""
+    kinds = (line.split()[2] for line in Path("/proc/mounts").read_text().splitlines() if len(line.split()) > 2)
+    return not any(kind in ("cgroup", "cgroup2") for kind in kinds)
+
+
 def free_ports(count: int) -> list[int]:
     """Return ports that nothing listens on."""
     sockets = [socket.socket() for _ in range(count)]

@@ -16,7 +16,7 @@ from bulkwear.workflows.engine.pieces import PIECES
 from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.solver import DECK
 from bulkwear.workflows.environment.doctor import MPI_PROBE_DECK
-from tests.support.slurm import Slurm, missing_programs
+from tests.support.slurm import Slurm, missing_cgroups, missing_programs
 from tests.support.tiny import tiny_chain
 from tests.workflows.engine.test_cycles import solver_processes
 from tests.workflows.test_snakemake import REPOSITORY, TINY, workspace
@@ -25,6 +25,7 @@ ABSENT = missing_programs()
 pytestmark = [
     pytest.mark.solver,
     pytest.mark.skipif(bool(ABSENT), reason=f"no Slurm on this machine: {', '.join(ABSENT)} (apt-packages.txt)"),
+    pytest.mark.skipif(missing_cgroups(), reason="no cgroup file system is mounted here, without which slurmd ends"),
 ]
 
 TIMEOUT = 1200.0  # s, for a study that takes about a minute on an idle machine
@@ -193,7 +194,9 @@ def test_a_time_limit_within_a_cycle_changes_nothing(cluster, tmp_path):
     finally:
         finish(process, folder)
     runs = [job for job in cluster.jobs()[before:] if job["comment"].startswith("rule_worn_run")]
-    assert [(job["state"], job["limit"]) for job in runs] == [("TIMEOUT", "1:00"), ("COMPLETED", "2:00")]
+    *first, last = [job["state"] for job in runs]  # how many attempts it takes depends on the machine
+    assert first and set(first) == {"TIMEOUT"} and last == "COMPLETED"
+    assert [job["limit"] for job in runs] == [f"{attempt}:00" for attempt in range(1, len(runs) + 1)]
     assert "cycle 2 of 2 goes on after step" in (folder / f"results/tiny/logs/worn_run_{RUN}.log").read_text()
     assert (folder / target).read_bytes() == wear_without_slurm(folder, tmp_path / "elsewhere")
 

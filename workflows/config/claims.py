@@ -7,10 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from bulkwear.postproc.statistics.verdicts import Claim
-from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.layers import ConfigError, read_yaml
 from bulkwear.workflows.engine.project import current_project
 
 CLAIMS_FILE = "config/published/verdicts.yaml"
@@ -49,7 +47,7 @@ def date_of_rules(path: str | Path | None = None) -> str:
 
 @cache
 def _read(path: Path) -> dict[str, Any]:
-    return yaml.safe_load(path.read_text(encoding="utf-8"))
+    return read_yaml(path, current_project().folder).values
 
 
 def _claim(key: str, told: dict[str, Any], where: str) -> Claim:

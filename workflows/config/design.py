@@ -16,6 +16,7 @@ from functools import cached_property, partial, reduce
 from pathlib import Path
 from typing import Any
 
+from bulkwear.workflows.config.chosen import ROWS, chosen_rows, is_wanted, runs_of_rows
 from bulkwear.workflows.config.columns import as_settings, opened, row_overrides, setting_columns, with_row
 from bulkwear.workflows.config.law_settings import check_law, check_volume
 from bulkwear.workflows.config.layers import (
@@ -23,8 +24,16 @@ from bulkwear.workflows.config.layers import (
     Layer,
     display_name,
 )
+from bulkwear.workflows.config.materials import check_calibrated_for, check_material_names, check_materials
 from bulkwear.workflows.config.packings import PACKINGS, Packings, with_packings, without_packings
-from bulkwear.workflows.config.run_checks import COMMON_CHECKS, CheckedRun, check_needed, check_own_words, check_run
+from bulkwear.workflows.config.run_checks import (
+    COMMON_CHECKS,
+    LAST_CHECKS,
+    CheckedRun,
+    check_needed,
+    check_own_words,
+    check_run,
+)
 from bulkwear.workflows.config.schema import case_schema, load_schema
 from bulkwear.workflows.config.sources import (
     DESIGN,
@@ -38,10 +47,7 @@ from bulkwear.workflows.config.sources import (
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.until import GOALS, UNTIL, Until, until_of
 from bulkwear.workflows.config.validation import (
-    check_calibrated_for,
     check_given,
-    check_material_names,
-    check_materials,
     locate,
     read_design,
     unknown_name,
@@ -55,7 +61,6 @@ __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies",
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
 FACTORS = "factors"  # key of a study
 FEWEST_SETTINGS = 5  # for which a regression is made: AICc needs four more than a model has terms
-ROWS = "rows"  # key of the settings
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
 RULE_NAMES = frozenset(
@@ -193,16 +198,14 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     settings = sources.merged(layers)
     materials = check_materials(read_materials(settings, project))
     head = sources.head
-    written = _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project)
+    wanted = [] if confirms else settings.get(ROWS, [])
+    written = (
+        _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project, wanted)
+    )
     designed = _packings(sources, layers, settings, written)
-    rows = list(designed.rows) if confirms else _chosen_rows(layers, settings, designed)
-    runs_of = {
-        row.values["row"]: [
-            _checked_run(sources, layers, settings, materials, row, surface) for surface in sources.case.surfaces(head)
-        ]
-        for row in designed.added_last()
-    }
-    factors = {} if confirms else _factors(sources, designed)
+    rows = list(designed.rows) if confirms else chosen_rows(layers, settings, designed)
+    runs_of = runs_of_rows(designed.added_last(), rows, partial(_checked_runs, sources, layers, settings, materials))
+    factors = {} if confirms else _factors(sources, designed, wanted)
     study = Study(
         name=name,
         case=sources.case,
@@ -255,31 +258,22 @@ def _rows_to_confirm(sources: Sources, study: str, project: Project) -> list[Lay
     return read_design(path, project.folder, sources.design_schema)
 
 
-def _design_rows(sources: Sources, fidelity: str, project: Project) -> list[Layer]:
-    """Return the checked rows of the study's design table, or of the fidelity's own. Raises ConfigError."""
+def _design_rows(sources: Sources, fidelity: str, project: Project, chosen: list[str]) -> list[Layer]:
+    """Return the checked rows of the study's design table, or of the fidelity's own. Raises ConfigError.
+
+    chosen: names of the rows that are simulated, none where all are
+    """
     block = sources.block(fidelity)
     source = block if DESIGN in block.values else sources.study
     name, there = source.values[DESIGN], project.names(DESIGNS, ".csv")
     if name not in there:
         raise ConfigError(unknown_name(source.where((DESIGN,)), DESIGN, name, there))
     path = project.file(f"{DESIGNS}/{name}")
-    rows = read_design(path, project.folder, opened(sources.design_schema, path, project, sources.case.name))
-    if fault := sources.case.design_fault([row.values for row in rows]):
+    schema = opened(sources.design_schema, path, project, sources.case.name)
+    rows = read_design(path, project.folder, schema, partial(is_wanted, chosen=chosen))
+    if not chosen and (fault := sources.case.design_fault([row.values for row in rows])):
         raise ConfigError(f"{display_name(path, project.folder)}: {fault}.")
     return rows
-
-
-def _chosen_rows(layers: tuple[Layer, ...], settings: dict[str, Any], designed: Packings) -> list[Layer]:
-    """Return the rows that the settings choose by their names or by their setting's, all where they choose none.
-
-    Raises ConfigError.
-    """
-    known = list(dict.fromkeys(name for pair in designed.setting_of.items() for name in reversed(pair)))
-    chosen = settings.get(ROWS, known)
-    for name in chosen:
-        if name not in known:
-            raise ConfigError(unknown_name(locate(layers, (ROWS,)), "row", name, known))
-    return [row for row in designed.rows if not {designed.setting_of[n := row.values["row"]], n}.isdisjoint(chosen)]
 
 
 def _packings(sources: Sources, layers: tuple[Layer, ...], settings: dict[str, Any], rows: list[Layer]) -> Packings:
@@ -307,9 +301,15 @@ def _can_tell(factors: dict[str, str], designed: Packings, rows: list[Layer]) ->
     return len(settings) >= FEWEST_SETTINGS and told
 
 
-def _factors(sources: Sources, designed: Packings) -> dict[str, str]:
-    """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError."""
+def _factors(sources: Sources, designed: Packings, chosen: list[str]) -> dict[str, str]:
+    """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError.
+
+    Where rows are chosen, those that have a fault are left out, and nothing is asked of the others together.
+    """
     factors, rows = sources.study.values.get(FACTORS, {}), designed.rows
+    if chosen:
+        told = all(column in row.values for column in factors.values() for row in rows)
+        return dict(factors) if told else {}
     settings = set(designed.setting_of.values())
     for name, column in factors.items():
         if any(column not in row.values for row in rows):
@@ -329,6 +329,20 @@ def _factors(sources: Sources, designed: Packings) -> dict[str, str]:
             f" settings, allowed are {FEWEST_SETTINGS} or more."
         )
     return dict(factors)
+
+
+def _checked_runs(
+    sources: Sources,
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    materials: dict[str, Any],
+    row: Layer,
+) -> list[Run]:
+    """Return the runs of a row, one per surface, after all checks that need no solver. Raises ConfigError."""
+    return [
+        _checked_run(sources, layers, settings, materials, row, surface)
+        for surface in sources.case.surfaces(sources.head)
+    ]
 
 
 def _checked_run(
@@ -351,6 +365,6 @@ def _checked_run(
     check_calibrated_for(stack, of_row, materials, named)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
-    check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks))
+    check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks, *LAST_CHECKS))
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)

@@ -7,19 +7,33 @@ not what YAML 1.1 makes of them. Every key keeps its line, so that a message can
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from bulkwear.workflows.config.bounded import (
+    LARGEST_TABLE,
+    LARGEST_YAML,
+    LONGEST_KEY,
+    LONGEST_NUMBER,
+    BoundsError,
+    bounded_text,
+    check_yaml,
+)
+
 KeyPath = tuple[Hashable, ...]
 
 INTEGER = re.compile(r"[-+]?[0-9]+\Z")
 NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z")
+
+
+LONGEST_CELL, SHOWN_LETTERS = 1000, 40  # letters of a table's cell, and of one in a message
 
 
 class ConfigError(ValueError):
@@ -83,8 +97,21 @@ for _tag, _pattern, _first in (
     ("tag:yaml.org,2002:null", re.compile(r"(~|null|Null|NULL|)\Z"), ["~", "n", "N", ""]),
 ):
     _Loader.add_implicit_resolver(_tag, _pattern, list(_first))
-_Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(loader.construct_scalar(node)))
-_Loader.add_constructor("tag:yaml.org,2002:float", lambda loader, node: float(loader.construct_scalar(node)))
+
+
+def _number(make: Callable[[str], float]) -> Callable[[yaml.Loader, yaml.ScalarNode], float]:
+    def construct(loader: yaml.Loader, node: yaml.ScalarNode) -> float:
+        text = loader.construct_scalar(node)
+        if len(text) > LONGEST_NUMBER:
+            line = node.start_mark.line + 1
+            raise BoundsError(f"found a number of {len(text)} letters, allowed are at most {LONGEST_NUMBER}", line)
+        return make(text)
+
+    return construct
+
+
+_Loader.add_constructor("tag:yaml.org,2002:int", _number(int))
+_Loader.add_constructor("tag:yaml.org,2002:float", _number(float))
 
 
 def display_name(path: Path, root: Path) -> str:
@@ -92,41 +119,51 @@ def display_name(path: Path, root: Path) -> str:
     return path.relative_to(root).as_posix() if path.is_relative_to(root) else path.as_posix()
 
 
-def read_text(path: Path, source: str) -> str:
-    """Return a UTF-8 text file, with or without byte order mark. Raises ConfigError if there is none."""
+def read_text(path: Path, source: str, largest: int) -> str:
+    """Return a UTF-8 text file, with or without byte order mark. Raises ConfigError where it cannot be read within the
+    bounds.
+    """
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return bounded_text(path, largest)
     except FileNotFoundError:
         folder = path.parent
         names = sorted(p.name for p in folder.glob(f"*{path.suffix}")) if folder.is_dir() else []
         raise ConfigError(
             f"{source}: there is no such file, found in its folder: {', '.join(names) or 'nothing'}."
         ) from None
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"{source}: byte {error.start} is not UTF-8, allowed is UTF-8 text.") from None
+    except BoundsError as fault:
+        raise ConfigError(f"{_place(source, fault.line)}: {fault}.") from None
+
+
+def _place(source: str, line: int | None) -> str:
+    return f"{source}, line {line}" if line else source
 
 
 def read_yaml(path: Path, root: Path) -> Layer:
     """Return a YAML file as a layer.
 
-    Raises ConfigError if the file is missing, is no YAML, is no mapping, or names a key twice.
+    Raises ConfigError if the file is missing, is no YAML, is no mapping, names a key twice, or exceeds the bounds.
     """
     source = display_name(path, root)
-    loader = _Loader(read_text(path, source))
+    text = read_text(path, source, LARGEST_YAML)
+    loader = _Loader(text)
     try:
+        check_yaml(yaml.parse(text, _Loader))
         node = loader.get_single_node()
         lines: dict[KeyPath, int] = {}
         _collect_lines(node, (), lines, source)
         values = loader.construct_document(node) if node is not None else {}
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        line = f", line {mark.line + 1}" if mark else ""
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-        raise ConfigError(f"{source}{line}: {problem}, allowed is valid YAML.") from None
+        raise ConfigError(f"{_place(source, mark and mark.line + 1)}: {problem}, allowed is valid YAML.") from None
+    except BoundsError as fault:
+        raise ConfigError(f"{_place(source, fault.line)}: {fault}.") from None
     finally:
         loader.dispose()
     if not isinstance(values, dict):
-        raise ConfigError(f"{source}: found {values!r}, allowed is a mapping of keys to values.")
+        found = "a list" if isinstance(values, list) else "one value"
+        raise ConfigError(f"{source}: found {found}, allowed is a mapping of keys to values.")
     return Layer(source, values, lines)
 
 
@@ -142,7 +179,11 @@ def _collect_lines(node: yaml.Node | None, path: KeyPath, lines: dict[KeyPath, i
     for key, value in node.value:
         name, line = key.value, key.start_mark.line + 1
         if not isinstance(key, yaml.ScalarNode) or key.tag != "tag:yaml.org,2002:str":
-            raise ConfigError(f"{source}, line {line}: found the key {name!r}, allowed are words as keys.")
+            raise ConfigError(f"{source}, line {line}: found {_key_words(key)}, allowed are words as keys.")
+        if len(name) > LONGEST_KEY or not name.isprintable():
+            raise ConfigError(
+                f"{source}, line {line}: found a key of {len(name)} letters, allowed are words of {LONGEST_KEY}."
+            )
         if name in seen:
             full = dotted((*path, name))
             raise ConfigError(
@@ -150,6 +191,12 @@ def _collect_lines(node: yaml.Node | None, path: KeyPath, lines: dict[KeyPath, i
             )
         seen[name] = lines[(*path, name)] = line
         _collect_lines(value, (*path, name), lines, source)
+
+
+def _key_words(key: yaml.Node) -> str:
+    if not isinstance(key, yaml.ScalarNode):
+        return "a block as a key"
+    return f"the key {key.value!r}" if len(key.value) <= LONGEST_KEY else "a long key"
 
 
 def command_line_layer(overrides: dict[str, Any] | None) -> Layer:
@@ -160,6 +207,8 @@ def command_line_layer(overrides: dict[str, Any] | None) -> Layer:
 def _reread(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(key): _reread(inner) for key, inner in value.items()}
+    if isinstance(value, str) and len(value) > LONGEST_NUMBER:
+        return value
     if isinstance(value, str) and INTEGER.match(value):
         return int(value)
     if isinstance(value, str) and NUMBER.match(value):
@@ -189,17 +238,27 @@ def dotted(path: KeyPath) -> str:
 def read_csv_rows(path: Path, root: Path) -> tuple[list[str], list[tuple[int, dict[str, str]]]]:
     """Return the header and, for every row that is not blank, (line in the file, {column: text}).
 
-    Raises ConfigError for an empty file, no rows, an unnamed or repeated column, or a row of another length.
+    Raises ConfigError for an empty file, no rows, an unnamed or repeated column, a row of another length, and a cell
+    with a line break or other letters that do not print.
     """
     source = display_name(path, root)
-    reader = csv.reader(read_text(path, source).splitlines())
-    lines = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
+    reader = csv.reader(io.StringIO(read_text(path, source, LARGEST_TABLE), newline=""))
+    try:
+        lines = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
+    except csv.Error as error:
+        raise ConfigError(f"{source}, line {reader.line_num}: {error}, allowed is a table of short cells.") from None
     filled = [(line, cells) for line, cells in lines if any(cells)]
     if not filled:
         raise ConfigError(f"{source}: the file is empty, allowed is a header and one row per run.")
     (header_line, header), rows = filled[0], filled[1:]
     if len(header) == 1 and re.search(r"[;\t]", header[0]):
         raise ConfigError(f"{source}, line {header_line}: found {header[0]!r}, allowed is the comma between columns.")
+    for line, cells in filled:
+        if wrong := next((cell for cell in cells if not cell.isprintable() or len(cell) > LONGEST_CELL), None):
+            raise ConfigError(
+                f"{source}, line {line}: found {wrong[:SHOWN_LETTERS]!r}, a cell of {len(wrong)} letters, allowed is"
+                f" one line of at most {LONGEST_CELL} letters that print."
+            )
     repeated = [name for index, name in enumerate(header) if name in header[:index]]
     if repeated:
         raise ConfigError(

@@ -143,7 +143,7 @@ def _check_seeds(group: Sequence[Layer], seed_column: str) -> None:
         first_prime = primes(row.values[seed_column], 1)[0]
         if first_prime in seen:
             raise ConfigError(
-                f"{row.where()}: {seed_column} is {row.values[seed_column]}, which packs the bed of row"
+                f"{row.where()}: {seed_column} is {row.values[seed_column]}, which makes row"
                 f" {seen[first_prime]} again, allowed are seeds that are {SEED_SPACING} apart, or one row."
             )
         seen[first_prime] = _name(row)

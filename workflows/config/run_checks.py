@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
 CONTACT_MODEL = "_shared/contact_model"  # template
+MOST_STEPS = 2**31 - 1  # of a run of LIGGGHTS, a small integer of its
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
 
@@ -200,4 +201,13 @@ def thickness_known(run: CheckedRun) -> Fault | None:
     return "wear.worn_through", "a study that gives wear.local_thickness_mm as well, or neither"
 
 
+def steps_countable(run: CheckedRun) -> Fault | None:
+    """The time steps of a run are no more than the solver can be told to make."""
+    steps = run.parameters.get("derived", {}).get("travel_steps", 0)
+    if steps <= MOST_STEPS:
+        return None
+    return "", f"{steps:.4g} time steps, allowed are at most {MOST_STEPS}, which the solver counts"
+
+
 COMMON_CHECKS: tuple[Check, ...] = (model_properties_given, thickness_known)
+LAST_CHECKS: tuple[Check, ...] = (steps_countable,)  # after those of the case, which say more of what they know

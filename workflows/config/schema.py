@@ -18,6 +18,18 @@ from bulkwear.workflows.engine.project import current_project
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
 LAW = "law"  # key of settings whose allowed words are the registered wear laws
+# unit -> the least that a quantity above 0 can sensibly be, in every schema that says "above 0" and no more
+LEAST = {
+    "mm": 1e-3,  # a micrometre: finer than surfaces are drawn and particles are
+    "1/Pa": 1e-20,  # wear coefficient k of 1e-9, the mildest known, over the hardness of diamond, 1e11 Pa
+    "s": 1e-6,  # a few time steps of a stiff small particle
+    "h": 1e-9,  # as seconds
+    "t/h": 1e-3,
+    "Mt": 1e-9,
+    "kg/m": 1e-3,
+    "deg/s": 1e-3,
+    "-": 1e-9,  # fractions below drown in the rounding of the lengths and sums that they are of
+}
 OF_CASES = "cases/"  # names of schemas that are a case's: cases/<case>/<kind>
 
 
@@ -60,7 +72,7 @@ def load_schema(name: str) -> dict[str, Any]:
 
 def _read_schema(path: Path) -> dict[str, Any]:
     """Return one file of a schema. Raises ConfigError for one that is none: a project may bring it."""
-    schema = with_patterns(read_yaml(path, current_project().folder).values)
+    schema = _with_least(with_patterns(read_yaml(path, current_project().folder).values))
     shown = display_name(path, current_project().folder)
     if not isinstance(schema.get("properties"), dict):
         raise ConfigError(
@@ -72,6 +84,20 @@ def _read_schema(path: Path) -> dict[str, Any]:
         place = ".".join(map(str, fault.absolute_path)) or "the schema"
         raise ConfigError(f"{shown}: {place} is {fault.instance!r}, allowed is a JSON schema.") from None
     return schema
+
+
+def _with_least(schema: Any, unit: str = "") -> Any:
+    """Return a schema in which quantities that are only said to be above 0 have the least that is sensible."""
+    if isinstance(schema, list):
+        return [_with_least(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    unit = schema.get("x-unit", unit)
+    inner = {key: _with_least(value, unit if key == "items" else "") for key, value in schema.items()}
+    above_zero = inner.get("type") == "number" and inner.get("exclusiveMinimum") == 0 and "minimum" not in inner
+    if not above_zero or unit not in LEAST:
+        return inner
+    return {key: value for key, value in inner.items() if key != "exclusiveMinimum"} | {"minimum": LEAST[unit]}
 
 
 def joined(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:

@@ -7,13 +7,13 @@ run_checks.py. Nothing here needs the solver.
 from __future__ import annotations
 
 import difflib
-import math
 import re
-from collections.abc import Iterator, Sequence
-from functools import reduce
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from bulkwear.workflows.config.bounded import LONGEST_NUMBER
 from bulkwear.workflows.config.layers import (
     INTEGER,
     NUMBER,
@@ -24,9 +24,7 @@ from bulkwear.workflows.config.layers import (
     dotted,
     read_csv_rows,
 )
-from bulkwear.workflows.config.schema import Validator, coerce_numbers, leaves, load_schema, subschema
-
-CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
+from bulkwear.workflows.config.schema import Validator, leaves, subschema
 
 # Suffix of a key -> unit as written in the schemas (x-unit); no suffix: "-".
 UNIT_OF_SUFFIX = {
@@ -58,21 +56,21 @@ FOREIGN_SUFFIXES = (
 )
 ALL_SUFFIXES = sorted([*UNIT_OF_SUFFIX, *FOREIGN_SUFFIXES], key=len, reverse=True)
 VALUE_WITH_UNIT = re.compile(r"(?P<number>[-+]?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)\s*(?P<unit>[A-Za-z°%/][\w/%^°]*)\Z")
-MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 
 
 NEEDED = "x-needed"  # of the schema of a block: keys that a study gives, for which there are no defaults
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
+LONGEST_ROW = 60  # letters of a row's name
 LONGEST_VALUE = 60  # characters of a value that a message shows
 
 
 def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
     """Raise ConfigError for the first fault of a layer against a schema by lines, missing keys last."""
-    faults = [(path, text, False) for path, text in _faults(layer.values, schema)]
-    faults += [(path, text, True) for path, text in _missing(layer.values, schema)]
+    faults = [(path, said, False) for path, said in _faults(layer.values, schema)]
+    faults += [(path, said, True) for path, said in _missing(layer.values, schema)]
     if faults:
-        path, text, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
-        raise ConfigError(f"{layer.where(path)}: {text}.")
+        path, said, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
+        raise ConfigError(f"{layer.where(path)}: {said()}.")
 
 
 def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required: bool) -> None:
@@ -86,25 +84,25 @@ def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required
         raise ConfigError(f"{where}: {names} {found}, allowed is one of them.")
 
 
-def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
-    """Yield (key path, sentence without its end) for every value that is wrong and every unknown key."""
+def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
+    """Yield (key path, what makes the sentence without its end) for every value that is wrong and every unknown key."""
     for error in Validator(schema).iter_errors(values):
         path = tuple(error.absolute_path)
         if error.validator == "additionalProperties":
             for key in [key for key in error.instance if key not in error.schema.get("properties", {})]:
-                yield (*path, key), unknown_key((*path, key), schema, found=show(error.instance[key]))
+                yield (*path, key), partial(unknown_key, (*path, key), schema, found=show(error.instance[key]))
         elif error.validator != "required":
-            yield path, wrong_value(path, error.instance, error.schema)
+            yield path, partial(wrong_value, path, error.instance, error.schema)
 
 
-def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, str]]:
-    """Yield (path of the block, sentence without its end) for every block in which a key is missing."""
+def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
+    """Yield (path of the block, what makes the sentence) for every block in which a key is missing."""
     for error in Validator(schema).iter_errors(values):
         if error.validator == "required":
             path = tuple(error.absolute_path)
             key = next(key for key in error.validator_value if key not in error.instance)
             allowed = allowed_text(error.schema["properties"][key])
-            yield path, f"{dotted((*path, key))} is missing, allowed is {allowed}"
+            yield path, partial(str, f"{dotted((*path, key))} is missing, allowed is {allowed}")
 
 
 def check_given(
@@ -133,7 +131,8 @@ def allowed_text(schema: dict[str, Any]) -> str:
         return "one of " + ", ".join(map(str, schema["enum"]))
     if kind in NUMBERS:
         return f"{'a number' if kind == 'number' else 'a whole number'} {_range_text(schema)}".rstrip()
-    return {"boolean": "true or false", "string": "text", "array": "a list"}.get(str(kind), "a block of keys")
+    block = "a block of one key or more" if "minProperties" in schema else "a block of keys"
+    return {"boolean": "true or false", "string": "text", "array": "a list"}.get(str(kind), block)
 
 
 def _range_text(schema: dict[str, Any]) -> str:
@@ -226,11 +225,15 @@ def _nearest(path: KeyPath, known: dict[str, Any], schema: dict[str, Any]) -> st
     return f"the nearest is {near[0]}" if near else f"allowed are {', '.join(known)}"
 
 
-def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
+def read_design(
+    path: Path, root: Path, schema: dict[str, Any], wanted: Callable[[str], bool] = lambda row: True
+) -> list[Layer]:
     """Return the rows of a design table as layers that know their lines, after all checks of single values.
 
-    An empty cell of a column that the schema does not require gives no value. Raises ConfigError naming file, line, row
-    and column.
+    An empty cell of a column that the schema does not require gives no value.
+    wanted: whether a row of that name is to be simulated; one that is not, and has a fault, is left out
+
+    Raises ConfigError naming file, line, row and column.
     """
     source = display_name(path, root)
     header, rows = read_csv_rows(path, root)
@@ -239,6 +242,11 @@ def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
     checked = []
     for line, cells in rows:
         name = cells["row"]
+        if len(name) > LONGEST_ROW:
+            raise ConfigError(
+                f"{source}, line {line}: row is a name of {len(name)} letters, allowed are {LONGEST_ROW}, for it names"
+                " folders and files."
+            )
         if name in lines:
             raise ConfigError(
                 f"{source}, line {line}: row is '{name}', which stands in line {lines[name]} too,"
@@ -247,7 +255,12 @@ def read_design(path: Path, root: Path, schema: dict[str, Any]) -> list[Layer]:
         lines[name] = line
         values = {c: _cell(v, schema["properties"][c]) for c, v in cells.items() if v or c in schema["required"]}
         layer = Layer(source, values, {(): line}, f"row {name}" if name else "")
-        check_layer(layer, schema)
+        try:
+            check_layer(layer, schema)
+        except ConfigError:
+            if wanted(name):
+                raise
+            continue
         checked.append(layer)
     return checked
 
@@ -256,7 +269,7 @@ def _cell(text: str, schema: dict[str, Any]) -> Any:
     """Return the value of a cell: a number or a boolean where it spells one and the column is no text."""
     if schema.get("type") == "boolean":
         return {"true": True, "false": False}.get(text, text)
-    if schema.get("type") == "integer" and INTEGER.match(text):
+    if schema.get("type") == "integer" and INTEGER.match(text) and len(text) <= LONGEST_NUMBER:
         return int(text)
     return float(text) if schema.get("type") in NUMBERS and NUMBER.match(text) else text
 
@@ -271,80 +284,11 @@ def _check_columns(header: list[str], schema: dict[str, Any], source: str) -> No
             raise ConfigError(f"{source}, header: column {column} is missing, allowed are {allowed}.")
 
 
-def check_materials(layers: Sequence[Layer]) -> dict[str, Any]:
-    """Return the materials of all files as floats after all checks; those of a later file stand for the earlier's of
-    their name. Raises ConfigError.
-    """
-    schema = load_schema("materials")
-    check_layer(layers[0], schema)
-    for layer in layers[1:]:
-        check_layer(layer, {**schema, "required": []})
-    for layer in layers:
-        _check_distributions(layer)
-    kinds = dict.fromkeys(kind for layer in layers for kind in layer.values)
-    together = {kind: {k: v for each in layers for k, v in each.values.get(kind, {}).items()} for kind in kinds}
-    return coerce_numbers(together, schema)
-
-
-def _check_distributions(layer: Layer) -> None:
-    for name, particle in layer.values.get("particles", {}).items():
-        distribution = particle["size_distribution"]
-        path = ("particles", name, "size_distribution", "mass_fraction")
-        fractions, count = distribution["mass_fraction"], len(distribution["relative_diameter"])
-        if len(fractions) != count:
-            raise ConfigError(
-                f"{layer.where(path)}: {dotted(path)} has {len(fractions)} values, allowed are {count},"
-                " one per relative_diameter."
-            )
-        if abs(math.fsum(fractions) - 1.0) > MASS_FRACTION_TOLERANCE:
-            raise ConfigError(
-                f"{layer.where(path)}: {dotted(path)} has the sum {math.fsum(fractions):.10g}, allowed is 1."
-            )
-
-
 def unknown_name(source: str, noun: str, name: str, known: list[str]) -> str:
     """Return the sentence for a name that is not there."""
     near = difflib.get_close_matches(name, known, n=1)
     hint = f" (the nearest is {near[0]})" if near else ""
     return f"{source}: {noun} is {show(name)}, allowed is one of {', '.join(known) or 'none'}{hint}."
-
-
-def check_material_names(
-    layers: tuple[Layer, ...],
-    settings: dict[str, Any],
-    materials: dict[str, Any],
-    keys: tuple[tuple[str, ...], ...],
-) -> None:
-    """Raise ConfigError if a setting names a material that config/materials.yaml does not have.
-
-    keys: path of the settings that name one, and its kind of material
-    """
-    for *path, kind in keys:
-        value, known = reduce(dict.__getitem__, path, settings), materials.get(kind, {})
-        if value not in known:
-            raise ConfigError(unknown_name(locate(layers, tuple(path)), dotted(tuple(path)), value, sorted(known)))
-
-
-def check_calibrated_for(
-    layers: tuple[Layer, ...],
-    settings: dict[str, Any],
-    materials: dict[str, Any],
-    keys: tuple[tuple[str, ...], ...],
-) -> None:
-    """Raise ConfigError if a bulk material was calibrated in another rolling friction model or convention.
-
-    A rolling coefficient is a number of the model and of the radius that it was found with; keys as for
-    `check_material_names`.
-    """
-    for *path, kind in keys:
-        name = reduce(dict.__getitem__, path, settings)
-        found = materials.get(kind, {}).get(name, {}).get("calibrated")
-        for word in CALIBRATED_WITH if found and kind == "particles" else ():
-            if settings["solver"][word] != found[word]:
-                raise ConfigError(
-                    f"{locate(layers, ('solver', word))}: solver.{word} is '{settings['solver'][word]}', allowed is"
-                    f" {found[word]}, in which study {found['study']} calibrated {name}."
-                )
 
 
 def files_of(layers: tuple[Layer, ...]) -> tuple[Layer, ...]:

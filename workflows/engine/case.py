@@ -171,6 +171,9 @@ class Case:
         """Return the parameters of a run that its pristine surface depends on: here the sections of `geometry`."""
         return {name: parameters[name] for name in self.geometry}
 
+    def check_files(self, runs: Sequence[Run]) -> None:
+        """Raise ConfigError for a file that runs are made from, where a look at it shows what is wrong with it."""
+
     def surface_mesh(self, geometry: Parameters) -> SurfaceMesh:
         """Return the pristine surface of a run from what `surface_sections` returns of its parameters."""
         raise NotImplementedError

@@ -11,6 +11,7 @@ from typing import Any
 from bulkwear.postproc.mesh import SurfaceMesh, read_surface, write_stl
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case
+from bulkwear.workflows.engine.patience import PATIENCE, Patience
 from bulkwear.workflows.engine.schedule import Span, cycle_title, first_span, known_spans
 from bulkwear.workflows.engine.solver import DECK, LAUNCHER
 from bulkwear.workflows.engine.templates import render
@@ -25,8 +26,8 @@ class Chain:
     """A run as the driver sees it.
 
     `parameters` and `bed` as the case makes them (SI), no bed where the case has none; paths,
-    the MPI ranks that the solver gets and what starts them, which change nothing but the time it takes, and the folder
-    of a finished run with the same parameters, whose cycles this one shares.
+    the MPI ranks that the solver gets and what starts them, which change nothing but the time it takes, the folder
+    of a finished run with the same parameters, whose cycles this one shares, and how long a solver may make no step.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Chain:
     ranks: int = 1
     launcher: str = LAUNCHER
     same_as: Path | None = None
+    patience: Patience = PATIENCE
 
 
 def surface_before(chain: Chain, cycle: int) -> Path:

@@ -31,7 +31,8 @@ ASIDE = {  # files that change no number of a run
     "postproc/readers/point_cloud.py",
     "meshes/estimate.py",
 }
-ASIDE_OF_CASES = {"checks.py", "evaluation.py", "study.py", "volume.py", "work.py"}  # refuse, forecast or evaluate
+# of cases, what refuses, forecasts or evaluates
+ASIDE_OF_CASES = {"checks.py", "evaluation.py", "machine_checks.py", "study.py", "volume.py", "work.py"}
 ROOTS = ("case.py", "decks.py", "driver.py", "simulations.py")  # of a case's folder, whence its code is found
 PACKAGE_NAME = "bulkwear"
 

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from bulkwear.postproc.mesh import read_surface, write_surface
-from bulkwear.postproc.readers.load_ledger import announcement
-from bulkwear.postproc.readers.solver_log import solver_version, thermo_table, warnings
+from bulkwear.postproc.mesh import SurfaceMesh, read_surface, write_surface
+from bulkwear.postproc.readers.dump_text import ContactDumpError
+from bulkwear.postproc.readers.load_ledger import LoadLedgerError, announcement
+from bulkwear.postproc.readers.mesh_loads import MeshLoadsError
+from bulkwear.postproc.readers.restart_file import RestartFileError, read_restart
+from bulkwear.postproc.readers.solver_log import SolverLogError, last_step, solver_version, thermo_table, warnings
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.accounting import HISTORY, LEDGER, account_and_wear
 from bulkwear.workflows.engine.beds import bed_fault, write_measures
@@ -35,11 +38,14 @@ from bulkwear.workflows.engine.chain import (
     write_cycle,
     write_shared_files,
 )
+from bulkwear.workflows.engine.disk import check_room, folder_bytes, is_full, whole_restart
 from bulkwear.workflows.engine.inputs import SIMULATED_FROM, inputs_digest, simulated_from, why_again
 from bulkwear.workflows.engine.job import Progress, write_table
-from bulkwear.workflows.engine.ledgers import producer
+from bulkwear.workflows.engine.ledgers import SamplesError, producer
+from bulkwear.workflows.engine.patience import PATIENCE, Patience
 from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code, write_provenance
+from bulkwear.workflows.engine.row_check import RowCheck
 from bulkwear.workflows.engine.schedule import Span, first_span, known_spans
 from bulkwear.workflows.engine.solver import (
     LAUNCHER,
@@ -54,6 +60,10 @@ from bulkwear.workflows.engine.solver import (
 from bulkwear.workflows.engine.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"
+# Faults of what the solver left: only another simulation mends it, as after a disk that was full for a moment.
+UNREADABLE = (LoadLedgerError, MeshLoadsError, ContactDumpError, SamplesError, SolverLogError)
+BED_RESTART = "bed.restart"
+ROOM_MARGIN = 1.5  # -, over the disk that the cycle before has taken
 # Of the decks of beds, where they have them.
 BED_STEPS = ("settling_steps", "packing_steps", "lowering_steps", "steady_steps")
 
@@ -61,7 +71,8 @@ BED_STEPS = ("settling_steps", "packing_steps", "lowering_steps", "steady_steps"
 def run_chain(chain: Chain) -> None:
     """Run what is missing of a run, then write its wear.csv and cost.csv. Resumes after the last finished cycle.
 
-    Raises SolverError, StateError, WearError or a reader's error; finished cycles stay and are not done again.
+    Raises SolverError, StateError, DiskError, WearError or a reader's error; finished cycles stay, they are not done
+    again.
     """
     announce = Progress(chain.name, 1).say
     with state.only_driver(chain.folder, announce):
@@ -73,7 +84,7 @@ def run_chain(chain: Chain) -> None:
             announce(moved)
         if chain.same_as and (shared := state.share_cycles(chain.folder, chain.same_as, inputs)):
             announce(f"is the same simulation as {chain.same_as.name} and shares {shared} cycles with it")
-        finished = state.finished_cycles(chain.folder, inputs, needed=(RESTART, SURFACE))
+        finished = finished_cycles(chain, inputs, announce)
         span = span_of(chain, finished) if finished else None
         unfinished = finished == 0 or span is not None
         program = cycle_executable(chain, first_span(chain.parameters))
@@ -84,14 +95,35 @@ def run_chain(chain: Chain) -> None:
             announce(f"resumes after {title(chain, finished - 1)}")
         if not finished:
             run_cycle(chain, None, inputs, progress)
-            finished, span = 1, span_of(chain, 1)
+            finished = finished_cycles(chain, inputs, announce)
+            span = span_of(chain, finished)
         for cycle in range(1, finished - 1):
             drop_files(chain, cycle)
         while span:
             run_cycle(chain, span, inputs, progress)
             drop_files(chain, span.cycle - 1)
-            finished, span = finished + 1, span_of(chain, span.cycle + 1)
+            finished += 1
+            if state.cycle_folder(chain.folder, finished).exists():  # they follow one that was damaged
+                finished = finished_cycles(chain, inputs, announce)
+            span = span_of(chain, finished)
         write_products(chain, finished)
+
+
+def finished_cycles(chain: Chain, inputs: str, announce: Callable[[str], None]) -> int:
+    """Return how many cycles of a run are finished such that the next one can go on from them.
+
+    Where the last one's restart file is not whole, and its state was written nevertheless, it is made again.
+    """
+
+    def usable(folder: Path) -> bool:
+        try:
+            read_restart(folder / RESTART)
+        except RestartFileError as fault:
+            announce(f"{fault} {folder.name} is made again.")
+            return False
+        return True
+
+    return state.finished_cycles(chain.folder, inputs, (RESTART, SURFACE), usable, RowCheck().fault, announce)
 
 
 def cycles_of(chain: Chain) -> int | None:
@@ -104,12 +136,16 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
     started, cycle = time.monotonic(), span.cycle if span else 0
     origin, code = origin_digest(chain, cycle, inputs), simulating_code(chain.case)
     with state.working_folder(chain.folder, cycle, lambda part: bool(finished_pieces(part, origin))) as folder:
+        before = folder_bytes(state.cycle_folder(chain.folder, cycle - 1)) if cycle else 0
+        check_room(folder, ROOM_MARGIN * before, f"{chain.name}, {title(chain, cycle)}")
+        if not span and chain.bed_restart:
+            whole_restart(chain.bed_restart)
         surface = read_surface(surface_before(chain, cycle))
         started -= sum(piece.wall_s for piece in finished_pieces(folder, origin))
         write_shared_files(chain)
         triangles = write_cycle(chain, span, folder, surface)
         pieces = simulate(chain, span, folder, triangles, progress, origin)
-        record, spent = account_and_wear(chain, span, folder, surface) if span else ({"cost": {}}, [])
+        record, spent = accounted(chain, span, folder, surface) if span else ({"cost": {}}, [])
         if through := record.get(WORN_THROUGH):
             progress.say(f"{title(chain, cycle)}: {through}")
         if turned := record.get("wear", {}).get("turned_faces"):
@@ -128,7 +164,7 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         if inputs_digest(chain) != inputs:
             raise state.StateError(f"{chain.name}: its inputs changed while {title(chain, cycle)} ran; start again.")
         kept = (*producer(chain.parameters).kept, *chain.case.kept)
-        files = (RESTART, SURFACE, LEDGER, HISTORY, *kept) if span else (RESTART,)
+        files = (RESTART, SURFACE, LEDGER, HISTORY, chain.case.forces_table, *kept) if span else (RESTART,)
         if span is None:
             found = simulated_from(chain.case, chain.parameters, chain.bed)
             (folder / SIMULATED_FROM).write_text(json.dumps(found, indent=1) + "\n")
@@ -136,6 +172,18 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
         forget_pieces(folder)  # before anything that a repeated accounting would miss
         for path in spent:
             path.unlink()
+
+
+def accounted(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> tuple[dict[str, Any], list[Path]]:
+    """Account and wear a simulated cycle, see `account_and_wear`; where what the solver left cannot be read, nothing of
+    its simulation counts any more.
+    """
+    try:
+        return account_and_wear(chain, span, folder, surface)
+    except UNREADABLE as fault:
+        if not is_full(fault):
+            forget_pieces(folder)
+        raise type(fault)(f"{fault} The next start simulates {title(chain, span.cycle)} again.") from fault
 
 
 def drop_files(chain: Chain, cycle: int) -> None:
@@ -177,6 +225,7 @@ def simulate(
             executable=cycle_executable(chain, span),
             launcher=chain.launcher,
             variables=variables,
+            patience=replace(chain.patience, say=progress.say),
         )
 
     ends = chain.case.piece_ends(chain.parameters, chain.bed, span)
@@ -222,7 +271,13 @@ def write_products(chain: Chain, finished: int) -> None:
 
 
 def fill_bed(
-    case: Case, name: str, bed: Mapping[str, Any], folder: Path, ranks: int = 1, launcher: str = LAUNCHER
+    case: Case,
+    name: str,
+    bed: Mapping[str, Any],
+    folder: Path,
+    ranks: int = 1,
+    launcher: str = LAUNCHER,
+    patience: Patience = PATIENCE,
 ) -> None:
     """Fill and settle a bed; leaves bed.restart, provenance.json, cost.csv and its measures in the folder.
 
@@ -241,7 +296,12 @@ def fill_bed(
             lambda step: progress.update(step, "filling and settling"),
             executable=program,
             launcher=launcher,
+            patience=replace(patience, say=progress.say),
         )
+        if not (folder / BED_RESTART).exists():  # asked to end, the solver ends without a fault
+            step = last_step(folder / SCREEN)
+            raise SolverError(f"{folder / SCREEN}: LIGGGHTS ended at step {step} without {BED_RESTART}; start again.")
+        whole_restart(folder / BED_RESTART)
     measures = case.bed_measures(bed, folder / LOG)
     write_measures(measures, folder)
     if fault := bed_fault(measures):

@@ -13,9 +13,13 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import bulkwear
+from bulkwear.workflows.engine.disk import full_sentence, is_full
+from bulkwear.workflows.engine.machine import machine_facts
 from bulkwear.workflows.engine.project import enter_project
 
 SECONDS_BETWEEN_LINES = 15.0
+STOPPED = "Stopped by Ctrl-C. The same command goes on after the last finished cycle or piece."
+INTERRUPTED = 130  # exit code of what Ctrl-C has ended
 SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
 
 
@@ -46,20 +50,37 @@ def project_job(log_path: str | Path) -> Iterator[None]:
     """Work in the project of the working directory, and copy standard error to a log.
 
     A fault of the user's or the solver's ends the job with its sentence alone, exit code 1. Faults are ValueError,
-    RuntimeError and OSError of our own modules: their messages are sentences. The log gets the traceback too.
+    RuntimeError and OSError of our own modules: their messages are sentences. So are a full disk, exhausted memory and
+    Ctrl-C, wherever they strike. The log gets the traceback too.
     """
     with open(log_path, "a") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
         print(time.strftime("--- started %Y-%m-%d %H:%M:%S"), file=log)
         try:
             enter_project(Path.cwd())
             yield
-        except (ValueError, RuntimeError, OSError) as fault:
-            print(f"\n{fault}\n", file=sys.stderr)
+        except KeyboardInterrupt:
+            print(f"\n{STOPPED}\n", file=sys.stderr)
+            sys.exit(INTERRUPTED)
+        except (ValueError, RuntimeError, OSError, MemoryError) as fault:
+            print(f"\n{sentence(fault)}\n", file=sys.stderr)
             traceback.print_exc(file=log)
             sys.exit(1)
         except Exception:
             traceback.print_exc(file=log)
             raise
+
+
+def sentence(fault: BaseException) -> str:
+    """Return a fault in one sentence; those of the machine say what it lacks and what to do."""
+    if is_full(fault):
+        return full_sentence(Path.cwd())
+    if isinstance(fault, MemoryError):
+        return (
+            f"The memory is exhausted, {machine_facts()['memory_gb']} GB for all jobs together; start again with fewer"
+            " of them side by side (--cores 1), or with larger elements or a larger particle_scale. Finished cycles and"
+            " pieces stay."
+        )
+    return str(fault)
 
 
 def duration_text(seconds: float) -> str:

@@ -8,14 +8,17 @@ cycle is accounted and its state written, so that a fault on the way there costs
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bulkwear.postproc.readers.solver_log import last_step
+from bulkwear.workflows.engine.chain import RESTART
+from bulkwear.workflows.engine.disk import whole_restart
+from bulkwear.workflows.engine.records import RecordError, read_record, write_record
 from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, processor_seconds
+from bulkwear.workflows.engine.state import file_digest
 
 PIECES, CHECKPOINT = "pieces.json", "checkpoint.restart"  # the second as the decks name it
 FORCED = "restart_forced_*"  # left by a solver that was asked to end
@@ -40,14 +43,20 @@ def piece_ends(first: int, steps: int, interval: int) -> list[int]:
 
 
 def simulate_in_pieces(
-    folder: Path, origin: str, ends: list[int], run: Callable[[Mapping[str, str]], float]
+    folder: Path,
+    origin: str,
+    ends: list[int],
+    run: Callable[[Mapping[str, str]], float],
+    check_restart: Callable[[Path], object] = whole_restart,
 ) -> list[Piece]:
     """Run the pieces of a cycle that are missing and return all of them.
 
     run: starts the solver with these variables of its deck and returns its wall time in s
     origin: hash of all that the cycle starts from
+    check_restart: raises a fault for a restart file that is not whole; only one that is finishes a piece
 
-    The folder then holds one log and one screen of the cycle; `forget_pieces` removes the rest. Raises SolverError.
+    The folder then holds one log and one screen of the cycle; `forget_pieces` removes the rest. Raises SolverError, and
+    what `check_restart` does.
     """
     done = finished_pieces(folder, origin)
     for forced in folder.glob(FORCED):
@@ -56,6 +65,7 @@ def simulate_in_pieces(
         before = processor_seconds()
         wall = run(_variables(done, end) if len(ends) > 1 else {})
         check_end(folder, end)
+        check_restart(folder / (RESTART if end == ends[-1] else CHECKPOINT))
         done.append(Piece(end, wall, processor_seconds() - before))
         if len(ends) > 1:
             _keep(folder, origin, done)
@@ -65,12 +75,16 @@ def simulate_in_pieces(
 
 
 def finished_pieces(folder: Path, origin: str) -> list[Piece]:
-    """Return the finished pieces of a cycle; those that started from something else, or a torn list, do not count."""
+    """Return the finished pieces of a cycle; those that started from something else, that a torn list tells, or whose
+    restart file has changed do not count.
+    """
     try:
-        found = json.loads((folder / PIECES).read_text())
-        return [Piece(**piece) for piece in found["pieces"]] if found["origin"] == origin else []
-    except (OSError, ValueError, KeyError, TypeError):
+        found = read_record(folder / PIECES)
+        pieces = [Piece(**piece) for piece in found["pieces"]] if found["origin"] == origin else []
+    except (OSError, RecordError, KeyError, TypeError):
         return []
+    checkpoint, digest = folder / _checkpoint(len(pieces)), found.get("checkpoint")
+    return pieces if not digest or (checkpoint.is_file() and file_digest(checkpoint) == digest) else []
 
 
 def check_end(folder: Path, end: int) -> None:
@@ -98,11 +112,11 @@ def _keep(folder: Path, origin: str, done: list[Piece]) -> None:
     count = len(done)
     for name in (LOG, SCREEN):
         os.replace(folder / name, _of_piece(folder, name, count))
-    if (folder / CHECKPOINT).exists():  # the last piece leaves none
+    if (folder / CHECKPOINT).exists():  # the last piece leaves none, but the restart file of the cycle
         os.replace(folder / CHECKPOINT, folder / _checkpoint(count))
-    part = folder / f"{PIECES}.part"
-    part.write_text(json.dumps({"origin": origin, "pieces": [asdict(piece) for piece in done]}) + "\n")
-    os.replace(part, folder / PIECES)
+    kept = folder / _checkpoint(count)
+    digest = {"checkpoint": file_digest(kept)} if kept.exists() else {}
+    write_record(folder / PIECES, {"origin": origin, "pieces": [asdict(piece) for piece in done], **digest})
     for earlier in folder.glob("checkpoint_*.restart"):
         if earlier.name != _checkpoint(count):
             earlier.unlink()

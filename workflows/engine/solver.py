@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
+from bulkwear.workflows.engine.disk import RESERVE_BYTES, free_bytes, full_sentence
+from bulkwear.workflows.engine.patience import PATIENCE, Patience, Watch
 from bulkwear.workflows.engine.project import PACKAGE
 
 if TYPE_CHECKING:
@@ -33,6 +35,10 @@ LEDGER_EXECUTABLE = str(BUILT) if BUILT.exists() else shutil.which(BUILT.name) o
 OWN_ROLLING_MODELS = ("own_spin", "rvd")  # those of solver/rolling, which only our program has
 OF_SLURM = ("SLURM_", "PMI_", "PMIX_")  # environment variables of a job
 POLL_SECONDS = 0.25  # between two looks at the log
+STOP_SECONDS = 10.0  # for which a solver may take to end when it is asked to
+ANSWER_SECONDS = 60.0  # for which it may take to say what it has
+OF_LAUNCHER = 128  # added to a signal's number in an exit code
+CRASHES = {signal.SIGSEGV, signal.SIGBUS, signal.SIGFPE, signal.SIGILL, signal.SIGABRT}
 LAST_LINES = 12  # of the solver's output, shown when it fails
 _PARENT_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 
@@ -91,7 +97,12 @@ def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
 @cache  # a study asks once per run
 def _told(executable: str, question: str) -> tuple[str, ...]:
     """Return what a program says of what it has, a line each; nothing from one that does not know the question."""
-    told = subprocess.run([executable, question], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    try:
+        told = subprocess.run(
+            [executable, question], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=ANSWER_SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        raise SolverError(f"{executable}: it gives no answer to {question}, allowed is a solver of ours.") from None
     return tuple(told.stdout.splitlines()) if told.returncode == 0 else ()
 
 
@@ -143,6 +154,7 @@ def run_deck(
     executable: str = EXECUTABLE,
     launcher: str = LAUNCHER,
     variables: Mapping[str, str] = MappingProxyType({}),
+    patience: Patience = PATIENCE,
 ) -> float:
     """Run `deck.in` of a folder to its end and return the wall time in s.
 
@@ -151,8 +163,9 @@ def run_deck(
     executable: name on the PATH, or path, of the LIGGGHTS that runs it
     launcher: command, with options, that starts several ranks of it
     variables: of style index, whose values in the deck these replace
+    patience: how long it may make no step
 
-    Raises SolverError.
+    Raises SolverError. A solver on a disk that is nearly full is stopped, before it leaves half a file.
     """
     if missing := missing_program(executable):
         raise SolverError(missing)
@@ -169,7 +182,7 @@ def run_deck(
             preexec_fn=die_with(os.getpid()),
         )
         try:
-            _watch(process, folder, on_step, unchecked)
+            _watch(process, folder, on_step, unchecked, Watch(patience))
         finally:
             _stop(process)
     if process.returncode != 0:
@@ -179,8 +192,13 @@ def run_deck(
     return time.monotonic() - started
 
 
-def _watch(process: subprocess.Popen, folder: Path, on_step: Callable[[int], None], triangles: dict[str, int]) -> None:
-    """Follow a run until it ends; every mesh is checked once, as soon as the solver has reported it."""
+def _watch(
+    process: subprocess.Popen, folder: Path, on_step: Callable[[int], None], triangles: dict[str, int], watch: Watch
+) -> None:
+    """Follow a run until it ends; every mesh is checked once, as soon as the solver has reported it.
+
+    Raises SolverError for a solver that makes no step any more or fills the disk; the caller stops it.
+    """
     ended = False
     while not ended:
         ended = _ended(process)
@@ -189,6 +207,10 @@ def _watch(process: subprocess.Popen, folder: Path, on_step: Callable[[int], Non
             on_step(step)
         if triangles:
             _check_triangles(folder, triangles)
+        if not ended and (hangs := watch.look(step)):
+            raise SolverError(f"{folder / DECK}: {hangs}; finished cycles and pieces stay, start again.")
+        if not ended and free_bytes(folder) < RESERVE_BYTES:
+            raise SolverError(f"{folder / DECK}: stopped before its disk is full. {full_sentence(folder)}")
 
 
 def _ended(process: subprocess.Popen) -> bool:
@@ -216,20 +238,35 @@ def _check_triangles(folder: Path, expected: dict[str, int]) -> None:
 
 def _last_words(folder: Path, code: int) -> str:
     text = (folder / SCREEN).read_text("utf-8", "replace")
-    cause = failure(text) or f"LIGGGHTS stopped with exit code {code}"
+    cause = failure(text) or f"LIGGGHTS {exit_words(code)}"
+    if free_bytes(folder) < RESERVE_BYTES:
+        cause = f"{cause}; {full_sentence(folder).removesuffix('.')}"
     lines = deque((line for line in text.splitlines() if line.strip()), maxlen=LAST_LINES)
     quoted = "\n".join(f"    {line}" for line in lines)
     return f"{folder / DECK}: {cause}. Its last lines ({folder / SCREEN}):\n{quoted}"
 
 
+def exit_words(code: int) -> str:
+    """Return how a program ended, in words; a launcher tells the signal of a rank as 128 plus its number."""
+    number = -code if code < 0 else code - OF_LAUNCHER
+    if number == signal.SIGKILL:
+        return "was killed (signal 9): the memory was exhausted and the system ended it, or somebody did"
+    if number in CRASHES:
+        return f"crashed ({signal.Signals(number).name}, signal {number})"
+    if number in set(signal.Signals):
+        return f"was ended by {signal.Signals(number).name} (signal {number})"
+    return f"stopped with exit code {code}"
+
+
 def _stop(process: subprocess.Popen) -> None:
+    """End a solver, by force where it does not end by itself; one that hangs in the system is left behind."""
     if process.poll() is None:
         process.terminate()
-        try:
-            process.wait(10.0)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        for last_resort in (process.kill, lambda: None):
+            try:
+                process.wait(STOP_SECONDS)
+            except subprocess.TimeoutExpired:
+                last_resort()
 
 
 def die_with(parent: int) -> Callable[[], None]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import hashlib
-import json
 import os
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -18,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.postproc.readers.cycle_folders import cycle_folders
+from bulkwear.workflows.engine.records import RecordError, read_record, write_record
+from bulkwear.workflows.engine.records import digest as digest  # hashes of inputs are made where states are
 
 STATE = "state.json"
 DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder
@@ -25,16 +26,6 @@ DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder
 
 class StateError(RuntimeError):
     """The inputs of a run changed while it was running; the message names the run."""
-
-
-def digest(*parts: bytes | str | Mapping[str, Any]) -> str:
-    """Return the SHA-256 of texts, bytes and mappings (as JSON with sorted keys), each told apart from the next."""
-    total = hashlib.sha256()
-    for part in parts:
-        text = json.dumps(part, sort_keys=True) if isinstance(part, Mapping) else part
-        data = text.encode() if isinstance(text, str) else text
-        total.update(len(data).to_bytes(8, "big") + data)
-    return total.hexdigest()
 
 
 def file_digest(path: Path) -> str:
@@ -52,7 +43,8 @@ def cycle_folder(run_folder: Path, cycle: int) -> Path:
 def working_folder(run_folder: Path, cycle: int, begun: Callable[[Path], bool] = lambda part: False) -> Iterator[Path]:
     """Give a folder to work on a cycle in; it gets the cycle's final name when the block ends well.
 
-    It is empty, unless `begun` says that what an interrupted driver left in it can be taken up.
+    It is empty, unless `begun` says that what an interrupted driver left in it can be taken up. Where the cycle is done
+    again because it was damaged, later ones stay if it left the same files, and are set aside if it did not.
     """
     final = cycle_folder(run_folder, cycle)
     part = final.with_suffix(".part")
@@ -61,8 +53,17 @@ def working_folder(run_folder: Path, cycle: int, begun: Callable[[Path], bool] =
     part.mkdir(parents=True, exist_ok=True)
     yield part
     if final.exists():  # a damaged cycle, done again
+        every = cycle_folders(run_folder)
+        for folder in [] if _same_files(part, final) else reversed(every[every.index(final) + 1 :]):
+            set_aside(folder)
         set_aside(final)
     os.replace(part, final)
+
+
+def _same_files(made: Path, before: Path) -> bool:
+    """Return whether a cycle that was made again left what it had left before, of what is still there of that."""
+    names = read_record(made / STATE)["files"]
+    return all(file_digest(before / name) == found for name, found in names.items() if (before / name).is_file())
 
 
 def set_aside(folder: Path) -> None:
@@ -75,8 +76,8 @@ def set_aside(folder: Path) -> None:
 
 def write_state(folder: Path, inputs: str, files: tuple[str, ...], record: Mapping[str, Any]) -> None:
     """Write the state of a cycle: the digest of its inputs, those of the files that the next one needs, its record."""
-    state = {"inputs": inputs, "files": {name: file_digest(folder / name) for name in files}, **record}
-    (folder / STATE).write_text(json.dumps(state, indent=1, sort_keys=False) + "\n")
+    hashes = {name: file_digest(folder / name) for name in files}
+    write_record(folder / STATE, {"inputs": inputs, "files": hashes, **record})
 
 
 def drop_files(folder: Path, names: Iterable[str]) -> None:
@@ -84,41 +85,65 @@ def drop_files(folder: Path, names: Iterable[str]) -> None:
     there = [name for name in names if (folder / name).exists()]
     if not there:
         return
-    state = json.loads((folder / STATE).read_text())
+    state = read_record(folder / STATE)
     state["files"] = {name: digest for name, digest in state["files"].items() if name not in there}
-    part = folder / f"{STATE}.part"
-    part.write_text(json.dumps(state, indent=1, sort_keys=False) + "\n")
-    os.replace(part, folder / STATE)
+    write_record(folder / STATE, state)
     for name in there:
         (folder / name).unlink()
 
 
 def read_state(run_folder: Path, cycle: int) -> dict[str, Any]:
-    """Return the state of a finished cycle."""
-    return json.loads((cycle_folder(run_folder, cycle) / STATE).read_text())
+    """Return the state of a finished cycle. Raises RecordError for one that is not as it was written."""
+    return read_record(cycle_folder(run_folder, cycle) / STATE)
 
 
-def finished_cycles(run_folder: Path, inputs: str, needed: tuple[str, ...] = ()) -> int:
+def finished_cycles(
+    run_folder: Path,
+    inputs: str,
+    needed: tuple[str, ...] = (),
+    usable: Callable[[Path], bool] = lambda folder: True,
+    faulty: Callable[[Path], str | None] = lambda folder: None,
+    say: Callable[[str], None] = lambda text: None,
+) -> int:
     """Return how many cycles, counted from 0 without a gap, were made from these inputs and are undamaged.
 
     needed: files of the last wear cycle from which the next one goes on; where they were dropped, as from all but the
     newest cycle, an earlier one that still has them is the last.
+    usable: whether the next cycle can go on from a folder; from one that is not, as written on a full disk, none does
+    faulty: what else is wrong with a cycle whose files are as they were written, a sentence
+    say: is told of a damaged cycle
     """
     count = 0
-    while _holds(cycle_folder(run_folder, count), inputs):
+    while not (fault := damage(cycle_folder(run_folder, count), inputs) or faulty(cycle_folder(run_folder, count))):
         count += 1
-    while count > 1 and not all((cycle_folder(run_folder, count - 1) / name).exists() for name in needed):
+    if fault and (cycle_folder(run_folder, count) / STATE).exists():
+        say(f"{fault} {cycle_folder(run_folder, count).name} is made again, and what follows it.")
+    while count > 0 and not _goes_on(cycle_folder(run_folder, count - 1), needed if count > 1 else (), usable):
         count -= 1
     return count
 
 
-def _holds(folder: Path, inputs: str) -> bool:
+def _goes_on(folder: Path, needed: tuple[str, ...], usable: Callable[[Path], bool]) -> bool:
+    return all((folder / name).exists() for name in needed) and usable(folder)
+
+
+def damage(folder: Path, inputs: str) -> str | None:
+    """Return why a cycle does not count, a sentence that names the file; None for a whole one of these inputs."""
+    path = folder / STATE
     try:
-        state = json.loads((folder / STATE).read_text())
-        found = {name: file_digest(folder / name) for name in state["files"]}
-        return state["inputs"] == inputs and found == state["files"]
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+        state = read_record(path)
+        if state["inputs"] != inputs:
+            return f"{path}: it was made from other inputs."
+        for name, digest in state["files"].items():
+            if file_digest(folder / name) != digest:
+                return f"{folder / name}: the file is not as it was written."
+    except RecordError as fault:
+        return str(fault)
+    except OSError as fault:
+        return f"{fault.filename}: the file cannot be read ({fault.strerror})."
+    except (KeyError, TypeError, AttributeError):
+        return f"{path}: the record is torn, allowed is JSON as it was written."
+    return None
 
 
 def share_cycles(run_folder: Path, other: Path, inputs: str) -> int:
@@ -138,8 +163,7 @@ def share_cycles(run_folder: Path, other: Path, inputs: str) -> int:
             for path in source.iterdir():
                 if path.name != STATE:
                     _link(path, folder / path.name)
-            state = {**read_state(other, cycle), "shared_with": other.name}
-            (folder / STATE).write_text(json.dumps(state, indent=1, sort_keys=False) + "\n")
+            write_record(folder / STATE, {**read_state(other, cycle), "shared_with": other.name})
     return len(missing)
 
 
@@ -153,19 +177,19 @@ def _link(source: Path, target: Path) -> None:
 def set_aside_others(run_folder: Path, inputs: str) -> str | None:
     """Move cycles of other inputs to superseded/<digest> and bring back those of these inputs, if there are any.
 
-    What was left unfinished of other inputs is removed.
+    What was left unfinished goes with them, for inputs may have changed by mistake.
     Returns a sentence about what was moved, or None.
     """
     said = []
     first = cycle_folder(run_folder, 0)
-    if first.exists() and (other := _inputs_of(first)) != inputs:
+    if first.exists() and (other := _inputs_of(run_folder)) != inputs:
         target = run_folder / "superseded" / other[:DIGEST_LETTERS]
-        for part in run_folder.glob("cycle_*.part"):
-            shutil.rmtree(part)
+        _move(sorted(run_folder.glob("cycle_*.part")), target)
         _move(reversed(cycle_folders(run_folder)), target)
         said.append(f"its inputs changed, earlier cycles are kept in {target}")
     stored = run_folder / "superseded" / inputs[:DIGEST_LETTERS]
     if stored.exists() and not first.exists():
+        _move(sorted(stored.glob("cycle_*.part")), run_folder)
         _move(reversed(cycle_folders(stored)), run_folder)
         said.append(f"cycles of the same inputs were brought back from {stored}")
     return "; ".join(said) or None
@@ -183,7 +207,7 @@ def fit_length(run_folder: Path, inputs: str, cycles: int | None) -> str | None:
     kept = {cycle_folder(run_folder, cycle) for cycle in range(cycles)}
     surplus = [folder for folder in cycle_folders(run_folder) if folder not in kept]
     count, back = finished_cycles(run_folder, inputs), []
-    while count + len(back) < cycles and _holds(found := cycle_folder(stored, count + len(back)), inputs):
+    while count + len(back) < cycles and not damage(found := cycle_folder(stored, count + len(back)), inputs):
         back.append(found)
     _move(reversed(surplus), stored)  # the last one first: those that are left have no gap, whenever it ends
     _move(back, run_folder)
@@ -192,11 +216,12 @@ def fit_length(run_folder: Path, inputs: str, cycles: int | None) -> str | None:
     return "; ".join(said) or None
 
 
-def _inputs_of(folder: Path) -> str:
-    try:
-        return json.loads((folder / STATE).read_text())["inputs"]
-    except (OSError, ValueError, KeyError, TypeError):
-        return "damaged_state"
+def _inputs_of(run_folder: Path) -> str:
+    """Return the inputs of a run's cycles, by the first record that is as it was written."""
+    for folder in cycle_folders(run_folder):
+        with contextlib.suppress(OSError, RecordError, KeyError):
+            return read_record(folder / STATE)["inputs"]
+    return "damaged_state"
 
 
 def _move(folders: Iterable[Path], target: Path) -> None:

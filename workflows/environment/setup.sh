@@ -16,6 +16,11 @@ stop() {
     exit 1
 }
 
+# A $ in the path is taken for a variable by make and by what it calls.
+case "$PWD" in
+*'$'*) stop "this clone lies in $PWD: a \$ in its path breaks make and what it calls; move the clone to a path without one" ;;
+esac
+
 # --- Debian packages ------------------------------------------------------------------------------------------------
 
 missing_packages() {

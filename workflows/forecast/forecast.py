@@ -128,7 +128,7 @@ def totals(table: pd.DataFrame, cores: int) -> dict[str, float]:
 
 def forecast_text(heading: str, study: str, table: pd.DataFrame, cores: int, said: str) -> str:
     """Return the forecast as people read it: a line per job, totals, wall time on more cores, what it rests on."""
-    rows = [[_number(row[column]) for column in SHOWN] for row in table.to_dict("records")]
+    rows = [[number_text(row[column]) for column in SHOWN] for row in table.to_dict("records")]
     more = ", ".join(f"{n}: {hours_text(wall_hours(table, n))}" for n in MORE_CORES if n > cores)
     return "\n".join(
         [
@@ -158,7 +158,7 @@ def announcement(study: Study, jobs: Collection[str], cores: int) -> str:
 
 def summary_line(name: str, found: Mapping[str, float], cores: int) -> str:
     """Return what a study costs in one line."""
-    hours, memory_gb, disk_gb = (_number(found[key]) for key in ("core_h", "memory_gb", "disk_gb"))
+    hours, memory_gb, disk_gb = (number_text(found[key]) for key in ("core_h", "memory_gb", "disk_gb"))
     return (
         f"{name}: {found['jobs']} job{'s' * (found['jobs'] > 1)} of the solver, about {hours} core hours,"
         f" {hours_text(found['wall_h'])} on {cores} core{'s' * (cores > 1)}, up to {memory_gb} GB of memory per job,"
@@ -171,7 +171,7 @@ def hours_text(hours: float) -> str:
     return f"{hours / 24.0:.1f} days" if hours >= 48.0 else duration_text(SECONDS_PER_HOUR * hours)
 
 
-def _number(value: float | str) -> str:
+def number_text(value: float | str) -> str:
     """Return a number with three digits at least and no exponent, small ones to the third decimal; words unchanged."""
     if isinstance(value, str):
         return value

@@ -25,6 +25,7 @@ from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.project import PACKAGE, current_project
 from bulkwear.workflows.engine.provenance import commit_of, git, package_cases, package_commit, simulating_code
 from bulkwear.workflows.engine.provenance import package_version as installed_version
+from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.report.cost import (
     BENCHMARK_SUFFIX,
@@ -296,4 +297,4 @@ def solver_warnings(study: Mapping[str, Any], folder: Path) -> list[dict[str, An
 def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:
     for folder in folders:
         for path in cycle_files(folder, "state.json"):
-            yield from json.loads(path.read_text()).get("solver_warnings", {}).items()
+            yield from read_record(path).get("solver_warnings", {}).items()

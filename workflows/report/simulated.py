@@ -16,6 +16,7 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.workflows.engine.code_parts import part_files
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.engine.provenance import OWN, PROVENANCE, PROVENANCE_FILE, git
+from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.state import STATE
 
 UNRECORDED = "a version that did not record itself"
@@ -61,7 +62,7 @@ def versions_of(folders: Iterable[Path], beds: Iterable[Path] = ()) -> list[Simu
 
 
 def _state(path: Path) -> Mapping[str, Any] | None:
-    return json.loads(path.read_text()).get(PROVENANCE)
+    return read_record(path).get(PROVENANCE)
 
 
 def _bed(folder: Path) -> Mapping[str, Any] | None:

@@ -30,6 +30,9 @@ UNITS = (
     ("_n_per_m", "N/m"),
     ("_pa_s", "Pa s"),
     ("_m_per_s", "m/s"),
+    ("_t_per_h", "t/h"),
+    ("_rpm", "rpm"),
+    ("_mt", "Mt"),
     ("_fraction", NO_UNIT),
     ("_steps", "steps"),
     ("_percent", "%"),
@@ -113,9 +116,15 @@ def setting_rows(settings: Mapping[str, Any], paper: Mapping[str, Any]) -> dict[
 
 
 def _flat(section: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a section with the keys of its blocks among its own."""
-    blocks = [value if isinstance(value, Mapping) else {key: value} for key, value in section.items()]
-    return {key: value for block in blocks for key, value in block.items()}
+    """Return a section with the keys of its blocks among its own; blocks of equal keys give them their names."""
+    blocks = {key: value for key, value in section.items() if isinstance(value, Mapping)}
+    keys = [inner for block in blocks.values() for inner in block] + [key for key in section if key not in blocks]
+    named = len(set(keys)) < len(keys)
+    found: dict[str, Any] = {}
+    for key, value in section.items():
+        inner = {f"{key}_{name}" if named else name: each for name, each in blocks.get(key, {}).items()}
+        found |= inner if key in blocks else {key: value}
+    return found
 
 
 def simplifications(study: Mapping[str, Any], summary: pd.DataFrame, page: ModuleType) -> list[tuple[str, str]]:

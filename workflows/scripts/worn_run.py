@@ -6,6 +6,7 @@ from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.cycles import run_chain
 from bulkwear.workflows.engine.job import project_job
+from bulkwear.workflows.engine.patience import patience_of
 from bulkwear.workflows.engine.solver import LAUNCHER, ranks_here
 
 with project_job(snakemake.log[0]):
@@ -20,6 +21,7 @@ with project_job(snakemake.log[0]):
             bed_restart=next(map(Path, snakemake.input.bed), None),
             ranks=ranks_here(snakemake.resources.tasks, snakemake.threads),
             launcher=snakemake.resources.get("mpi", LAUNCHER),
+            patience=patience_of(snakemake.resources),
             same_as=next((Path(path).parent for path in snakemake.input.same), None),
         )
     )

@@ -100,6 +100,7 @@ def test_the_rule_is_told():
         ([0.01, 0.02], [0.0, 1.0], 0.1, 0, "found 0 size classes, allowed are whole numbers from 1 on"),
         ([0.01, 0.02], [0.0, 1.0], 0.1, 2.5, "found 2.5 size classes, allowed are whole numbers from 1 on"),
         ([0.01, 0.02], [0.3, 1.0], 0.1, 4, "0.3 passes the smallest sieve of 10 mm, allowed is 0.2125 or less"),
+        ([0.01, 0.02], [1.0, 1.0], 0.1, 4, "1 passes the smallest sieve of 10 mm, allowed is 0.2125 or less"),
         ([0.01, 0.02], [0.6, 1.0], 0.9, 1, "0.6 passes the smallest sieve of 10 mm, allowed is 0.5 or less"),
     ],
 )

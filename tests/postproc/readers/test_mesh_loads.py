@@ -145,3 +145,22 @@ def test_ids_are_the_facets_of_the_stl_file_also_under_mpi(tmp_path, ranks):
     loads = read_mesh_loads(path, TRIANGLES)
     touched = np.unique(contacts[-1].triangle)
     np.testing.assert_array_equal(np.flatnonzero(loads["normal_stress_Pa"]), touched)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("CELL_DATA ", "CELL_DATA x"), ("meshid 1 24", "meshid 1 2x"), ("meshid 1 24", f"meshid 1 {10**20}")],
+)
+def test_numbers_of_values_that_are_none_name_the_file(tmp_path, old, new):
+    """A flipped letter in a count is a sentence with the file's name."""
+    text = (DATA / "bed_loads.vtk").read_text()
+    assert old in text
+    (tmp_path / "loads.vtk").write_text(text.replace(old, new, 1))
+    with pytest.raises(MeshLoadsError, match=r"loads\.vtk: "):
+        read_mesh_loads(tmp_path / "loads.vtk")
+
+
+def test_a_missing_dump_names_itself(tmp_path):
+    """So does a file that is not there."""
+    with pytest.raises(MeshLoadsError, match=r"none\.vtk: the dump cannot be read"):
+        read_mesh_loads(tmp_path / "none.vtk")

@@ -78,6 +78,9 @@ def test_units(tmp_path, unit, metres):
     assert read(tmp_path / "a.xyz", unit) == pytest.approx(metres * POINTS)
 
 
+LINE_ENDS = np.full((256, 3), 0.01, "<f4").tobytes()  # 0.01 begins with the byte of a line end
+
+
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
@@ -99,6 +102,17 @@ def test_units(tmp_path, unit, metres):
         ("a.xyz", b"no\nnumbers\nat all\n", "line 3"),
         ("a.xyz", b"", "no points"),
         ("a.ply", ply_head("ascii", 0), "no points"),
+        (
+            "a.ply",
+            (ply_head("binary_little_endian", 256) + LINE_ENDS).replace(b"\n", b"\r\n"),
+            "a binary file that was copied as text",
+        ),
+        (
+            "a.ply",
+            ply_head("binary_little_endian", 4, "property double x\nproperty double y\nproperty double z\n")
+            + np.full((4, 3), 1e292).tobytes(),
+            "found coordinates beyond 1e\\+09",
+        ),
     ],
 )
 def test_damaged_files_are_named_with_the_place(tmp_path, name, content, words):

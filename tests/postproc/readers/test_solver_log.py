@@ -29,6 +29,7 @@ CAUSES = {
     "badtypes": "one value for each pair of materials",
     "no_restart": "the restart file is missing",
     "bad_restart": "the restart file is damaged",
+    "no_memory": "the memory is exhausted",
     "lost": "particles left the domain",
     "lostwarn": "particles left the domain",
     "timestep_check": "the time step is too large",

@@ -154,3 +154,12 @@ def test_faces_take_the_depth_of_the_nearest_cell(cells, pristine):
     in_hole = np.linalg.norm(centre[:, :2] - sample.HOLE, axis=1) < 2e-3
     assert np.isnan(depth[in_hole & (pristine.cell_data["part"] == 0)]).mean() > 0.5
     assert np.nanmedian(depth[pristine.cell_data["part"] == 0]) == pytest.approx(sample.BASE_LOSS, rel=0.05)
+
+
+def test_a_plain_surface_has_no_bumps_and_no_losses():
+    """Its sections are an empty table with every column, and so are its losses."""
+    corners, triangles = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    plain = SurfaceMesh(corners, triangles, dict.fromkeys(("part", "row"), np.zeros(2, np.int64)), {})
+    sections = bump_sections(np.zeros((0, 3)), plain, {"worn": plain}, 0.0)
+    assert sections.empty and "worn_height_mm" in sections
+    assert largest_losses(sections).columns.tolist() == ["bump", "measured_um", "worn_um"]

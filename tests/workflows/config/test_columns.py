@@ -62,7 +62,7 @@ def test_a_column_that_is_no_such_setting_is_named(tmp_path, column, said):
 @pytest.mark.parametrize(
     ("column", "cell", "said"),
     [
-        ("inlet.rate_t_per_h", "-3", "inlet.rate_t_per_h is -3, allowed is a number above 0 and at most 50000 t/h."),
+        ("inlet.rate_t_per_h", "-3", "inlet.rate_t_per_h is -3, allowed is a number from 0.001 to 50000 t/h."),
         ("parts.liner.role", "moves", "parts.liner.role is 'moves', allowed is one of wears, rigid."),
         ("parts.plate.material", "stel", "parts.plate.material is 'stel', allowed is one of"),
         ("bulk.material", "or", "bulk.material is 'or', allowed is one of"),

@@ -20,8 +20,8 @@ def message_of(folder, overrides=None, **changes) -> str:
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"parts": None}, "parts is missing, allowed is a block of keys."),
-        ({"bulk": None}, "bulk.material is missing, allowed is text."),
+        ({"parts": None}, "parts is missing, allowed is a block of one key or more."),
+        ({"bulk": None}, "bulk.material is missing, allowed is a particle in materials.yaml."),
         ({"parts": {"liner": {"unit": None}}}, "parts.liner.unit is missing, allowed is one of m, mm, cm, um, in, ft."),
         (
             {"inlet": {"normal": None}},
@@ -33,7 +33,7 @@ def message_of(folder, overrides=None, **changes) -> str:
         ),
         ({"periodic": {"axis": "y"}}, "periodic.low_mm is missing, allowed is a number from -100000 to 100000 mm."),
         ({"domain": {"low_mm": [0, 0, 0]}}, "domain.high_mm is missing, allowed is a list of three numbers from"),
-        ({"filling": {"axis": "y"}}, "filling.fraction is missing, allowed is a number above 0 and at most 0.55."),
+        ({"filling": {"axis": "y"}}, "filling.fraction is missing, allowed is a number from 1e-09 to 0.55."),
         ({"bulk": {"passing": {"sieve_mm": [1, 2]}}}, "bulk.passing.fraction is missing, allowed is a list of rising"),
         ({"parts": {"paddle": {"motion": {"kind": None}}}}, "parts.paddle.motion.kind is missing, allowed is one of"),
     ],

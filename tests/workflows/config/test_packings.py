@@ -120,7 +120,7 @@ def test_rows_are_chosen_by_setting_or_by_packing(config):
         ),
         (
             "R9,8,2,20,6,1,40,7\nR8,8,2,20,6,1,40,9\n",
-            r"small.csv, line 3, row R8: seed is 9, which packs the bed of row R9 again, allowed are seeds that are"
+            r"small.csv, line 3, row R8: seed is 9, which makes row R9 again, allowed are seeds that are"
             r" 1000 apart, or one row\.",
         ),
     ],

@@ -29,8 +29,8 @@ def row_of(lines, key):
         ("inlet.rate_t_per_h", "t/h", "; needed"),
         ("parts.<name>", "-", "a block of keys"),  # one of many
         ("bulk", "-", "a block of keys"),  # has defaults, so it is always there
-        ("parts.<name>.thickness_mm", "mm", "at most 10000"),
-        ("operation.duration_h", "h", "at most 500000"),
+        ("parts.<name>.thickness_mm", "mm", "to 10000"),
+        ("operation.duration_h", "h", "to 500000"),
     ],
 )
 def test_what_a_study_has_to_give(equipment, key, unit, end):

@@ -90,8 +90,8 @@ BAD_KEYS = [
         "    particle_scale: 2.0",
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
-        " allowed are particle_scale, packings, until, rows, materials, ledger, wear, remeshing, solver, deck, sample,"
-        " pattern, bed, sliding, packing, design.",
+        " allowed are particle_scale, packings, until, rows, materials, ledger, beyond_machine, wear, remeshing,"
+        " solver, deck, sample, pattern, bed, sliding, packing, design.",
     ),
     (
         OWN_SETTINGS,
@@ -146,7 +146,7 @@ BAD_VALUES = [
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: true",
-        "config/default.yaml, line 6: wear.acceleration is true, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 6: wear.acceleration is true, allowed is a number from 1e-09 to 1000000000.",
     ),
     (
         STUDY,
@@ -246,7 +246,7 @@ BAD_VALUES = [
         SETTINGS,
         "acceleration: 1.0",
         "acceleration: 0",
-        "config/default.yaml, line 6: wear.acceleration is 0, allowed is a number above 0 and at most 1000000000.",
+        "config/default.yaml, line 6: wear.acceleration is 0, allowed is a number from 1e-09 to 1000000000.",
     ),
     (
         SETTINGS,
@@ -473,7 +473,7 @@ BAD_COMBINATIONS = [
     ),
     (
         {"wear": {"acceleration": float("nan")}},
-        "command line: wear.acceleration is nan, allowed is a number above 0 and at most 1000000000.",
+        "command line: wear.acceleration is nan, allowed is a number from 1e-09 to 1000000000.",
     ),
     (
         {"sampel": {"width_mm": 9}},
@@ -482,7 +482,7 @@ BAD_COMBINATIONS = [
     (
         {"kk": "x"},
         "command line: kk ('x') is no known key, allowed are fidelity, particle_scale, packings, until, rows,"
-        " materials, ledger, wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
+        " materials, ledger, beyond_machine, wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
     ),
 ]
 
@@ -577,7 +577,7 @@ def test_broken_yaml_is_refused_with_its_line(config):
 def test_a_file_that_is_no_mapping_is_refused(config):
     """A list where keys are expected is refused."""
     config.write(STUDY, "- a\n")
-    assert message_of(config) == "config/studies/small.yaml: found ['a'], allowed is a mapping of keys to values."
+    assert message_of(config) == "config/studies/small.yaml: found a list, allowed is a mapping of keys to values."
 
 
 def test_a_missing_file_is_named(config):

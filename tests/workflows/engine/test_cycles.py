@@ -17,6 +17,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.mesh import areas, read_surface, stl_corners
+from bulkwear.postproc.readers.load_ledger import LoadLedgerError
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
@@ -548,6 +549,38 @@ def test_a_damaged_cycle_is_done_again(finished, tmp_path):
     cycles.run_chain(chain)
     assert state.finished_cycles(chain.folder, inputs) == wear_cycles(chain) + 1
     assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
+
+
+def test_a_cycle_with_a_cut_restart_file_is_done_again(finished, tmp_path, capfd):
+    """A restart file that was cut by a full disk, under a state that says it is as it was: the run falls back by
+    itself, and says so."""
+    chain = twin(finished, tmp_path)
+    copy_cycles(finished, chain)
+    folder = state.cycle_folder(chain.folder, wear_cycles(chain))
+    record = state.read_state(chain.folder, wear_cycles(chain))
+    os.truncate(folder / "run.restart", 4096)
+    state.write_state(folder, record.pop("inputs"), tuple(record.pop("files")), record)
+    cycles.run_chain(chain)
+    said = capfd.readouterr().err
+    assert f"{folder / 'run.restart'}: the restart file of 4096 bytes is not whole" in said
+    assert f"{folder.name} is made again" in said
+    assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
+
+
+def test_a_cycle_whose_ledger_cannot_be_read_is_simulated_again(in_pieces, tmp_path, monkeypatch):
+    """What the solver left half is not accounted for ever: the next start simulates the cycle, to the same end."""
+    chain = twin(in_pieces, tmp_path)
+
+    def cut(chain, span, folder, surface):
+        os.truncate(folder / "load_ledger.bin", 100)
+        return account_and_wear(chain, span, folder, surface)
+
+    with monkeypatch.context() as first, pytest.raises(LoadLedgerError, match=r"simulates cycle 1 of 1 again"):
+        first.setattr(cycles, "account_and_wear", cut)
+        cycles.run_chain(chain)
+    assert not pieces_done(chain.folder / "cycle_001.part")
+    cycles.run_chain(chain)
+    assert (chain.folder / "wear.csv").read_bytes() == (in_pieces.folder / "wear.csv").read_bytes()
 
 
 def test_a_kill_while_cycles_are_moved_loses_nothing(finished, tmp_path, monkeypatch):

@@ -1,5 +1,7 @@
 """A simulation in pieces: where they end, and that a killed one goes on where its newest whole piece ended."""
 
+from functools import partial
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,6 +17,7 @@ from bulkwear.workflows.engine.pieces import (
 from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError
 
 ENDS = [100, 200, 300, 340]
+checked_pieces = partial(simulate_in_pieces, check_restart=lambda path: None)
 
 
 @given(st.integers(0, 1000), st.integers(1, 5000), st.integers(1, 1000))
@@ -53,14 +56,14 @@ def test_a_killed_simulation_goes_on_after_its_newest_piece(tmp_path, fails_at):
     """Every piece is simulated once but the one that was killed, and the log is that of an undisturbed simulation; it
     can be joined again until the pieces are forgotten."""
     with pytest.raises(SolverError):
-        simulate_in_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, fails_at))
+        checked_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, fails_at))
     (tmp_path / "checkpoint_0.restart").touch()  # killed before it was removed
     solver, missing = Solver(tmp_path), ENDS[ENDS.index(fails_at) :]
-    done = simulate_in_pieces(tmp_path, "inputs", ENDS, solver)
+    done = checked_pieces(tmp_path, "inputs", ENDS, solver)
     assert [variables["stop"] for variables in solver.calls] == [str(end) for end in missing]
     assert [piece.end for piece in done] == ENDS
     assert sum(piece.wall_s for piece in done) == len(ENDS)
-    repeated = simulate_in_pieces(tmp_path, "inputs", ENDS, lambda variables: pytest.fail("the solver was started"))
+    repeated = checked_pieces(tmp_path, "inputs", ENDS, lambda variables: pytest.fail("the solver was started"))
     assert repeated == done
     forget_pieces(tmp_path)
     assert finished_pieces(tmp_path, "inputs") == []
@@ -71,7 +74,7 @@ def test_a_killed_simulation_goes_on_after_its_newest_piece(tmp_path, fails_at):
 def test_pieces_of_another_start_do_not_count(tmp_path):
     """What was begun from other inputs is not taken up."""
     with pytest.raises(SolverError):
-        simulate_in_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, 300))
+        checked_pieces(tmp_path, "inputs", ENDS, Solver(tmp_path, 300))
     assert [piece.end for piece in finished_pieces(tmp_path, "inputs")] == [100, 200]
     assert finished_pieces(tmp_path, "other inputs") == []
 
@@ -89,7 +92,7 @@ def test_a_short_cycle_is_one_piece_that_is_told_nothing(tmp_path):
     """A cycle below the interval runs as its deck stands."""
     (tmp_path / SCREEN).write_text("40 1.0\n")
     calls = []
-    simulate_in_pieces(tmp_path, "inputs", [40], lambda variables: calls.append(variables) or 1.0)
+    checked_pieces(tmp_path, "inputs", [40], lambda variables: calls.append(variables) or 1.0)
     assert calls == [{}]
     assert [path.name for path in tmp_path.iterdir()] == [SCREEN]
 
@@ -98,8 +101,27 @@ def test_a_solver_that_was_asked_to_end_has_finished_no_piece(tmp_path):
     """LIGGGHTS ends well when it is asked to end; its step tells, and the restart file that it leaves is nobody's."""
     (tmp_path / SCREEN).write_text("39 1.0\n")
     with pytest.raises(SolverError, match=r"screen.txt: LIGGGHTS ended at step 39, allowed is 40; it was asked to end"):
-        simulate_in_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
+        checked_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
     (tmp_path / "restart_forced_39").touch()
     (tmp_path / SCREEN).write_text("40 1.0\n")
-    simulate_in_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
+    checked_pieces(tmp_path, "inputs", [40], lambda variables: 1.0)
     assert [path.name for path in tmp_path.iterdir()] == [SCREEN]
+
+
+def test_a_piece_whose_restart_file_is_not_whole_is_not_finished(tmp_path):
+    """A solver on a full disk ends well and leaves a cut file: its piece does not count, and is made again from the one
+    before, the last piece of the cycle too."""
+    for cut in ENDS:
+        folder = tmp_path / str(cut)
+        folder.mkdir()
+
+        def check(path, cut=cut):
+            if f"\n{cut} " in (path.parent / SCREEN).read_text():
+                raise SolverError(f"{path.name} is cut")
+
+        with pytest.raises(SolverError, match=CHECKPOINT if cut < ENDS[-1] else "run.restart"):
+            simulate_in_pieces(folder, "inputs", ENDS, Solver(folder), check)
+        solver = Solver(folder)
+        done = checked_pieces(folder, "inputs", ENDS, solver)
+        assert [variables["stop"] for variables in solver.calls] == [str(end) for end in ENDS if end >= cut]
+        assert [piece.end for piece in done] == ENDS

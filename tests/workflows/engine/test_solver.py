@@ -1,6 +1,20 @@
-"""How the solver is started."""
+"""How the solver is started, watched and stopped."""
 
-from bulkwear.workflows.engine.solver import ranks_here
+import os
+import signal
+import sys
+import time
+from collections import namedtuple
+from pathlib import Path
+
+import pytest
+
+from bulkwear.workflows.engine import disk, solver
+from bulkwear.workflows.engine.patience import LONGEST_LOOK_S, Patience, Watch, patience_of
+from bulkwear.workflows.engine.solver import SolverError, exit_words, ranks_here, run_deck
+
+Usage = namedtuple("Usage", "total used free")
+MINUTE = 60.0
 
 
 def test_ranks_are_no_more_than_the_cores_of_this_machine(monkeypatch):
@@ -10,3 +24,94 @@ def test_ranks_are_no_more_than_the_cores_of_this_machine(monkeypatch):
     assert ranks_here(1, 2) == 1
     monkeypatch.setenv("SLURM_JOB_ID", "7")
     assert ranks_here(4, 2) == 4
+
+
+def program(folder: Path, text: str) -> str:
+    """A program that stands for the solver."""
+    path = folder / "solver"
+    path.write_text(f"#!{sys.executable}\nimport os, signal, sys, time\n{text}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+@pytest.mark.parametrize("hangs", ["time.sleep(600)", "os.kill(os.getpid(), signal.SIGSTOP)"])
+def test_a_hanging_solver_is_told_of_and_stopped(tmp_path, monkeypatch, hangs):
+    """Without a step for a while that is said once; later the solver is stopped, also one that does not listen."""
+    monkeypatch.setattr(solver, "STOP_SECONDS", 0.1)
+    said = []
+    patience = Patience(said_min=0.5 / MINUTE, stopped_min=1.0 / MINUTE, say=said.append)
+    hanging = program(tmp_path, f"print('Step Atoms\\n7 10', flush=True)\n{hangs}")
+    with pytest.raises(SolverError, match=r"deck.in: LIGGGHTS reported no step for .* minutes, after step 7, and was"):
+        run_deck(tmp_path, executable=hanging, patience=patience)
+    assert len(said) == 1 and "no step for" in said[0] and "after step 7" in said[0]
+
+
+def test_a_slow_solver_is_no_hanging_one():
+    """Every step begins the wait anew, and time in which the driver itself slept does not count."""
+    now, said = [0.0], []
+    watch = Watch(Patience(10.0, 120.0, said.append), clock=lambda: now[0])
+    for step in range(200):
+        now[0] += LONGEST_LOOK_S
+        assert watch.look(step) is None
+    now[0] += 1000.0 * MINUTE  # the machine was suspended
+    assert watch.look(199) is None and not said
+    while watch.look(199) is None:
+        now[0] += LONGEST_LOOK_S
+    assert len(said) == 1
+
+
+def test_patience_is_a_setting_of_the_profile():
+    """Resources of a job say it; what they do not say is the default."""
+    assert patience_of({"no_step_said_min": 3, "no_step_stopped_min": 30}) == Patience(3.0, 30.0)
+    assert patience_of({"threads": 2}) == Patience()
+
+
+@pytest.mark.parametrize(
+    "ends, said",
+    [
+        (signal.SIGKILL, "was killed .signal 9.: the memory was exhausted"),
+        (signal.SIGSEGV, "crashed .SIGSEGV, signal 11."),
+        (signal.SIGTERM, "was ended by SIGTERM"),
+    ],
+)
+def test_a_crash_is_said_in_words(tmp_path, ends, said):
+    """Signals end in words, of the solver itself and through a launcher, whose exit code holds them."""
+    killed = program(tmp_path, f"os.kill(os.getpid(), {int(ends)})")
+    with pytest.raises(SolverError, match=f"LIGGGHTS {said}"):
+        run_deck(tmp_path, executable=killed)
+    assert exit_words(128 + ends) == exit_words(-ends)
+
+
+def test_other_exit_codes_are_numbers():
+    """What is no signal stays a number."""
+    assert exit_words(3) == "stopped with exit code 3"
+    assert exit_words(255) == "stopped with exit code 255"
+
+
+def test_a_solver_is_stopped_before_the_disk_is_full(tmp_path, monkeypatch):
+    """With less than the reserve free, the solver is ended, and the sentence names the disk."""
+    monkeypatch.setattr(disk.shutil, "disk_usage", lambda folder: Usage(10, 10, disk.RESERVE_BYTES - 1))
+    started = time.monotonic()
+    with pytest.raises(SolverError, match=r"stopped before its disk is full.*make room and start again"):
+        run_deck(tmp_path, executable=program(tmp_path, "time.sleep(600)"))
+    assert time.monotonic() - started < 300.0
+
+
+def test_room_is_asked_for_before_a_cycle(tmp_path, monkeypatch):
+    """A folder that is not there yet has its parent's disk; too little room is a sentence."""
+    monkeypatch.setattr(disk.shutil, "disk_usage", lambda folder: Usage(10, 10, disk.RESERVE_BYTES + 1_000_000))
+    disk.check_room(tmp_path / "new" / "folder", 900_000, "cycle 1")
+    with pytest.raises(disk.DiskError, match=r"51 MB are free on the disk, allowed are at least 52 MB for cycle 1"):
+        disk.check_room(tmp_path, 2_000_000, "cycle 1")
+
+
+def test_a_full_disk_is_recognised_behind_other_faults():
+    """Also where a library has wrapped it."""
+    try:
+        try:
+            raise OSError(disk.errno.ENOSPC, os.strerror(disk.errno.ENOSPC))
+        except OSError as fault:
+            raise RuntimeError("cannot write") from fault
+    except RuntimeError as fault:
+        assert disk.is_full(fault)
+    assert not disk.is_full(OSError(disk.errno.EACCES, "no"))

@@ -14,8 +14,8 @@ def finished_cycle(run, cycle, inputs):
         state.write_state(folder, inputs, FILES, {})
 
 
-def test_unfinished_cycles_of_other_inputs_are_removed(tmp_path):
-    """What a killed run left as .part stays for the same inputs, goes with the cycles of others, comes back never."""
+def test_unfinished_cycles_go_with_the_finished_ones(tmp_path):
+    """What a killed run left as .part stays for the same inputs, goes with the cycles of others and comes back."""
     for cycle in range(2):
         finished_cycle(tmp_path, cycle, "old")
     (tmp_path / "cycle_020.part").mkdir()
@@ -25,7 +25,7 @@ def test_unfinished_cycles_of_other_inputs_are_removed(tmp_path):
     assert not list(tmp_path.glob("cycle_*"))
     assert "brought back" in state.set_aside_others(tmp_path, "old")
     assert state.finished_cycles(tmp_path, "old") == 2
-    assert sorted(path.name for path in tmp_path.glob("cycle_*")) == ["cycle_000", "cycle_001"]
+    assert sorted(path.name for path in tmp_path.glob("cycle_*")) == ["cycle_000", "cycle_001", "cycle_020.part"]
 
 
 def test_a_run_that_becomes_shorter_and_longer_again_loses_no_cycle(tmp_path):

@@ -277,4 +277,6 @@ def test_the_profile_lets_jobs_come_back():
     assert there["executor"] == "slurm"
     assert there["retries"] > 1 and there["rerun-incomplete"]
     assert {"runtime", "mem_mb"} <= set(there["resources"])
+    patience = here.pop("default-resources")  # with how long a silent solver is waited for
+    assert patience.items() <= there["default-resources"].items()
     assert {key: there[key] for key in here if key != "cores"} == {key: here[key] for key in here if key != "cores"}

@@ -144,6 +144,9 @@ def test_numbers_for_people(value, shown):
         ("velocity_m_per_s", "velocity", "m/s"),
         ("skirt_slope_deg", "skirt slope", "°"),
         ("sampling_interval_steps", "sampling interval steps", "steps"),
+        ("rate_t_per_h", "rate", "t/h"),
+        ("speed_rpm", "speed", "rpm"),
+        ("throughput_mt", "throughput", "Mt"),
         ("law", "law", ""),
     ],
 )
@@ -159,6 +162,15 @@ def test_settings_tell_what_differs_from_paper():
     )
     assert rows["study"][0]["paper"] == 1
     assert [row["paper"] for row in rows["bed"]] == [9, None]
+
+
+def test_settings_tell_all_blocks_that_have_equal_keys():
+    """Each of them with its name: two parts of a machine both have an edge."""
+    parts = {"liner": {"edge_mm": 20, "law": "archard"}, "wall": {"edge_mm": 90}}
+    found = {
+        row["name"]: (row["value"], row["unit"]) for row in setting_rows({"parts": parts}, {"parts": parts})["parts"]
+    }
+    assert found == {"liner edge": (20, "mm"), "liner law": ("archard", ""), "wall edge": (90, "mm")}
 
 
 def test_commit_is_not_needed(tmp_path):

@@ -6,7 +6,6 @@ asked for. A packing in which an arch blocks the opening is kept too, and anothe
 
 from __future__ import annotations
 
-import json
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -26,6 +25,7 @@ from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, opening_length
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import time_step
+from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.solver import SolverError
 
 PACKINGS = 3  # of a test, before it is given up because arches block all of them
@@ -100,7 +100,7 @@ def answer(measurement: Measurement) -> dict[str, float]:
 
 def cost_table(folder: Path) -> pd.DataFrame:
     """Return number, solver seconds, particles and mean steps of the simulations of each kind below a folder."""
-    states = [json.loads(path.read_text()) for path in sorted(folder.glob(f"*/cycle_000/{state.STATE}"))]
+    states = [read_record(path) for path in sorted(folder.glob(f"*/cycle_000/{state.STATE}"))]
     table = pd.DataFrame([{"test": found["test"]["kind"].replace("_", " "), **found["cost"]} for found in states])
     return table.groupby("test", as_index=False).agg(
         simulations=("steps", "size"),

@@ -15,7 +15,7 @@ from bulkwear.workflows.cases.equipment.motions import motion_of
 from bulkwear.workflows.cases.equipment.parameters import PART_DEFAULTS, laws_of, run_parameters
 from bulkwear.workflows.cases.equipment.phases import next_block
 from bulkwear.workflows.config.layers import ConfigError
-from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, register
+from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, Run, register
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import Stage
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from bulkwear.postproc.wear.directions import SliceEnds
 
 SECONDS_PER_HOUR = 3600.0
+BY_MASS = "change_out_worn_mass_fraction"  # key of the operation
 OF_WEAR = (*PART_DEFAULTS, "law_parameters")  # keys of a part
 OF_DURATION = ("time_step_s", "run_in_steps", "travel_steps")  # in which parts move, and particles fly
 
@@ -44,7 +45,7 @@ class Equipment(Case):
     figure_modules = ("figures", "map_figures", "flow_figures", "lifter_figures")
     geometry = ("parts", "particle", "inlet", "filling", "outlets", "periodic", "domain")
     consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates")
-    only_told = ("wear_coefficient_error", "change_out_remaining_m")
+    only_told = ("wear_coefficient_error", "change_out_remaining_m", "change_out_by_mass")
     first_title = "start-up"
     leftovers = ()
     kept = ("patches.csv", "parts.csv", "flow.csv")
@@ -81,7 +82,15 @@ class Equipment(Case):
         derived = {key: parameters["derived"][key] for key in OF_DURATION}
         remaining = parameters["operation"].get("change_out_remaining_m", 0.0)
         sections = super().surface_sections(parameters)
-        return {**sections, "parts": parts, "derived": derived, "change_out_remaining_m": remaining}
+        judged = {"change_out_remaining_m": remaining}
+        if BY_MASS in parameters["operation"]:
+            judged["change_out_by_mass"] = True
+        return {**sections, "parts": parts, "derived": derived, **judged}
+
+    def check_files(self, runs: Sequence[Run]) -> None:
+        """Raise ConfigError for a drawing without the solid that is named, or in a unit that makes it far too large."""
+        for run in runs:
+            self.run_stages(run.parameters, None)
 
     def slice_ends(self, parameters: Parameters) -> SliceEnds | None:
         """Return the ends of the slice in which a machine is periodic."""

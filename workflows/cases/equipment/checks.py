@@ -7,28 +7,27 @@ from collections.abc import Mapping
 from typing import Any
 
 from bulkwear.postproc.wear.laws import LAWS
-from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED, motion_faults, motion_of
-from bulkwear.workflows.cases.equipment.parameters import most_blocks, start_up_blocks
+from bulkwear.workflows.cases.equipment.motion_checks import MOTION_CHECKS
+from bulkwear.workflows.cases.equipment.parameters import REPORTS, SECONDS_PER_HOUR, most_blocks, start_up_blocks
 from bulkwear.workflows.cases.equipment.placing import largest_diameter
-from bulkwear.workflows.cases.equipment.room_checks import ROOM_CHECKS
+from bulkwear.workflows.cases.equipment.room_checks import ROOM_CHECKS, T_PER_H
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres, physical_modulus_known
 from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.engine.derived import whole_steps
+from bulkwear.workflows.engine.pouring import particles_of_mass
 
 LONGEST_NAME = 100  # letters of a part's or an outlet's name: texts of the solver hold 200, with a word of its own
 LEAST_PATCH_DIAMETERS = 2.5  # of an area patch, in median particles: a smaller one is hit by single particles
 SHORTEST_BLOCK_CONTACTS = 10.0  # of a block, in contacts of the largest particles: what is shorter counts single hits
 IMPACT_VELOCITY = 1.0  # m/s, of such a contact; its time depends on the fifth root of it
 HERTZ_TIME = 2.87  # -, of the time that an elastic impact of spheres takes (Johnson, Contact Mechanics, 1985, 11.24)
+FEWEST_PARTICLES = 10.0  # that come in within a block, or that a machine is filled with: fewer tell nothing of wear
+MOST_FOR_PICTURES = 1.25  # -, time steps of a block, over those that it has without pictures
+LONGEST_OPERATION = 500_000.0  # h, as of operation.duration_h
 MOST_STEPS = 50_000_000  # of a run: with ten thousand particles they take a core about a week
 MOST_PARTICLES = 20_000_000  # in a machine: some 20 GB of memory
+HOW_IT_WEARS = ("wear_coefficient_per_pa", "wear_coefficient_error", "law")  # keys of a part
 RULES = ("remaining_m", "remaining_fraction", "worn_mass_fraction")  # of a change-out
-# keys of a motion as parameters have them -> as a study has them
-WRITTEN = {
-    next(iter(to_si({key: 0.0}))): key
-    for key in ("point_mm", "speed_rpm", "amplitude_mm", "amplitude_deg", "phase_deg")
-}
-DIRECTIONS = ("axis", "velocity_m_per_s", "amplitude_m")  # of a motion, which must not be 0
-PACES = ("speed_rad_per_s", "amplitude_rad")  # neither
 
 
 def summed_by_the_solver(run: CheckedRun) -> Fault | None:
@@ -61,8 +60,9 @@ def bodies_named_once(run: CheckedRun) -> Fault | None:
     for part in run.parameters["parts"]:
         for other in seen.setdefault(part["file"], []):
             named = {part.get("solid"), other.get("solid")}
-            if len(named) == 1 and None not in named:
-                return f"parts.{part['name']}.solid", f"a solid of its own, that one is parts.{other['name']}"
+            if len(named) == 1 and (None not in named or part["motion"] == other["motion"]):
+                key = "file" if None in named else "solid"
+                return f"parts.{part['name']}.{key}", f"a {key} of its own, that one is parts.{other['name']}"
             if len(named) == 2 and None in named:
                 whole, single = (part, other) if "solid" not in part else (other, part)
                 return f"parts.{whole['name']}.file", (
@@ -73,43 +73,13 @@ def bodies_named_once(run: CheckedRun) -> Fault | None:
     return None
 
 
-def motions_complete(run: CheckedRun) -> Fault | None:
-    """Each motion has the keys that its kind needs, and none that it cannot use."""
-    for part, motion in _moving(run):
-        if fault := motion_faults(motion):
-            name, kind = WRITTEN.get(fault[0], fault[0]), motion["kind"]
-            known = [WRITTEN.get(each, each) for each in (*NEEDED[kind], *FREE.get(kind, ()))]
-            needed = ", ".join(known[: len(NEEDED[kind])])
-            free = f", and as you like {', '.join(known[len(NEEDED[kind]) :])}" if kind in FREE else ""
-            key = f"parts.{part}.motion.{name}"
-            if fault[1] == "missing":
-                return key, f"{kind} with {needed}{free}"
-            return key, f"none for the kind {kind}, which has {needed}{free}"
+def rigid_parts_do_not_wear(run: CheckedRun) -> Fault | None:
+    """A part that keeps its shape has nothing that says how it wears, unless a design asks for both of it."""
+    for name, part in run.settings["parts"].items():
+        given = next((key for key in HOW_IT_WEARS if key in part), None)
+        if part["role"] == "rigid" and given and f"parts.{name}.role" not in run.columns:
+            return f"parts.{name}.{given}", "none for a part with role: rigid, which does not wear, or role: wears"
     return None
-
-
-def motions_move(run: CheckedRun) -> Fault | None:
-    """Motions have a direction and a pace, stop after they have started, and start while the machine starts up."""
-    start_up = run.parameters["start_up"]["most_s"]
-    for part, motion in _moving(run):
-        still = next((name for name in DIRECTIONS if name in motion and not any(motion[name])), None)
-        still = still or next((name for name in PACES if motion.get(name) == 0.0), None)
-        key = f"parts.{part}.motion"
-        if still:
-            many = "numbers that are not all 0" if still in DIRECTIONS else "a number other than 0"
-            return f"{key}.{WRITTEN.get(still, still)}", f"{many}, or a part without motion"
-        full = motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0)
-        if motion.get("stop_s", math.inf) < full:
-            return f"{key}.stop_s", f"at least {full:g} s, start_s and ramp_s together"
-        if full > start_up:
-            late = "start_s" if "start_s" in motion else "ramp_s"
-            return f"{key}.{late}", f"full speed within start_up.most_s, {start_up:g} s, found {full:g} s"
-        motion_of(motion)  # raises ValueError for what is not known here
-    return None
-
-
-def _moving(run: CheckedRun) -> list[tuple[str, Mapping[str, Any]]]:
-    return [(part["name"], part["motion"]) for part in run.parameters["parts"] if part["motion"]]
 
 
 def thin_phrase(thickness: float, source: str) -> str:
@@ -170,6 +140,15 @@ def _has_parameters(part: Mapping[str, Any]) -> bool:
     return all(name in given and low <= given[name] <= highest[name] for name, low in lowest.items())
 
 
+def operation_within_reason(run: CheckedRun) -> Fault | None:
+    """Megatonnes take no longer than hours may that are given."""
+    operation, hours = run.parameters["operation"], run.parameters["derived"]["operation_s"] / SECONDS_PER_HOUR
+    if "throughput_kg" not in operation or hours <= LONGEST_OPERATION:
+        return None
+    most = run.settings["operation"]["throughput_mt"] * LONGEST_OPERATION / hours
+    return "operation.throughput_mt", f"at most {most:.3g} Mt, {LONGEST_OPERATION:g} h at inlet.rate_t_per_h"
+
+
 def fed_what_is_predicted(run: CheckedRun) -> Fault | None:
     """Megatonnes are those of a feed."""
     if "throughput_kg" not in run.parameters["operation"] or run.parameters["inlet"]:
@@ -221,6 +200,23 @@ def blocks_in_order(run: CheckedRun) -> Fault | None:
     return "sampling.fewest_blocks", f"at most {sampling['most_blocks']}, sampling.most_blocks"
 
 
+def blocks_see_particles(run: CheckedRun) -> Fault | None:
+    """A block of a machine that is fed sees some particles come in, a machine that is filled holds some."""
+    inlet, filling = run.parameters["inlet"], run.parameters["filling"]
+    few, least = f"{FEWEST_PARTICLES:g} particles", FEWEST_PARTICLES
+    if filling:
+        found = run.parameters["derived"]["held_particles"]
+        return None if inlet or found >= least else ("filling.fraction", f"{few} or more, found {found:.2g}")
+    rate = inlet["rate_kg_per_s"]
+    found = particles_of_mass(run.parameters["particle"], rate * run.parameters["sampling"]["block_s"])
+    if found >= least:
+        return None
+    return "inlet.rate_t_per_h", (
+        f"at least {T_PER_H * rate * least / found:.3g} t/h, {few} in a block, found {found:.2g}; or a longer"
+        " sampling.block_s"
+    )
+
+
 def blocks_long_enough(run: CheckedRun) -> Fault | None:
     """A block is longer than some contacts of particles."""
     least = SHORTEST_BLOCK_CONTACTS * contact_time(run.parameters)
@@ -235,6 +231,19 @@ def contact_time(parameters: Mapping[str, Any]) -> float:
     mass = particle["density_kg_per_m3"] * math.pi / 6.0 * (2.0 * radius) ** 3
     modulus = 0.5 * parameters["derived"]["youngs_moduli_pa"][0] / (1.0 - particle["poissons_ratio"] ** 2)
     return HERTZ_TIME * ((0.5 * mass) ** 2 / (0.5 * radius * modulus**2 * IMPACT_VELOCITY)) ** 0.2
+
+
+def pictures_divide_a_block(run: CheckedRun) -> Fault | None:
+    """Pictures are at equal steps, as rows of the flow's table are: their number makes time steps hardly shorter."""
+    derived = run.parameters["derived"]
+    steps, needed = derived["first_cycle_steps"], derived["largest_time_step_s"]
+    alone, _ = whole_steps(run.parameters["sampling"]["block_s"], needed, REPORTS)
+    if steps <= MOST_FOR_PICTURES * alone:
+        return None
+    return "sampling.pictures_per_block", (
+        f"a number that divides {REPORTS}, or another one that makes no more than {MOST_FOR_PICTURES * alone:.4g} time"
+        f" steps of a block, as this makes {steps}"
+    )
 
 
 def steps_within_reason(run: CheckedRun) -> Fault | None:
@@ -267,8 +276,8 @@ EQUIPMENT_CHECKS: tuple[Check, ...] = (
     names_short_enough,
     some_part_wears,
     bodies_named_once,
-    motions_complete,
-    motions_move,
+    rigid_parts_do_not_wear,
+    *MOTION_CHECKS,
     *ROOM_CHECKS,
     liner_thicker_than_elements,
     wear_as_predicted,
@@ -276,11 +285,14 @@ EQUIPMENT_CHECKS: tuple[Check, ...] = (
     laws_have_parameters,
     physical_modulus_known,
     fed_what_is_predicted,
+    operation_within_reason,
     one_change_out_rule,
     liner_left_to_wear,
     patches_large_enough,
     blocks_in_order,
     blocks_long_enough,
+    blocks_see_particles,
+    pictures_divide_a_block,
     steps_within_reason,
     particles_within_reason,
 )

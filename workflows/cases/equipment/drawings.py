@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.project import current_project
@@ -28,6 +30,12 @@ def drawing_source(name: str) -> Path:
         f"{MESHES}/{name}: there is no such file, and no {SCRIPT} in its folder that draws it; allowed is a CAD or "
         f"mesh file in {MESHES} of the project or the package."
     )
+
+
+def check_solid(part: Mapping[str, Any], names: Iterable[str]) -> None:
+    """Raise ConfigError for a part whose solid is not among the names of its drawing's."""
+    if "solid" in part and part["solid"] not in names:
+        raise ConfigError(f"parts.{part['name']}.solid is '{part['solid']}', allowed is one of {', '.join(names)}.")
 
 
 def drawing_digest(name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ from bulkwear.workflows.cases.equipment.tables import (
     with_ends,
 )
 
-HOURS_OF_REMAINING = 1e-9  # -, of the hours that are asked for: nearer ones are the same
+HOURS_OF_REMAINING = 1e-6  # -, of the hours that are asked for: nearer ones are the same
 SIMULATED, BEYOND = "simulated", "last rate goes on"
 Lives = Mapping[tuple[str, str], PartLife]
 
@@ -202,8 +203,11 @@ REMAINING = [
 
 
 def _hours_told(updates: np.ndarray, worn_for: float, operation: Mapping[str, Any]) -> list[float]:
+    """Return those hours in order, each once: sums of updates and what is asked for differ by rounding."""
     asked = operation.get("duration_s", 0.0) / SECONDS_PER_HOUR
-    return sorted({*(float(hours) for hours in updates if hours <= worn_for), float(worn_for), float(asked)})
+    told = sorted({*(float(hours) for hours in updates if hours <= worn_for), float(worn_for), float(asked)})
+    same = [after - hours <= HOURS_OF_REMAINING * after for hours, after in pairwise(told)]
+    return [hours for hours, again in zip(told, [*same, False], strict=True) if not again]
 
 
 # ---------------------------------------------------------------- steel

@@ -17,17 +17,19 @@ from typing import Any
 import igl
 import numpy as np
 
-from bulkwear.meshes.own.read import read_solids
+from bulkwear.meshes.own.read import check_file, read_solids
 from bulkwear.meshes.own.solids import UNITS
 from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
 from bulkwear.postproc.wear.bodies import body
+from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.postproc.wear.side import connected_pieces
 from bulkwear.postproc.wear.thickness import thickness_to_back
 from bulkwear.workflows.cases.equipment.checks import thin_phrase
-from bulkwear.workflows.cases.equipment.decks import domain, longest_s, skin
+from bulkwear.workflows.cases.equipment.decks import domain, longest_s, moving_mesh, skin
 from bulkwear.workflows.cases.equipment.drawings import drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of
 from bulkwear.workflows.cases.equipment.placing import filling_box, largest_diameter, placing_room
+from bulkwear.workflows.cases.equipment.stream_checks import check_stream
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, looks, room_needed
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.run_checks import millimetres
@@ -39,6 +41,7 @@ OUTSIDE = 1e-8  # m; a facet whose middle is farther out is lost to the solver (
 GRAZING = 0.05  # -, of the smallest diameter: particles that overlap a wall by less are not thrown off
 FINEST = 0.01  # -, of half the longest side of such room: parts that are narrower there may be missed
 MEASURED = 0.1  # -, by which a thickness along normals may be less than the one drawn: a flight leans, a vault is bent
+WAY_OF_RADIUS = 0.5  # -, that a part may go in a time step
 WITHIN = 0.5  # -, winding number of a place within a closed body: 1, outside 0
 AXES = "xyz"
 
@@ -48,7 +51,7 @@ Parameters = Mapping[str, Any]
 def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     """Raise ConfigError, one sentence with part and key, for a machine that cannot be simulated.
 
-    run: the sections of its parameters that its surface depends on; surface: all parts as one, as they are drawn
+    run: the sections that `surface_sections` returns; surface: all parts as one, as they are drawn
     """
     parts = [body(surface, faces_of(surface, number, part)) for number, part in enumerate(run["parts"])]
     for part, mesh in zip(run["parts"], parts, strict=True):
@@ -56,7 +59,9 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     _check_cells(run, surface)
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_within(run, surface, part, mesh)
+        _check_speed(run, part, mesh)
     _check_inlet(run, parts)
+    check_stream(run, parts)
     _check_filling(run, surface, parts)
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_thickness(run, part, mesh)
@@ -73,7 +78,8 @@ def check_units(run: Parameters) -> None:
     with tempfile.TemporaryDirectory() as folder:
         for part in run["parts"]:
             try:
-                solids, scale = read_solids(drawing(part["file"], Path(folder)), part["unit"], None)
+                check_file(path := drawing(part["file"], Path(folder)))
+                solids, scale = read_solids(path, part["unit"], LARGEST_PART)  # few elements, of CAD files
             except (ValueError, OSError):
                 continue
             _check_size(run, part, scale * _diagonal(solids.points))
@@ -140,6 +146,24 @@ def _check_within(run: Parameters, surface: SurfaceMesh, part: Parameters, mesh:
                 f"parts.{part['name']}.file: {found}, from {millimetres(low[k])} to {millimetres(high[k])}, allowed is"
                 f" {millimetres(first)} to {millimetres(last)}, {section}.low_mm and {section}.high_mm: {mend}."
             )
+
+
+def _check_speed(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> None:
+    """Raise ConfigError for a part that goes through particles within a time step."""
+    if not moving_mesh(part):
+        return
+    motion, step = motion_of(part["motion"]), run["derived"]["time_step_s"]
+    ways = [
+        np.linalg.norm(motion.placed(mesh.points, time + step) - motion.placed(mesh.points, time), axis=1).max()
+        for time in looks(part["motion"], longest_s(run))
+    ]
+    most = WAY_OF_RADIUS * 0.5 * min(run["particle"]["diameters_m"])
+    if max(ways) > most:
+        raise ConfigError(
+            f"parts.{part['name']}.motion takes {part['file']} {1e3 * max(ways):.4g} mm far in a time step, at"
+            f" {max(ways) / step:.4g} m/s, allowed are {1e3 * most:.4g} mm, {WAY_OF_RADIUS:g} of the smallest radius:"
+            " it would go through particles."
+        )
 
 
 # ---------------------------------------------------------------- where material is placed
@@ -281,7 +305,19 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
     """Raise ConfigError for a liner that is thinner, over half of its area, than its elements are long, or no thicker
     than what shall remain of it.
     """
-    if not part["wears"] or "thickness_m" in part:
+    if not part["wears"]:
+        return
+    if run.get("change_out_by_mass") and not _is_closed(run, mesh):
+        raise ConfigError(
+            f"operation.change_out_worn_mass_fraction is given, and parts.{part['name']} has no mass, allowed are"
+            f" closed bodies: the surface of {part['file']} is open; change it by change_out_remaining_mm."
+        )
+    if "thickness_m" in part:
+        if part["thickness_m"] > (size := _diagonal(mesh.points)):
+            raise ConfigError(
+                f"parts.{part['name']}.thickness_mm is {1e3 * part['thickness_m']:.6g}, allowed is at most"
+                f" {millimetres(size)}, the size of {part['file']}."
+            )
         return
     thickness, source = thickness_of(mesh), f"the thickness in {part['file']}"
     if thickness < part["edge_m"] * (1.0 - MEASURED):
@@ -292,6 +328,15 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
             f"operation.change_out_remaining_mm is {1e3 * remaining:.6g}, allowed is below {millimetres(thickness)},"
             f" {source}, of parts.{part['name']}."
         )
+
+
+def _is_closed(run: Parameters, mesh: SurfaceMesh) -> bool:
+    """Return whether a part has no open edge but at an end of the slice."""
+    rim, periodic = mesh.points[boundary_nodes(mesh.triangles)], run["periodic"]
+    if not len(rim) or not periodic:
+        return not len(rim)
+    along = rim[:, AXES.index(periodic["axis"])]
+    return bool((np.minimum(abs(along - periodic["low_m"]), abs(along - periodic["high_m"])) < ON_END).all())
 
 
 def thickness_of(mesh: SurfaceMesh) -> float:

@@ -22,11 +22,11 @@ Parameters = Mapping[str, Any]
 
 def parts_table(runs: Mapping[str, Parameters]) -> pd.DataFrame:
     """Return a row per part; runs: {setting: parameters of its first run}. Settings with equal parts share rows."""
-    rows: dict[tuple, dict[str, Any]] = {}
+    rows: dict[str, dict[str, Any]] = {}
     for setting, run in runs.items():
         for part in run["parts"]:
             row = _part_row(part)
-            rows.setdefault(tuple(row.values()), {"setting": [], **row})["setting"].append(setting)
+            rows.setdefault(repr(row), {"setting": [], **row})["setting"].append(setting)
     found = [{**row, "setting": ", ".join(row["setting"])} for row in rows.values()]
     table = pd.DataFrame(found)
     alike = len(runs) == 1 or set(table["setting"]) == {", ".join(runs)}
@@ -38,8 +38,7 @@ def _part_row(part: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "part": part["name"],
         "role": "wears" if wears else "rigid",
-        "file": part["file"],
-        "solid": part.get("solid", ""),
+        "file": ": ".join(filter(None, [part["file"], part.get("solid")])),  # which is no word, and told as it is
         "material": part["material"],
         "thickness_mm": part.get("thickness_m", math.nan) * MILLIMETRES,
         "edge_mm": part["edge_m"] * MILLIMETRES,

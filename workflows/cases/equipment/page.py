@@ -119,12 +119,13 @@ def update_words(most: int) -> str:
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than in the plant, besides scale and wear."""
     settings, runs = study["settings"], list(study["parameters"].values())
+    scales = range_text([run["particle"]["scale"] for run in runs], 4)
     diameters = [1e3 * diameter for run in runs for diameter in run["particle"]["diameters_m"]]
     errors = [100.0 * part["wear_coefficient_error"] for run in runs for part in run["parts"] if part["wears"]]
     return [
         (
             "Coarse-grained particles",
-            f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm, {settings['particle_scale']:g} times the "
+            f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm, {scales} times the "
             "real ones, of the same density and feed in t/h. Shape that is not round is represented by rolling "
             f"friction ({settings['solver']['rolling_friction']}) alone. Impacts are fewer and harder than real ones.",
         ),

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from bulkwear.workflows.cases.equipment.decks import SHELL_SHARE, room_round
+from bulkwear.workflows.cases.equipment.decks import FASTEST, SHELL_SHARE, room_round
 from bulkwear.workflows.cases.equipment.placing import (
     LEAST_SIDE_DIAMETERS,
     filling_box,
@@ -17,6 +18,7 @@ from bulkwear.workflows.cases.equipment.placing import (
     normal_velocity,
     placing_room,
 )
+from bulkwear.workflows.cases.equipment.surfaces import rectangle
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres
 
 LEAST_NORMAL_VELOCITY = 1e-3  # m/s, through an inlet: below it the solver stops
@@ -24,6 +26,8 @@ LEAST_NORMAL_VELOCITY = 1e-3  # m/s, through an inlet: below it the solver stops
 # and the solver mixes what it knows of the two contacts.
 LEAST_SLICE_DIAMETERS = 2.5
 TOUCHING = 1e-6  # m; ends that are equal in the drawing and in the settings
+LOOKING_UP = 0.5  # -, z of the unit normal of a rectangle that looks up
+GRAVITY = 9.81  # m/s2
 T_PER_H = 3.6  # of a kg/s
 AXES = "xyz"
 
@@ -40,6 +44,80 @@ def outlet_there(run: CheckedRun) -> Fault | None:
     if run.parameters["outlets"] or not run.parameters["inlet"]:
         return None
     return "outlets", "one outlet or more where there is an inlet, else material heaps up for ever"
+
+
+def particles_fit_outlets(run: CheckedRun) -> Fault | None:
+    """The sides of outlets are the diameter of the largest particles or more."""
+    least = largest_diameter(run.parameters)
+    for name, given in (run.parameters["outlets"] or {}).items():
+        if min(given["size_m"]) < least:
+            reason = "the largest particles, as coarse-grained; far larger ones cost nothing"
+            return f"outlets.{name}.size_mm", f"sides of at least {millimetres(least)}, {reason}"
+    return None
+
+
+def outlets_are_reached(run: CheckedRun) -> Fault | None:
+    """Where nothing moves, material falls: not all outlets are above it, and none below the inlet looks up."""
+    outlets, inlet = run.parameters["outlets"] or {}, run.parameters["inlet"]
+    if not inlet or any(part["motion"] for part in run.parameters["parts"]):
+        return None
+    for name, given in outlets.items():
+        upward = given["normal"][2] / np.linalg.norm(given["normal"])
+        if upward > LOOKING_UP and _heights(given).max() < _heights(inlet).min():
+            reason = "whither material leaves: it falls, against the normal it would not be counted; turn it round"
+            return f"outlets.{name}.normal", reason
+    rise = 0.5 * float(np.dot(inlet["velocity_m_per_s"], inlet["velocity_m_per_s"])) / GRAVITY
+    highest = float(max(placing_room(run.parameters)[:, 2].max(), _filled_up_to(run.parameters))) + rise
+    if outlets and min(_heights(given).min() for given in outlets.values()) > highest:
+        reason = "as high as material gets where no part moves"
+        return f"outlets.{next(iter(outlets))}.centre_mm", f"a place below z = {millimetres(highest)}, {reason}"
+    return None
+
+
+def _heights(given: Mapping[str, Any]) -> np.ndarray:
+    """Return z (m) of the corners of a rectangle."""
+    return rectangle(given).points[:, 2]
+
+
+def _filled_up_to(parameters: Mapping[str, Any]) -> float:
+    return float(filling_box(parameters)[1, 2]) if parameters["filling"] else -np.inf
+
+
+def outlets_apart(run: CheckedRun) -> Fault | None:
+    """No two outlets lie on each other: the solver ends where it takes a particle out twice in a step."""
+    least, seen = FASTEST * run.parameters["derived"]["time_step_s"], {}
+    for name, given in (run.parameters["outlets"] or {}).items():
+        for other, before in seen.items():
+            away = _over(before, rectangle(given).points)
+            if away is not None and np.abs(away).max() < least:
+                key = f"outlets.{name}.centre_mm"
+                return key, f"a place at least {millimetres(least)} before or behind outlets.{other}, or beside it"
+        seen[name] = given
+    return None
+
+
+def filling_before_outlets(run: CheckedRun) -> Fault | None:
+    """No part of the cylinder that is filled lies beyond an outlet, where particles are placed and never counted."""
+    if not run.parameters["filling"]:
+        return None
+    box = np.array(list(itertools.product(*filling_box(run.parameters).T)))
+    for name, given in (run.parameters["outlets"] or {}).items():
+        away = _over(given, box)
+        if away is not None and away.max() > TOUCHING:
+            return "filling.centre_mm", (
+                f"a place from which the cylinder that is filled does not stand out through outlets.{name}, as it does"
+                f" by {millimetres(float(away.max()))}"
+            )
+    return None
+
+
+def _over(given: Mapping[str, Any], points: np.ndarray) -> np.ndarray | None:
+    """Return how far (n,) m places (n, 3) m lie beyond the plane of a rectangle; None where they lie beside it."""
+    corners = rectangle(given).points
+    sides, normal = corners[[1, 3]] - corners[0], np.asarray(given["normal"]) / np.linalg.norm(given["normal"])
+    along = (points - corners[0]) @ sides.T / (sides**2).sum(axis=1)
+    beside = (along.min(axis=0) >= 1.0).any() or (along.max(axis=0) <= 0.0).any()
+    return None if beside else (points - corners[0]) @ normal
 
 
 def rectangles_look_somewhere(run: CheckedRun) -> Fault | None:
@@ -198,6 +276,10 @@ ROOM_CHECKS: tuple[Check, ...] = (
     material_comes_in,
     outlet_there,
     rectangles_look_somewhere,
+    particles_fit_outlets,
+    outlets_are_reached,
+    outlets_apart,
+    filling_before_outlets,
     velocity_through_inlet,
     particles_fit_inlet,
     rate_fits_inlet,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
@@ -15,13 +16,14 @@ from bulkwear.meshes.own.mesh import OwnMesh, own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.wear.bodies import body, together
 from bulkwear.postproc.wear.directions import ON_END
-from bulkwear.workflows.cases.equipment.drawings import drawing
+from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of, turn_s
 from bulkwear.workflows.config.layers import ConfigError
 
 POSES = 64  # of a moving part in a run, and in a turn, of which the room that it needs is made
 ALIKE = 1e-6  # relative, areas of a part's two ends
 FEED_CELLS = 8  # along each side of an inlet; still as large as a particle where it is eight particles wide
+TOLD = ("facets turned round", "open pieces", "warning")  # repairs of a drawing that its owner should know of
 PLACES = ("the whole of its motion", "where it stands")
 
 Part = Mapping[str, Any]
@@ -55,10 +57,14 @@ def part_surface(
     except (ValueError, OSError) as fault:
         raise ConfigError(f"{name}: {fault}.") from fault
     surface = found.surface
+    for repair in found.repairs:
+        if repair.repair.startswith(TOLD) and repair.part == part.get("solid", repair.part):
+            place = ", ".join(f"{1e3 * value:.4g}" for value in repair.place_m)
+            words = f"{repair.repair}, {repair.count} times, the first at ({place}) mm"
+            print(f"{name}: {part['file']}, {repair.part}: {words}.", file=sys.stderr)
     if "solid" in part:
         names = [each.name for each in found.parts]
-        if part["solid"] not in names:
-            raise ConfigError(f"{name}.solid is '{part['solid']}', allowed is one of {', '.join(names)}.")
+        check_solid(part, names)
         surface = body(surface, surface.cell_data["part"] == names.index(part["solid"]))
     labels = np.full(len(surface.triangles), label_of(number, part), dtype=np.int64)
     return SurfaceMesh(surface.points, surface.triangles, {"part": labels})

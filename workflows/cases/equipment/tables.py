@@ -6,7 +6,6 @@ A run's values are what a job is told of it, see `values_of_runs`. Blocks are av
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.tables.summary import NAMES, THROUGH
 from bulkwear.workflows.cases.equipment.phases import PRISTINE, START_UP, WEARING, WORN
 from bulkwear.workflows.engine.chain import WORN_THROUGH
+from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.state import STATE
 
 if TYPE_CHECKING:
@@ -247,6 +247,6 @@ def _worn_through(wear: pd.DataFrame, folder: Path) -> dict[str, Any]:
     if through.empty:
         return found
     first = through.iloc[0]
-    state = json.loads((folder / f"cycle_{int(first['cycle']):03d}" / STATE).read_text())
+    state = read_record(folder / f"cycle_{int(first['cycle']):03d}" / STATE)
     said = state.get(WORN_THROUGH, f"at {(nodes := int(first[THROUGH]))} node{'s' * (nodes > 1)}")
     return found | {"through_h": float(first["operation_h"] + first["stands_for_h"]), "through_said": said}

@@ -9,8 +9,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from bulkwear.meshes.own.refine import MOST_TRIANGLES
 from bulkwear.workflows.cases.equipment.decks import moving_mesh, skin
-from bulkwear.workflows.cases.equipment.drawings import drawing, drawing_digest
+from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing, drawing_digest
 from bulkwear.workflows.engine.work import Stage, bytes_of_run
 
 SPEED = 3.0  # m/s, of the fastest particles, which say how often lists of neighbours are made; a fall of half a metre
@@ -25,10 +26,14 @@ Parameters = Mapping[str, Any]
 
 
 def run_stages(run: Parameters) -> tuple[Stage, ...]:
-    """Return the first block, and all others that there may be."""
+    """Return the first block, and all others that there may be. Raises ConfigError for a drawing in a wrong unit."""
     derived = run["derived"]
     particles, parts = derived["held_particles"], run["parts"]
     counts = [triangles_of(part) for part in parts]
+    if max(counts) > MOST_TRIANGLES:
+        from bulkwear.workflows.cases.equipment.machine_checks import check_units  # slow to import
+
+        check_units(run)  # a wrong unit may be why; what is not is told when it is meshed
     triangles = sum(
         count * (MOVING_OVER_RESTING if moving_mesh(part) else 1.0) for part, count in zip(parts, counts, strict=True)
     )
@@ -51,12 +56,16 @@ def run_bytes(run: Parameters) -> float:
 
 
 def triangles_of(part: Parameters) -> float:
-    """Return about how many triangles a part gets, by the area of its drawing, which is meshed later."""
+    """Return about how many triangles a part gets, by the area of its drawing, which is meshed later.
+
+    Raises ConfigError for a solid that is not in it.
+    """
     try:
         areas = _areas(part["file"], part["unit"], drawing_digest(part["file"]))
-        area = areas[part["solid"]] if "solid" in part else sum(areas.values())
-    except (ValueError, OSError, KeyError):
+    except (ValueError, OSError):
         return UNREADABLE
+    check_solid(part, areas)
+    area = areas[part["solid"]] if "solid" in part else sum(areas.values())
     return OVER_EQUILATERAL * area / (EQUILATERAL * part["edge_m"] ** 2)
 
 

@@ -13,9 +13,9 @@ from bulkwear.workflows.cases.equipment.checks import (
     EQUIPMENT_CHECKS,
     MOST_PARTICLES,
     MOST_STEPS,
-    WRITTEN,
     contact_time,
 )
+from bulkwear.workflows.cases.equipment.motion_checks import WRITTEN
 from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED
 from bulkwear.workflows.cases.equipment.placing import (
     DEPTH_DIAMETERS,
@@ -34,7 +34,7 @@ FILE = "config/studies/machine.yaml"
 TABLE = "config/designs/machine.csv"
 LARGEST_MM = 14.4  # of the ore: 1.2 times 3 mm, at a particle scale of 4
 TURNS = {"kind": "rotation", "point_mm": [60, 0, -220], "axis": [0, 1, 0], "speed_rpm": 60}
-FILLING = {"fraction": 0.2, "axis": "y", "centre_mm": [0, 0, -300], "radius_mm": 60, "length_mm": 80}
+FILLING = {"fraction": 0.2, "axis": "y", "centre_mm": [0, 0, -280], "radius_mm": 60, "length_mm": 80}
 ONLY_FILLED = {"inlet": None, "outlets": None, "filling": FILLING}
 SLICE = {"axis": "y", "low_mm": -50, "high_mm": 50}
 DOMAIN = {"low_mm": [-600, -300, -500], "high_mm": [600, 300, 300]}
@@ -75,6 +75,23 @@ PARTS = [
         {"parts": {"plate": {"file": "liner.stl", "solid": "b"}}},
         "parts.liner.file is 'liner.stl'",
         "parts.liner.solid, the body that is meant",
+    ),
+    (
+        {"parts": {"plate": {"file": "liner.stl"}}},
+        "parts.plate.file is 'liner.stl'",
+        "a file of its own, that one is parts.liner",
+    ),
+    *(
+        (
+            {"parts": {"hood": {key: value}}},
+            f"parts.hood.{key} is",
+            "none for a part with role: rigid, which does not wear, or role: wears",
+        )
+        for key, value in (
+            ("wear_coefficient_per_pa", 1e-12),
+            ("wear_coefficient_error", 0.1),
+            ("law", "archard"),
+        )
     ),
     (
         {"parts": {"liner": {"thickness_mm": 20}}},
@@ -140,6 +157,19 @@ MOTIONS = [
         "at least 0.2 s, start_s and ramp_s together",
     ),
     (
+        motion(**TURNS, stop_s=0),
+        "parts.plate.motion.stop_s is 0",
+        "above 0 s: the part would never move",
+    ),
+    *(
+        (
+            motion(kind="oscillation", amplitude_mm=[0, 0, 1], period_s=period),
+            f"parts.plate.motion.period_s is {period}",
+            "20 time steps to the longest that the run may get",
+        )
+        for period in (0.002, 2)
+    ),
+    (
         motion(**TURNS, start_s=0.4, ramp_s=0.1),
         "parts.plate.motion.start_s is 0.4",
         "full speed within start_up.most_s, 0.45 s, found 0.5 s",
@@ -185,7 +215,33 @@ FEED = [
         "at least 18 mm, half of 2.5 of the largest particles",
     ),
 ]
+STILL = {"parts": {"paddle": None}}  # nothing moves
 ROOM = [
+    (
+        {"outlets": {"below": {"size_mm": [900, 14]}}},
+        "outlets.below.size_mm is [900, 14]",
+        "sides of at least 14.4 mm, the largest particles, as coarse-grained",
+    ),
+    (
+        {**STILL, "outlets": {"below": {"centre_mm": [0, 0, 345]}}},
+        "outlets.below.centre_mm is [0, 0, 345]",
+        "a place below z = 254.",  # 160 mm, 3 diameters of 14.4 mm and 1 m/s upward
+    ),
+    (
+        {**STILL, "outlets": {"below": {"normal": [0, 0, 1]}}},
+        "outlets.below.normal is [0, 0, 1]",
+        "whither material leaves: it falls, against the normal it would not be counted; turn it round",
+    ),
+    (
+        {"outlets": {"again": {**SETTINGS["outlets"]["below"], "centre_mm": [300, 0, -345.5]}}},
+        "outlets.again.centre_mm is [300, 0, -345.5]",
+        "mm before or behind outlets.below, or beside it",  # 1.2 mm, at 10 m/s in a step
+    ),
+    (
+        {"filling": {**FILLING, "centre_mm": [0, 0, -320]}},
+        "filling.centre_mm is [0, 0, -320]",
+        "does not stand out through outlets.below, as it does by 35 mm",
+    ),
     (
         {"periodic": {**SLICE, "axis": "z"}},
         "periodic.axis is 'z'",
@@ -220,7 +276,7 @@ ROOM = [
     ),
     (
         {**ONLY_FILLED, "periodic": {**SLICE, "high_mm": 30}},
-        "filling.centre_mm is [0, 0, -300]",
+        "filling.centre_mm is [0, 0, -280]",
         "the cylinder that is filled does not stand out of periodic, -50 mm to 30 mm along y, as it does by 10 mm",
     ),
     (
@@ -244,6 +300,11 @@ WEAR = [
         "operation.duration_h in its place where there is no inlet to count tonnes at",
     ),
     (
+        {"operation": {"duration_h": None, "throughput_mt": 10}},
+        "operation.throughput_mt is 10",
+        "at most 0.75 Mt, 500000 h at inlet.rate_t_per_h",  # 1.5 t/h
+    ),
+    (
         {"operation": {"change_out_remaining_fraction": 0.3}},
         "operation.change_out_remaining_fraction is 0.3",
         "one rule of change-out, operation.change_out_remaining_mm is there already",
@@ -260,6 +321,21 @@ WEAR = [
     ),
 ]
 EFFORT = [
+    (
+        {"inlet": {"rate_t_per_h": 0.4}},
+        "inlet.rate_t_per_h is 0.4",
+        "at least 0.429 t/h, 10 particles in a block, found 9.3; or a longer sampling.block_s",
+    ),
+    (
+        {**ONLY_FILLED, "filling": {**FILLING, "fraction": 0.001}},
+        "filling.fraction is 0.001",
+        "10 particles or more, found",
+    ),
+    (
+        {"sampling": {"pictures_per_block": 997}},
+        "sampling.pictures_per_block is 997",
+        "a number that divides 20, or another one that makes no more than 1525 time steps of a block, as this makes",
+    ),
     (
         {"sampling": {"patch_mm": 29}, "parts": {"plate": {"edge_mm": 20}}},
         "sampling.patch_mm is 29",
@@ -301,17 +377,27 @@ def test_what_a_row_asks_for_is_named_with_its_line(tmp_path):
     assert message.startswith(f"{TABLE}, line 3, row high: inlet.rate_t_per_h is 20, allowed is at most 14.31 t/h")
 
 
+def test_a_design_may_choose_which_parts_wear(tmp_path):
+    """What says how a part wears stands in the study, and a row makes the part rigid."""
+    with machine_study(tmp_path, "row,parts.liner.role\nA,\nB,rigid\n") as study:
+        assert [run.parameters["parts"][0]["wears"] for run in study.runs] == [True, False]
+
+
+def test_the_particle_scale_may_be_a_column(tmp_path):
+    """It is a setting as any other, though it stands in no block."""
+    with machine_study(tmp_path, "row,particle_scale\nA,4\nB,5\n") as study:
+        assert [run.parameters["particle"]["scale"] for run in study.runs] == [4, 5]
+
+
 def test_a_law_of_a_part_finds_its_parameters(tmp_path):
-    """Parameters are those of wear.law: another law with parameters is refused for what wears, not for the rest."""
+    """Parameters are those of wear.law: another law with parameters is refused for what wears."""
     with long_slip_registered():
         message = message_of(tmp_path, parts={"liner": {"law": "long_slip"}})
         assert "parts.liner.law is 'long_slip' for row A, allowed is wear.law (archard)" in message
         assert "or one without any: archard, finnie" in message
         chosen = {"law": "long_slip", "parameters": {"exponent": 2}}
-        with machine_study(tmp_path, wear=chosen, parts={"hood": {"law": "long_slip"}}) as study:
+        with machine_study(tmp_path, wear=chosen) as study:
             assert study.runs[0].parameters["parts"][0]["law_parameters"] == {"exponent": 2.0, "length_m": 0.002}
-        with machine_study(tmp_path, parts={"hood": {"law": "long_slip"}}) as study:
-            assert study.runs
 
 
 @pytest.mark.parametrize(
@@ -336,7 +422,7 @@ def test_kernels_of_a_part_s_own_law_are_asked_of_the_solver(tmp_path):
     """
     with machine_study(tmp_path / "a") as study:
         assert "no contact kernel finnie_work" in cycle_fault(sys.executable, study.case, study.runs[0].parameters)
-    with machine_study(tmp_path / "b", parts={"plate": {"role": "rigid"}}) as study:
+    with machine_study(tmp_path / "b", "row,parts.plate.role\nA,rigid\n") as study:
         assert cycle_fault(sys.executable, study.case, study.runs[0].parameters) is None
 
 
@@ -353,8 +439,18 @@ def test_kernels_of_a_part_s_own_law_are_asked_of_the_solver(tmp_path):
         {"operation": {"change_out_remaining_mm": None, "change_out_worn_mass_fraction": 0.3}},
         {"parts": {"liner": {"edge_mm": 30, "thickness_mm": 30}}},
         {"parts": {"hood": {"thickness_mm": 1}}},
+        STILL,
+        {**STILL, "outlets": {"side": {"centre_mm": [400, 0, 345], "normal": [1, 0, 0], "size_mm": [900, 800]}}},
+        {"sampling": {"pictures_per_block": 7}},
+        *(
+            {"outlets": {"other": {**SETTINGS["outlets"]["below"], "centre_mm": centre}}}
+            for centre in ([0, 0, -347], [900, 0, -345])
+        ),
         {"inlet": {"normal": [0, 0, -5], "velocity_m_per_s": [3, 0, -0.5]}},
-        {"parts": {"inlet": SETTINGS["parts"]["hood"]}, "outlets": {"liner": SETTINGS["outlets"]["below"]}},
+        {
+            "parts": {"hood": None, "inlet": SETTINGS["parts"]["hood"]},
+            "outlets": {"below": None, "liner": SETTINGS["outlets"]["below"]},
+        },
         *(motion(**given) for given in ({**TURNS, "ramp_s": 0.2}, {"kind": "belt", "velocity_m_per_s": [0, 1, 0]})),
     ],
 )

@@ -24,6 +24,13 @@ from tests.support.own_machine_project import machine_study
 FILLING = {"fraction": 0.1, "axis": "y", "centre_mm": [-60, 0, -250], "radius_mm": 60, "length_mm": 100}
 INLETS = {"fed": {}, "filled": {"inlet": None, "filling": FILLING}, "both": {"filling": FILLING}}
 HELD = {"centre_mm": [0, 0, -430], "normal": [0, 0, -1], "size_mm": [700, 400]}
+
+
+def stacked(*names):
+    """Outlets below one another: a particle that falls through two within a step would be taken out twice."""
+    return {"outlets": {name: {**HELD, "centre_mm": [0, 0, -430 - 5 * k]} for k, name in enumerate(names)}}
+
+
 OUTLETS = {"one": {}, "two": {"outlets": {"held": HELD}}, "none": {"outlets": None}}
 REFUSED = (("fed", "none"), ("both", "none"))
 SLICES = {"whole": {}, "slice": {"periodic": {"axis": "y", "low_mm": -51, "high_mm": 51}}}
@@ -98,8 +105,11 @@ def test_names_of_parts_and_outlets_take_no_other_name(tmp_path):
     """A part called size, an outlet called held or fed: every id and every variable is defined once."""
     rigid = {"file": "hood.stl", "unit": "mm", "role": "rigid", "edge_mm": 30, "material": "steel"}
     changes = {
-        "parts": {name: rigid for name in ("size", "outlet_held", "walls", "feed", "load_ledger")},
-        "outlets": {name: HELD for name in ("held", "fed", "filled", "liner")},
+        "parts": {
+            name: {**rigid, "motion": {"kind": "belt", "velocity_m_per_s": [k, 0, 0]}}
+            for k, name in enumerate(("size", "outlet_held", "walls", "feed", "load_ledger"), start=1)
+        },
+        **stacked("held", "fed", "filled", "liner"),
         "filling": FILLING,
     }
     with machine_study(tmp_path, **changes) as study:
@@ -130,7 +140,7 @@ def test_all_ledgers_sum_what_any_part_needs(tmp_path):
         text = texts_of(study.runs[0].parameters, tmp_path)[1]
     lines = re.findall(r"^fix +load_ledger_\w+ all load/ledger .*$", text, re.MULTILINE)
     assert len(lines) == 4 and all(line.endswith(" kernels finnie_work") for line in lines)
-    with machine_study(tmp_path / "b", parts={"plate": {"role": "rigid"}}) as study:
+    with machine_study(tmp_path / "b", "row,parts.plate.role\nA,rigid\n") as study:
         assert "kernels" not in texts_of(study.runs[0].parameters, tmp_path)[1]
 
 
@@ -227,7 +237,7 @@ MOVING = {
 BY_HAND = {
     "filled, fed, with all motions": {
         **INLETS["both"],
-        **{"outlets": {name: HELD for name in ("held", "fed")}, "parts": MOVING, **SHORT},
+        **{**stacked("held", "fed"), "parts": MOVING, **SHORT},
     },
     "filled, a slice without outlets": {**INLETS["filled"], **OUTLETS["none"], **SLICES["slice"], **SHORT},
 }

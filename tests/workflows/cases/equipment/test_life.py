@@ -229,6 +229,14 @@ def test_what_is_left_along_the_operation(lives):
     assert left["how"].tolist() == [life_tables.SIMULATED] * 4 + [life_tables.BEYOND]
 
 
+def test_hours_that_differ_by_rounding_are_told_once():
+    """Those of the last update are summed from shares, the hours asked for are not."""
+    asked = {"duration_s": 3600.0 * 2000.0 / 3.0}
+    told = life_tables._hours_told(np.array([0.0, 333.333333333, 666.666666]), 666.66666667, asked)
+    assert told == pytest.approx([0.0, 333.3333333, 666.6666667])
+    assert len(life_tables._hours_told(np.array([0.0, 300.0]), 300.0, asked)) == 3
+
+
 # ---------------------------------------------------------------- intervals
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bulkwear.meshes.drawing import write_step
+from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.postproc.mesh import SurfaceMesh, enclosed_volume
 from bulkwear.postproc.wear.bodies import together
 from bulkwear.workflows.cases.equipment.machine_checks import (
@@ -96,6 +98,19 @@ def test_a_wrong_unit_is_named_with_the_one_that_makes_sense(tmp_path, unit, sca
     )
 
 
+def test_a_chute_of_three_kilometres_as_step(tmp_path):
+    """A CAD file says its unit itself; drawn in thousandths of it, it is too large before anything is meshed."""
+    (tmp_path / "meshes").mkdir()
+    with gmsh_model() as gmsh:
+        body = gmsh.model.occ.addBox(0, 0, 0, 3e6, 1e5, 3e4)
+        write_step(gmsh, tmp_path / "meshes/liner.step", {body: "liner"})
+    with machine_study(tmp_path, parts={"liner": {"file": "liner.step"}}) as study:
+        run = study.runs[0].parameters
+        for look in (study.case.check_files, lambda runs: study.case.surface_mesh(study.case.surface_sections(run))):
+            with pytest.raises(ConfigError, match=r"^parts\.liner\.unit is mm, in which liner\.step is 3002 m large"):
+                look(study.runs)
+
+
 def test_a_part_that_no_unit_makes_sense_of(run):
     """A dot: the sentence says so."""
     dot = box((1e-7, 1e-7, 1e-7), 1e-7)
@@ -110,6 +125,9 @@ def test_other_faults_of_a_drawing_are_told_as_they_are(tmp_path, run):
         (tmp_path / "meshes/liner.stl").write_text("solid nothing\nendsolid\n")
         (tmp_path / "meshes/plate.stl").unlink()
         check_units(parameters)
+        (tmp_path / "meshes/hood.stl").rename(tmp_path / "meshes/hood.sldprt")
+        renamed = [{**part, "file": "hood.sldprt"} if part["name"] == "hood" else part for part in parameters["parts"]]
+        check_units({**parameters, "parts": renamed})
         with pytest.raises(ConfigError, match=r"^parts\.liner: .*liner\.stl") as caught:
             study.case.surface_mesh(study.case.surface_sections(parameters))
     assert ".unit is" not in str(caught.value)
@@ -153,6 +171,19 @@ def test_a_part_that_leaves_the_domain_on_its_way(run):
     far = {"motion": {"kind": "translation", "velocity_m_per_s": [1.0, 0.0, 0.0]}}
     message = message_of(run, ("plate", PLATE, far), domain=DOMAIN)
     assert "plate.stl stands out by" in message and "along x on its way, from -200 mm to" in message
+
+
+def test_a_part_that_goes_through_particles(run):
+    """In a time step of 0.12 ms a part goes no farther than half of the smallest radius of 4.8 mm, 19.5 m/s."""
+    step = run["derived"]["time_step_s"]
+    slow, fast = (
+        {"kind": "translation", "velocity_m_per_s": [0.0, 0.0, -factor * 0.0024 / step], "stop_s": 0.001}
+        for factor in (0.99, 1.01)
+    )
+    check_machine(*machine(run, ("plate", PLATE, {"motion": slow})))
+    message = message_of(run, ("plate", PLATE, {"motion": fast}))
+    assert message.startswith("parts.plate.motion takes plate.stl 2.424 mm far in a time step, at 19.")
+    assert "allowed are 2.4 mm, 0.5 of the smallest radius" in message
 
 
 def test_a_part_that_stands_out_of_the_slice(run):
@@ -212,16 +243,20 @@ def test_an_inlet_within_a_body_is_refused_however_its_facets_look(run):
     check_machine(*machine(run, ("hollow", hollow, {"edge_m": 0.1, "wears": False})))
 
 
-def test_facets_of_a_closed_body_that_look_inward_are_turned_when_it_is_read(tmp_path, run):
-    """An inside-out file gives the surface of the right one."""
+def test_facets_of_a_closed_body_that_look_inward_are_turned_when_it_is_read(tmp_path, capsys):
+    """An inside-out file gives the surface of the right one, and its owner is told."""
     with machine_study(tmp_path) as study:
         part = study.runs[0].parameters["parts"][0]
         points, triangles = corners_of_box((240.0, 100.0, 30.0))
-        volumes = []
+        volumes, said = [], []
         for each in (triangles, triangles[:, ::-1]):
             write_ascii(tmp_path / "meshes/liner.stl", {"liner": (points, each)})
             found = part_surface(0, part, tmp_path)
             volumes.append(enclosed_volume(found.points, found.triangles))
+            said.append(capsys.readouterr().err)
+    assert said[0] == "" and said[1].startswith(
+        "parts.liner: liner.stl, liner: facets turned round, 12 times, the first"
+    )
     assert volumes == pytest.approx([0.24 * 0.1 * 0.03] * 2)
 
 
@@ -283,6 +318,24 @@ def test_a_drawn_liner_of_which_more_shall_remain_than_there_is(run):
     check_machine(*machine(run, ("liner", thick, {}), change_out_remaining_m=0.039))
     check_machine(*machine(run, ("liner", thick, {"wears": False}), change_out_remaining_m=0.05))
     check_machine(*machine(run, ("liner", thick, {"thickness_m": 0.06}), change_out_remaining_m=0.05))
+
+
+def test_a_liner_without_a_mass_is_not_changed_by_it(run):
+    """An open body has none; one that is open at the ends of a slice has that of the slice."""
+    open_box = without_lid((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.3))
+    message = message_of(run, ("tray", open_box, {}), change_out_by_mass=True)
+    assert message.startswith("operation.change_out_worn_mass_fraction is given, and parts.tray has no mass")
+    check_machine(*machine(run, ("tray", open_box, {"thickness_m": 0.03})))
+    ends = np.abs(PLATE.points[PLATE.triangles][:, :, 1]).min(axis=1) > SLICE["high_m"] - 1e-9
+    sliced = SurfaceMesh(PLATE.points, PLATE.triangles[~ends])
+    check_machine(*machine(run, ("tray", sliced, {}), periodic=SLICE, change_out_by_mass=True))
+
+
+def test_a_thickness_that_no_part_of_that_size_has(run):
+    """A plate with a diagonal of 413 mm is not 414 mm thick."""
+    message = message_of(run, ("plate", PLATE, {"thickness_m": 0.414}))
+    assert message.startswith("parts.plate.thickness_mm is 414, allowed is at most 413.")
+    check_machine(*machine(run, ("plate", PLATE, {"thickness_m": 0.413})))
 
 
 def test_thickness_is_that_of_half_the_area():

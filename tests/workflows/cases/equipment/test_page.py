@@ -9,6 +9,7 @@ import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.equipment import heads, page, page_blocks
+from bulkwear.workflows.cases.equipment.machine_tables import parts_table
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import written
 from bulkwear.workflows.report.page import write_page
@@ -55,8 +56,10 @@ def run_of(study, run, **given):
     rate = inlet["rate_kg_per_s"] if inlet else None
     packing = study.packing_of[run.row]
     factor = (rate or 1.0) * (1.0 + 0.02 * packing)
+    worn = {part["name"] for part in run.parameters["parts"] if part["wears"]}
+    parts = [part if part.name in worn else SyntheticPart(part.name, force=10.0) for part in PARTS]
     held = {"rate": rate, "held": 0.2, "pristine": 8, **given}
-    return SyntheticRun(run.name, PARTS, study.setting_of[run.row], packing, factor=factor, duration=0.15, **held)
+    return SyntheticRun(run.name, parts, study.setting_of[run.row], packing, factor=factor, duration=0.15, **held)
 
 
 def make(study, folder, name):
@@ -269,6 +272,31 @@ def test_nothing_is_said_twice(tmp_path, monkeypatch):
         found = page.sections(page_parameters(study), folder)
     texts = [item for each in found for block in each.blocks for item in getattr(block, "items", ())]
     assert len(texts) == len(set(texts))
+
+
+def test_equal_parts_of_designs_stand_once(tmp_path):
+    """Also those whose thickness is not given; where all parts are equal no design is named."""
+    with machine_study(tmp_path, "row,parts.plate.role\nA,\nB,rigid\n") as study:
+        table = parts_table({run.name: run.parameters for run in study.runs})
+    assert table.groupby("part")["setting"].apply(list).to_dict() == {
+        **{name: ["A, B"] for name in ("liner", "paddle", "hood")},
+        "plate": ["A", "B"],
+    }
+    with machine_study(tmp_path, ROWS) as study:
+        assert "setting" not in parts_table({run.name: run.parameters for run in study.runs})
+
+
+def test_choices_of_designs_with_other_parts_that_wear(tmp_path, monkeypatch):
+    """A part that wears in the second design alone: any choice of rows has its page, and only what both have is
+    compared.
+    """
+    rows = "row,parts.plate.role,packings\nA,rigid,2\nB,,2\n"
+    for chosen in (["A"], ["B"], ["A", "B"]):
+        with finished(tmp_path / "".join(chosen), monkeypatch, rows=rows, chosen=chosen) as (study, folder):
+            found = sections_of(study, folder)
+            said = found["When what has to be changed"]
+            assert ("the plate is changed" in said) == ("B" in chosen) and "the liner is changed" in said
+            assert ("Designs side by side" in found) == (len(chosen) == 2)
 
 
 def test_pictures_stand_in_their_sections(tmp_path, monkeypatch):

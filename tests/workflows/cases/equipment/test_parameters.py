@@ -74,7 +74,9 @@ def test_each_wall_is_one_type(run):
 
 def test_sample_material_is_that_of_the_first_part_that_wears(tmp_path):
     """Whose contact radius wear goes by."""
-    changes = {"parts": {"liner": {"role": "rigid"}, "plate": {"material": "polyethylene"}}}
+    changes = {
+        "parts": {"liner": {"role": "rigid", "wear_coefficient_error": None}, "plate": {"material": "polyethylene"}}
+    }
     run = parameters_of(tmp_path, **changes)
     assert run["sample_material"]["name"] == "polyethylene"
     assert [wall["name"] for wall in run["walls"]] == ["steel", "polyethylene", "perspex"]
@@ -118,16 +120,16 @@ def test_columns_of_a_design_are_any_settings(tmp_path):
     """A row has its own tonnage, file, thickness and speed; another row that of the study where its cell says so."""
     rows = (
         "row,inlet.rate_t_per_h,parts.liner.file,parts.liner.thickness_mm,parts.paddle.motion.speed_rpm\n"
-        "plain,1.5,liner.stl,30,60\nfast,3,plate.stl,32,90\n"
+        "plain,1.5,liner.stl,30,60\nfast,3,paddle.stl,32,90\n"
     )
     with machine_study(tmp_path, rows) as study:
         plain, fast = (run.parameters for run in study.runs)
         table = study.design_table()
     assert fast["inlet"]["rate_kg_per_s"] == pytest.approx(2.0 * plain["inlet"]["rate_kg_per_s"], rel=ROUND_OFF)
-    assert named(fast)["liner"]["file"] == "plate.stl" and named(fast)["liner"]["thickness_m"] == 0.032
+    assert named(fast)["liner"]["file"] == "paddle.stl" and named(fast)["liner"]["thickness_m"] == 0.032
     turning = [named(each)["paddle"]["motion"]["speed_rad_per_s"] for each in (plain, fast)]
     assert turning[1] == pytest.approx(1.5 * turning[0], rel=ROUND_OFF)
-    assert named(plain)["liner"]["drawing"] != named(fast)["liner"]["drawing"] == named(plain)["plate"]["drawing"]
+    assert named(plain)["liner"]["drawing"] != named(fast)["liner"]["drawing"] == named(plain)["paddle"]["drawing"]
     assert [row["feed_t_per_h"] for row in table] == pytest.approx([1.5, 3.0], rel=ROUND_OFF)
 
 

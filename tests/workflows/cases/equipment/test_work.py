@@ -6,6 +6,7 @@ from bulkwear.workflows.cases.equipment import work
 from bulkwear.workflows.cases.equipment.parameters import most_blocks
 from bulkwear.workflows.cases.equipment.surfaces import machine_surface
 from bulkwear.workflows.cases.equipment.work import MOVING_OVER_RESTING, run_bytes, run_stages, triangles_of
+from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.forecast.forecast import work_of
 from tests.support.own_machine_project import machine_study
 
@@ -61,7 +62,15 @@ def test_triangles_are_counted_by_the_area_of_the_drawing(run):
 def test_a_drawing_that_cannot_be_read_stops_no_forecast(run):
     """The job that meshes it says what is wrong."""
     assert triangles_of({**run["parts"][0], "file": "nothing.step"}) == work.UNREADABLE
-    assert triangles_of({**run["parts"][0], "solid": "nobody"}) == work.UNREADABLE
+
+
+def test_a_solid_that_is_not_there_and_a_wrong_unit_are_told_with_the_forecast(run):
+    """The drawing is read for its area: what is wrong with it is told then."""
+    part = run["parts"][0]
+    with pytest.raises(ConfigError, match=r"^parts.liner.solid is 'nobody', allowed is one of liner\.$"):
+        triangles_of({**part, "solid": "nobody"})
+    with pytest.raises(ConfigError, match=r"^parts.liner.unit is m, in which liner.stl is 286.4 m large"):
+        run_stages({**run, "parts": [{**part, "unit": "m"}, *run["parts"][1:]]})
 
 
 def test_jobs_of_a_study_are_its_runs(tmp_path):

@@ -1,0 +1,89 @@
+"""Where the feed of a machine falls first: on a part, before an outlet and while the run lasts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.workflows.cases.equipment.stream_checks import check_stream, first_met
+from bulkwear.workflows.cases.equipment.surfaces import rectangle
+from bulkwear.workflows.config.layers import ConfigError
+
+G = 9.81  # m/s2
+INLET = {"centre_m": [0.0, 0.0, 1.0], "normal": [0, 0, -1], "size_m": [0.1, 0.1], "velocity_m_per_s": [0.0, 0.0, -1.0]}
+BELOW = {"centre_m": [0.0, 0.0, -1.0], "normal": [0, 0, -1], "size_m": [9.0, 9.0]}
+DERIVED = {"run_in_steps": 1000, "travel_steps": 9000, "time_step_s": 1e-4}  # 1 s
+FLOOR = {"centre_m": [0.0, 0.0, 0.0], "normal": [0, 0, 1], "size_m": [0.4, 0.4]}
+TURN = {"kind": "rotation", "point_m": [0.0, 0.0, 0.0], "axis": [0.0, 1.0, 0.0], "speed_rad_per_s": 6.0}
+
+
+def checked(inlet=INLET, outlets=BELOW, floor=FLOOR, motion=None, **sections):
+    run = {"inlet": inlet, "outlets": outlets and {"below": outlets}, "periodic": None, "derived": DERIVED}
+    check_stream({**run, "parts": [{"name": "floor", "motion": motion}], **sections}, [rectangle(floor)])
+
+
+def message_of(**given):
+    with pytest.raises(ConfigError) as caught:
+        checked(**given)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("upward", [-1.0, 0.0, 2.0])
+def test_a_fall_takes_as_long_as_galileo_says(upward):
+    """h = -v t + g t^2 / 2, down to a floor 1 m below."""
+    (time,) = first_met(np.array([[0.03, 0.01, 1.0]]), np.array([0.0, 0.0, upward]), rectangle(FLOOR))
+    assert time == pytest.approx((upward + math.sqrt(upward**2 + 2.0 * G)) / G)
+
+
+def test_an_upright_wall_is_met_by_what_flies_level():
+    """Distance over velocity: gravity has no part in it; what flies away from it, or above it, never meets it."""
+    wall = rectangle({"centre_m": [1.0, 0.0, 0.0], "normal": [1, 0, 0], "size_m": [1.0, 1.0]})
+    starts = np.array([[0.0, 0.0, 0.4], [2.0, 0.0, 0.4], [0.0, 0.0, 3.0]])
+    assert first_met(starts, np.array([5.0, 0.0, 0.0]), wall).tolist() == pytest.approx([0.2, np.inf, np.inf])
+
+
+def test_a_surface_in_any_order_is_met_first_where_it_is_nearest():
+    """Of two floors the upper one."""
+    upper = rectangle({**FLOOR, "centre_m": [0.0, 0.0, 0.5]})
+    both = SurfaceMesh(
+        np.concatenate([rectangle(FLOOR).points, upper.points]),
+        np.concatenate([rectangle(FLOOR).triangles, upper.triangles + 4]),
+    )
+    start, still = np.array([[0.0, 0.0, 1.0]]), np.zeros(3)
+    assert first_met(start, still, both) == first_met(start, still, upper) < first_met(start, still, rectangle(FLOOR))
+
+
+def test_feed_that_falls_on_a_part_passes():
+    """All of it, or its rim alone."""
+    checked()
+    checked(floor={**FLOOR, "centre_m": [0.24, 0.0, 0.0]})
+
+
+def test_feed_that_falls_past_all_parts():
+    """Beside them, through an outlet before them, through one in the plane of the inlet, or into nothing."""
+    past = (
+        "inlet.centre_mm is (0, 0, 1000) mm, allowed is a place from which what comes in falls on a part: it falls past"
+    )
+    assert message_of(floor={**FLOOR, "centre_m": [0.26, 0.0, 0.0]}) == f"{past}, through outlets.below."
+    for height in (0.5, 1.0):
+        assert message_of(outlets={**BELOW, "centre_m": [0.0, 0.0, height]}).startswith(past)
+    nothing = message_of(floor={**FLOOR, "centre_m": [0.26, 0.0, 0.0]}, outlets=None)
+    assert nothing.endswith("all of them, into nothing.")
+
+
+def test_feed_that_comes_too_late():
+    """A fall of 100 m takes longer than the longest run."""
+    high = message_of(inlet={**INLET, "centre_m": [0.0, 0.0, 100.0]})
+    assert high.endswith("gets to a part within the longest run, 1 s: it takes 4.41 s.")
+
+
+def test_nothing_is_said_of_machines_that_meet_the_feed_later():
+    """Parts that move, a feed that leaves a slice and comes in at its other end, a machine without a feed."""
+    beside = {**FLOOR, "centre_m": [0.26, 0.0, 0.0]}
+    checked(floor=beside, motion=TURN)
+    checked(floor=beside, inlet=None)
+    along = {**INLET, "velocity_m_per_s": [0.0, 1.0, -1.0]}
+    checked(floor=beside, inlet=along, periodic={"axis": "y", "low_m": -0.1, "high_m": 0.1})

@@ -1,0 +1,39 @@
+"""How a job ends: in one sentence, whatever struck it."""
+
+import errno
+import os
+
+import pyarrow
+import pytest
+
+from bulkwear.workflows.engine.job import INTERRUPTED, STOPPED, project_job
+from tests import REPOSITORY
+
+FAULTS = {
+    "memory": (MemoryError(), 1, "The memory is exhausted"),
+    "memory of tables": (pyarrow.lib.ArrowMemoryError("malloc of size 64 failed"), 1, "The memory is exhausted"),
+    "a full disk": (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "ledger.parquet"), 1, "the disk is full"),
+    "a quota": (OSError(errno.EDQUOT, os.strerror(errno.EDQUOT)), 1, "a quota is used up"),
+    "Ctrl-C": (KeyboardInterrupt(), INTERRUPTED, STOPPED),
+    "a sentence of ours": (ValueError("a.stl: it is empty."), 1, "a.stl: it is empty."),
+}
+
+
+@pytest.mark.parametrize("what", FAULTS)
+def test_a_job_ends_in_one_sentence(tmp_path, monkeypatch, capsys, what):
+    """No traceback on the screen; Ctrl-C says how to go on."""
+    fault, code, said = FAULTS[what]
+    monkeypatch.chdir(REPOSITORY)
+    with pytest.raises(SystemExit) as end, project_job(tmp_path / "job.log"):
+        raise fault
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert end.value.code == code
+    assert len(lines) == 1 and said in lines[0]
+
+
+def test_a_fault_of_the_program_shows_where_it_is(tmp_path, monkeypatch):
+    """What is no fault of the user's or the machine's keeps its traceback."""
+    monkeypatch.chdir(REPOSITORY)
+    with pytest.raises(KeyError), project_job(tmp_path / "job.log"):
+        raise KeyError("worn_um")
+    assert "Traceback" in (tmp_path / "job.log").read_text()

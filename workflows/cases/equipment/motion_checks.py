@@ -1,0 +1,78 @@
+"""Checks of how the parts of a run move, that need no drawing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED, motion_faults, motion_of
+from bulkwear.workflows.cases.equipment.parameters import most_blocks
+from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
+from bulkwear.workflows.config.units import to_si
+
+FEWEST_STEPS_OF_PERIOD = 20.0  # in which a part swings once
+# keys of a motion as parameters have them -> as a study has them
+WRITTEN = {
+    next(iter(to_si({key: 0.0}))): key
+    for key in ("point_mm", "speed_rpm", "amplitude_mm", "amplitude_deg", "phase_deg")
+}
+DIRECTIONS = ("axis", "velocity_m_per_s", "amplitude_m")  # of a motion, which must not be 0
+PACES = ("speed_rad_per_s", "amplitude_rad")  # neither
+
+
+def motions_complete(run: CheckedRun) -> Fault | None:
+    """Each motion has the keys that its kind needs, and none that it cannot use."""
+    for part, motion in _moving(run):
+        if fault := motion_faults(motion):
+            name, kind = WRITTEN.get(fault[0], fault[0]), motion["kind"]
+            known = [WRITTEN.get(each, each) for each in (*NEEDED[kind], *FREE.get(kind, ()))]
+            needed = ", ".join(known[: len(NEEDED[kind])])
+            free = f", and as you like {', '.join(known[len(NEEDED[kind]) :])}" if kind in FREE else ""
+            key = f"parts.{part}.motion.{name}"
+            if fault[1] == "missing":
+                return key, f"{kind} with {needed}{free}"
+            return key, f"none for the kind {kind}, which has {needed}{free}"
+    return None
+
+
+def motions_move(run: CheckedRun) -> Fault | None:
+    """Motions have a direction and a pace, stop after they have started, and start while the machine starts up."""
+    start_up = run.parameters["start_up"]["most_s"]
+    for part, motion in _moving(run):
+        still = next((name for name in DIRECTIONS if name in motion and not any(motion[name])), None)
+        still = still or next((name for name in PACES if motion.get(name) == 0.0), None)
+        key = f"parts.{part}.motion"
+        if still:
+            many = "numbers that are not all 0" if still in DIRECTIONS else "a number other than 0"
+            return f"{key}.{WRITTEN.get(still, still)}", f"{many}, or a part without motion"
+        full = motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0)
+        stop = motion.get("stop_s", math.inf)
+        if stop < full or not stop:
+            bound = (
+                f"at least {full:g} s, start_s and ramp_s together" if full else "above 0 s: the part would never move"
+            )
+            return f"{key}.stop_s", bound
+        if full > start_up:
+            late = "start_s" if "start_s" in motion else "ramp_s"
+            return f"{key}.{late}", f"full speed within start_up.most_s, {start_up:g} s, found {full:g} s"
+        motion_of(motion)  # raises ValueError for what is not known here
+    return None
+
+
+def swings_are_seen(run: CheckedRun) -> Fault | None:
+    """A part swings once within a run, or more often, and a swing takes many time steps."""
+    derived, block_s = run.parameters["derived"], run.parameters["sampling"]["block_s"]
+    least, most = FEWEST_STEPS_OF_PERIOD * derived["time_step_s"], most_blocks(run.parameters) * block_s
+    for part, motion in _moving(run):
+        if "period_s" in motion and not least <= motion["period_s"] <= most:
+            reason = f"{FEWEST_STEPS_OF_PERIOD:g} time steps to the longest that the run may get"
+            return f"parts.{part}.motion.period_s", f"from {least:.3g} to {most:.4g} s, {reason}"
+    return None
+
+
+def _moving(run: CheckedRun) -> list[tuple[str, Mapping[str, Any]]]:
+    return [(part["name"], part["motion"]) for part in run.parameters["parts"] if part["motion"]]
+
+
+MOTION_CHECKS: tuple[Check, ...] = (motions_complete, motions_move, swings_are_seen)

@@ -1,0 +1,85 @@
+"""Check of where the feed of a machine goes first: it meets a part before an outlet, and while the run lasts.
+
+The feed is followed as free flight from places of its inlet. Where parts move it may be met later: nothing is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.workflows.cases.equipment.decks import longest_s, moving_mesh
+from bulkwear.workflows.cases.equipment.surfaces import rectangle
+from bulkwear.workflows.config.layers import ConfigError
+
+GRAVITY = np.array([0.0, 0.0, -9.81])  # m/s2
+PATHS = 9  # along each side of an inlet
+BEFORE = 1e-6  # s, that a flight starts before the inlet, so that what lies in its plane is met
+RIM = 1e-9  # -, of the sides of a triangle
+
+
+def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
+    """Raise ConfigError for a feed that falls past all parts, or gets to none within the longest run.
+
+    run: the sections of its parameters that its surface depends on; parts: the surface of each
+    """
+    inlet = run["inlet"]
+    if not inlet or any(moving_mesh(part) for part in run["parts"]) or _goes_round(run):
+        return
+    velocity = np.asarray(inlet["velocity_m_per_s"], dtype=np.float64)
+    starts = _places(inlet) - BEFORE * velocity
+    met = np.min([first_met(starts, velocity, mesh) for mesh in parts], axis=0)
+    gone = {name: first_met(starts, velocity, rectangle(given)) for name, given in (run["outlets"] or {}).items()}
+    before = met < np.min(list(gone.values()), axis=0) if gone else np.isfinite(met)
+    centre = ", ".join(f"{1e3 * value + 0.0:.4g}" for value in inlet["centre_m"])
+    found = f"inlet.centre_mm is ({centre}) mm, allowed is a place from which what comes in"
+    if not before.any():
+        way = [f"through outlets.{name}" for name, times in gone.items() if np.isfinite(times).any()]
+        raise ConfigError(f"{found} falls on a part: it falls past all of them, {(way or ['into nothing'])[0]}.")
+    if (time := met[before].min()) > (longest := longest_s(run)):
+        raise ConfigError(f"{found} gets to a part within the longest run, {longest:.3g} s: it takes {time:.3g} s.")
+
+
+def _goes_round(run: Mapping[str, Any]) -> bool:
+    """Return whether the feed may leave a slice at one end and come in at the other."""
+    return bool(run["periodic"]) and run["inlet"]["velocity_m_per_s"]["xyz".index(run["periodic"]["axis"])] != 0.0
+
+
+def _places(inlet: Mapping[str, Any]) -> np.ndarray:
+    """Return places (n, 3) m all over an inlet, its corners among them."""
+    corners = rectangle(inlet).points
+    across, along = (each.reshape(-1, 1) for each in np.meshgrid(*[np.linspace(0.0, 1.0, PATHS)] * 2))
+    return corners[0] + across * (corners[1] - corners[0]) + along * (corners[3] - corners[0])
+
+
+def first_met(starts: np.ndarray, velocity: np.ndarray, mesh: SurfaceMesh) -> np.ndarray:
+    """Return when (n,) s what starts at places (n, 3) m with a velocity (3,) m/s first flies through a surface.
+
+    Infinite where it never does.
+    """
+    corners = mesh.points[mesh.triangles]
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normal = np.cross(first, second)
+    squared = np.einsum("ij,ij->i", normal, normal)
+    a, b = 0.5 * normal @ GRAVITY, normal @ velocity
+    found = []
+    for start in starts:
+        away = start - corners[:, 0]
+        times = _roots(a, b, np.einsum("ij,ij->i", normal, away))
+        place = away + velocity * times[..., None] + 0.5 * GRAVITY * times[..., None] ** 2
+        u = np.einsum("kij,ij->ki", np.cross(place, second), normal) / squared
+        v = np.einsum("kij,ij->ki", np.cross(first, place), normal) / squared
+        inside = (u >= -RIM) & (v >= -RIM) & (u + v <= 1.0 + RIM) & (times > 0.0)
+        found.append(np.where(inside, times, np.inf).min(initial=np.inf))
+    return np.array(found)
+
+
+def _roots(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return both solutions (2, m) of a t^2 + b t + c = 0, NaN where there is none; of a linear one twice the same."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        q = -0.5 * (b + np.copysign(np.sqrt(b**2 - 4.0 * a * c), b))
+        found = np.array([np.where(a == 0.0, -c / b, q / a), c / q])
+    return np.where(np.isfinite(found), found, np.nan)

@@ -1,0 +1,108 @@
+"""What exceeds this machine is refused before it starts: memory, disk, a year, ranks; unless the study asks for it.
+
+Forecasts are good to a factor of two or so (docs/forecast.md); what is refused here is far beyond any doubt, or would
+take the machine down with it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection
+
+from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.engine.disk import free_bytes
+from bulkwear.workflows.engine.machine import machine_facts
+from bulkwear.workflows.engine.project import current_project
+from bulkwear.workflows.engine.work import Work
+from bulkwear.workflows.forecast.forecast import (
+    GIGABYTE,
+    WORN_TRIANGLE_MEMORY,
+    forecast_table,
+    hours_text,
+    number_text,
+    wall_hours,
+    work_of,
+)
+from bulkwear.workflows.forecast.rates import Rates, RatesError, rates_file, read_rates
+
+ALLOWED = "beyond_machine"  # key of the settings
+HOURS_PER_YEAR = 8766.0
+RANKS_PER_CORE = 32  # more are a slip; fewer are a study for another machine, of which this one starts as many as cores
+
+
+def fault_here(study: Study, jobs: Collection[str], meshed: Collection[str]) -> str | None:
+    """Return what `fault_of_machine` does, of this machine; None where its rates cannot be read, which is told."""
+    try:
+        rates = read_rates(rates_file()).rates
+    except RatesError:
+        return None
+    cores, memory_gb = os.cpu_count() or 1, machine_facts()["memory_gb"]
+    free_gb = free_bytes(current_project().folder) / GIGABYTE
+    return fault_of_machine(study, jobs, meshed, rates, cores, memory_gb, free_gb)
+
+
+def fault_of_machine(
+    study: Study,
+    jobs: Collection[str],
+    meshed: Collection[str],
+    rates: Rates,
+    cores: int,
+    memory_gb: float,
+    free_gb: float,
+) -> str | None:
+    """Return why those jobs of a study cannot be done on a machine, a sentence; None where they can, or the study says
+    that they are to be begun.
+
+    jobs: names of jobs that call the solver; meshed: runs whose surface is still to be made; cores, memory_gb, free_gb:
+    of the machine, the last one of the disk
+    """
+    if study.settings.get(ALLOWED):
+        return None
+    work = {job.name: job for job in work_of(study)}
+    found = [work[name] for name in jobs if name in work]
+    fault = (
+        _too_many_ranks(study, found, cores)
+        or _too_large_a_mesh(meshed, work, memory_gb)
+        or _too_much(found, rates, cores, memory_gb, free_gb)
+    )
+    return fault and (
+        f"{study.name}: {fault}; allowed is what this machine can do, or {ALLOWED}: true in the study, which begins it"
+        " nevertheless."
+    )
+
+
+def _too_many_ranks(study: Study, jobs: list[Work], cores: int) -> str | None:
+    ranks = study.settings["solver"]["ranks"]
+    if not jobs or ranks <= RANKS_PER_CORE * cores:
+        return None
+    return f"solver.ranks is {ranks}, this machine has {cores} cores"
+
+
+def _too_large_a_mesh(meshed: Collection[str], work: dict[str, Work], memory_gb: float) -> str | None:
+    for run in meshed:
+        job = work.get(f"worn_run_{run}")
+        triangles = job.surface_triangles if job else 0.0
+        if (needed := WORN_TRIANGLE_MEMORY * triangles / GIGABYTE) > memory_gb:
+            return (
+                f"the surface of {run} has about {number_text(triangles)} triangles and needs about"
+                f" {number_text(needed)} GB of memory, this machine has {number_text(memory_gb)} GB"
+            )
+    return None
+
+
+def _too_much(jobs: list[Work], rates: Rates, cores: int, memory_gb: float, free_gb: float) -> str | None:
+    if not jobs:
+        return None
+    table = forecast_table(jobs, rates)
+    largest = table.loc[table["memory_gb"].idxmax()]
+    if largest["memory_gb"] > memory_gb:
+        needed = number_text(largest["memory_gb"])
+        return (
+            f"{largest['job']} needs about {needed} GB of memory, this machine has {number_text(memory_gb)} GB; larger"
+            " elements or a larger particle_scale need less"
+        )
+    if (disk := float(table["disk_gb"].sum())) > free_gb:
+        return f"its jobs leave about {number_text(disk)} GB on the disk, {number_text(free_gb)} GB are free"
+    if (hours := wall_hours(table, cores)) > HOURS_PER_YEAR:
+        return f"its jobs take about {hours_text(hours)} on {cores} cores, which is more than a year"
+    return None
