@@ -71,6 +71,7 @@ solver:
   rolling_friction: cdt
   rolling_radius: full
   sampling_interval_steps: 20
+  search: ours
 ledger: solver
 remeshing: {smallest_angle_deg: 15, largest_aspect: 10, smallest_edge: 0.3, largest_edge: 2.5}
 packings: 1

@@ -226,6 +226,7 @@ def simulate(
             launcher=chain.launcher,
             variables=variables,
             patience=replace(chain.patience, say=progress.say),
+            search=chain.parameters["solver"]["search"],
         )
 
     ends = chain.case.piece_ends(chain.parameters, chain.bed, span)

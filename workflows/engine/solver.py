@@ -33,6 +33,7 @@ LAUNCHER = "mpirun --bind-to none"  # starts the ranks of a solver; a cluster's 
 BUILT = PACKAGE / "solver" / "build" / "liggghts-ledger"
 LEDGER_EXECUTABLE = str(BUILT) if BUILT.exists() else shutil.which(BUILT.name) or str(BUILT)
 OWN_ROLLING_MODELS = ("own_spin", "rvd")  # those of solver/rolling, which only our program has
+SEARCHES = ("ours", "stock")  # for contacts with meshes, of our program; both find the same
 OF_SLURM = ("SLURM_", "PMI_", "PMIX_")  # environment variables of a job
 POLL_SECONDS = 0.25  # between two looks at the log
 STOP_SECONDS = 10.0  # for which a solver may take to end when it is asked to
@@ -118,9 +119,16 @@ def cycle_fault(executable: str, case: Case, run: Mapping[str, Any]) -> str | No
     )
 
 
-def solver_command(ranks: int, executable: str = EXECUTABLE, launcher: str = LAUNCHER) -> list[str]:
-    """Return the command that runs a deck; output is line-buffered, or fatal messages would vanish in a pipe."""
+def solver_command(
+    ranks: int, executable: str = EXECUTABLE, launcher: str = LAUNCHER, search: str = SEARCHES[0]
+) -> list[str]:
+    """Return the command that runs a deck; output is line-buffered, or fatal messages would vanish in a pipe.
+
+    search: of `SEARCHES`; the plain program has but its own
+    """
     deck = ["stdbuf", "-oL", executable, "-in", DECK, "-log", LOG]
+    if executable != EXECUTABLE and search != SEARCHES[0]:
+        deck += ["-search", search]
     return deck if ranks == 1 else [*shlex.split(launcher), "-n", str(ranks), *deck]
 
 
@@ -155,6 +163,7 @@ def run_deck(
     launcher: str = LAUNCHER,
     variables: Mapping[str, str] = MappingProxyType({}),
     patience: Patience = PATIENCE,
+    search: str = SEARCHES[0],
 ) -> float:
     """Run `deck.in` of a folder to its end and return the wall time in s.
 
@@ -164,6 +173,7 @@ def run_deck(
     launcher: command, with options, that starts several ranks of it
     variables: of style index, whose values in the deck these replace
     patience: how long it may make no step
+    search: for contacts with meshes
 
     Raises SolverError. A solver on a disk that is nearly full is stopped, before it leaves half a file.
     """
@@ -173,7 +183,7 @@ def run_deck(
     given = [word for name, value in variables.items() for word in ("-var", name, value)]
     with open(folder / SCREEN, "wb") as screen:
         process = subprocess.Popen(
-            [*solver_command(ranks, executable, launcher), *given],
+            [*solver_command(ranks, executable, launcher, search), *given],
             cwd=folder,
             env=solver_environment(by_slurm=ranks > 1 and shlex.split(launcher)[0] == "srun"),
             stdin=subprocess.DEVNULL,
