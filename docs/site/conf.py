@@ -8,6 +8,7 @@ import re
 
 project = "Bulkwear"
 author = "The authors of Bulkwear"
+copyright = f"{author}, GPL-2.0-or-later"
 extensions = ["myst_parser"]
 root_doc = "docs/index"
 include_patterns = [
@@ -30,10 +31,13 @@ exclude_patterns = [
     "bulkwear",
 ]
 myst_heading_anchors = 4
+highlight_language = "none"  # of blocks that name none: what a terminal prints
 suppress_warnings = ["misc.highlighting_failure"]  # no highlighting of CSV
 html_theme = "furo"
 html_title = project
 html_extra_path = ["extra"]
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 html_copy_source = False
 
 LISTING = ("docs/index", "docs/gallery")  # pages whose links make the sidebar

@@ -1,9 +1,13 @@
 """Pages and pictures that are made by code are as it makes them; the README fits in two minutes."""
 
 import importlib.util
+import io
 
+import pandas as pd
+import pytest
 import yaml
 
+from bulkwear.workflows.config.design import load_study
 from tests import REPOSITORY
 from tests.support import verification_page
 from tests.test_house import text_of
@@ -34,6 +38,16 @@ def test_the_readme_is_short():
     readme = text_of("README.md")
     assert len(readme.splitlines()) <= LONGEST_README
     assert "\nmake demo " in readme and "\nmake test " in readme
+
+
+def test_what_the_readme_says_of_the_demo_fits_together():
+    """The runs are those of the study; wear over plain is that of the volumes beside it, in the same bed."""
+    block = text_of("README.md").partition("results/demo/summary.csv\n")[2].partition("```")[0]
+    table = pd.read_csv(io.StringIO(block)).set_index("run")
+    study = load_study("demo")
+    assert list(table.index) == [run.name for run in study.runs]
+    plain = [table["worn_volume_m3"][f"{name.rpartition('_')[0]}_plain"] for name in table.index]
+    assert (table["worn_volume_m3"] / plain).tolist() == pytest.approx(table["wear_over_plain"].tolist(), rel=1e-9)
 
 
 def test_the_citation_is_of_this_package():

@@ -11,6 +11,7 @@ from bulkwear.workflows.cases.equipment.parameters import most_blocks
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.config.units import to_si
 
+TINY = 1e-12  # of a component of a direction; its square is lost beside 1
 FEWEST_STEPS_OF_PERIOD = 20.0  # in which a part swings once
 # keys of a motion as parameters have them -> as a study has them
 WRITTEN = {
@@ -40,7 +41,9 @@ def motions_move(run: CheckedRun) -> Fault | None:
     """Motions have a direction and a pace, stop after they have started, and start while the machine starts up."""
     start_up = run.parameters["start_up"]["most_s"]
     for part, motion in _moving(run):
-        still = next((name for name in DIRECTIONS if name in motion and not any(motion[name])), None)
+        still = next(
+            (name for name in DIRECTIONS if name in motion and not any(abs(part) > TINY for part in motion[name])), None
+        )
         still = still or next((name for name in PACES if motion.get(name) == 0.0), None)
         key = f"parts.{part}.motion"
         if still:

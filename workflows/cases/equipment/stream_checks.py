@@ -1,10 +1,12 @@
 """Check of where the feed of a machine goes first: it meets a part before an outlet, and while the run lasts.
 
-The feed is followed as free flight from places of its inlet. Where parts move it may be met later: nothing is said.
+The feed is followed as free flight from places of its inlet. A part that moves is taken for all of the box in which it
+moves: it may meet the feed there at any time.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -12,7 +14,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.workflows.cases.equipment.decks import longest_s, moving_mesh
-from bulkwear.workflows.cases.equipment.surfaces import rectangle
+from bulkwear.workflows.cases.equipment.surfaces import rectangle, room_needed
 from bulkwear.workflows.config.layers import ConfigError
 
 GRAVITY = np.array([0.0, 0.0, -9.81])  # m/s2
@@ -27,11 +29,12 @@ def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
     run: the sections of its parameters that its surface depends on; parts: the surface of each
     """
     inlet = run["inlet"]
-    if not inlet or any(moving_mesh(part) for part in run["parts"]) or _goes_round(run):
+    if not inlet or _goes_round(run):
         return
     velocity = np.asarray(inlet["velocity_m_per_s"], dtype=np.float64)
     starts = _places(inlet) - BEFORE * velocity
-    met = np.min([first_met(starts, velocity, mesh) for mesh in parts], axis=0)
+    pairs = zip(run["parts"], parts, strict=True)
+    met = np.min([_met(run, part, starts, velocity, mesh) for part, mesh in pairs], axis=0)
     gone = {name: first_met(starts, velocity, rectangle(given)) for name, given in (run["outlets"] or {}).items()}
     before = met < np.min(list(gone.values()), axis=0) if gone else np.isfinite(met)
     centre = ", ".join(f"{1e3 * value + 0.0:.4g}" for value in inlet["centre_m"])
@@ -41,6 +44,24 @@ def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
         raise ConfigError(f"{found} falls on a part: it falls past all of them, {(way or ['into nothing'])[0]}.")
     if (time := met[before].min()) > (longest := longest_s(run)):
         raise ConfigError(f"{found} gets to a part within the longest run, {longest:.3g} s: it takes {time:.3g} s.")
+
+
+def _met(
+    run: Mapping[str, Any], part: Mapping[str, Any], starts: np.ndarray, velocity: np.ndarray, mesh: SurfaceMesh
+) -> np.ndarray:
+    """Return when (n,) s the feed may first meet a part, infinite where it does not."""
+    if not moving_mesh(part):
+        return first_met(starts, velocity, mesh)
+    low, high = room_needed(mesh.points, part, longest_s(run))
+    within = ((starts >= low) & (starts <= high)).all(axis=1)
+    return np.where(within, 0.0, first_met(starts, velocity, _box(low, high)))
+
+
+def _box(low: np.ndarray, high: np.ndarray) -> SurfaceMesh:
+    """Return the surface of a box; low, high: (3,) m."""
+    corners = np.array(list(itertools.product(*zip(low, high, strict=True))))
+    sides = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+    return SurfaceMesh(corners, np.array([half for a, b, c, d in sides for half in ((a, b, c), (a, c, d))]))
 
 
 def _goes_round(run: Mapping[str, Any]) -> bool:

@@ -23,7 +23,7 @@ from bulkwear.workflows.config.layers import ConfigError
 POSES = 64  # of a moving part in a run, and in a turn, of which the room that it needs is made
 ALIKE = 1e-6  # relative, areas of a part's two ends
 FEED_CELLS = 8  # along each side of an inlet; still as large as a particle where it is eight particles wide
-TOLD = ("facets turned round", "open pieces", "warning")  # repairs of a drawing that its owner should know of
+TOLD = ("facets turned round", "warning")  # repairs of a drawing that its owner should know of
 PLACES = ("the whole of its motion", "where it stands")
 
 Part = Mapping[str, Any]

@@ -127,6 +127,11 @@ MOTIONS = [
         "numbers that are not all 0, or a part without motion",
     ),
     (
+        motion(**{**TURNS, "axis": [0, 1e-300, 0]}),
+        "parts.plate.motion.axis is [0, 1e-300, 0]",
+        "numbers that are not all 0, or a part without motion",
+    ),
+    (
         motion(**{**TURNS, "speed_rpm": 0}),
         "parts.plate.motion.speed_rpm is 0",
         "a number other than 0, or a part without",

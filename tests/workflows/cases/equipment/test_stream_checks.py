@@ -64,9 +64,8 @@ def test_feed_that_falls_on_a_part_passes():
 
 def test_feed_that_falls_past_all_parts():
     """Beside them, through an outlet before them, through one in the plane of the inlet, or into nothing."""
-    past = (
-        "inlet.centre_mm is (0, 0, 1000) mm, allowed is a place from which what comes in falls on a part: it falls past"
-    )
+    allowed = "a place from which what comes in falls on a part: it falls past all of them"
+    past = f"inlet.centre_mm is (0, 0, 1000) mm, allowed is {allowed}"
     assert message_of(floor={**FLOOR, "centre_m": [0.26, 0.0, 0.0]}) == f"{past}, through outlets.below."
     for height in (0.5, 1.0):
         assert message_of(outlets={**BELOW, "centre_m": [0.0, 0.0, height]}).startswith(past)
@@ -80,10 +79,17 @@ def test_feed_that_comes_too_late():
     assert high.endswith("gets to a part within the longest run, 1 s: it takes 4.41 s.")
 
 
+def test_a_part_that_moves_may_meet_the_feed_wherever_it_gets_to():
+    """A floor beside the feed that turns about its own far end sweeps below the inlet; about its middle it does not."""
+    far = {**FLOOR, "centre_m": [0.4, 0.0, 0.0]}
+    checked(floor=far, motion={**TURN, "point_m": [0.2, 0.0, 0.0]})
+    assert "past all of them" in message_of(floor=far, motion={**TURN, "point_m": [0.4, 0.0, 0.0]})
+    checked(motion=TURN, inlet={**INLET, "centre_m": [0.0, 0.0, 0.1]})  # within the box
+
+
 def test_nothing_is_said_of_machines_that_meet_the_feed_later():
-    """Parts that move, a feed that leaves a slice and comes in at its other end, a machine without a feed."""
+    """A feed that leaves a slice and comes in at its other end, a machine without a feed."""
     beside = {**FLOOR, "centre_m": [0.26, 0.0, 0.0]}
-    checked(floor=beside, motion=TURN)
     checked(floor=beside, inlet=None)
     along = {**INLET, "velocity_m_per_s": [0.0, 1.0, -1.0]}
     checked(floor=beside, inlet=along, periodic={"axis": "y", "low_m": -0.1, "high_m": 0.1})
