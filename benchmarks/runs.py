@@ -21,7 +21,7 @@ from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import LOG
 
-STUDY, RUN = "demo", "R9_convex"
+STUDY, RUN, TESTER = "demo", "R9_convex", "circular_tester"
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
 
 
@@ -71,6 +71,22 @@ def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain
     )
     if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
         run_cycle(chain, None, inputs_digest(chain), Progress(RUN, run_in_steps(chain)))
+    return chain
+
+
+def prepared_tester(folder: Path, particle_scale: float) -> Chain:
+    """Return the chain of a plain sample in the circular tester's channel; fills it and runs in unless that was done."""
+    study = load_study(TESTER, overrides={"fidelity": "quick", "particle_scale": particle_scale})
+    run = next(run for run in study.runs if run.parameters["pattern"] is None)
+    surface, bed = folder / run.name / "surface.vtu", study.bed_of(run.name)
+    if not surface.exists():
+        surface.parent.mkdir(parents=True, exist_ok=True)
+        write_surface(surface, study.case.surface_mesh(run.parameters))
+    restart = folder / "bed" / "bed.restart"
+    chain = Chain(run.name, surface.parent, study.case, run.parameters, surface, study.beds[bed], restart)
+    with_bed(chain, bed)
+    if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
+        run_cycle(chain, None, inputs_digest(chain), Progress(run.name, run_in_steps(chain)))
     return chain
 
 
