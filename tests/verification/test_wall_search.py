@@ -29,6 +29,16 @@ STATE = [
     "dump state all custom 500 *.state id x y z vx vy vz omegax omegay omegaz fx fy fz",
     'dump_modify state sort id format "%d' + 12 * " %.17g" + '"',
 ]
+# Contacts at a distance: liquid bridges reach 1.1 times as far as the surfaces.
+DRY, WET = "model hertz tangential history", "model hertz tangential history cohesion washino/capillary/viscous"
+LIQUID = """
+fix liquid all property/global surfaceLiquidContentInitial scalar 0.01
+fix tension all property/global surfaceTension scalar 0.07
+fix viscosity all property/global fluidViscosity scalar 0.001
+fix least_separation all property/global minSeparationDistanceRatio scalar 1.01
+fix most_separation all property/global maxSeparationDistanceRatio scalar 1.1
+fix angle all property/global contactAngle peratomtype 40 40
+"""
 RESTARTED = ["restart 500 a.restart b.restart"]
 RESUMED = FALLEN["settling"] + 2 * STEPS  # steps
 
@@ -79,6 +89,20 @@ def test_same_to_the_last_bit(tmp_path, mesh, lines, ranks):
     assert found["ours"] == found["stock"]
     ledger = read_load_ledger(tmp_path / "ours" / "load_ledger.bin", "sample", len(mesh.triangles))
     assert ledger.columns["sliding_work_J"].sum() > 0.0
+
+
+@pytest.mark.verify
+def test_same_with_liquid_bridges(tmp_path):
+    """The same where particles are held by a mesh that they do not touch."""
+    found = {}
+    for search in SEARCHES:
+        folder = tmp_path / search
+        write_case(folder, wavy(PLATE), POURED, LOOSE, mesh_lines=(SWING,), outputs=STATE, **FALLEN)
+        for deck in (folder / "ledger_case.in", folder / "motion.in"):
+            deck.write_text(deck.read_text().replace(DRY, WET).replace("pair_style", f"{LIQUID}pair_style"))
+        searched(folder, search)
+        found[search] = written(folder, "load_ledger.bin", "*.state")
+    assert found["ours"] == found["stock"]
 
 
 def test_same_after_a_restart(tmp_path):
