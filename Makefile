@@ -20,7 +20,7 @@ SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 
-.PHONY: help setup doctor demo study forecast project rates test verify screening report decks results lint format lock clean
+.PHONY: help setup doctor demo study forecast project rates test verify chaos screening report decks results lint format lock clean
 
 help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
@@ -66,6 +66,9 @@ test: setup ## Run the tests and every check a submission must pass
 
 verify: setup ## Run the long physics tests (pytest -m verify)
 	$(PYTEST) -m verify
+
+chaos: setup ## What runs, files and configurations survive: kills, full disks, flipped bits, hostile files; hours (SEED=27)
+	.venv/bin/python -m benchmarks.chaos --seed $(or $(SEED),27)
 
 lint: setup ## Check style: ruff, snakemake --lint, snakefmt
 	.venv/bin/ruff check .
