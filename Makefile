@@ -8,6 +8,11 @@ STUDY ?= demo
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 # Without compiled modules every start of Python would compile those of the whole environment anew: half of its time.
 unexport PYTHONDONTWRITEBYTECODE
+# Snakemake keeps a cache; a user whose home cannot be written gets one in the temporary folder.
+CACHE_WORKS := $(shell cache="$${XDG_CACHE_HOME:-$$HOME/.cache}"; mkdir -p "$$cache" 2>/dev/null && test -w "$$cache" && echo yes)
+ifeq ($(CACHE_WORKS),)
+export XDG_CACHE_HOME := $(shell mktemp -d)
+endif
 # Pictures come from the software renderer everywhere: the same on every machine, and without X.
 export VTK_DEFAULT_OPENGL_WINDOW ?= vtkOSOpenGLRenderWindow
 
