@@ -8,6 +8,11 @@ STUDY ?= demo
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 # Without compiled modules every start of Python would compile those of the whole environment anew: half of its time.
 unexport PYTHONDONTWRITEBYTECODE
+# Snakemake keeps a cache; a user whose home cannot be written gets one in the temporary folder.
+CACHE_WORKS := $(shell cache="$${XDG_CACHE_HOME:-$$HOME/.cache}"; mkdir -p "$$cache" 2>/dev/null && test -w "$$cache" && echo yes)
+ifeq ($(CACHE_WORKS),)
+export XDG_CACHE_HOME := $(shell mktemp -d)
+endif
 # Pictures come from the software renderer everywhere: the same on every machine, and without X.
 export VTK_DEFAULT_OPENGL_WINDOW ?= vtkOSOpenGLRenderWindow
 
@@ -20,7 +25,7 @@ SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 
-.PHONY: help setup doctor demo study forecast project rates test verify screening report decks results docs lint format lock clean
+.PHONY: help setup doctor demo study forecast project rates test verify chaos screening report decks results docs lint format lock clean
 
 help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
@@ -69,6 +74,9 @@ test: setup ## Run the tests and every check a submission must pass
 
 verify: setup ## Run the long physics tests (pytest -m verify)
 	$(PYTEST) -m verify
+
+chaos: setup ## What runs, files and configurations survive: kills, full disks, flipped bits, hostile files; hours (SEED=27)
+	.venv/bin/python -m benchmarks.chaos --seed $(or $(SEED),27)
 
 lint: setup ## Check style: ruff, snakemake --lint, snakefmt
 	.venv/bin/ruff check .

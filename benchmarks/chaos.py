@@ -2,6 +2,7 @@
 
     make chaos                                # everything: some hours
     python -m benchmarks.chaos --quick        # a little of everything, printed only: minutes
+    python -m benchmarks.chaos --share 0.1    # a tenth of the faults, with the page
     python -m benchmarks.chaos --seed 7       # other faults; --only files, --only runs: a part of it
 
 Writes docs/chaos.csv and .md. Small disks need root; without it they are left out, and the page says so.
@@ -115,9 +116,13 @@ def main(words: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--quick", action="store_true", help="a little of everything, printed only")
+    parser.add_argument(
+        "--share", type=float, default=1.0, help="of the faults of the whole, at least one of each kind"
+    )
     parser.add_argument("--only", choices=("files", "runs"))
     given = parser.parse_args(words)
-    counts, chance = QUICK if given.quick else WHOLE, random.Random(given.seed)
+    counts = QUICK if given.quick else {name: max(1, round(given.share * count)) for name, count in WHOLE.items()}
+    chance = random.Random(given.seed)
     with tempfile.TemporaryDirectory(prefix="chaos_") as name:
         folder, started = Path(name), time.monotonic()
         chain = chaos_runs.undisturbed(folder / "undisturbed")

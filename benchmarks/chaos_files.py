@@ -18,10 +18,12 @@ from bulkwear.postproc.readers.point_cloud import point_blocks
 from bulkwear.postproc.readers.restart_file import read_restart
 from bulkwear.postproc.readers.solver_log import last_step, thermo_table
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.project import Project
+from bulkwear.workflows.engine.project import Project, ProjectError
 from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.row_check import RowCheck
+from bulkwear.workflows.engine.templates import DeckError
 
 LONGEST_S = 60.0  # that one file or configuration may take
 NONSENSE = (
@@ -65,19 +67,19 @@ def _ring(*_: object) -> None:
     raise _TooLongError
 
 
-def attempt(outcome: Outcome, do: Callable[[], object], what: str) -> None:
-    """Do something that may be refused with a ValueError or RuntimeError, which have sentences, and count what came."""
+def attempt(outcome: Outcome, do: Callable[[], object], what: str, is_told: Callable[[Exception], bool]) -> None:
+    """Do something that may be refused, and count what came. is_told: whether a fault is the sentence of a refusal"""
     before = signal.signal(signal.SIGALRM, _ring)
     signal.setitimer(signal.ITIMER_REAL, LONGEST_S)
     try:
         do()
     except _TooLongError:
         outcome.note("hangs", what)
-    except (ValueError, RuntimeError, FileNotFoundError) as fault:
-        lines = str(fault).splitlines()
-        outcome.note("refused" if len(lines) == 1 else "tracebacks", "" if len(lines) == 1 else f"{what}: {fault!r}")
-    except Exception:
-        outcome.note("tracebacks", f"{what}: {traceback.format_exc(limit=-3)}")
+    except Exception as fault:
+        if is_told(fault) and len(str(fault).splitlines()) == 1:
+            outcome.note("refused")
+        else:
+            outcome.note("tracebacks", f"{what}: {traceback.format_exc(limit=-3)}")
     else:
         outcome.note("unchanged")
     finally:
@@ -151,7 +153,7 @@ def mutated_files(samples: Sequence[Path], folder: Path, count: int, chance: ran
         sample = chance.choice(samples)
         path = folder / sample.name
         path.write_bytes(mutated(sample.read_bytes(), chance))
-        attempt(outcome, lambda path=path: READERS[path.name](path), path.name)
+        attempt(outcome, lambda path=path: READERS[path.name](path), path.name, lambda fault: str(folder) in str(fault))
         path.write_bytes(sample.read_bytes())
     return outcome
 
@@ -174,6 +176,11 @@ def mutated_text(text: str, chance: random.Random) -> str:
     return text[:place] + chance.choice(LETTERS) * chance.choice((1, 1, 1, 200)) + text[place:]
 
 
+def is_of_configuration(fault: Exception) -> bool:
+    """Return whether a fault is one that the configuration's own checks tell."""
+    return isinstance(fault, ConfigError | DeckError | ProjectError)
+
+
 def mutated_configurations(
     project: Project, study: str, files: Sequence[str], count: int, chance: random.Random
 ) -> Outcome:
@@ -184,7 +191,7 @@ def mutated_configurations(
         spoiled = chance.sample(list(files), chance.choice((1, 1, 2)) if len(files) > 1 else 1)
         for name in spoiled:
             (project.folder / name).write_text(mutated_text(texts[name], chance), encoding="utf-8")
-        attempt(outcome, lambda: load_study(study, project=project), " ".join(spoiled))
+        attempt(outcome, lambda: load_study(study, project=project), f"{spoiled}", is_of_configuration)
         for name in spoiled:
             (project.folder / name).write_text(texts[name], encoding="utf-8")
     return outcome

@@ -15,10 +15,11 @@ import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.targets import requested_studies
+from bulkwear.workflows.engine.job import STOPPED
 from tests import REPOSITORY
 
 PARTS = ("bulkwear", "workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
-TIMEOUT = 300.0  # s, for a study that takes about 20 s on an idle machine
+TIMEOUT = 1800.0  # s, for a study that takes about 20 s on an idle machine
 TINY = """\
 title: A tiny study
 question: Does the chain hold together?
@@ -131,6 +132,24 @@ def test_killed_snakemake_started_again_gives_the_same_summary(undisturbed, tmp_
     for name in ("summary.csv", *(f"{run}/wear.csv" for run in RUNS)):
         path = Path("results/tiny") / name
         assert (folder / path).read_bytes() == (undisturbed / path).read_bytes()
+
+
+@pytest.mark.solver
+def test_ctrl_c_says_how_to_go_on(tmp_path):
+    """What a terminal sends with Ctrl-C, while the solver works: the job says in a line how to go on, without a
+    traceback, and no solver is left."""
+    folder = workspace(tmp_path)
+    process = snakemake(folder, "results/tiny/beds/bed_1/bed.restart")
+    deadline = time.monotonic() + TIMEOUT
+    while not list(folder.glob("results/tiny/beds/bed_1/log.liggghts")):
+        assert process.poll() is None and time.monotonic() < deadline
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    output, _ = process.communicate(timeout=TIMEOUT)
+    assert process.returncode != 0
+    assert STOPPED in output
+    assert "Traceback" not in output
+    finish(snakemake(folder, "results/tiny/beds/bed_1/bed.restart"))
 
 
 def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):

@@ -28,7 +28,8 @@ SHARED_TEMPLATES = "_shared"
 ASIDE = {  # files that change no number of a run
     *(f"workflows/engine/{name}.py" for name in ("code_parts", "inputs", "job", "own_code", "project")),
     *(f"workflows/engine/{name}.py" for name in ("provenance", "state", "work")),
-    "postproc/readers/point_cloud.py",
+    *(f"workflows/engine/{name}.py" for name in ("disk", "patience", "records", "row_check")),
+    *("postproc/readers/point_cloud.py", "postproc/readers/restart_file.py"),
     "meshes/estimate.py",
 }
 # of cases, what refuses, forecasts or evaluates

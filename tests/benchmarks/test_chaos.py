@@ -1,0 +1,78 @@
+"""A little of `make chaos`: files and configurations under faults, without the solver."""
+
+import random
+import shutil
+
+import pytest
+
+from benchmarks import chaos_files
+from benchmarks.chaos import BAD, CONFIGURATION, SAMPLES, SEED, page, spoilt_project, table_of
+from benchmarks.chaos_files import Outcome
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.wear_step import TOTALS
+
+FLIPS, READS, CONFIGURATIONS = 150, 250, 25
+SOURCES = {"loads.vtk": "bed_loads.vtk", "contacts.dump": "slide_contacts.dump", "spins.dump": "slide_spins.dump"}
+
+
+@pytest.fixture
+def chance():
+    return random.Random(SEED)
+
+
+def nothing_bad(outcome):
+    """Whether nothing was lost, wrong, hung or ended in a traceback; what did is shown."""
+    assert not any(getattr(outcome, name) for name in BAD), outcome.said
+    return outcome.tried == outcome.refused + outcome.unchanged
+
+
+def test_flipped_bits_in_finished_cycles_are_noticed(tmp_path, chance):
+    """In records, restart files, surfaces and tables alike."""
+    before = {}
+    for cycle in range(3):
+        row = {"cycle": cycle} | dict.fromkeys(TOTALS.values(), 1e-9)
+        row |= {total: before.get(total, 0.0) + row[part] for total, part in TOTALS.items()}
+        with state.working_folder(tmp_path, cycle) as folder:
+            for name in ("run.restart", "surface.vtu", "forces.csv"):
+                (folder / name).write_bytes(chance.randbytes(200))
+            record = {"wear": row, "span": {"cycle": cycle}} if cycle else {"span": None}
+            state.write_state(folder, "same", ("run.restart", "surface.vtu", "forces.csv"), record)
+        before = row if cycle else {}
+    outcome = chaos_files.flipped_bits(tmp_path, "same", FLIPS, chance)
+    assert nothing_bad(outcome) and outcome.refused > FLIPS // 2
+    assert state.finished_cycles(tmp_path, "same") == 3
+
+
+def test_mutated_files_are_read_or_refused(tmp_path, chance):
+    """A reader returns, or says in one sentence which file is wrong."""
+    for name, source in SOURCES.items():
+        shutil.copy(SAMPLES / source, tmp_path / name)
+    here = tmp_path / "reading"
+    shutil.copytree(tmp_path, here)
+    samples = [tmp_path / name for name in SOURCES if name in chaos_files.READERS]
+    assert nothing_bad(chaos_files.mutated_files(samples, here, READS, chance))
+
+
+def test_mutated_configurations_are_loaded_or_refused(tmp_path, chance):
+    """A study loads, or one sentence says what is wrong with it."""
+    project = spoilt_project(tmp_path / "project")
+    outcome = chaos_files.mutated_configurations(project, "demo", CONFIGURATION, CONFIGURATIONS, chance)
+    assert nothing_bad(outcome) and outcome.refused
+
+
+def test_what_is_not_told_counts_as_a_traceback():
+    """The measure itself: a fault without a sentence, and one that nobody meant."""
+    outcome = Outcome("faults")
+    for fault in (KeyError("worn_um"), ValueError("two\nlines"), RecursionError("too deep")):
+
+        def raises(fault=fault):
+            raise fault
+
+        chaos_files.attempt(outcome, raises, "a file", lambda fault: isinstance(fault, ValueError))
+    assert (outcome.tried, outcome.tracebacks) == (3, 3)
+
+
+def test_the_page_has_a_row_per_kind_of_fault():
+    """With what must be 0 beside what was tried."""
+    text = page(table_of([Outcome("flips", tried=7, refused=7)]), SEED)
+    assert f"seed {SEED}" in text and "| flips | 7 | 7 | 0 | 0 | 0 | 0 | 0 |" in text
