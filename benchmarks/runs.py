@@ -75,7 +75,7 @@ def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain
 
 
 def prepared_tester(folder: Path, particle_scale: float) -> Chain:
-    """Return the chain of a plain sample in the circular tester's channel; fills it and runs in unless that was done."""
+    """Return the chain of a plain sample in the circular tester's channel, filled and run in."""
     study = load_study(TESTER, overrides={"fidelity": "quick", "particle_scale": particle_scale})
     run = next(run for run in study.runs if run.parameters["pattern"] is None)
     surface, bed = folder / run.name / "surface.vtu", study.bed_of(run.name)

@@ -44,7 +44,8 @@ def decks(folder: Path, quick: bool) -> dict[str, Path]:
     demo = prepared_chain(folder, QUICK_DEMO_SCALE if quick else DEMO_SCALE)
     found = {"bed past a convex sample (demo)": cycle_deck(demo, "wall_search")[0]}
     if not quick:
-        found["circular tester, channel"] = cycle_deck(prepared_tester(folder / "tester", TESTER_SCALE), "wall_search")[0]
+        tester = prepared_tester(folder / "tester", TESTER_SCALE)
+        found["circular tester, channel"] = cycle_deck(tester, "wall_search")[0]
     return found | {"pin on a whole disc": pin_deck(folder / "pin", QUICK_ELEMENT if quick else ELEMENT)}
 
 
