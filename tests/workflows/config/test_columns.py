@@ -45,6 +45,10 @@ def test_a_key_may_be_given_by_rows_alone(tmp_path):
     ("column", "said"),
     [
         ("inlet.size_mm", "column inlet.size_mm is a list, allowed are settings that are one number or one word."),
+        (
+            "operation.told_at_h",
+            "column operation.told_at_h is a list, allowed are settings that are one number or one",
+        ),
         ("parts.liner", "column parts.liner is a block of keys, allowed are settings that are one number or one word."),
         ("bulk.seed", "column bulk.seed has a name of its own, write seed."),
         ("until.width_fraction", "column until.width_fraction is a setting of the whole study, allowed are those of a"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -174,7 +174,8 @@ def remaining_table(runs: Runs, lives: Lives) -> pd.DataFrame:
     """Return a row per setting, part and hours: the thickness left at the place that decides, and the least of all.
 
     hours: those of the updates of the first packing, the longest that all packings were worn for, the operation that
-    is asked for. Intervals are over packings, without the coefficient's. how: SIMULATED, or BEYOND what was worn.
+    is asked for, those of operation.told_at_h. Intervals are over packings, without the coefficient's.
+    how: SIMULATED, or BEYOND what was worn.
     """
     rows = []
     for (setting, part), life in lives.items():
@@ -191,8 +192,7 @@ def remaining_table(runs: Runs, lives: Lives) -> pd.DataFrame:
             row = {"setting": setting, "part": part, "operation_h": hours, "operation_Mt": hours * mt_per_hour(run)}
             row |= with_ends("remaining_mm", deciding)
             least = np.nanmean(np.nanmin(left, axis=1))
-            how = SIMULATED if hours <= worn_for * (1.0 + HOURS_OF_REMAINING) else BEYOND
-            rows.append(row | {"least_remaining_mm": least, "packings": len(courses), "how": how})
+            rows.append(row | {"least_remaining_mm": least, "packings": len(courses), "how": how_told(hours, worn_for)})
     return pd.DataFrame(rows, columns=REMAINING)
 
 
@@ -203,11 +203,25 @@ REMAINING = [
 
 
 def _hours_told(updates: np.ndarray, worn_for: float, operation: Mapping[str, Any]) -> list[float]:
-    """Return those hours in order, each once: sums of updates and what is asked for differ by rounding."""
     asked = operation.get("duration_s", 0.0) / SECONDS_PER_HOUR
-    told = sorted({*(float(hours) for hours in updates if hours <= worn_for), float(worn_for), float(asked)})
-    same = [after - hours <= HOURS_OF_REMAINING * after for hours, after in pairwise(told)]
-    return [hours for hours, again in zip(told, [*same, False], strict=True) if not again]
+    return hours_apart([*updates[updates <= worn_for], worn_for, asked, *wanted_hours(operation)])
+
+
+def wanted_hours(operation: Mapping[str, Any]) -> list[float]:
+    """Return the hours of operation.told_at_h."""
+    return [seconds / SECONDS_PER_HOUR for seconds in operation.get("told_at_s", ())]
+
+
+def hours_apart(hours: Iterable[float]) -> list[float]:
+    """Return hours in order, each once: sums of updates and what is asked for differ by rounding."""
+    told = sorted({float(each) for each in hours})
+    same = [after - each <= HOURS_OF_REMAINING * after for each, after in pairwise(told)]
+    return [each for each, again in zip(told, [*same, False], strict=True) if not again]
+
+
+def how_told(hours: float, worn_for: float) -> str:
+    """Return how what is left after hours is known of a shape that was worn for others: SIMULATED or BEYOND."""
+    return SIMULATED if hours <= worn_for * (1.0 + HOURS_OF_REMAINING) else BEYOND
 
 
 # ---------------------------------------------------------------- steel

@@ -150,8 +150,10 @@ def wear_map(job: Job) -> Any:
     told=TOLD,
     digits=DIGITS,
     caption="""
-    Thickness left now and after the last simulated hour, of the first packing of each design. Red: as thin as the part
-    is changed at, or thinner. Grey: no back lies behind, so no thickness is known. Views as in the map of wear.
+    Thickness left now, after the last simulated hour, and at the hours that the study wants told, of the first packing
+    of each design. Between updates, and from the last one on, each face loses as much as its area patch, after the last
+    one at the mean rate of the last shape. Red: as thin as the part is changed at, or thinner. Grey: no back lies
+    behind, so no thickness is known. Views as in the map of wear.
     """,
 )
 def remaining_thickness(job: Job) -> Any:
@@ -160,15 +162,15 @@ def remaining_thickness(job: Job) -> Any:
         change_out_mm,
         designs_remark,
         packings_remark,
-        remaining_maps,
-        remaining_rows,
         shown_runs,
     )
     from bulkwear.workflows.cases.equipment.plots.maps import remaining_thickness as draw
+    from bulkwear.workflows.cases.equipment.remaining import most_designs, remaining_maps, remaining_rows
 
     every, folder = job.told.runs, folder_of(job)
-    runs = shown_runs(every, MOST_STATES)
-    remarks = [*job.remarks, *packings_remark(every), *designs_remark(every, MOST_STATES)]
+    most = most_designs(every, MOST_MAPS)
+    runs = shown_runs(every, most)
+    remarks = [*job.remarks, *packings_remark(every), *designs_remark(every, most)]
     return draw(remaining_maps(runs, folder), change_out_mm(runs), remarks), remaining_rows(every, folder)
 
 

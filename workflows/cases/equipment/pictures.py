@@ -14,14 +14,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface
-from bulkwear.postproc.readers.cycle_folders import cycle_files
-from bulkwear.postproc.tables.display import MILLIMETRES, few_digits
-from bulkwear.postproc.wear.area_patches import area_patches, patches_of
-from bulkwear.postproc.wear.thickness import remaining_thickness
+from bulkwear.postproc.mesh import SurfaceMesh, read_surface
+from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.wear.area_patches import area_patches
 from bulkwear.workflows.cases.equipment.tables import AT_A_PATCH, HOURS, KG_PER_MT, SECONDS_PER_HOUR
 
-SURFACE, WORN_SURFACE = "surface.vtu", "worn_surface.vtu"
+SURFACE = "surface.vtu"
 MARKED = 3  # worst places of a part that are marked
 RECESSION, REMAINING = "recession", "remaining"  # quantities of maps: mm per 1,000 h, mm
 TURNING = ("rotation", "turning_surface")  # kinds of motion about an axis for good
@@ -175,34 +173,6 @@ def marks_of(worst: pd.DataFrame, setting: str, part: str) -> dict[str, np.ndarr
     return {f"{rank:.0f}": place for rank, place in zip(rows["rank"], places, strict=True)}
 
 
-def remaining_states(run: Run, folder: Path) -> list[tuple[float, Path]]:
-    """Return hours of operation and surface of a run as built and, where it was worn, at its end."""
-    place = folder / run["run"]
-    wear = pd.read_csv(place / "wear.csv").iloc[-1]
-    hours = float(wear["operation_h"] + wear["stands_for_h"])
-    return [(0.0, cycle_files(place, SURFACE)[0]), *([(hours, place / WORN_SURFACE)] if hours > 0.0 else [])]
-
-
-def remaining_maps(runs: Sequence[Run], folder: Path) -> list[PartMap]:
-    """Return maps of the remaining thickness (mm) now and after the last simulated hour, of the first packing of each
-    setting; the settings are called so.
-    """
-    found, several = [], len(first_runs(runs)) > 1
-    for run in first_runs(runs):
-        labels = labels_of(run)
-        for hours, file in remaining_states(run, folder):
-            state = f"after {few_digits(hours, 4)} h" if hours > 0.0 else "now"
-            surface = read_surface(file)
-            for name in wearing(run):
-                mesh, _ = part_mesh(surface, labels[name])
-                left = MILLIMETRES * remaining_thickness(mesh)[mesh.triangles].mean(axis=1)
-                lost = mesh.point_data["removed_thickness_m"][mesh.triangles].mean(axis=1)
-                turning = turns_about(run["parts"][name]["motion"])
-                title = f"{run['setting']}, {state}" if several else state
-                found.append(PartMap(title, name, mesh, {REMAINING: left}, lost, {}, turning))
-    return found
-
-
 def change_out_mm(runs: Sequence[Run]) -> dict[str, float]:
     """Return the remaining thickness (mm) at which each part is changed; NaN where that is not one thickness."""
     found: dict[str, set[float]] = {}
@@ -219,30 +189,3 @@ def change_out_mm(runs: Sequence[Run]) -> dict[str, float]:
 def patch_rows(rates: pd.DataFrame, *columns: str) -> pd.DataFrame:
     """Return the patches of a table of rates with some of its columns."""
     return rates[["setting", "part", "patch", "x_mm", "y_mm", "z_mm", "area_mm2", *columns]]
-
-
-def remaining_rows(runs: Sequence[Run], folder: Path) -> pd.DataFrame:
-    """Return what `remaining_maps` shows by area patches: setting, part, patch, operation_h, mean_remaining_mm,
-    least_remaining_mm. Patches of which no thickness is known are left out.
-    """
-    tables = []
-    for run in first_runs(runs):
-        pristine = read_surface(folder / run["run"] / SURFACE)
-        patches = area_patches(pristine, run["patch_m"])
-        for hours, file in remaining_states(run, folder):
-            surface = read_surface(file)
-            own = patches_of(surface, pristine, patches)
-            table = pd.DataFrame({"label": surface.cell_data["part"], "patch": own})
-            table["remaining_mm"] = MILLIMETRES * remaining_thickness(surface)[surface.triangles].mean(axis=1)
-            table["weight"] = areas(surface.points, surface.triangles)
-            table = table[(table["patch"] >= 0) & np.isfinite(table["remaining_mm"])]
-            table["weighted"] = table["weight"] * table["remaining_mm"]
-            by_patch = table.groupby(["label", "patch"])
-            sums = by_patch[["weight", "weighted"]].sum()
-            found = pd.DataFrame({"mean_remaining_mm": sums["weighted"] / sums["weight"]})
-            found["least_remaining_mm"] = by_patch["remaining_mm"].min()
-            names = {label: name for name, label in labels_of(run).items()}
-            found = found.reset_index().assign(setting=run["setting"], operation_h=hours)
-            tables.append(found.assign(part=found["label"].map(names)))
-    columns = ["setting", "part", "patch", "operation_h", "mean_remaining_mm", "least_remaining_mm"]
-    return pd.concat(tables, ignore_index=True)[columns]

@@ -45,7 +45,7 @@ def key_numbers(found: Mapping[str, pd.DataFrame], runs: Sequence[Mapping[str, A
         rows.append(_row(row, f"steel_lost_{row.part}", "kg per Mt", row.pristine_kg_per_Mt))
     for row in found["remaining"].itertuples():
         ends = row.remaining_mm, row.remaining_mm_low, row.remaining_mm_high
-        rows.append(_row(row, f"remaining_{row.part}_after_{row.operation_h:.0f}_h", "mm", *ends))
+        rows.append(_row(row, f"remaining_{row.part}_after_{row.operation_h:.6g}_h", "mm", *ends))
     rows += _less_steel(found["designs"])
     if "lifters" in found:
         rows += _lifters(found["lifters"])

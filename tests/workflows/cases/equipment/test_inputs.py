@@ -48,12 +48,13 @@ def test_hours_of_a_shape_that_is_kept_are_not(tmp_path):
     "operation",
     [
         {"hours_per_year_h": 8000},
+        {"told_at_h": [100, 9000]},
         {"change_out_remaining_mm": 1},
         {"change_out_remaining_mm": None, "change_out_worn_mass_fraction": 0.2},
     ],
 )
 def test_judging_simulates_nothing(tmp_path, before, operation):
-    """When a liner is changed, and how many hours a year has, is told of the same runs."""
+    """When a liner is changed, what is told at which hours, and how many a year has, is told of the same runs."""
     assert digest(tmp_path, operation=operation) == before
 
 
@@ -70,7 +71,7 @@ def test_a_surface_is_made_again_for_its_shape_and_room_alone(tmp_path):
     same = (
         {"parts": {"liner": {"wear_coefficient_error": 0.1, "wear_coefficient_per_pa": 1e-12, "law": "finnie"}}},
         {
-            "operation": {"duration_h": 500, "hours_per_year_h": 8000},
+            "operation": {"duration_h": 500, "hours_per_year_h": 8000, "told_at_h": [100]},
             "sampling": {"patch_mm": 70, "pictures_per_block": 4},
         },
         {"bulk": {"seed": 7}},

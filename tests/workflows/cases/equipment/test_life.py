@@ -229,6 +229,16 @@ def test_what_is_left_along_the_operation(lives):
     assert left["how"].tolist() == [life_tables.SIMULATED] * 4 + [life_tables.BEYOND]
 
 
+def test_wanted_hours_are_told_besides(lives):
+    """Between updates by the block's rate, beyond the asked ones by the last; one that is told anyway stands once."""
+    wanted = (9000.0, 150.0, 300.0)
+    run = replace(ONE, operation={**OPERATION, "told_at_s": [3600.0 * hours for hours in wanted]})
+    left = life_tables.remaining_table(*lives(run)[:2])
+    assert left["operation_h"].tolist() == [0.0, 100.0, 150.0, 200.0, 300.0, 8000.0, 9000.0]
+    assert left["remaining_mm"].tolist() == pytest.approx([30.0 - 2e-3 * hours for hours in left["operation_h"]])
+    assert left["how"].tolist() == [life_tables.SIMULATED] * 5 + [life_tables.BEYOND] * 2
+
+
 def test_hours_that_differ_by_rounding_are_told_once():
     """Those of the last update are summed from shares, the hours asked for are not."""
     asked = {"duration_s": 3600.0 * 2000.0 / 3.0}

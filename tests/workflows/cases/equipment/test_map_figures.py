@@ -3,12 +3,15 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from bulkwear.postproc.mesh import SurfaceMesh, centroids, read_surface, unit_normals
 from bulkwear.postproc.tables.display import few_digits
-from bulkwear.workflows.cases.equipment import map_figures, pictures
+from bulkwear.workflows.cases.equipment import map_figures, pictures, remaining
+from bulkwear.workflows.cases.equipment.life_tables import BEYOND, SIMULATED
 from bulkwear.workflows.cases.equipment.sections import COLUMNS, _plane, worst_sections
+from bulkwear.workflows.config.schema import case_schema
 from tests.workflows.cases.equipment import scenes
 
 FIGURES = [each for each in vars(map_figures).values() if hasattr(each, "product")]
@@ -52,7 +55,7 @@ def test_maps_hold_the_rates_of_the_table(study):
 def test_what_is_left_is_what_was_there_less_what_was_lost(study):
     """Now the given thickness, at the end less the removed thickness of the first packing, by face and by patch."""
     folder, runs, _ = study
-    maps = pictures.remaining_maps(runs, folder)
+    maps = remaining.remaining_maps(runs, folder)
     first, several = pictures.first_runs(runs)[0], len(pictures.first_runs(runs)) > 1
     hours = scenes.UPDATE_HOURS * scenes.PHASES.count("wearing")
     states = ["now", f"after {few_digits(hours, 4)} h"]
@@ -65,9 +68,52 @@ def test_what_is_left_is_what_was_there_less_what_was_lost(study):
     mesh, _ = pictures.part_mesh(worn, pictures.labels_of(first)[late.part])
     lost = mesh.point_data["removed_thickness_m"][mesh.triangles].mean(axis=1)
     np.testing.assert_allclose(late.values[pictures.REMAINING], 1e3 * (scenes.THICKNESS - lost), rtol=ROUNDED)
-    rows = pictures.remaining_rows(runs, folder)
+    rows = remaining.remaining_rows(runs, folder)
     least = rows[(rows["setting"] == first["setting"]) & (rows["part"] == late.part)]["least_remaining_mm"].min()
     assert least == pytest.approx(late.values[pictures.REMAINING].min(), rel=ROUNDED)
+
+
+MUCH_LATER = 20.0  # -, of the simulated hours: the worst place is worn through by then
+
+
+def with_wanted_hours(runs, *hours):
+    """The runs with hours of operation that the study wants told."""
+    wanted = {"told_at_s": [3600.0 * each for each in hours]}
+    return [run | {"operation": run["operation"] | wanted} for run in runs]
+
+
+def test_wanted_hours_lie_between_and_beyond_those_of_the_surfaces(study):
+    """From the surface before each face loses as much as its patch does in the hours since, until nothing is left."""
+    folder, runs, _ = study
+    early, end = 0.5 * scenes.UPDATE_HOURS, scenes.UPDATE_HOURS * scenes.PHASES.count("wearing")
+    later, latest = end + early, MUCH_LATER * end
+    (run,) = with_wanted_hours(pictures.first_runs(runs)[:1], early, later, latest)
+    states = remaining.states_of(run, folder)
+    assert [state.hours for state in states] == pytest.approx([0.0, early, end, later, latest])
+    assert [state.how for state in states] == [SIMULATED] * 3 + [BEYOND] * 2
+    named = [f"after {few_digits(hours)} h" for hours in (early, end, later, latest)]
+    said = ["now", *named[:2], *(f"{name}, {BEYOND}" for name in named[2:])]
+    assert [remaining.words(state) for state in states] == said
+    left = remaining.remaining_rows([run], folder).pivot(
+        index=["part", "patch"], columns="operation_h", values="mean_remaining_mm"
+    )
+    rates = pd.read_csv(folder / run["run"] / "cycle_001" / "patches.csv").set_index(["part", "patch"])
+    step = 1e3 * early * rates["recession_m_per_h"].reindex(left.index)
+    np.testing.assert_allclose(left[0.0] - left[early], step, rtol=ROUNDED, atol=ROUNDED)
+    np.testing.assert_allclose(left[end] - left[later], step, rtol=ROUNDED, atol=ROUNDED)
+    assert left[latest].min() == 0.0
+
+
+def test_figure_of_many_wanted_hours_is_readable(study, tmp_path):
+    """As many as are allowed: of the first design alone."""
+    folder, runs, _ = study
+    schema = case_schema("equipment", "settings")["properties"]["operation"]["properties"]["told_at_h"]
+    hours = scenes.UPDATE_HOURS * (0.25 + np.arange(schema["maxItems"]))
+    many = with_wanted_hours(runs, *hours)
+    figure, table = map_figures.remaining_thickness(scenes.job_of_study(folder, many))
+    assert scenes.faults_of(figure, tmp_path / "figure.png") == []
+    own = table[table["setting"] == runs[0]["setting"]]
+    assert set(hours) <= set(own["operation_h"])
 
 
 def test_sections_pass_through_the_worst_place(study):

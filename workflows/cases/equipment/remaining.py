@@ -1,0 +1,139 @@
+"""Maps of what is left of the parts that wear: as built, after the last simulated hour, and at hours that are wanted.
+
+An hour between updates, or after the last one, has the surface of the update before: from there on each face loses as
+much as its area patch does, as in the table of what is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface
+from bulkwear.postproc.readers.cycle_folders import cycle_files
+from bulkwear.postproc.tables.display import MILLIMETRES, few_digits
+from bulkwear.postproc.wear.area_patches import area_patches, patches_of
+from bulkwear.postproc.wear.thickness import remaining_thickness
+from bulkwear.workflows.cases.equipment.life import patch_courses
+from bulkwear.workflows.cases.equipment.life_tables import (
+    BEYOND,
+    HOURS_OF_REMAINING,
+    hours_apart,
+    how_told,
+    wanted_hours,
+)
+from bulkwear.workflows.cases.equipment.pictures import (
+    REMAINING,
+    SURFACE,
+    PartMap,
+    Run,
+    first_runs,
+    labels_of,
+    part_mesh,
+    turns_about,
+    wearing,
+)
+from bulkwear.workflows.cases.equipment.tables import read_runs
+
+WORN_SURFACE = "worn_surface.vtu"
+COLUMNS = ["setting", "part", "patch", "operation_h", "mean_remaining_mm", "least_remaining_mm", "how"]
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What is left of a run after hours of operation.
+
+    surface: of the last update before; how: SIMULATED or BEYOND; patch: (m,) area patch of each face, negative without
+    left: (m,) m on each face, at least 0; NaN where no thickness is known
+    """
+
+    hours: float
+    how: str
+    surface: SurfaceMesh
+    patch: np.ndarray
+    left: np.ndarray
+
+
+def states_of(run: Run, folder: Path) -> list[State]:
+    """Return a run as built, after its last update, and at the hours that are wanted; folder: results/<study>."""
+    place, states = folder / run["run"], []
+    shapes, tables, pristine = _shapes(place), read_runs([run], folder), read_surface(place / SURFACE)
+    patches, worn_for = area_patches(pristine, run["patch_m"]), shapes[-1][0]
+    of_parts = [patch_courses(tables, run["setting"], part) for part in wearing(run)]
+    for hours in hours_apart([0.0, worn_for, *wanted_hours(run["operation"])]):
+        since, file = next(shape for shape in reversed(shapes) if shape[0] <= hours * (1.0 + HOURS_OF_REMAINING))
+        surface = read_surface(file)
+        patch, lost = patches_of(surface, pristine, patches), np.zeros(patches.max() + 1)
+        for places, (course,) in of_parts:
+            lost[places.index] = course.at(hours) - course.at(min(since, hours))
+        left = remaining_thickness(surface)[surface.triangles].mean(axis=1) - np.where(patch >= 0, lost[patch], 0.0)
+        states.append(State(hours, how_told(hours, worn_for), surface, patch, np.maximum(left, 0.0)))
+    return states
+
+
+def _shapes(place: Path) -> list[tuple[float, Path]]:
+    """Return (hours of operation, surface) of a run as built and after each update."""
+    wear, files = pd.read_csv(place / "wear.csv"), cycle_files(place, SURFACE)
+    hours = (wear["operation_h"] + wear["stands_for_h"]).tolist()
+    updates = [
+        shape for shape, stood in zip(zip(hours, files, strict=True), wear["stands_for_h"], strict=True) if stood
+    ]
+    shapes = [(0.0, files[0]), *updates]
+    return shapes if not updates else [*shapes[:-1], (hours[-1], place / WORN_SURFACE)]
+
+
+def remaining_maps(runs: Sequence[Run], folder: Path) -> list[PartMap]:
+    """Return maps of the remaining thickness (mm) of the states of the first packing of each setting; the settings are
+    called so.
+    """
+    found, several = [], len(first_runs(runs)) > 1
+    for run in first_runs(runs):
+        labels = labels_of(run)
+        for state in states_of(run, folder):
+            title = f"{run['setting']}, {words(state)}" if several else words(state)
+            for name in wearing(run):
+                mesh, faces = part_mesh(state.surface, labels[name])
+                lost = mesh.point_data["removed_thickness_m"][mesh.triangles].mean(axis=1)
+                values = {REMAINING: MILLIMETRES * state.left[faces]}
+                turning = turns_about(run["parts"][name]["motion"])
+                found.append(PartMap(title, name, mesh, values, lost, {}, turning))
+    return found
+
+
+def most_designs(runs: Sequence[Run], most: int) -> int:
+    """Return how many designs a figure of so many maps of a part has room for, one or more."""
+    states = 2 + max(len(wanted_hours(run["operation"])) for run in runs)
+    return max(most // states, 1)
+
+
+def words(state: State) -> str:
+    """Return what a state is called."""
+    if not state.hours:
+        return "now"
+    return f"after {few_digits(state.hours, 4)} h" + (f", {BEYOND}" if state.how == BEYOND else "")
+
+
+def remaining_rows(runs: Sequence[Run], folder: Path) -> pd.DataFrame:
+    """Return COLUMNS of what `remaining_maps` shows by area patches. Patches of which no thickness is known are left
+    out.
+    """
+    tables = []
+    for run in first_runs(runs):
+        names = {label: name for name, label in labels_of(run).items()}
+        for state in states_of(run, folder):
+            table = pd.DataFrame({"label": state.surface.cell_data["part"], "patch": state.patch})
+            table["remaining_mm"] = MILLIMETRES * state.left
+            table["weight"] = areas(state.surface.points, state.surface.triangles)
+            table = table[(table["patch"] >= 0) & np.isfinite(table["remaining_mm"])]
+            table["weighted"] = table["weight"] * table["remaining_mm"]
+            by_patch = table.groupby(["label", "patch"])
+            sums = by_patch[["weight", "weighted"]].sum()
+            found = pd.DataFrame({"mean_remaining_mm": sums["weighted"] / sums["weight"]})
+            found["least_remaining_mm"] = by_patch["remaining_mm"].min()
+            found = found.reset_index().assign(setting=run["setting"], operation_h=state.hours, how=state.how)
+            tables.append(found.assign(part=found["label"].map(names)))
+    return pd.concat(tables, ignore_index=True)[COLUMNS]
