@@ -312,13 +312,16 @@ def test_liner_that_is_worn_through_is_told_with_its_place(finished, tmp_path):
 SHORT = {
     "start_up": {"most_s": 0.3},
     "sampling": {"fewest_blocks": 1, "most_blocks": 1},
-}  # start-up 2, pristine 1, then updates
+}  # start-up 2, pristine 1, wearing 2, worn 1
 THIN = 1e-5  # m, of the liner: an update is deeper
 
 
-def test_run_whose_liner_is_worn_through_ends(tmp_path, capsys):
-    """It ends after that update unless it is told otherwise; the answer tells hours and place, a node of the liner."""
-    with machine_study(tmp_path, **SHORT) as study:
+@pytest.mark.parametrize("then", [None, "cap", "go_on"])
+def test_run_whose_liner_is_worn_through_ends_or_goes_on(tmp_path, capsys, then):
+    """It ends after that update unless it is told to go on, at the back or beyond it; the answer tells hours and place,
+    a node of the liner.
+    """
+    with machine_study(tmp_path, **SHORT, **({"wear": {"worn_through": then}} if then else {})) as study:
         whole = machine_chain(study, tmp_path / "results/machine")
         liner, *others = whole.parameters["parts"]
         chain = replace(whole, parameters={**whole.parameters, "parts": [{**liner, "thickness_m": THIN}, *others]})
@@ -326,16 +329,16 @@ def test_run_whose_liner_is_worn_through_ends(tmp_path, capsys):
     table = wear_table(chain)
     first = table[table["through_nodes"] > 0].iloc[0]
     assert first["phase"] == "wearing" and (table["balance_error"] < 1e-6).all()
-    assert table["phase"].tolist()[2:] == ["wearing"]
+    assert table["phase"].tolist()[2:] == (["wearing"] if then is None else ["wearing", "wearing", "worn"])
     found = run_summary(table, chain.folder)
-    assert found["through_h"] == 200.0 and found["operation_h"] == 200.0
+    assert found["through_h"] == 200.0 and found["operation_h"] == (200.0 if then is None else 400.0)
     (said,) = answers_on_holes(pd.DataFrame([{"run": chain.name, **found}]))
     assert f"by 200 h: {found['through_said']}." in said and found["through_said"] in capsys.readouterr().err
     place = [float(each) for each in re.search(r"first at \((.*)\) mm, where the part was 0.01 mm", said)[1].split(",")]
     worn = part_body(chain, surface(chain, int(first["cycle"])), 0).points
     assert np.linalg.norm(worn - np.array(place) / 1e3, axis=1).min() < 1e-4  # places of four digits
     lost = part_body(chain, read_surface(chain.folder / "worn_surface.vtu"), 0).point_data["lost_thickness_m"].max()
-    assert lost <= THIN * (1.0 + 1e-6)
+    assert (lost > THIN * (1.0 + 1e-6)) == (then == "go_on")
 
 
 # ---------------------------------------------------------------- killed, and lost particles
