@@ -14,7 +14,9 @@ def test_time_left_is_the_forecast_at_the_pace_so_far():
     table = pd.DataFrame({"job": ["a", "b", "c"], "wall_h": hours, "cores": 1, "needs": ""})
     left = TimeLeft("demo", table, 1, lambda: now[0])
     now[0] = SLOWER * hours[0] * 3600.0
-    assert left.finished("a") == f"demo: 1 of 3 jobs of the solver done, about {SLOWER * sum(hours[1:]):.0f} h 0 min left"
+    assert (
+        left.finished("a") == f"demo: 1 of 3 jobs of the solver done, about {SLOWER * sum(hours[1:]):.0f} h 0 min left"
+    )
     left.finished("b")
     assert left.finished("c") == "demo: 3 of 3 jobs of the solver done; tables, figures and page follow"
 
