@@ -25,6 +25,7 @@ from bulkwear.workflows.engine.job import let_jobs_import
 from bulkwear.workflows.engine.project import ProjectError, enter_project
 from bulkwear.workflows.engine.solver import LAUNCHER, cycle_fault, executable_of
 from bulkwear.workflows.engine.templates import DeckError, templates_digest
+from bulkwear.workflows.engine.terminal import Terminal, listen
 from bulkwear.workflows.forecast.rates import rates_file
 from bulkwear.workflows.report.products import looked_up, paths_of, told_to
 
@@ -37,6 +38,7 @@ MADE_BY_DEFAULT = not workflow.default_target  # unless that Snakefile has said 
 # The command line is read as Snakemake does it: the workflow has its targets only when this file has been read.
 GIVEN, _ = get_argument_parser().parse_known_args(sys.argv[1:])
 let_jobs_import()
+TERMINAL = Terminal() if GIVEN.target_jobs else listen(logger)  # not in the jobs that Snakemake starts by themselves
 
 
 def entered_project():
@@ -113,6 +115,7 @@ onstart:
         announce_cost(study, jobs)
         if STUDIES[study].until:
             logger.info(STUDIES[study].until.said(study))
+    tell_time_left(needed, workflow.dag.needrun_jobs())
 
 
 onsuccess:
@@ -121,6 +124,7 @@ onsuccess:
             study, page = STUDIES[job.wildcards.study], Path(job.output[0])
             for sentence in answers_of(study.case.name, page.parent):
                 logger.info(f"{study.name}: {sentence}")
+            logger.info(f"{study.name}: its page is {page}")
 
 
 def answers_of(case, folder):
@@ -133,10 +137,18 @@ def answers_of(case, folder):
 def jobs_by_study(jobs):
     """The jobs that call the solver, by study: the names they have in forecasts."""
     found = {}
+    for study, name in solver_jobs(jobs).values():
+        found.setdefault(study, set()).add(name)
+    return found
+
+
+def solver_jobs(jobs):
+    """Of the jobs that call the solver: {id: (study, the name in forecasts)}."""
+    found = {}
     for job in jobs:
         if (kind := NAMING.ours(job.rule.name)) in SOLVER_RULES:
             words = dict(job.wildcards.items())
-            found.setdefault(words.pop("study"), set()).add("_".join([kind, *words.values()]))
+            found[job.jobid] = words.pop("study"), "_".join([kind, *words.values()])
     return found
 
 
@@ -159,6 +171,20 @@ def announce_cost(study, jobs):
     from bulkwear.workflows.forecast.forecast import announcement  # slow to import, and jobs need none
 
     logger.info(announcement(STUDIES[study], jobs, CORES))
+
+
+def tell_time_left(needed, jobs):
+    """From now on say the time left of a study whenever one of those jobs has ended."""
+    from bulkwear.workflows.forecast.time_left import times_left  # slow to import, and jobs need none
+
+    left, names = times_left([(STUDIES[study], found) for study, found in needed.items()], CORES), solver_jobs(jobs)
+
+    def said(job):
+        study, name = names.get(job, ("", ""))
+        if study in left:
+            logger.info(left[study].finished(name))
+
+    TERMINAL.on_finished = said
 
 
 def rules_of_cases():

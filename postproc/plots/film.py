@@ -50,7 +50,7 @@ LEAST_STRIP, LARGEST_STRIP = 0.15, 0.33  # -, of the frame's height for the sect
 def film_pictures(
     run: str, surfaces: Sequence[SurfaceMesh], frames: pd.DataFrame, quantity: str, remarks: Sequence[str]
 ) -> list[np.ndarray]:
-    """Return the frames (h, w, 3) of a film: the surface obliquely, coloured by removed thickness, and a section below.
+    """Return the frames (h, w, 3) of a film: the surface obliquely, coloured by wear depth, and a section below.
 
     surfaces: one per frame, the unworn one first; frames: as from `analysis.film.frame_table`; quantity: what the
     colour is. Colour scale, view and section are the same on all frames.

@@ -44,23 +44,23 @@ def worn_surface(
     quantity: str,
     remarks: Sequence[str],
 ) -> Figure:
-    """Draw worn surfaces, the runs of a design row on one colour scale: obliquely and from above for one row, else
-    from above only.
+    """Draw worn surfaces, all runs on one colour scale: obliquely and from above for one row, else from above only.
 
     meshes: by run; runs: run, row, surface; depths: as from `analysis.depth.depth_table`; quantity: what the colour is.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
-    if runs["row"].nunique() > 1:
-        _small_multiples(figure, meshes, runs, deformed, depths)
-        return figure
     limits, bounds = colour_limits(depths), common_bounds(meshes.values())
+    unit, ticks = scaled("µm", limits[1])
+    if runs["row"].nunique() > 1:
+        grid = _small_multiples(figure, meshes, runs, deformed, limits)
+        _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
+        return figure
     grid = figure.subplots(2, len(runs), squeeze=False)
     for column, run in enumerate(runs["run"]):
         picture(grid[0, column], surface_oblique(meshes[run], deformed, limits, bounds))
         grid[0, column].set_title(run.replace("_", " "))
         picture(grid[1, column], *surface_plan(meshes[run], deformed, limits))
         grid[1, column].set(xlabel="Across the travel, x (mm)", ylabel="y (mm)\nbed moves to +y →")
-    unit, ticks = scaled("µm", limits[1])
     _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
     return figure
 
@@ -94,29 +94,26 @@ def _small_multiples(
     meshes: Mapping[str, SurfaceMesh],
     runs: pd.DataFrame,
     deformed: bool,
-    depths: pd.DataFrame,
-) -> None:
-    """Draw all runs from above without skirt, those of a design row below each other on a scale of their own."""
+    limits: tuple[float, float],
+) -> np.ndarray:
+    """Draw all runs from above without skirt, those of a design row below each other; return the axes."""
     rows, lines = list(dict.fromkeys(runs["row"])), runs.groupby("row").cumcount()
     deep = int(lines.max()) + 1
     blocks = math.ceil(len(rows) / (ROWS_PER_LINE if deep > 1 else SINGLES_PER_LINE))
     columns = math.ceil(len(rows) / blocks)
     grid = figure.subplots(blocks * deep, columns, squeeze=False)
-    scales = {row: colour_limits(depths[depths["run"].isin(found["run"])]) for row, found in runs.groupby("row")}
-    unit, ticks = scaled("µm", max(top for _, top in scales.values()))
     for axes in grid.ravel():
         axes.set_axis_off()
     for run, line in zip(runs.itertuples(), lines, strict=True):
         block, column = divmod(rows.index(run.row), columns)
         axes = grid[block * deep + line, column]
-        picture(axes, surface_plan(meshes[run.run], deformed, scales[run.row], 300, skirt=False)[0])
+        picture(axes, surface_plan(meshes[run.run], deformed, limits, 300, skirt=False)[0])
         if line == 0:
-            axes.set_title(f"{run.row}: {ticks(float(f'{scales[run.row][1]:.2g}'), 0)}", fontsize=SMALLEST_FONT, pad=3)
+            axes.set_title(run.row, fontsize=SMALLEST_FONT, pad=3)
         if column == 0 and deep > 1:
             place = {"rotation": 90, "va": "center", "ha": "right", "fontsize": SMALLEST_FONT}
             axes.text(-0.06, 0.5, run.surface, transform=axes.transAxes, **place)
-    label = f"Depth over the scale of its row (-)\nnumbers at the rows: their scales ({unit})"
-    _colour_bar(figure, grid, (0.0, 1.0), label)
+    return grid
 
 
 def wear_maps(

@@ -1,8 +1,9 @@
 """Wear depth on a worn surface, for samples that deform and for rigid ones, and its distribution over the
 area.
 
-A sample that deforms has lost `removed_thickness_m` at its nodes. A rigid sample keeps its shape: its depth
-is equivalent, the worn volume of a triangle over the triangle's area, and was never applied."""
+A sample that deforms has lost `removed_thickness_m` at its nodes; what the law has worn there besides, and caps on a step
+have held back, is carried, a volume that over the node's area is a depth as well. A rigid sample keeps its shape: its
+depth is equivalent, the worn volume of a triangle over the triangle's area, and was never applied."""
 
 from __future__ import annotations
 
@@ -17,6 +18,7 @@ from bulkwear.postproc.wear.update import CARRIED_VOLUME, REMOVED_THICKNESS
 
 WORN_VOLUME = "worn_volume_m3"
 ROUNDED_SHARE = 1e-9  # -, of the worn volume: less is rounding of the displacement, which balances to that
+CORNERS = 3.0  # of a triangle
 DISTRIBUTION_LEVELS = 200  # points of a distribution's curve
 DISTRIBUTION_DECADES = 3.0  # that a distribution's depths span
 DISTRIBUTION_SHARE = 0.999  # -, of the area that a distribution's depths reach
@@ -31,31 +33,33 @@ def equivalent_face_depth(mesh: SurfaceMesh) -> np.ndarray:
 def face_depth(mesh: SurfaceMesh, deformed: bool) -> np.ndarray:
     """Return the wear depth of each triangle, (m,) m; NaN on the holder.
 
-    deformed: True, mean removed thickness of the triangle's nodes; False, the equivalent depth.
+    deformed: True, mean of its nodes; False, the equivalent depth.
     """
     if not deformed:
         return equivalent_face_depth(mesh)
-    thickness = mesh.point_data[REMOVED_THICKNESS][mesh.triangles].mean(axis=1)
-    return np.where(worn_faces(mesh), thickness, np.nan)
+    return np.where(worn_faces(mesh), node_depth(mesh, True)[mesh.triangles].mean(axis=1), np.nan)
 
 
 def node_depth(mesh: SurfaceMesh, deformed: bool) -> np.ndarray:
     """Return the wear depth at each node, (n,) m; NaN at nodes of the holder alone.
 
-    deformed: True, removed thickness; False, worn volume over area of the worn triangles round the node.
+    deformed: True, removed thickness, and carried volume over area; False, worn volume over area. Area: a third of
+        that of the worn triangles round the node; the worn volume is that of those triangles.
     """
     worn = worn_faces(mesh)
     triangles, count = mesh.triangles[worn], len(mesh.points)
     area = sum_over_nodes(triangles, areas(mesh.points, triangles), count)
     if deformed:
-        return np.where(area > 0.0, mesh.point_data[REMOVED_THICKNESS], np.nan)
+        carried = mesh.point_data.get(CARRIED_VOLUME, np.zeros(count))  # a pristine surface has none
+        held = np.divide(carried, area / CORNERS, out=np.full(count, np.nan), where=area > 0.0)
+        return mesh.point_data[REMOVED_THICKNESS] + held
     volume = sum_over_nodes(triangles, mesh.cell_data[WORN_VOLUME][worn], count)
     return np.divide(volume, area, out=np.full(count, np.nan), where=area > 0.0)
 
 
 def depth_quantity(deformed: bool) -> str:
     """Return what `face_depth` is called on axes."""
-    return "Removed thickness" if deformed else "Equivalent depth, not applied"
+    return "Wear depth, carried included" if deformed else "Equivalent depth, not applied"
 
 
 def carried_share(mesh: SurfaceMesh) -> float:
@@ -65,13 +69,13 @@ def carried_share(mesh: SurfaceMesh) -> float:
 
 
 def carried_remark(meshes: Mapping[str, SurfaceMesh], deformed: bool) -> str:
-    """Return what a map of depth must say about the volume that is not on it."""
+    """Return what a map of depth must say about the volume that is not in the shape."""
     if not deformed:
         return "rigid sample: depth is worn volume over area, not applied"
     share = max(carried_share(mesh) for mesh in meshes.values())
     if abs(share) < ROUNDED_SHARE:
         return "all worn volume is applied, nothing is carried"
-    return f"up to {100.0 * share:.3g} % of a run's worn volume is still carried, not yet applied"
+    return f"caps on a step hold back up to {100.0 * share:.3g} % of a run's wear: in the colours, not yet in the shape"
 
 
 def read_worn_surfaces(runs: Sequence[str], paths: Sequence[str]) -> dict[str, SurfaceMesh]:

@@ -50,8 +50,9 @@ def project_job(log_path: str | Path) -> Iterator[None]:
     """Work in the project of the working directory, and copy standard error to a log.
 
     A fault of the user's or the solver's ends the job with its sentence alone, exit code 1. Faults are ValueError,
-    RuntimeError and OSError of our own modules: their messages are sentences. So are a full disk, exhausted memory and
-    Ctrl-C, wherever they strike. The log gets the traceback too.
+    RuntimeError and OSError of our own modules: their messages are sentences. So are a full disk and exhausted memory,
+    wherever they strike. The log gets the traceback too. Ctrl-C ends it with a line in the log alone: on the terminal
+    it is said once for all jobs, see `terminal`.
     """
     with open(log_path, "a") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
         print(time.strftime("--- started %Y-%m-%d %H:%M:%S"), file=log)
@@ -59,7 +60,7 @@ def project_job(log_path: str | Path) -> Iterator[None]:
             enter_project(Path.cwd())
             yield
         except KeyboardInterrupt:
-            print(f"\n{STOPPED}\n", file=sys.stderr)
+            print(STOPPED, file=log)
             sys.exit(INTERRUPTED)
         except (ValueError, RuntimeError, OSError, MemoryError) as fault:
             print(f"\n{sentence(fault)}\n", file=sys.stderr)

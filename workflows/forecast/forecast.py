@@ -152,8 +152,13 @@ def announcement(study: Study, jobs: Collection[str], cores: int) -> str:
         found = read_rates(rates_file())
     except RatesError as fault:
         return f"No forecast: {fault}"
-    table = forecast_table([job for job in work_of(study) if job.name in jobs], found.rates)
+    table = table_of_jobs(study, jobs, found.rates)
     return f"Forecast of {summary_line(study.name, totals(table, cores), cores)}; by {found.said()}."
+
+
+def table_of_jobs(study: Study, jobs: Collection[str], rates: Rates) -> pd.DataFrame:
+    """Return the `forecast_table` of some jobs of a study, by their names."""
+    return forecast_table([job for job in work_of(study) if job.name in jobs], rates)
 
 
 def summary_line(name: str, found: Mapping[str, float], cores: int) -> str:

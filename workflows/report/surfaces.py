@@ -20,11 +20,10 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
     digits=6,
     caption="""
     Wear depth on the sample, obliquely and from above; studies of several design rows show views from above without
-    skirt. Depth is the thickness removed along the path of the surface; for a rigid study it is the worn volume of
-    a triangle over its area, which was not applied to the shape. The runs of a design row share one colour scale,
-    which ends at the depth that 99 % of the area of its most worn sample does not exceed; deeper spots take the top
-    colour. With several rows, that depth is the number at each row's name. Grey: the skirt, whose wear is not
-    counted. The bed moves towards +y, up.
+    skirt. Depth is the thickness removed along the path of the surface, and what caps on a step hold back of the
+    wear; for a rigid study it is the worn volume of a triangle over its area, which was not applied to the shape.
+    All runs share one colour scale, which ends at the depth that 99 % of the area of the most worn sample does not
+    exceed; deeper spots take the top colour. Grey: the skirt, whose wear is not counted. The bed moves towards +y, up.
     """,
 )
 def worn_surface(job: Job) -> Any:
@@ -52,7 +51,7 @@ def worn_surface(job: Job) -> Any:
     caption="""
     The worn surfaces in three dimensions: drag to turn, scroll to zoom. Heights are true to scale. In studies of
     several design rows the row with the lowest relative wear is shown. Colours as in the picture, with a scale of
-    their own.
+    its own.
     """,
 )
 def worn_surface_3d(job: Job) -> Any:
@@ -112,7 +111,7 @@ def wear_updates(job: Job) -> Any:
     suffix="gif",
     caption="""
     Film of the worn surface without skirt, one picture per wear cycle, evenly thinned to at most 60; it starts with
-    the unworn surface and repeats. Colour: removed thickness, on one scale for all pictures, which ends at the
+    the unworn surface and repeats. Colour: wear depth, on one scale for all pictures, which ends at the
     depth that 99 % of the sample's area does not exceed in the end. Below: section along the travel through the
     shape of the pattern that loses most, true to scale, with the unworn section dotted. What is left of the pattern
     is its volume over the mean height of its feet. In studies of several design rows the row with the lowest

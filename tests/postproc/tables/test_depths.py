@@ -51,6 +51,18 @@ def test_uniform_wear_has_one_depth(deformed):
     assert np.isnan(np.delete(at_nodes, touched)).all()
 
 
+def test_what_is_carried_counts_as_depth():
+    """Half applied and half carried is as deep as all applied; over the area it is the whole worn volume."""
+    mesh = worn_plate()
+    worn = mesh.cell_data["part"] == 0
+    area = areas(mesh.points, mesh.triangles)
+    shares = np.bincount(mesh.triangles[worn].ravel(), np.repeat(area[worn] / 3.0, 3), len(mesh.points))
+    mesh.point_data["removed_thickness_m"] *= 0.5
+    mesh.point_data["carried_volume_m3"][:] = 0.5 * DEPTH * shares
+    np.testing.assert_allclose(face_depth(mesh, True)[worn], DEPTH, rtol=RELATIVE)
+    assert face_depth(mesh, True)[worn] @ area[worn] == pytest.approx(DEPTH * area[worn].sum(), rel=RELATIVE)
+
+
 def test_equivalent_depth_conserves_volume():
     """Equivalent depth times area is the worn volume, face by face and at the nodes together."""
     mesh = worn_plate(holder_beyond=1.0)

@@ -14,14 +14,13 @@ FAULTS = {
     "memory of tables": (pyarrow.lib.ArrowMemoryError("malloc of size 64 failed"), 1, "The memory is exhausted"),
     "a full disk": (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "ledger.parquet"), 1, "the disk is full"),
     "a quota": (OSError(errno.EDQUOT, os.strerror(errno.EDQUOT)), 1, "a quota is used up"),
-    "Ctrl-C": (KeyboardInterrupt(), INTERRUPTED, STOPPED),
     "a sentence of ours": (ValueError("a.stl: it is empty."), 1, "a.stl: it is empty."),
 }
 
 
 @pytest.mark.parametrize("what", FAULTS)
 def test_a_job_ends_in_one_sentence(tmp_path, monkeypatch, capsys, what):
-    """No traceback on the screen; Ctrl-C says how to go on."""
+    """No traceback on the screen."""
     fault, code, said = FAULTS[what]
     monkeypatch.chdir(REPOSITORY)
     with pytest.raises(SystemExit) as end, project_job(tmp_path / "job.log"):
@@ -29,6 +28,15 @@ def test_a_job_ends_in_one_sentence(tmp_path, monkeypatch, capsys, what):
     lines = capsys.readouterr().err.strip().splitlines()
     assert end.value.code == code
     assert len(lines) == 1 and said in lines[0]
+
+
+def test_ctrl_c_stands_in_the_log_alone(tmp_path, monkeypatch, capsys):
+    """On the terminal it is said once for all jobs."""
+    monkeypatch.chdir(REPOSITORY)
+    with pytest.raises(SystemExit) as end, project_job(tmp_path / "job.log"):
+        raise KeyboardInterrupt
+    assert end.value.code == INTERRUPTED and capsys.readouterr().err == ""
+    assert STOPPED in (tmp_path / "job.log").read_text()
 
 
 def test_a_fault_of_the_program_shows_where_it_is(tmp_path, monkeypatch):
