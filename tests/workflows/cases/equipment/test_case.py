@@ -382,8 +382,8 @@ def test_killed_and_started_again_is_the_undisturbed_run(finished, tmp_path, mom
 
 
 def test_particle_that_gets_lost_stops_the_run_with_its_place(tmp_path):
-    """The outlet leaves a gap under the feed: what falls through it is named with where it was and went."""
-    inlet = {"centre_mm": [350, 0, -100], "size_mm": [60, 60]}
+    """The outlet leaves a gap under half of the feed: what falls through it is named with where it was and went."""
+    inlet = {"centre_mm": [250, 0, 40], "size_mm": [200, 60]}  # its other end is above the plate
     outlets = {"below": {"centre_mm": [-100, 0, -250], "size_mm": [700, 500]}}
     domain = {"low_mm": [-500, -300, -350], "high_mm": [500, 300, 300]}
     with machine_study(tmp_path, inlet=inlet, outlets=outlets, domain=domain) as study:
@@ -396,5 +396,5 @@ def test_particle_that_gets_lost_stops_the_run_with_its_place(tmp_path):
         str(fault.value),
     )
     assert found and int(found[1]) > 0
-    assert float(found[2]) == pytest.approx(350.0, abs=40.0) and -400.0 < float(found[3]) < -100.0
+    assert float(found[2]) == pytest.approx(300.0, abs=60.0) and -400.0 < float(found[3]) < -100.0
     assert state.finished_cycles(chain.folder, inputs_digest(chain)) == 1
