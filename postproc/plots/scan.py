@@ -70,7 +70,9 @@ def _map(axes: Axes, cells: pd.DataFrame, column: str, colours: str, limits: tup
     np.add.at(total, (j, i), points * cells[column].to_numpy())  # a cell at the foot of a bump has two labels
     np.add.at(weight, (j, i), points)
     values = np.divide(total, weight, out=np.full_like(total, np.nan), where=weight > 0.0)
-    drawn = axes.pcolormesh(x, y, values, cmap=colours, vmin=limits[0], vmax=limits[1], shading="nearest")
+    drawn = axes.pcolormesh(
+        x, y, values, cmap=colours, vmin=limits[0], vmax=limits[1], shading="nearest", rasterized=True
+    )
     axes.set_aspect("equal")
     axes.grid(False)
     return drawn

@@ -136,8 +136,11 @@ def scaled(unit: str, largest: float) -> tuple[str, FuncFormatter]:
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG."""
-    figure.savefig(path, dpi=RESOLUTION)
+    """Write a figure as its name ends: PNG, SVG or PDF; without the date, so that equal figures are equal files."""
+    kind = Path(path).suffix[1:]
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind)
+    with mpl.rc_context({"svg.hashsalt": "bulkwear"}):
+        figure.savefig(path, dpi=RESOLUTION, metadata=undated)
 
 
 def save_small(figure: str | Path, path: str | Path) -> None:
@@ -191,5 +194,6 @@ def draw_circles(
         cmap=colours,
         norm=norm,
         linewidths=0.0,
+        rasterized=True,  # thousands of them
     )
     axes.add_collection(circles)

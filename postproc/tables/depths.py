@@ -1,9 +1,9 @@
 """Wear depth on a worn surface, for samples that deform and for rigid ones, and its distribution over the
 area.
 
-A sample that deforms has lost `removed_thickness_m` at its nodes; what the law has worn there besides, and caps on a step
-have held back, is carried, a volume that over the node's area is a depth as well. A rigid sample keeps its shape: its
-depth is equivalent, the worn volume of a triangle over the triangle's area, and was never applied."""
+A sample that deforms has lost `removed_thickness_m` at its nodes; what the law has worn there besides, and caps on a
+step have held back, is carried, a volume that over the node's area is a depth as well. A rigid sample keeps its shape:
+its depth is equivalent, the worn volume of a triangle over the triangle's area, and was never applied."""
 
 from __future__ import annotations
 

@@ -71,15 +71,27 @@ def write_results(folder: Path, study: Study) -> None:
 
 
 def _write_figures(folder: Path, study: Study, wear_files: list[Path]) -> None:
-    """Write figures as marked bytes, and tables of the two figures that the page reads."""
+    """Write figures as marked bytes, and the tables of those that the page reads."""
     for product in figures_of(study):
         content = INNER_PAGE.encode() if product.suffix == "html" else PICTURE + product.name.encode()
         (folder / "figures" / product.file).write_bytes(content)
+        for file in product.vectors.values():
+            (folder / "figures" / file).write_bytes(PICTURE + file.encode())
         (folder / "figures" / f"{product.name}.csv").write_text(f"name\n{product.name}\n")
-    faces = [{"run": run.name, "depth_um": 1.0, "area_mm2": 2.0} for run in study.runs]
-    pd.DataFrame(faces).to_csv(folder / "figures" / "worn_surface.csv", index=False)
-    history = wear_history(folder / "design.csv", wear_files)
-    history.to_csv(folder / "figures" / "wear_against_travel.csv", index=False)
+    runs = pd.DataFrame([{"run": run.name, "surface": run.surface} for run in study.runs])
+    faces = runs.assign(depth_um=1.0, area_mm2=2.0)
+    tables = {
+        "worn_surface": faces,
+        "worn_surface_3d": faces,
+        "wear_against_travel": wear_history(folder / "design.csv", wear_files),
+        "depth_distribution": runs.assign(depth_um=1.0, area_share_percent=60.0),
+        "wear_split": runs.assign(wear_over_plain=0.8, pattern_over_plain=0.2),
+        "forces": runs.assign(vertical_force_N=2.0, drag_force_N=1.0),
+        "wear_updates": runs.assign(step_taken=1.0),
+        "worn_film": runs.assign(bumps_left_percent=99.0, largest_depth_um=1.0),
+    }
+    for name, table in tables.items():
+        table.to_csv(folder / "figures" / f"{name}.csv", index=False)
 
 
 def _write_costs(folder: Path, study: Study) -> None:

@@ -26,12 +26,24 @@ from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.report.page import cost_totals, jobs_of, package_version
-from bulkwear.workflows.report.page_parameters import figure_remarks, page_of, page_parameters
+from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
 from bulkwear.workflows.report.provenance_of_pages import FILE, LINE, Origin, keep_origin, recorded, with_banner
 from bulkwear.workflows.report.published import write_published_numbers
-from bulkwear.workflows.report.sections import DIGITS, Block, Cards, Listing, Points, Section, Table, Text, shown
+from bulkwear.workflows.report.sections import (
+    DIGITS,
+    Block,
+    Cards,
+    Lights,
+    Listing,
+    Points,
+    Section,
+    Table,
+    Text,
+    shown,
+)
 from bulkwear.workflows.report.simulated import Simulated, said_of, versions_of, warnings_of
 from bulkwear.workflows.report.text import number
+from bulkwear.workflows.report.verdict import with_verdict
 
 SECONDS_PER_MINUTE, SECONDS_PER_HOUR = 60.0, 3600.0
 
@@ -81,6 +93,8 @@ def written(block: Block, name: str) -> str:
         return "\n".join(map(bullet, block.items)) + "\n"
     if isinstance(block, Cards):
         return "\n".join(bullet(f"**{value}** {label}") for value, label in block.cards) + "\n"
+    if isinstance(block, Lights):
+        return "\n".join(bullet(f"**{each.what}**: {each.state}, {each.said}") for each in block.lights) + "\n"
     if isinstance(block, Table):
         note = f"\n{prose(block.note)}\n" if block.note else ""
         return markdown(block.data, block.digits) + note
@@ -101,9 +115,9 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
     numbers beside ours (`published`). Raises FileNotFoundError, with one sentence, when the study is not finished or
     a figure is missing.
     """
-    told, page = page_parameters(study), page_of(study.case.name)
+    told = page_parameters(study)
     figures = [name for name, words in told["figures"].items() if words["file"].endswith(".png")]
-    kept = [found for section in page.sections(told, folder) if (found := shown(section, figures))]
+    kept = [found for section in with_verdict(told, folder) if (found := shown(section, figures))]
     pictures = pictures_of(kept, folder)
     name = f"{study.name}_{study.fidelity}"
     parts = [HEAD.format(title=study.title, fidelity=study.fidelity, folder=study.name), provenance(folder, study)]

@@ -19,7 +19,8 @@ import pandas as pd
 
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
-from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.summary import NAMES, read_summary
 from bulkwear.workflows.config.until import last_round
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.project import PACKAGE, current_project
@@ -35,11 +36,15 @@ from bulkwear.workflows.report.cost import (
     outside_solver_share,
 )
 from bulkwear.workflows.report.page_parameters import REPORT_FOLDER, page_of
+from bulkwear.workflows.report.products import Product, products_of
 from bulkwear.workflows.report.sections import DIGITS, Block, Table, with_all_figures
 from bulkwear.workflows.report.simulated import said_of, versions_of, warnings_of
 from bulkwear.workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
+from bulkwear.workflows.report.verdict import with_verdict
 
-LARGEST_EMBEDDED_BYTES = 3_000_000  # a larger table stays on disk and is linked
+LARGEST_EMBEDDED_BYTES = {"csv": 3_000_000, "svg": 150_000, "pdf": 150_000}  # a larger file stays on disk, linked
+MEDIA_TYPES = {"csv": "text/csv", "svg": "image/svg+xml", "pdf": "application/pdf"}
+PERCENT = 100.0
 LONGEST_NAME = 40  # characters of a cell that is not broken into lines
 FORECAST = "forecast.csv"
 PACKAGES = (
@@ -82,17 +87,19 @@ def environment() -> jinja2.Environment:
 def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return everything that the template shows."""
     summary, page = read_summary(folder / "summary.csv"), page_of(study["case"])
-    sections = with_all_figures(page.sections(study, folder), list(study["figures"]))
+    sections = with_all_figures(with_verdict(study, folder), list(study["figures"]))
     names = [name for section in sections for block in section.blocks for name in getattr(block, "names", ())]
+    products = products_of(find_case(study["case"]))
     return {
         "study": study,
         "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "sections": sections,
-        "figures": {name: figure(study, name, names.index(name) + 1, folder) for name in names},
-        "run_columns": run_columns(study),
+        "figures": {name: figure(study, products[name], k, folder) for k, name in enumerate(names, start=1)},
+        "run_columns": run_columns(study, summary),
         "runs_note": page.RUNS_NOTE,
+        "thumbnails": thumbnails(folder / "figures" / "worn_surface.csv"),
         "settings": setting_rows(study["settings"], study["paper_settings"]),
-        "runs": run_rows(study),
+        "runs": run_rows(study, summary),
         "simplified": simplifications(study, summary, page),
         "versions": versions(study, folder),
         **simulated(study, folder),
@@ -132,34 +139,47 @@ def cells(table: Table) -> dict[str, Any]:
     }
 
 
-def figure(study: Mapping[str, Any], name: str, index: int, folder: Path) -> dict[str, Any]:
-    """Return one figure of the page: number, title, caption paragraphs, picture or page, its table."""
-    told = study["figures"][name]
-    file, table = folder / "figures" / told["file"], folder / "figures" / f"{name}.csv"
+def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path) -> dict[str, Any]:
+    """Return one figure of the page: number, title, what it shows in a sentence, caption, picture or page, files."""
+    told, figures = study["figures"][product.name], folder / "figures"
+    file, table = figures / told["file"], figures / f"{product.name}.csv"
     interactive = file.suffix == ".html"
-    embedded = table.stat().st_size <= LARGEST_EMBEDDED_BYTES
+    finding = product.finding(pd.read_csv(table, dtype=NAMES)) if product.finding else ""
     return {
-        "name": name,
+        "name": product.name,
         "number": index,
         "title": told["title"],
+        "finding": finding,
         "caption": told["caption"],
         "page": file.read_text(encoding="utf-8") if interactive else None,
         "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
-        "table_name": table.name,
-        "table": data_uri(table.read_bytes(), "text/csv") if embedded else f"figures/{table.name}",
+        "files": [linked(study, figures / name) for name in (table.name, *product.vectors.values())],
+    }
+
+
+def linked(study: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    """Return what a link to a file of the folder of figures needs: a small one is in the page, others lie beside it."""
+    kind = path.suffix[1:]
+    embedded = path.stat().st_size <= LARGEST_EMBEDDED_BYTES[kind]
+    return {
+        "kind": kind.upper(),
         "embedded": embedded,
+        "name": f"{study['name']}_{path.name}",
+        "address": data_uri(path.read_bytes(), MEDIA_TYPES[kind]) if embedded else f"figures/{path.name}",
     }
 
 
 # ---------------------------------------------------------------- setting
 
 
-def run_rows(study: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return one row per run: design factors, its bed where it has one, and what the case tells of its parameters."""
+def run_rows(study: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return one row per run: what it found, design factors, its bed where it has one, what its case tells of it."""
+    found = results_of_runs(summary) if study["wears"] else {}
     factors = {row["row"]: {k: v for k, v in row.items() if k != "row"} for row in study["design_rows"]}
     columns = dict.fromkeys(name for row in factors.values() for name in row)
     return [
         {"run": run}
+        | found.get(run, {})
         | {name: factors[names["row"]].get(name) for name in columns}
         | ({"bed": study["bed_of"][run]} if study["beds"] else {})
         | page_of(study["case"]).run_columns(study["parameters"][run])
@@ -167,9 +187,33 @@ def run_rows(study: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def run_columns(study: Mapping[str, Any]) -> list[dict[str, str]]:
+def results_of_runs(summary: pd.DataFrame) -> dict[str, dict[str, float]]:
+    """Return of each run what its wear was, as far as the summary tells it."""
+    told = {
+        "wear_over_plain": summary.get("wear_over_plain"),
+        "worn_volume_mm3": summary["worn_volume_m3"] * CUBIC_MILLIMETRES,
+        "carried_share_percent": PERCENT * summary["carried_volume_m3"] / summary["worn_volume_m3"],
+    }
+    columns = pd.DataFrame({"run": summary["run"], **{name: each for name, each in told.items() if each is not None}})
+    return columns.set_index("run").to_dict("index")
+
+
+def thumbnails(table: Path) -> dict[str, str]:
+    """Return {run: address of its worn surface seen from above}, all on one scale; none without a table of faces."""
+    columns = {"run", "x_mm", "y_mm", "depth_um"}
+    if not table.is_file() or not columns <= set(pd.read_csv(table, nrows=0)):
+        return {}
+    from bulkwear.postproc.plots.pictures import colour_limits  # slow to import, and few studies have them
+    from bulkwear.postproc.plots.thumbnail import thumbnail
+
+    faces = pd.read_csv(table, usecols=[*columns, "area_mm2"], dtype=NAMES)
+    top = colour_limits(faces)[1]
+    return {run: data_uri(thumbnail(one, top), "image/png") for run, one in faces.groupby("run", sort=False)}
+
+
+def run_columns(study: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, str]]:
     """Return key, name and unit of the columns of the table of runs."""
-    pairs = ((key, *name_and_unit(key)) for key in run_rows(study)[0])
+    pairs = ((key, *name_and_unit(key)) for key in run_rows(study, summary)[0])
     return [{"key": key, "name": name, "unit": unit} for key, name, unit in pairs]
 
 

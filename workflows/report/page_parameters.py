@@ -14,7 +14,7 @@ from bulkwear.workflows.report.products import Product, figures_of, products_of_
 from bulkwear.workflows.report.text import number_and_unit
 
 REPORT_FOLDER = Path(__file__).resolve().parent
-TEMPLATES = ("study.html.j2", "style.html.j2", "sections.html.j2")
+TEMPLATES = ("study.html.j2", "style.html.j2", "sections.html.j2", "runs.html.j2", "script.html.j2")
 
 
 def page_templates(study: Study) -> list[str]:

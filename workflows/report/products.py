@@ -30,9 +30,12 @@ from bulkwear.workflows.engine.provenance import simulating_code
 from bulkwear.workflows.report.simulated import figure_remark, versions_of
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from bulkwear.workflows.config.design import Study
 
 SHARED = ("bulkwear.workflows.report.beds", "bulkwear.workflows.report.surfaces")  # any case may show what is there
+VECTORS = ("svg", "pdf")
 OfStudy = Callable[["Study"], Any]
 Source = str | OfStudy  # a path, in which {study} stands for its name, or what gives one path or several
 
@@ -50,7 +53,8 @@ class Product:
     tables: {key: path below results/<study>} of what is written besides the figure and the table of its name
     when: whether a study has it
     title, category, caption: of a figure; the caption's paragraphs are apart by an empty line
-    suffix: png, gif of a film, or html of an interactive page
+    suffix: png of a figure of matplotlib, which is written as VECTORS too; gif of a film, html of an interactive page
+    finding: takes the figure's table and returns in one sentence what the figure shows; None: the title stands for it
     digits: significant ones of its tables, or of the tables by key; None: all
     """
 
@@ -64,6 +68,7 @@ class Product:
     category: str = ""
     caption: str = ""
     suffix: str = "png"
+    finding: Callable[[pd.DataFrame], str] | None = None
     digits: int | Mapping[str, int] | None = None
 
     @property
@@ -80,6 +85,11 @@ class Product:
     def file(self) -> str:
         """Return the file name of a figure."""
         return f"{self.name}.{self.suffix}"
+
+    @property
+    def vectors(self) -> dict[str, str]:
+        """Return {kind: file name} of the forms of a figure that print at any size; none of a film or a page."""
+        return {kind: f"{self.name}.{kind}" for kind in VECTORS} if self.is_figure and self.suffix == "png" else {}
 
     @property
     def paragraphs(self) -> list[str]:
@@ -176,10 +186,13 @@ def product_files(study: Study) -> list[str]:
 
 
 def outputs_of(product: Product, study: str = "{study}") -> dict[str, str]:
-    """Return {key: path} of all that a product's job writes: `figure` and `table` of a figure, and further tables."""
+    """Return {key: path} of all that a product's job writes: `figure`, VECTORS and `table` of a figure, and further
+    tables.
+    """
     results = f"results/{study}"
-    drawn = {"figure": f"{results}/figures/{product.file}", "table": f"{results}/figures/{product.name}.csv"}
-    return (drawn if product.is_figure else {}) | {key: f"{results}/{path}" for key, path in product.tables.items()}
+    names = {"figure": product.file, **product.vectors, "table": f"{product.name}.csv"} if product.is_figure else {}
+    drawn = {key: f"{results}/figures/{name}" for key, name in names.items()}
+    return drawn | {key: f"{results}/{path}" for key, path in product.tables.items()}
 
 
 def told_to(product: Product, study: Study) -> dict[str, Any]:
@@ -193,7 +206,8 @@ def write_product(product: Product, job: Job, outputs: Mapping[str, str]) -> Non
     made = product.make(job)
     if product.is_figure:
         drawn, table, *further = made
-        _write_figure(drawn, outputs["figure"])
+        for kind in ("figure", *product.vectors):
+            _write_figure(drawn, outputs[kind])
         made = {"table": table} | (further[0] if further else {})
     for key, table in made.items():
         if isinstance(table, str):

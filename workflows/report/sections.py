@@ -33,6 +33,25 @@ class Cards:
     cards: Sequence[tuple[str, str]]
 
 
+SOUND, CARE, WEAK = "sound", "with care", "weak"  # states of a light
+
+
+@dataclass(frozen=True)
+class Light:
+    """How far a result can be trusted in one respect: what is looked at, SOUND, CARE or WEAK, and why."""
+
+    what: str
+    state: str
+    said: str
+
+
+@dataclass(frozen=True)
+class Lights:
+    """The lights of a verdict."""
+
+    lights: Sequence[Light]
+
+
 @dataclass(frozen=True, eq=False)
 class Table:
     """A table; heads are the column names, their units those of the names' endings.
@@ -67,7 +86,7 @@ class Listing:
     content: str
 
 
-Block = Text | Points | Cards | Table | Pictures | Listing
+Block = Text | Points | Cards | Lights | Table | Pictures | Listing
 DIGITS = 3  # significant ones of numbers in tables
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, every_run, figure
 
@@ -15,6 +16,7 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
 @figure(
     "Wear",
     "Worn surfaces",
+    finding=figure_findings.deepest_run,
     inputs={"design": DESIGN, "surfaces": SURFACES},
     told={"deformed": is_deformed},
     digits=6,
@@ -44,6 +46,7 @@ def worn_surface(job: Job) -> Any:
 @figure(
     "Wear",
     "Worn surfaces, interactive",
+    finding=figure_findings.deepest_run,
     inputs={"summary": SUMMARY, "surfaces": SURFACES},
     told={"deformed": is_deformed},
     suffix="html",
@@ -73,6 +76,7 @@ def worn_surface_3d(job: Job) -> Any:
 @figure(
     "Wear",
     "What each wear update did",
+    finding=figure_findings.largest_step,
     inputs={"design": DESIGN, "wear": WEAR},
     told={"angle_bound": lambda study: study.settings["remeshing"]["smallest_angle_deg"]},
     when=is_deformed,
@@ -105,6 +109,7 @@ def wear_updates(job: Job) -> Any:
 @figure(
     "Wear",
     "The sample wears, a film",
+    finding=figure_findings.pattern_in_film,
     # the surfaces of the cycles, whose number may follow from the wear, lie beside these
     inputs={"summary": SUMMARY, "wear": WEAR, "surfaces": SURFACES, "pristine": every_run("surface.vtu")},
     when=is_deformed,

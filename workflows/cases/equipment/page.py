@@ -10,6 +10,7 @@ from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.cases.equipment import findings, heads, page_blocks
 from bulkwear.workflows.cases.equipment.heads import shown
 from bulkwear.workflows.cases.equipment.page_blocks import read_tables
+from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.report.sections import Pictures, Section
 from bulkwear.workflows.report.text import range_text
 
@@ -26,6 +27,7 @@ DECKS = (
 )
 SECONDS_PER_HOUR = 3600.0
 SUMMARY = "summary.csv"
+WEIGHTIEST = "Wear coefficient"  # every life is in proportion to it
 # Figures of the sections, by name; a study has those that its modules of figures declare
 LIFE_FIGURES = ("life_bars", "recession_against_time")
 FLOW_FIGURES = ("flow_over_time", "flow_pictures", "velocity_fields", "charge_shape")
@@ -47,7 +49,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     worst = shown(found["worst_places"], heads.WORST_COLUMNS, "worst_places", page_blocks.WORST_NOTE)
     steel = shown(found["steel"], heads.STEEL_COLUMNS, "steel", page_blocks.INTERVALS)
     parts = [
-        ("When what has to be changed", page_blocks.life(found, summary), LIFE_FIGURES),
+        ("When what has to be changed", page_blocks.life(found), LIFE_FIGURES),
         ("The machine", page_blocks.machine(machines), ()),
         ("Flow", page_blocks.flow(found), FLOW_FIGURES),
         ("Where it wears", [worst], WEAR_FIGURES),
@@ -65,6 +67,12 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
 def answers(folder: Path) -> list[str]:
     """Return in sentences what a study that is done answers."""
     return findings.all_answers(read_tables(folder), read_summary(folder / SUMMARY))
+
+
+def steadiness(folder: Path) -> list[str]:
+    """Return of each run whether its flow is steady on the shape as built."""
+    flow = read_tables(folder)["flow"]
+    return flow.loc[flow["phase"] == PRISTINE, "answer"].tolist()
 
 
 def first_runs(study: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:

@@ -65,12 +65,11 @@ def read_tables(folder: Path) -> dict[str, pd.DataFrame]:
     }
 
 
-def life(found: Tables, summary: pd.DataFrame) -> list[Block]:
-    """Return the answers as sentences, the lives as numbers, and their table."""
+def life(found: Tables) -> list[Block]:
+    """Return the lives as numbers, and their table."""
     numbers = findings.cards(found["life"])
     return [
         *([Cards(numbers)] if numbers else []),
-        Points(findings.all_answers(found, summary)),
         shown(found["life"], heads.LIFE_COLUMNS, "life", LIFE_NOTE),
     ]
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, plain_runs, published_rows
+from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
@@ -19,6 +20,7 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
 @figure(
     "Wear",
     "Wear against travel",
+    finding=figure_findings.total_wear,
     inputs={"design": DESIGN, "wear": WEAR},
     caption="""
     Cumulative wear volume of the sample, without skirt. Full line: worn by the law from the loads. Dashed line:
@@ -48,6 +50,7 @@ def intervals(job: Job) -> dict[str, pd.DataFrame]:
 @figure(
     "Wear",
     "Wear of base and pattern",
+    finding=figure_findings.share_of_pattern,
     inputs={"summary": SUMMARY},
     caption="""
     Worn volume on the flat base and on the pattern, over the volume of the plain sample in the same packing, geometric
@@ -68,6 +71,7 @@ def wear_split(job: Job) -> Any:
 @figure(
     "Wear",
     "Distribution of depth",
+    finding=figure_findings.depth_of_half,
     inputs={"design": DESIGN, "depths": "results/{study}/figures/worn_surface.csv"},
     told={"deformed": is_deformed},
     caption="""
@@ -180,6 +184,7 @@ def _views(job: Job, place: int) -> Any:
 @figure(
     "Bed",
     "Forces on the sample",
+    finding=figure_findings.mean_forces,
     inputs={"design": DESIGN, "wear": WEAR},
     caption="""
     Force of the bed on the sample after the run-in: vertical (downwards) and drag (along the motion of the bed).

@@ -13,23 +13,29 @@ from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN, Estimate
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.packings import BY, over_packings
 from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.workflows.engine.job import duration_text
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
 from bulkwear.workflows.report.text import number
 
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 DIGITS = 2  # significant ones of a ratio in words
 PERCENT = 100.0
+SECONDS_PER_HOUR, MICROMETRES_PER_MM = 3600.0, 1000.0
 PER_METRE = "worn_volume_per_metre_m3_per_m"
 INTERVAL = f"{PERCENT * CONFIDENCE:g} % interval"
 
 
-def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
-    """Return the answer to a study's question in words and cards, and the numbers of every setting."""
+def depths_of(folder: Path) -> pd.DataFrame:
+    """Return the `depth_summary` of every run of a study."""
     from bulkwear.postproc.tables.depths import depth_summary  # slow to import, and every start reads this module
 
-    summary, settings = read_summary(folder / "summary.csv"), study["settings"]
     columns = ["run", "depth_um", "area_mm2"]
-    depths = depth_summary(pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=columns, dtype={"run": str}))
+    return depth_summary(pd.read_csv(folder / "figures" / "worn_surface.csv", usecols=columns, dtype={"run": str}))
+
+
+def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
+    """Return the answer to a study's question in cards, and the numbers of every setting."""
+    summary, settings, depths = read_summary(folder / "summary.csv"), study["settings"], depths_of(folder)
     acceleration = settings["wear"]["acceleration"]
     results = result_table(summary, depths, acceleration)
     needless = [
@@ -38,7 +44,6 @@ def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
     ]
     shown = results.drop(columns=needless).dropna(axis="columns", how="all")
     return [
-        *(Text(sentence) for sentence in answers(summary)),
         *([Cards(found)] if (found := cards(summary, acceleration)) else []),
         Table(shown, "key_numbers"),
         Text(note(settings, results["packings"])),
@@ -86,7 +91,34 @@ def _reduction(found: Estimate) -> str:
         return ""
     if not (side := _side(found)):
         return ": neither less nor more can be said"
-    return f": {PERCENT * abs(found.value - 1.0):.0f} % {'less' if side < 0 else 'more'}"
+    low, high = sorted(PERCENT * abs(end - 1.0) for end in found.interval())
+    change = f"{PERCENT * abs(found.value - 1.0):.0f} % {'less' if side < 0 else 'more'}"
+    return f": {change} ({low:.0f} to {high:.0f} %)"
+
+
+def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float) -> list[str]:
+    """Return how fast the deepest places of the lowest setting wear, and for how long its runs stand.
+
+    depths: of every run, as from `depths.depth_summary`
+    """
+    settings = [setting for setting, _ in wear_over_plain(summary)] or summary["setting"].tolist()
+    shown = summary[summary["setting"] == settings[0]].merge(depths, on="run")
+    shown = shown.assign(hours=shown["time_s"] * acceleration / SECONDS_PER_HOUR)
+    said = []
+    for surface, runs in shown.groupby("surface", sort=False):
+        deepest, hundredth = (
+            float((runs[name] / MICROMETRES_PER_MM / runs["hours"]).mean())
+            for name in ("largest_depth_um", "depth_of_99_percent_um")
+        )
+        said.append(
+            f"The deepest place of the {surface} sample of {settings[0]} wears {deepest:.2g} mm per hour, a hundredth"
+            f" of its area at least {hundredth:.2g} mm."
+        )
+    time, hours = float(shown["time_s"].mean()), float(shown["hours"].mean())
+    return [
+        *said,
+        f"Its runs slide for {time:.3g} s, which stand for {duration_text(SECONDS_PER_HOUR * hours)} of wear.",
+    ]
 
 
 def note(settings: Mapping[str, Any], packings: pd.Series) -> str:

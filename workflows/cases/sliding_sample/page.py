@@ -75,6 +75,12 @@ def answers(folder: Path) -> list[str]:
     return key_numbers.answers(read_summary(folder / "summary.csv"))
 
 
+def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return in sentences how deep the samples wear per hour, and for how long the runs stand."""
+    acceleration = study["settings"]["wear"]["acceleration"]
+    return key_numbers.facts(read_summary(folder / "summary.csv"), key_numbers.depths_of(folder), acceleration)
+
+
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a page: what particle size asks, key numbers, screening, then wear and bed of any."""
     from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size

@@ -24,6 +24,7 @@ from bulkwear.workflows.report.products import (
 )
 from bulkwear.workflows.report.sections import Pictures, Points, Text
 from bulkwear.workflows.report.text import simplifications
+from bulkwear.workflows.report.verdict import verdict
 from tests.support.own_machine_project import machine_study
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
 
@@ -108,11 +109,11 @@ def sections_of(study, folder):
 
 
 def test_sections_and_answers(tmp_path, monkeypatch):
-    """The page begins with when each part of each design is changed; the answers of the command line are the same."""
+    """The verdict says when each part of each design is changed; the answers of the command line are the same."""
     with finished(tmp_path, monkeypatch, packings=2) as (study, folder):
         found = page.sections(page_parameters(study), folder)
         assert [each.title for each in found] == [*SECTIONS, "Beside published values"]
-        points = next(block for block in found[0].blocks if isinstance(block, Points))
+        points = next(block for block in verdict(page_parameters(study), folder).blocks if isinstance(block, Points))
         for setting in ("slow", "fast"):
             for part in ("liner", "plate", "paddle"):
                 assert any(f"Design {setting}: the {part} has to be changed after" in item for item in points.items)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.sliding_sample.key_numbers import answers, cards
+from bulkwear.workflows.cases.sliding_sample.key_numbers import answers, cards, facts
 from bulkwear.workflows.cases.sliding_sample.study import published_rows, replicate_settings
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_parameters
@@ -73,12 +73,22 @@ def test_a_finished_study_answers(study, tmp_path):
     assert answers_of_study("pin_on_disc", tmp_path) == []
 
 
+def test_depths_are_told_per_hour_that_a_run_stands_for():
+    """0.02 mm in a second that stands for two hours are 0.01 mm per hour; of the setting that wears least."""
+    summary = summary_of(A=[0.5], B=[0.9]).assign(time_s=1.0, run=["a", "b", "c", "d"])
+    depths = pd.DataFrame({"run": summary["run"], "largest_depth_um": 20.0, "depth_of_99_percent_um": 10.0})
+    convex, plain, hours = facts(summary, depths, 7200.0)
+    assert "convex sample of A wears 0.01 mm per hour" in convex and "at least 0.005 mm" in convex
+    assert "plain sample of A" in plain
+    assert hours == "Its runs slide for 1 s, which stand for 2 h 0 min of wear."
+
+
 def test_less_is_said_only_where_the_interval_leaves_out_one():
     """The answer has the mean, its interval and the packings; a reduction in words only where it is one."""
     sure = summary_of(R9=[0.6, 0.64, 0.68])
     (said,) = answers(sure)
     assert said.startswith("The convex sample of R9 wears 0.64 (95 % interval 0.55 to 0.75, 3 packings) of the plain")
-    assert said.endswith("volume: 36 % less.")
+    assert said.endswith("volume: 36 % less (25 to 45 %).")
     assert cards(sure, 1.0)[0] == ("0.64", "convex over plain wear, R9: 95 % interval 0.55 to 0.75, 3 packings")
     (open_,) = answers(summary_of(R9=[0.5, 0.9, 1.1]))
     assert open_.endswith("neither less nor more can be said.")

@@ -1,0 +1,53 @@
+"""Lights of a verdict: what they look at, and from where on they warn."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bulkwear.postproc.statistics.steady import DRIFTING, FEWEST_VALUES, STEADY, UNSAID
+from bulkwear.workflows.report import verdict
+from bulkwear.workflows.report.sections import CARE, SOUND, WEAK
+
+
+@pytest.mark.parametrize(
+    ("answers", "state"), [([STEADY] * 2, SOUND), ([STEADY, UNSAID], CARE), ([STEADY, UNSAID, DRIFTING], WEAK)]
+)
+def test_the_worst_run_decides_whether_runs_are_steady(answers, state):
+    """One that still changes makes it weak, one of which nothing can be said calls for care."""
+    assert verdict.steady_light(answers).state == state
+
+
+@pytest.mark.parametrize(("carried", "state"), [(0.0, SOUND), (0.05, CARE), (0.5, WEAK)])
+def test_what_caps_hold_back_is_told(carried, state):
+    """By the run that carries the largest share of its wear."""
+    summary = pd.DataFrame({"carried_volume_m3": [0.0, carried], "worn_volume_m3": 1.0})
+    light = verdict.cap_light({"settings": {"wear": {"deform": True}}}, summary)
+    assert light.state == state and (f"{100.0 * carried:.2g} %" in light.said) == (state != SOUND)
+    assert verdict.cap_light({"settings": {"wear": {"deform": False}}}, summary).state == CARE
+
+
+@pytest.mark.parametrize(("packings", "state"), [(1, WEAK), (2, CARE), (verdict.ENOUGH_PACKINGS, SOUND)])
+def test_the_setting_of_fewest_packings_decides(packings, state):
+    """Of one packing the scatter is unknown, and it is said."""
+    counts = {"A": verdict.ENOUGH_PACKINGS, "B": packings}
+    design = pd.DataFrame([{"setting": name, "packing": k} for name, count in counts.items() for k in range(count)])
+    light = verdict.packings_light(design)
+    assert light.state == state and ("unknown" in light.said) == (packings == 1)
+
+
+def test_particles_of_another_size_call_for_care():
+    """The scale is told; particles of their true size are sound."""
+    runs = {f"run_{scale:g}": {"particle": {"scale": scale}} for scale in (1.0, 2.5)}
+    light = verdict.scale_light({"parameters": runs})
+    assert light.state == CARE and "1 to 2.5" in light.said
+    assert verdict.scale_light({"parameters": {"run_1": runs["run_1"]}}).state == SOUND
+
+
+def test_wear_per_metre_tells_whether_a_run_is_steady():
+    """Even wear is steady, wear that doubles is not; of few cycles, and of uneven ones, nothing is said."""
+    cycles = np.arange(1, 4 * FEWEST_VALUES + 1)
+    even = pd.DataFrame({"travel_m": 0.1 * cycles, "worn_volume_m3": 1e-9 * (1.0 + 1e-4 * (cycles % 2))})
+    assert verdict._steady(even) == STEADY
+    assert verdict._steady(even.assign(worn_volume_m3=1e-9 * (1.0 + cycles / len(cycles)))) == DRIFTING
+    assert verdict._steady(even.head(FEWEST_VALUES - 1)) == UNSAID
+    assert verdict._steady(even.assign(travel_m=0.1 * cycles**1.1)) == UNSAID

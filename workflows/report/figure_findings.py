@@ -1,0 +1,87 @@
+"""What figures show, in one sentence each, from the tables beside them: alternative texts, first lines of captions."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from bulkwear.postproc.tables.depths import depth_summary
+from bulkwear.workflows.report.text import number
+
+HALF = 0.5  # -, of an area
+PERCENT = 100.0
+DIGITS = 2
+
+
+def _said(value: float, unit: str) -> str:
+    return f"{number(float(value), DIGITS)} {unit}"
+
+
+def deepest_run(depths: pd.DataFrame) -> str:
+    """Return which run wears deepest, and how deep the most worn hundredth of each run's area is."""
+    found = depth_summary(depths).sort_values("depth_of_99_percent_um", ascending=False, kind="stable")
+    first, last = found.iloc[0], found.iloc[-1]
+    said = f"{first['run']} wears deepest: a hundredth of its area by {_said(first['depth_of_99_percent_um'], 'µm')}"
+    if len(found) == 1:
+        return f"{said} or more."
+    return f"{said} or more, of {last['run']} by {_said(last['depth_of_99_percent_um'], 'µm')}."
+
+
+def depth_of_half(shares: pd.DataFrame) -> str:
+    """Return up to which depth half of each sample's area is worn. shares: run, depth_um, area_share_percent."""
+    said = []
+    for run, curve in shares.groupby("run", sort=False):
+        deeper = curve[curve["area_share_percent"] >= PERCENT * HALF]["depth_um"]
+        depth = f"deeper than {_said(deeper.max(), 'µm')}" if len(deeper) else "hardly or not at all"
+        said.append((run, depth))
+    shown = "; ".join(f"half of {run} is worn {depth}" for run, depth in said[:4])
+    return f"{shown[0].upper()}{shown[1:]}."
+
+
+def total_wear(history: pd.DataFrame) -> str:
+    """Return how much each surface has lost in the end, mean over all runs. history: one row per run and cycle."""
+    last = history.groupby("run", sort=False).last()
+    means = last.groupby("surface", sort=False)[["worn_volume_mm3", "travel_mm"]].mean()
+    worn = ", ".join(f"{surface} samples {_said(row['worn_volume_mm3'], 'mm³')}" for surface, row in means.iterrows())
+    return f"After {_said(means['travel_mm'].max(), 'mm')} of travel {worn} are worn, on average."
+
+
+def largest_step(updates: pd.DataFrame) -> str:
+    """Return whether steps reached their caps, and how much wear waits at most. updates: of `tables.updates`."""
+    capped = updates[updates["step_taken"] >= 1.0]
+    if capped.empty:
+        return "No update reaches a cap on its step: all wear is applied at once."
+    share = PERCENT * len(capped) / len(updates)
+    return f"In {share:.0f} % of the updates a cap on a step is reached, and wear is carried on to the next."
+
+
+def pattern_in_film(frames: pd.DataFrame) -> str:
+    """Return what is left of a filmed pattern in the end, or how deep a plain sample is worn."""
+    last = frames.iloc[-1]
+    if pd.isna(last["bumps_left_percent"]):
+        return f"{last['run']} is worn by up to {_said(last['largest_depth_um'], 'µm')} in the end."
+    return f"{last['run']} keeps {last['bumps_left_percent']:.4g} % of its pattern."
+
+
+def share_of_pattern(split: pd.DataFrame) -> str:
+    """Return how much of the wear of patterned samples is on their pattern. split: a row per setting and surface."""
+    patterned = split[split["pattern_over_plain"] > 0.0]
+    if patterned.empty:
+        return "No sample has a pattern that wears."
+    shares = PERCENT * patterned["pattern_over_plain"] / patterned["wear_over_plain"]
+    low, high = shares.min(), shares.max()
+    ends = f"{low:.0f} %" if f"{low:.0f}" == f"{high:.0f}" else f"{low:.0f} to {high:.0f} %"
+    return f"Of the wear of patterned samples {ends} is on the pattern."
+
+
+def mean_forces(table: pd.DataFrame) -> str:
+    """Return the mean vertical and drag force on each surface. table: along the travel, or its means by direction."""
+    if "direction" in table:
+        means = table.pivot_table(index="surface", columns="direction", values="mean_force_N", sort=False)
+    else:
+        columns = {f"{name}_force_N": name for name in ("vertical", "drag")}
+        means = table.groupby("surface", sort=False)[list(columns)].mean().rename(columns=columns)
+    said = [
+        f"{surface} samples with " + " and ".join(f"{_said(row[name], 'N')} ({name})" for name in means)
+        for surface, row in means.iterrows()
+    ]
+    return f"On average the bed loads {', '.join(said)}."

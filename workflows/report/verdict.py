@@ -1,0 +1,119 @@
+"""The verdict at the top of a page: what the study answers, how far that can be trusted, what it hangs on most."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bulkwear.postproc.statistics.steady import DRIFTING, FEWEST_VALUES, STEADY, UNSAID, steady_window
+from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.workflows.report.page_parameters import answers_of_study, page_of
+from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Block, Light, Lights, Points, Section, Text
+from bulkwear.workflows.report.text import range_text, simplifications
+
+TITLE = "Verdict"
+LEAST_CARRIED, MUCH_CARRIED = 0.01, 0.1  # -, of the worn volume: less changes no digit; more is another shape
+ENOUGH_PACKINGS = 3  # from which on an interval tells something
+UNEVEN = 0.01  # -, of a distance between cycles: more is no series for `steady_window`
+PERCENT = 100.0
+
+
+def with_verdict(study: Mapping[str, Any], folder: Path) -> list[Section]:
+    """Return the sections of a study's page, its verdict first; a case without wear has none.
+
+    study: as from `page_parameters.page_parameters`; folder: results/<study>
+    """
+    sections = page_of(study["case"]).sections(study, folder)
+    return [verdict(study, folder), *sections] if study["wears"] else sections
+
+
+def verdict(study: Mapping[str, Any], folder: Path) -> Section:
+    """Return the verdict on a study that was run.
+
+    A case's module `page` may have `answers(folder)` and `facts(study, folder)`, sentences; `steadiness(folder)`, an
+    answer of `statistics.steady` per run, where wear per metre does not tell it; and WEIGHTIEST, the name of the
+    simplification that its answers hang on most.
+    """
+    page, summary = page_of(study["case"]), read_summary(folder / "summary.csv")
+    facts = page.facts(study, folder) if hasattr(page, "facts") else []
+    said = [*answers_of_study(study["case"], folder), *facts]
+    lights = [
+        steady_light(page.steadiness(folder) if hasattr(page, "steadiness") else steadiness(study, folder)),
+        cap_light(study, summary),
+        packings_light(pd.read_csv(folder / "design.csv", dtype=str)),
+        scale_light(study),
+    ]
+    blocks: list[Block] = [*([Points(said)] if said else []), Lights(lights), *weightiest(study, summary)]
+    return Section(TITLE, blocks)
+
+
+def steadiness(study: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return of each run whether its wear per metre is steady over the cycles."""
+    return [_steady(pd.read_csv(folder / run / "wear.csv")) for run in study["runs"]]
+
+
+def _steady(wear: pd.DataFrame) -> str:
+    distances = np.diff(wear["travel_m"], prepend=0.0)
+    if len(wear) < FEWEST_VALUES or np.ptp(distances) > UNEVEN * distances.max():
+        return UNSAID
+    return steady_window(wear["travel_m"].to_numpy(), (wear["worn_volume_m3"] / distances).to_numpy()).answer
+
+
+def steady_light(answers: Sequence[str]) -> Light:
+    """Return whether runs are steady, from an answer of `statistics.steady` per run."""
+    counts, runs = Counter(answers), len(answers)
+    if counts[STEADY] == runs:
+        return Light("Steady", SOUND, "all runs are.")
+    if counts[DRIFTING]:
+        return Light("Steady", WEAK, f"{counts[DRIFTING]} of {runs} runs still change: longer ones would tell more.")
+    return Light("Steady", CARE, f"of {counts[UNSAID]} of {runs} runs it cannot be said: they are too short for that.")
+
+
+def cap_light(study: Mapping[str, Any], summary: pd.DataFrame) -> Light:
+    """Return whether caps on a step hold back wear."""
+    what = "Not limited by a cap"
+    if not study["settings"]["wear"]["deform"]:
+        return Light(what, CARE, "the shape is kept as built: wear is told, not applied.")
+    share = float((summary["carried_volume_m3"] / summary["worn_volume_m3"]).max())
+    state = SOUND if share < LEAST_CARRIED else CARE if share < MUCH_CARRIED else WEAK
+    if state == SOUND:
+        return Light(what, state, "all wear is in the shape.")
+    held = f"caps on a step hold back up to {PERCENT * share:.2g} % of a run's wear at the end"
+    return Light(what, state, f"{held}: volumes count it, the shape lags behind.")
+
+
+def packings_light(design: pd.DataFrame) -> Light:
+    """Return whether settings were replicated. design: the design table of the study."""
+    counts = design.groupby("setting")["packing"].nunique().tolist() if "packing" in design else [1]
+    state = SOUND if min(counts) >= ENOUGH_PACKINGS else CARE if min(counts) > 1 else WEAK
+    said = f"{range_text(counts)} random packing{'s' * (max(counts) > 1)} of each setting"
+    return Light("Replicated", state, f"{said}{', the scatter is unknown' if min(counts) < 2 else ''}.")
+
+
+def scale_light(study: Mapping[str, Any]) -> Light:
+    """Return whether particles, machine and travel have their true size."""
+    scales = [run["particle"]["scale"] for run in study["parameters"].values() if "particle" in run] or [1.0]
+    if max(scales) == 1.0:
+        return Light("Scale", SOUND, "particles have their true size.")
+    return Light("Scale", CARE, f"particles are {range_text(scales, 3)} times as large as the real ones.")
+
+
+def weightiest(study: Mapping[str, Any], summary: pd.DataFrame) -> list[Text]:
+    """Return the simplification that answers hang on most: the one that the case names, else what is scaled most."""
+    page = page_of(study["case"])
+    found = dict(simplifications(study, summary, page))
+    scales = [run["particle"]["scale"] for run in study["parameters"].values() if "particle" in run]
+    acceleration = study["settings"]["wear"]["acceleration"]
+    names = [
+        getattr(page, "WEIGHTIEST", ""),
+        *(["Particles"] if max(scales, default=1.0) > 1.0 else []),
+        *(["Wear acceleration"] if acceleration != 1.0 else []),
+        "Wear law",
+    ]
+    name = next(each for each in names if each in found)
+    return [Text(f"The assumption that matters most: {name[0].lower()}{name[1:]}. {found[name]}")]
