@@ -47,6 +47,7 @@ from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_piec
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code, write_provenance
 from bulkwear.workflows.engine.row_check import RowCheck
 from bulkwear.workflows.engine.schedule import Span, first_span, known_spans
+from bulkwear.workflows.engine.series import write_series
 from bulkwear.workflows.engine.solver import (
     LAUNCHER,
     LOG,
@@ -261,7 +262,7 @@ def cost(
 
 
 def write_products(chain: Chain, finished: int) -> None:
-    """Write wear.csv, cost.csv and worn_surface.vtu of a run from what its finished cycles left."""
+    """Write wear.csv, cost.csv, worn_surface.vtu and cycles.pvd of a run from what its finished cycles left."""
     states = [state.read_state(chain.folder, cycle) for cycle in range(finished)]
     write_table(chain.folder / "wear.csv", [found["wear"] for found in states[1:]])
     free = {"solver_s": 0.0, "processor_s": 0.0, "other_s": 0.0}  # what another run has paid for
@@ -269,6 +270,7 @@ def write_products(chain: Chain, finished: int) -> None:
         chain.folder / "cost.csv", [found["cost"] | (free if "shared_with" in found else {}) for found in states]
     )
     write_surface(chain.folder / WORN_SURFACE, worn_surface(chain, Span(**states[-1]["span"])))
+    write_series(chain.folder, SURFACE, range(1, finished))
 
 
 def fill_bed(

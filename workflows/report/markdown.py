@@ -94,7 +94,7 @@ def written(block: Block, name: str) -> str:
     if isinstance(block, Cards):
         return "\n".join(bullet(f"**{value}** {label}") for value, label in block.cards) + "\n"
     if isinstance(block, Lights):
-        return "\n".join(bullet(f"**{each.what}**: {each.state}, {each.said}") for each in block.lights) + "\n"
+        return "\n".join(bullet(f"**{each.what}: {each.state}.** {each.said}") for each in block.lights) + "\n"
     if isinstance(block, Table):
         note = f"\n{prose(block.note)}\n" if block.note else ""
         return markdown(block.data, block.digits) + note

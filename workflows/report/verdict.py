@@ -68,22 +68,22 @@ def steady_light(answers: Sequence[str]) -> Light:
     """Return whether runs are steady, from an answer of `statistics.steady` per run."""
     counts, runs = Counter(answers), len(answers)
     if counts[STEADY] == runs:
-        return Light("Steady", SOUND, "all runs are.")
+        return Light("Steady", SOUND, "All runs are.")
     if counts[DRIFTING]:
         return Light("Steady", WEAK, f"{counts[DRIFTING]} of {runs} runs still change: longer ones would tell more.")
-    return Light("Steady", CARE, f"of {counts[UNSAID]} of {runs} runs it cannot be said: they are too short for that.")
+    return Light("Steady", CARE, f"Of {counts[UNSAID]} of {runs} runs it cannot be said: they are too short.")
 
 
 def cap_light(study: Mapping[str, Any], summary: pd.DataFrame) -> Light:
     """Return whether caps on a step hold back wear."""
     what = "Not limited by a cap"
     if not study["settings"]["wear"]["deform"]:
-        return Light(what, CARE, "the shape is kept as built: wear is told, not applied.")
+        return Light(what, CARE, "The shape is kept as built: wear is told, not applied.")
     share = float((summary["carried_volume_m3"] / summary["worn_volume_m3"]).max())
     state = SOUND if share < LEAST_CARRIED else CARE if share < MUCH_CARRIED else WEAK
     if state == SOUND:
-        return Light(what, state, "all wear is in the shape.")
-    held = f"caps on a step hold back up to {PERCENT * share:.2g} % of a run's wear at the end"
+        return Light(what, state, "All wear is in the shape.")
+    held = f"Caps on a step hold back up to {PERCENT * share:.2g} % of a run's wear at the end"
     return Light(what, state, f"{held}: volumes count it, the shape lags behind.")
 
 
@@ -99,8 +99,8 @@ def scale_light(study: Mapping[str, Any]) -> Light:
     """Return whether particles, machine and travel have their true size."""
     scales = [run["particle"]["scale"] for run in study["parameters"].values() if "particle" in run] or [1.0]
     if max(scales) == 1.0:
-        return Light("Scale", SOUND, "particles have their true size.")
-    return Light("Scale", CARE, f"particles are {range_text(scales, 3)} times as large as the real ones.")
+        return Light("Scale", SOUND, "Particles have their true size.")
+    return Light("Scale", CARE, f"Particles are {range_text(scales, 3)} times as large as the real ones.")
 
 
 def weightiest(study: Mapping[str, Any], summary: pd.DataFrame) -> list[Text]:

@@ -24,7 +24,7 @@ from bulkwear.workflows.report.products import (
 )
 from bulkwear.workflows.report.sections import Pictures, Points, Text
 from bulkwear.workflows.report.text import simplifications
-from bulkwear.workflows.report.verdict import verdict
+from bulkwear.workflows.report.verdict import verdict, with_verdict
 from tests.support.own_machine_project import machine_study
 from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRun, write_study
 
@@ -104,7 +104,7 @@ def finished(root, monkeypatch, rows=ROWS, given=None, chosen=(), **changes):
 
 def sections_of(study, folder):
     """The sections of its page by title, each as the text of the page in docs."""
-    found = page.sections(page_parameters(study), folder)
+    found = with_verdict(page_parameters(study), folder)
     return {each.title: "\n".join(written(block, study.name) for block in each.blocks) for each in found}
 
 
@@ -137,7 +137,7 @@ def test_one_design_and_one_packing(tmp_path, monkeypatch):
     with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
         found = sections_of(study, folder)
     assert "Designs side by side" not in found
-    first = found["When what has to be changed"]
+    first = found["Verdict"]
     assert "The liner has to be changed after" in first and UNKNOWN in first and "Design A" not in first
 
 
@@ -146,7 +146,7 @@ def test_choice_of_rows(tmp_path, monkeypatch):
     with finished(tmp_path, monkeypatch, packings=2, chosen=["fast"]) as (study, folder):
         assert {run.row for run in study.runs} == {"fast", "fast-2"}
         found = sections_of(study, folder)
-    assert set(found) == {*SECTIONS, "Beside published values"} - {"Designs side by side"}
+    assert set(found) == {"Verdict", *SECTIONS, "Beside published values"} - {"Designs side by side"}
 
 
 def test_machine_without_feed(tmp_path, monkeypatch):
@@ -155,7 +155,7 @@ def test_machine_without_feed(tmp_path, monkeypatch):
         found = sections_of(study, folder)
         told = page.run_columns(next(iter(page_parameters(study)["parameters"].values())))
         numbers = pd.read_csv(folder / "equipment/key_numbers.csv").set_index("quantity")["value"]
-    assert " Mt" not in found["When what has to be changed"] and "t/h come in" not in " ".join(found.values())
+    assert " Mt" not in found["Verdict"] and "t/h come in" not in " ".join(found.values())
     assert told["feed_t_per_h"] is None and numbers["toe_pristine"] == 130.0
     assert numbers["load_angle_pristine"] == 35.0
 
@@ -183,7 +183,7 @@ def test_shape_as_built_alone(tmp_path, monkeypatch):
     with finished(tmp_path, monkeypatch, "row\nA\n", given, updates={"most": 0, "worn_blocks": 0}) as (study, folder):
         found = sections_of(study, folder)
     assert "The shape was kept as built" in found["The worn shape"]
-    assert "That is by the rate as built" in found["When what has to be changed"]
+    assert "That is by the rate as built" in found["Verdict"]
 
 
 def test_beside_published_values(tmp_path, monkeypatch):
