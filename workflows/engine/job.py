@@ -24,9 +24,11 @@ SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estima
 
 
 def let_jobs_import() -> None:
-    """Let the Python scripts of all jobs import this very package, wherever Snakemake puts the scripts."""
-    beside = str(Path(bulkwear.__file__).parents[1])
-    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [beside, os.environ.get("PYTHONPATH")]))
+    """Let the Python scripts of all jobs import this very package, wherever Snakemake puts the scripts, and first what
+    lies in `at_start`.
+    """
+    beside, at_start = str(Path(bulkwear.__file__).parents[1]), str(Path(__file__).parent / "at_start")
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [beside, at_start, os.environ.get("PYTHONPATH")]))
 
 
 class _Both:

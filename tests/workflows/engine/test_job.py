@@ -2,11 +2,13 @@
 
 import errno
 import os
+import subprocess
+import sys
 
 import pyarrow
 import pytest
 
-from bulkwear.workflows.engine.job import INTERRUPTED, STOPPED, project_job
+from bulkwear.workflows.engine.job import INTERRUPTED, STOPPED, let_jobs_import, project_job
 from tests import REPOSITORY
 
 FAULTS = {
@@ -37,6 +39,15 @@ def test_ctrl_c_stands_in_the_log_alone(tmp_path, monkeypatch, capsys):
         raise KeyboardInterrupt
     assert end.value.code == INTERRUPTED and capsys.readouterr().err == ""
     assert STOPPED in (tmp_path / "job.log").read_text()
+
+
+@pytest.mark.parametrize(("fault", "shown"), [("KeyboardInterrupt", False), ("KeyError", True)])
+def test_ctrl_c_before_a_job_has_begun_is_silent(monkeypatch, fault, shown):
+    """While it imports: nothing on the screen, and no exit code of a job that is done."""
+    monkeypatch.setenv("PYTHONPATH", "")
+    let_jobs_import()
+    ended = subprocess.run([sys.executable, "-c", f"raise {fault}"], capture_output=True, text=True, check=False)
+    assert ended.returncode != 0 and bool(ended.stderr) == shown
 
 
 def test_a_fault_of_the_program_shows_where_it_is(tmp_path, monkeypatch):
