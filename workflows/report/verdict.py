@@ -53,8 +53,9 @@ def verdict(study: Mapping[str, Any], folder: Path) -> Section:
 
 
 def steadiness(study: Mapping[str, Any], folder: Path) -> list[str]:
-    """Return of each run whether its wear per metre is steady over the cycles."""
-    return [_steady(pd.read_csv(folder / run / "wear.csv")) for run in study["runs"]]
+    """Return of each run whether its wear per metre is steady over the cycles; UNSAID where it has no wear.csv."""
+    paths = [folder / run / "wear.csv" for run in study["runs"]]
+    return [_steady(pd.read_csv(path)) if path.is_file() else UNSAID for path in paths]
 
 
 def _steady(wear: pd.DataFrame) -> str:
