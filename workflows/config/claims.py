@@ -86,8 +86,9 @@ def _claim(key: str, told: dict[str, Any], where: str) -> Claim:
 
 def _pair(value: Any, where: str) -> tuple[float, float]:
     low, high = value if isinstance(value, list) and len(value) == 2 else (value, value)
+    high = math.inf if high is None and isinstance(value, list) else high
     if not all(isinstance(end, int | float) and not math.isnan(end) for end in (low, high)) or low > high:
-        raise ConfigError(f"{where} is {value}, allowed is a number or [low, high].")
+        raise ConfigError(f"{where} is {value}, allowed is a number, [low, high] or [low, null].")
     return float(low), float(high)
 
 
