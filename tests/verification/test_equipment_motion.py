@@ -91,6 +91,7 @@ def belt(tmp_path_factory):
         yield SimpleNamespace(chain=chain, rows=part_tables(chain, "belt"))
 
 
+@pytest.mark.verify
 def test_power_of_a_belt_is_its_force_times_its_velocity(belt):
     """In every block: what it gives to particles is minus the force on it, along its velocity, times that; at its end
     the solver lets the surface go down."""

@@ -176,6 +176,7 @@ def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
     assert {"tiny", "tiny_decks", "tiny_forecast"} <= set(output.split()) and "broken_decks" not in output
 
 
+@pytest.mark.verify
 def test_only_cases_of_the_studies_asked_for_are_imported(tmp_path):
     """A case that cannot be imported keeps no study of another case from being planned, and no job of one."""
     folder = workspace(tmp_path)
@@ -237,6 +238,7 @@ def test_targets_of_no_study_are_refused(target):
 
 
 @pytest.mark.solver
+@pytest.mark.verify
 def test_an_edited_template_renders_again(tmp_path):
     """Decks are up to date until a template changes; then they are rendered again."""
     folder = workspace(tmp_path)
@@ -283,6 +285,7 @@ def planned_jobs(output: str) -> dict[str, int]:
     return {rule: int(count) for rule, count in re.findall(r"^(\w+) +(\d+)$", table, flags=re.MULTILINE)}
 
 
+@pytest.mark.verify
 def test_paper_fidelity_of_every_study_is_planned_alike_under_both_profiles(tmp_path):
     """Sizes for a cluster are planned without a solver: the same jobs on one machine and on a cluster."""
     folder = workspace(tmp_path)
@@ -299,6 +302,7 @@ def test_paper_fidelity_of_every_study_is_planned_alike_under_both_profiles(tmp_
     assert planned["slurm"]["report"] == len(studies)
 
 
+@pytest.mark.verify
 def test_best_designs_are_planned_once_they_are_found(tmp_path):
     """Before the regression has written them the target is a sentence; then both runs and their figure are planned."""
     folder = workspace(tmp_path)
