@@ -127,7 +127,7 @@ FAULTS = [
         {"sample": {"width_mm": 9}},
         "command line: sample (a block of keys) is no known key, allowed are fidelity, particle_scale, packings, until,"
         " rows,"
-        " materials, ledger, wear, remeshing, solver, deck, pin, disc, sliding.",
+        " materials, ledger, beyond_machine, wear, remeshing, solver, deck, pin, disc, sliding.",
     ),
 ]
 
