@@ -22,7 +22,7 @@ TURN = {"kind": "rotation", "point_m": [0.0, 0.0, 0.0], "axis": [0.0, 1.0, 0.0],
 
 def checked(inlet=INLET, outlets=BELOW, floor=FLOOR, motion=None, **sections):
     run = {"inlet": inlet, "outlets": outlets and {"below": outlets}, "periodic": None, "derived": DERIVED}
-    check_stream({**run, "parts": [{"name": "floor", "motion": motion}], **sections}, [rectangle(floor)])
+    return check_stream({**run, "parts": [{"name": "floor", "motion": motion}], **sections}, [rectangle(floor)])
 
 
 def message_of(**given):
@@ -58,8 +58,8 @@ def test_a_surface_in_any_order_is_met_first_where_it_is_nearest():
 
 def test_feed_that_falls_on_a_part_passes():
     """All of it, or its rim alone."""
-    checked()
-    checked(floor={**FLOOR, "centre_m": [0.24, 0.0, 0.0]})
+    assert checked() is None
+    assert checked(floor={**FLOOR, "centre_m": [0.24, 0.0, 0.0]}) is None
 
 
 def test_feed_that_falls_past_all_parts():
@@ -90,6 +90,6 @@ def test_a_part_that_moves_may_meet_the_feed_wherever_it_gets_to():
 def test_nothing_is_said_of_machines_that_meet_the_feed_later():
     """A feed that leaves a slice and comes in at its other end, a machine without a feed."""
     beside = {**FLOOR, "centre_m": [0.26, 0.0, 0.0]}
-    checked(floor=beside, inlet=None)
+    assert checked(floor=beside, inlet=None) is None
     along = {**INLET, "velocity_m_per_s": [0.0, 1.0, -1.0]}
-    checked(floor=beside, inlet=along, periodic={"axis": "y", "low_m": -0.1, "high_m": 0.1})
+    assert checked(floor=beside, inlet=along, periodic={"axis": "y", "low_m": -0.1, "high_m": 0.1}) is None
