@@ -2,9 +2,9 @@
 
 LIGGGHTS does not look whether its writing succeeds. On a full disk it ends with exit code 0 and leaves a restart file
 that is cut, or that lacks a piece in its middle. The file has no end marker; what proves it whole is its own layout
-(write_restart.cpp and modify.cpp of LIGGGHTS 3.8.0): a header with the numbers of particles and ranks, groups and
-contact model, the state of each fix after its length, then for each rank the length of its record and in it one
-record per particle that begins with its own length. It is whole where these lengths meet the file's last byte and
+(write_restart.cpp, group.cpp, pair_gran.cpp and modify.cpp of LIGGGHTS 3.8.0): a header with the numbers of particles,
+types and ranks, the groups, the contact model and a number per pair of types, the state of each fix after its length,
+then for each rank the length of its record and in it one record per particle that begins with its own length. It is whole where these lengths meet the file's last byte and
 the records are as many as the header has particles.
 """
 
@@ -14,13 +14,14 @@ import struct
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-_TIME_STEP, _RANKS, _ATOM_STYLE, _PARTICLES = 5, 7, 22, 23  # flags of the header
+_TIME_STEP, _RANKS, _ATOM_STYLE, _PARTICLES, _TYPES = 5, 7, 22, 23, 24  # flags of the header
 _WORDS = {0, 4, _ATOM_STYLE}
 _LONG = {_TIME_STEP, _PARTICLES, 25, 28, 31, 34}
 _FIRST_DOUBLE, _LAST = 37, 51
 _ALWAYS = set(range(_LAST - 2))  # the last three are those of a skewed box
-_NO_MORE = b"\xff\xff\xff\xff"  # -1, ends header, arrays of types and contact model
-MODEL_BYTES = 1 << 17  # most that groups and contact model take
+_NO_MORE = -1  # ends header, arrays of types and contact model
+_PAIR_STYLE, _CONTACT_MODEL, _CONTACT_MODEL_BYTES = 0, b"gran", 8
+MOST_GROUPS = 32  # of LIGGGHTS
 LONGEST_WORD = 4096
 
 
@@ -29,11 +30,12 @@ class RestartFileError(ValueError):
 
 
 class RestartFile(NamedTuple):
-    """What a whole restart file says of itself: its time step, particles, and ranks that wrote it."""
+    """What a whole restart file says of itself: its time step, particles, ranks that wrote it, and types."""
 
     step: int
     particles: int
     ranks: int
+    types: int
 
 
 class _BrokenError(Exception):
@@ -83,7 +85,7 @@ def _word(stream: BinaryIO) -> bytes:
 def _header(stream: BinaryIO) -> RestartFile:
     """Read the header: numbers behind their flags, until -1."""
     found = {}
-    while (flag := _integer(stream)) != -1:
+    while (flag := _integer(stream)) != _NO_MORE:
         if flag in _WORDS:
             word = found[flag] = _word(stream)
             if flag == _ATOM_STYLE and word == b"hybrid":
@@ -97,26 +99,40 @@ def _header(stream: BinaryIO) -> RestartFile:
             raise _BrokenError
     if not found.keys() >= _ALWAYS:
         raise _BrokenError
-    return RestartFile(found[_TIME_STEP], found[_PARTICLES], found[_RANKS])
+    return RestartFile(found[_TIME_STEP], found[_PARTICLES], found[_RANKS], found[_TYPES])
 
 
 def _ends_well(stream: BinaryIO, header: RestartFile, size: int) -> bool:
-    """Return whether the fixes and particles of a file end with it.
+    """Return whether groups, contact model, fixes and particles of a file end with it."""
+    try:
+        _skip_groups(stream)
+        _skip_contact_model(stream, header.types)
+        _skip_fixes(stream, size)
+        return _count_particles(stream, header.ranks) == header.particles and stream.tell() == size
+    except _BrokenError:
+        return False
 
-    How long the contact model is depends on it; it ends with -1, and of the places that could be its end only the
-    right one leads on to the file's last byte.
-    """
-    start = stream.tell()
-    model, at = stream.read(MODEL_BYTES), -1
-    while (at := model.find(_NO_MORE, at + 1)) >= 0:
-        stream.seek(start + at + len(_NO_MORE))
-        try:
-            _skip_fixes(stream, size)
-            if _count_particles(stream, header.ranks) == header.particles and stream.tell() == size:
-                return True
-        except _BrokenError:
-            continue
-    return False
+
+def _skip_groups(stream: BinaryIO) -> None:
+    """Pass the names of all groups; one that was deleted leaves an empty name."""
+    left, most = _count(stream), MOST_GROUPS
+    while left and most:
+        length = _integer(stream)
+        if length:
+            stream.seek(-4, 1)
+            _word(stream)
+        left, most = left - bool(length), most - 1
+    if left:
+        raise _BrokenError
+
+
+def _skip_contact_model(stream: BinaryIO, types: int) -> None:
+    """Pass the contact model: its name, its number, and whether it is set for each pair of types (1) or not (0)."""
+    if _integer(stream) != _NO_MORE or _integer(stream) != _PAIR_STYLE or _word(stream) != _CONTACT_MODEL:
+        raise _BrokenError
+    _take(stream, _CONTACT_MODEL_BYTES)
+    if any(_integer(stream) not in (0, 1) for _ in range(types * (types + 1) // 2)) or _integer(stream) != _NO_MORE:
+        raise _BrokenError
 
 
 def _skip_fixes(stream: BinaryIO, size: int) -> None:
@@ -128,7 +144,7 @@ def _skip_fixes(stream: BinaryIO, size: int) -> None:
                     raise _BrokenError
             length = _integer(stream)
             if with_state:
-                if not 0 <= length <= size - stream.tell():
+                if not 0 < length <= size - stream.tell():
                     raise _BrokenError
                 stream.seek(length, 1)
 

@@ -3,7 +3,7 @@
 import shutil
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bulkwear.postproc.readers.restart_file import RestartFileError, read_restart
@@ -12,7 +12,7 @@ from bulkwear.workflows.engine.solver import DECK, LOG, run_deck
 from tests import REPOSITORY
 
 DATA = REPOSITORY / "tests" / "data"
-STEPS, PAGE = 600, 4096
+STEPS, TYPES, PAGE = 600, 2, 4096  # types as the deck has them
 pytestmark = pytest.mark.solver
 
 
@@ -28,9 +28,9 @@ def restart(request, tmp_path_factory):
 
 
 def test_a_whole_restart_file_tells_its_particles(restart):
-    """Step, particles and ranks of the header; the particles are those of the solver's log."""
+    """Step, particles, ranks and types of the header; the particles are those of the solver's log."""
     path, particles, ranks = restart
-    assert read_restart(path) == (STEPS + 1, particles, ranks)
+    assert read_restart(path) == (STEPS + 1, particles, ranks, TYPES)
 
 
 def test_what_lost_a_byte_or_a_page_is_not_whole(restart):
@@ -40,6 +40,7 @@ def test_what_lost_a_byte_or_a_page_is_not_whole(restart):
 
     @settings(max_examples=100, deadline=None)
     @given(st.integers(0, len(content) - 1), st.integers(1, len(content)))
+    @example(content.index(b"gran\0") + 10, 1)  # of the contact model's number
     def refused(begin, length):
         damaged.write_bytes(content[:begin] + content[begin + length :])
         with pytest.raises(RestartFileError, match=r"damaged.restart: the restart file of \d+ bytes is not whole"):
