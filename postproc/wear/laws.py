@@ -3,9 +3,9 @@
 A law is one function and one entry in `LAWS`: with its words, its source, the contact kernels (kernels.py) whose sums
 it needs, and its parameters. Settings, their checks, decks, both ledgers, figures and pages follow from that entry. The
 function takes the ledger columns (name -> (m,) array, SI units in the names) and a mapping of parameters (SI, units in
-the names), and returns the worn volume of every triangle. That is proportional to the wear coefficient, which a study
-accelerates, and additive in the columns, which are summed over any number of cycles: whatever is not linear in a
-contact's force and speed belongs into a kernel.
+the names), and returns the worn volume of every triangle. That is never negative, proportional to the wear coefficient,
+which a study accelerates, and additive in the columns, which are summed over any number of cycles: whatever is not
+linear in a contact's force and speed belongs into a kernel.
 """
 
 from __future__ import annotations
@@ -82,6 +82,30 @@ def archard(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) 
     return _proportional("sliding_work_J", columns, parameters)
 
 
+def tangential_work(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
+    """Worn volume by the work of friction (shear work), V_i = k * max(tangential_work_i, 0).
+
+    Parameters
+    ----------
+    columns : needs `tangential_work_J`, (m,) array of -sum(F_t . v_t dt) in J.
+    parameters : needs `wear_coefficient_per_pa`, k in 1/Pa, at least 0: Archard's over the coefficient of friction,
+        where all contacts slide.
+
+    Returns
+    -------
+    (m,) float64 array, worn volume in m3; 0 where a triangle gave back more than it took, as one does on which a
+    contact unloads that another triangle, or an earlier cycle, has loaded. Additive but for this elastic energy.
+
+    Raises
+    ------
+    KeyError : the column or the parameter is missing.
+    ValueError : k is negative or not finite.
+
+    Source: S. Fouvry, P. Kapsa, L. Vincent, Wear 200 (1996) 186.
+    """
+    return np.maximum(_proportional("tangential_work_J", columns, parameters), 0.0)
+
+
 def finnie(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
     """Worn volume of Finnie's impact wear as LIGGGHTS counts it, V_i = k * finnie_work_i.
 
@@ -110,6 +134,12 @@ LAWS: dict[str, Law] = {
         "volume = coefficient times normal force times sliding path, coefficient {wear_coefficient_per_pa} 1/Pa, the "
         "same for all particles and places. Rolling and impact are recorded but take no volume.",
         "J. F. Archard, J. Appl. Phys. 24 (1953) 981",
+    ),
+    "tangential_work": Law(
+        tangential_work,
+        "volume = coefficient times the work of the contacts' tangential force, coefficient "
+        "{wear_coefficient_per_pa} 1/Pa, the same for all particles and places. Contacts that stick take no volume.",
+        "S. Fouvry, P. Kapsa, L. Vincent, Wear 200 (1996) 186",
     ),
     "finnie": Law(
         finnie,

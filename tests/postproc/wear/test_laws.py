@@ -18,9 +18,12 @@ from bulkwear.postproc.wear.laws import (
     register_law,
     worn_volume,
 )
+from bulkwear.postproc.wear.ledger import SUMMED_FIELDS
 from bulkwear.workflows.config.law_settings import parameters_schema
 from bulkwear.workflows.config.units import to_si
 from tests.support.law_cases import ALPHA, parameters_of
+
+SIGNED = ("tangential_work_J", "drive_work_J")  # sums of a ledger that can be negative
 
 
 def test_archard_is_coefficient_times_sliding_work():
@@ -33,9 +36,9 @@ def test_archard_is_coefficient_times_sliding_work():
 
 
 def columns_for(law, m=4, seed=3):
-    """Ledger columns that a law needs, as float32."""
+    """Sums of a ledger and of the kernels that a law needs, as float32."""
     random = np.random.default_rng(seed)
-    names = ("sliding_work_J", *map(kernel_column, LAWS[law].kernels))
+    names = (*SUMMED_FIELDS, *map(kernel_column, LAWS[law].kernels))
     return {name: random.uniform(0.0, 5.0, m).astype(np.float32) for name in names}
 
 
@@ -43,6 +46,21 @@ def test_finnie_is_coefficient_times_finnie_work():
     """V = k sum(2 E v F dt); the work of sliding has no part in it."""
     volume = worn_volume("finnie", {"finnie_work_J": np.array([3.0, 0.0])}, {"wear_coefficient_per_pa": ALPHA})
     assert volume.tolist() == [3.0 * ALPHA, 0.0]
+
+
+def test_shear_work_is_coefficient_times_tangential_work():
+    """V = k W; with k = alpha / mu a contact that slides, W = mu F L, wears as by Archard; below 0 is nothing."""
+    friction, work = 0.5, np.array([900.0, 0.0])  # -, J
+    columns = {"sliding_work_J": work, "tangential_work_J": friction * work + [0.0, -1.0]}
+    volume = worn_volume("tangential_work", columns, {"wear_coefficient_per_pa": ALPHA / friction})
+    np.testing.assert_array_equal(volume, worn_volume("archard", columns, {"wear_coefficient_per_pa": ALPHA}))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_no_law_lets_a_surface_grow(law):
+    """Sums that can be negative, those of work that a contact gives back, take no volume then."""
+    columns = {name: -values if name in SIGNED else values for name, values in columns_for(law).items()}
+    assert (worn_volume(law, columns, parameters_of(law)) >= 0.0).all()
 
 
 @pytest.mark.parametrize("law", LAWS)

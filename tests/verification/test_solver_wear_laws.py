@@ -1,0 +1,57 @@
+"""Wear laws on the solver's ledger: a sphere that slides, one that sticks, against their closed forms."""
+
+import numpy as np
+import pytest
+
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.wear.laws import worn_volume
+from tests.verification.ledger_cases import PIN_MOTION, hertz_force, hertz_overlap, pin, run_case, table_of_solver
+
+pytestmark = pytest.mark.solver
+
+COEFFICIENT, FRICTION, SPEED, TIME_STEP = 1e-11, 0.4, 1.0, 2e-6  # 1/Pa, -, m/s, s
+START = (1.31234567e-4, -0.0020007123456)  # m, no node and no edge below it, nor within AMPLITUDE
+FORCE = hertz_force(hertz_overlap())  # N
+EXACT = 1e-6  # relative; the nine digits of the STL move the overlap (test_solver_ledger_vectors.py)
+STEPPED = 1e-4  # relative; a path of 500 steps per period. Measured: 1e-5
+STUCK = 0.01  # of friction times sliding work; what steps leave of a spring's work. Measured: 0.002
+AMPLITUDE, PERIOD = 5e-6, 500  # m, a fifth of the spring's length at which the contact slides; steps
+HELD = "fix carry all move linear 0.0 0.0 0.0 units box"
+PLATE = flat_plate(0.006, 0.012, 1e-3)
+
+
+def volume(law, table, **parameters):
+    """Worn volume of each triangle, m3."""
+    return worn_volume(law, table, {"wear_coefficient_per_pa": COEFFICIENT, **parameters})
+
+
+def rubbed(folder, settling, steps):
+    """Ledger of a held sphere on a plate that goes to and fro by less than the contact's spring gives, undamped."""
+    moving = f"fix rub all move/mesh mesh sample wiggle amplitude 0.0 {AMPLITUDE} 0.0 period {PERIOD * TIME_STEP}"
+    case = {"mesh_lines": [moving], "settling": settling, "steps": steps, "friction": FRICTION, "restitution": 1.0}
+    return table_of_solver(run_case(folder, PLATE, pin(*START), [HELD], time_step=TIME_STEP, **case), PLATE)
+
+
+def test_shear_work_of_a_sliding_contact_is_friction_times_archard(tmp_path):
+    """k mu F L; with k = alpha / mu it is Archard's volume on every triangle."""
+    dragged = [*pin(*START), f"velocity all set 0.0 {SPEED} 0.0 units box"]
+    case = {"friction": FRICTION, "settling": 300, "steps": 2000, "time_step": TIME_STEP}  # it slides after some 10
+    table = table_of_solver(run_case(tmp_path, PLATE, dragged, PIN_MOTION, **case), PLATE)
+    archard, shear = volume("archard", table), volume("tangential_work", table)
+    assert shear.sum() == pytest.approx(COEFFICIENT * FRICTION * FORCE * SPEED * 2000 * TIME_STEP, rel=EXACT)
+    np.testing.assert_allclose(shear / FRICTION, archard, rtol=EXACT)
+
+
+def test_a_contact_that_sticks_does_no_shear_work(tmp_path):
+    """Two periods: Archard counts alpha F 8 A, the spring gives back what it took."""
+    table = rubbed(tmp_path, settling=0, steps=2 * PERIOD)
+    archard = volume("archard", table).sum()
+    assert archard == pytest.approx(COEFFICIENT * FORCE * 8 * AMPLITUDE, rel=STEPPED)
+    assert volume("tangential_work", table).sum() < STUCK * FRICTION * archard
+
+
+def test_a_triangle_that_gives_back_more_than_it_took_wears_nothing(tmp_path):
+    """A ledger that begins where the spring is longest: negative work, no volume, and no growth."""
+    table = rubbed(tmp_path, settling=PERIOD // 4, steps=PERIOD // 4)
+    assert table["tangential_work_J"].min() < -0.01 * FRICTION * table["sliding_work_J"].sum()
+    assert not volume("tangential_work", table).any()
