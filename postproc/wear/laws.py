@@ -106,6 +106,33 @@ def tangential_work(columns: Mapping[str, np.ndarray], parameters: Mapping[str, 
     return np.maximum(_proportional("tangential_work_J", columns, parameters), 0.0)
 
 
+def combined(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
+    """Worn volume by sliding, rolling and impact, V_i = k (sliding_work_i + r rolling_work_i + q impact_energy_i).
+
+    Parameters
+    ----------
+    columns : needs `sliding_work_J`, `rolling_work_J` and `impact_energy_J`, (m,) arrays in J.
+    parameters : needs `wear_coefficient_per_pa`, k in 1/Pa, at least 0, that of sliding, and `rolling_ratio` and
+        `impact_ratio`, r and q (-), at least 0: coefficients of rolling and of impact over that of sliding.
+
+    Returns
+    -------
+    (m,) float64 array, worn volume in m3; Archard's where both ratios are 0.
+
+    Raises
+    ------
+    KeyError : a column or a parameter is missing.
+    ValueError : k or a ratio is negative or not finite.
+
+    Source: rolling, Y. Yan, TU Delft 2022, chapter 7; impact, J. G. A. Bitter, Wear 6 (1963) 5, whose energy per volume
+    is 1 / (q k), without its threshold.
+    """
+    volume = _proportional("sliding_work_J", columns, parameters)
+    for column, name in (("rolling_work_J", "rolling_ratio"), ("impact_energy_J", "impact_ratio")):
+        volume = volume + _not_negative(parameters, name, "-") * _proportional(column, columns, parameters)
+    return volume
+
+
 def finnie(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
     """Worn volume of Finnie's impact wear as LIGGGHTS counts it, V_i = k * finnie_work_i.
 
@@ -140,6 +167,17 @@ LAWS: dict[str, Law] = {
         "volume = coefficient times the work of the contacts' tangential force, coefficient "
         "{wear_coefficient_per_pa} 1/Pa, the same for all particles and places. Contacts that stick take no volume.",
         "S. Fouvry, P. Kapsa, L. Vincent, Wear 200 (1996) 186",
+    ),
+    "combined": Law(
+        combined,
+        "volume = coefficient times (sliding work + {rolling_ratio} rolling work + {impact_ratio} impact energy), "
+        "coefficient {wear_coefficient_per_pa} 1/Pa, the same for all particles and places.",
+        "sliding, J. F. Archard, J. Appl. Phys. 24 (1953) 981; rolling, Y. Yan, TU Delft 2022, chapter 7; impact, "
+        "J. G. A. Bitter, Wear 6 (1963) 5, without a threshold",
+        parameters=(
+            Parameter("rolling_ratio", "coefficient of rolling over that of sliding", 0.0, 1e6, 0.0, unit="-"),
+            Parameter("impact_ratio", "coefficient of impact energy over that of sliding", 0.0, 1e6, 0.0, unit="-"),
+        ),
     ),
     "finnie": Law(
         finnie,
@@ -239,10 +277,14 @@ def law_of(name: str) -> Law:
 
 def _proportional(column: str, columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
     work = _required(columns, column, "ledger column")
-    wear_coefficient = float(_required(parameters, "wear_coefficient_per_pa", "wear parameter"))
-    if not (np.isfinite(wear_coefficient) and wear_coefficient >= 0.0):
-        raise ValueError(f"wear_coefficient_per_pa is {wear_coefficient}, allowed is a finite number >= 0 (1/Pa)")
-    return wear_coefficient * np.asarray(work, dtype=np.float64)
+    return _not_negative(parameters, "wear_coefficient_per_pa", "1/Pa") * np.asarray(work, dtype=np.float64)
+
+
+def _not_negative(parameters: Mapping[str, float], name: str, unit: str) -> float:
+    value = float(_required(parameters, name, "wear parameter"))
+    if not (np.isfinite(value) and value >= 0.0):
+        raise ValueError(f"{name} is {value}, allowed is a finite number >= 0 ({unit})")
+    return value
 
 
 def _required(mapping: Mapping, name: str, kind: str):

@@ -5,7 +5,16 @@ import pytest
 
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.wear.laws import worn_volume
-from tests.verification.ledger_cases import PIN_MOTION, hertz_force, hertz_overlap, pin, run_case, table_of_solver
+from tests.verification.ledger_cases import (
+    MASS,
+    PIN_MOTION,
+    RADIUS,
+    hertz_force,
+    hertz_overlap,
+    pin,
+    run_case,
+    table_of_solver,
+)
 
 pytestmark = pytest.mark.solver
 
@@ -55,3 +64,28 @@ def test_a_triangle_that_gives_back_more_than_it_took_wears_nothing(tmp_path):
     table = rubbed(tmp_path, settling=PERIOD // 4, steps=PERIOD // 4)
     assert table["tangential_work_J"].min() < -0.01 * FRICTION * table["sliding_work_J"].sum()
     assert not volume("tangential_work", table).any()
+
+
+def test_combined_wears_by_rolling(tmp_path):
+    """A pin that rolls without slip: k r F R omega T, with its lever of R less half the overlap it slides nowhere."""
+    spin, steps, ratio = 300.0, 1000, 0.2  # rad/s, -, -
+    rolling = f"velocity all set 0.0 -{spin * (RADIUS - hertz_overlap() / 2):.17g} 0.0 units box"
+    particles = [*pin(*START), f"set group all omegax {spin}", rolling]
+    case = {"friction": FRICTION, "steps": steps, "time_step": TIME_STEP}
+    table = table_of_solver(run_case(tmp_path, PLATE, particles, PIN_MOTION, **case), PLATE)
+    found = volume("combined", table, rolling_ratio=ratio, impact_ratio=0.5).sum()
+    assert found == pytest.approx(COEFFICIENT * ratio * FORCE * RADIUS * spin * steps * TIME_STEP, rel=EXACT)
+
+
+def thrown(folder, speed):
+    """Ledger of a sphere that hits the plate once, straight at that speed (m/s), and leaves it."""
+    particles = [*pin(*START, RADIUS + 1e-4), f"velocity all set 0.0 0.0 -{speed} units box"]
+    case = {"modulus": 5e6, "time_step": 1e-5, "steps": 400}
+    return table_of_solver(run_case(folder, PLATE, particles, ["fix integrate all nve/sphere"], **case), PLATE)
+
+
+def test_combined_wears_by_impact(tmp_path):
+    """Where nothing slides or rolls: k q m v^2 / 2."""
+    speed, ratio = 0.4, 0.3  # m/s, -
+    found = volume("combined", thrown(tmp_path, speed), rolling_ratio=0.5, impact_ratio=ratio).sum()
+    assert found == pytest.approx(COEFFICIENT * ratio * 0.5 * MASS * speed**2, rel=EXACT)

@@ -56,6 +56,29 @@ def test_shear_work_is_coefficient_times_tangential_work():
     np.testing.assert_array_equal(volume, worn_volume("archard", columns, {"wear_coefficient_per_pa": ALPHA}))
 
 
+def combined_of(columns, rolling, impact):
+    """Volume by the combined law with these ratios."""
+    given = {"wear_coefficient_per_pa": ALPHA, "rolling_ratio": rolling, "impact_ratio": impact}
+    return worn_volume("combined", columns, given)
+
+
+def test_combined_adds_rolling_and_impact_by_their_ratios():
+    """V = k (W_sliding + r W_rolling + q E), Archard's with both 0; a ratio adds k times it times its sum."""
+    columns = {name: values.astype(float) for name, values in columns_for("combined").items()}
+    archard_alone = worn_volume("archard", columns, parameters_of("archard"))
+    np.testing.assert_array_equal(combined_of(columns, 0.0, 0.0), archard_alone)
+    for ratios, name in (((0.25, 0.0), "rolling_work_J"), ((0.0, 0.25), "impact_energy_J")):
+        added = combined_of(columns, *ratios) - archard_alone
+        np.testing.assert_allclose(added, 0.25 * ALPHA * columns[name], rtol=1e-12)  # a difference of like numbers
+
+
+@pytest.mark.parametrize("ratios", [(-0.1, 0.0), (0.0, np.nan)])
+def test_an_impossible_ratio_is_refused(ratios):
+    """It would let the surface grow or vanish."""
+    with pytest.raises(ValueError, match=r"(rolling|impact)_ratio is .*, allowed is a finite number >= 0 \(-\)"):
+        combined_of(columns_for("combined"), *ratios)
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_no_law_lets_a_surface_grow(law):
     """Sums that can be negative, those of work that a contact gives back, take no volume then."""
