@@ -1,8 +1,9 @@
 """Contact kernels: what a wear law that is not linear in the ledger's sums takes from every contact.
 
-A kernel is one function and one line in `KERNELS`. It returns a value per contact and unit time; the ledger sums it,
-times the time step, over the contacts of every triangle. The solver has the same kernels with the same parameters
-(`solver/kernels.h`), so that both producers of a ledger write the same columns.
+A kernel is one function and one line in `KERNELS`. It returns a value per contact and unit time, which the ledger sums,
+times the time step, over the contacts of every triangle; or a value per impact, of which the ledger takes the sum. The
+solver has the same kernels with the same parameters (`solver/kernels.h`), so that both producers of a ledger write the
+same columns.
 """
 
 from __future__ import annotations
@@ -44,22 +45,45 @@ def finnie_work(contacts, motion: SimpleNamespace, face_normal: np.ndarray) -> n
     return np.where(counts, 2.0 * share * speed * force, 0.0)
 
 
+def impact_above_threshold(
+    contacts, motion: SimpleNamespace, face_normal: np.ndarray, threshold_velocity_m_per_s: float
+) -> np.ndarray:
+    """Return the energy (n,) J of each impact above a threshold, m (v_n - K)^2 / 2 where v_n is above K.
+
+    motion: with `mass` (n,) kg and `approach_speed` (n,) m/s, v_n
+    threshold_velocity_m_per_s: K, at least 0; 0 gives the impact energy
+
+    The threshold is a velocity because a surface yields from a velocity on whatever the particle's size, and so from
+    the same one under particles `scale` times as large. J. G. A. Bitter, Wear 6 (1963) 5.
+    """
+    return 0.5 * motion.mass * np.maximum(motion.approach_speed - threshold_velocity_m_per_s, 0.0) ** 2
+
+
 @dataclass(frozen=True)
 class Kernel:
     """A contact kernel.
 
-    rate: (contacts, motion, normals of their triangles, parameters by name) -> (n,) array per unit time, as
-        `finnie_work`; motion as of `postproc.wear.ledger.contact_kinematics`
-    unit: of the sum over time, as the ledger's column spells it
-    parameters: names of the numbers that `rate` takes, SI, each with its unit; a law that needs the kernel has them too
+    value: (contacts, motion, normals of their triangles, parameters by name) -> (n,) array per unit time, as
+        `finnie_work`, or of impacts, as `impact_above_threshold`; motion as of
+        `postproc.wear.ledger.contact_kinematics`, of impacts with their mass too
+    unit: of the sum, as the ledger's column spells it
+    parameters: names of the numbers that `value` takes, SI, each with its unit; a law that needs the kernel has them
+        too
+    per_impact: summed over the first touches of episodes, not over time
     """
 
-    rate: Callable[..., np.ndarray]
+    value: Callable[..., np.ndarray]
     unit: str = "J"
     parameters: tuple[str, ...] = ()
+    per_impact: bool = False
 
 
-KERNELS: dict[str, Kernel] = {"finnie_work": Kernel(finnie_work)}
+KERNELS: dict[str, Kernel] = {
+    "finnie_work": Kernel(finnie_work),
+    "impact_above_threshold": Kernel(
+        impact_above_threshold, parameters=("threshold_velocity_m_per_s",), per_impact=True
+    ),
+}
 
 
 def register_kernel(name: str, kernel: Kernel) -> None:
@@ -79,7 +103,12 @@ def kernel_parameters(name: str) -> tuple[str, ...]:
     return _kernel(name).parameters
 
 
-def kernel_rate(name: str, parameters: Mapping[str, float]) -> Callable[..., np.ndarray]:
+def is_per_impact(name: str) -> bool:
+    """Return whether a kernel is summed over impacts. Raises ValueError for a name that is no kernel."""
+    return _kernel(name).per_impact
+
+
+def kernel_value(name: str, parameters: Mapping[str, float]) -> Callable[..., np.ndarray]:
     """Return a kernel as a function of (contacts, motion, normals of their triangles).
 
     Raises ValueError for a name that is no kernel and for parameters that are not exactly those of the kernel.
@@ -88,7 +117,7 @@ def kernel_rate(name: str, parameters: Mapping[str, float]) -> Callable[..., np.
     if set(parameters) != set(kernel.parameters):
         found, allowed = (", ".join(names) or "nothing" for names in (parameters, kernel.parameters))
         raise ValueError(f"parameters of the contact kernel '{name}' are {found}, allowed are: {allowed}")
-    return partial(kernel.rate, **parameters)
+    return partial(kernel.value, **parameters)
 
 
 def _kernel(name: str) -> Kernel:

@@ -155,6 +155,28 @@ def finnie(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -
     return _proportional(kernel_column("finnie_work"), columns, parameters)
 
 
+def impact_threshold(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
+    """Worn volume by impacts above a threshold, V_i = k * impact_above_threshold_i.
+
+    Parameters
+    ----------
+    columns : needs `impact_above_threshold_J`, (m,) array of sum(m (v_n - K)^2 / 2) over impacts in J (kernels.py).
+    parameters : needs `wear_coefficient_per_pa`, k in 1/Pa, at least 0: one over the energy per worn volume.
+
+    Returns
+    -------
+    (m,) float64 array, worn volume in m3.
+
+    Raises
+    ------
+    KeyError : the column or the parameter is missing.
+    ValueError : k is negative or not finite.
+
+    Source: J. G. A. Bitter, Wear 6 (1963) 5.
+    """
+    return _proportional(kernel_column("impact_above_threshold"), columns, parameters)
+
+
 LAWS: dict[str, Law] = {
     "archard": Law(
         archard,
@@ -186,6 +208,17 @@ LAWS: dict[str, Law] = {
         "I. Finnie, Wear 3 (1960) 87",
         kernels=("finnie_work",),
         is_solver_measure=True,
+    ),
+    "impact_threshold": Law(
+        impact_threshold,
+        "volume = coefficient times m (v - {threshold_velocity_m_per_s} m/s)^2 / 2 of every impact that is faster, v "
+        "the speed along the normal at a particle's first touch, coefficient {wear_coefficient_per_pa} 1/Pa, the same "
+        "for all particles and places. Sliding and rolling take no volume.",
+        "J. G. A. Bitter, Wear 6 (1963) 5",
+        kernels=("impact_above_threshold",),
+        parameters=(
+            Parameter("threshold_velocity_m_per_s", "velocity of impact that wears nothing", 0.0, 100.0, unit="m/s"),
+        ),
     ),
 }
 NEUTRAL_LAW = "archard"  # whose volume figures and pages name where they say nothing else

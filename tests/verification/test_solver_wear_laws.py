@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 
 from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.laws import worn_volume
 from tests.verification.ledger_cases import (
+    DUMP_LINES,
     MASS,
     PIN_MOTION,
     RADIUS,
     hertz_force,
     hertz_overlap,
+    ledger_of_dumps,
     pin,
     run_case,
     table_of_solver,
@@ -25,6 +28,8 @@ EXACT = 1e-6  # relative; the nine digits of the STL move the overlap (test_solv
 STEPPED = 1e-4  # relative; a path of 500 steps per period. Measured: 1e-5
 STUCK = 0.01  # of friction times sliding work; what steps leave of a spring's work. Measured: 0.002
 AMPLITUDE, PERIOD = 5e-6, 500  # m, a fifth of the spring's length at which the contact slides; steps
+DUMPED = 0.01  # relative; the dump's velocity is half a step later than its force
+PARAMETER = "threshold_velocity_m_per_s"
 HELD = "fix carry all move linear 0.0 0.0 0.0 units box"
 PLATE = flat_plate(0.006, 0.012, 1e-3)
 
@@ -77,10 +82,10 @@ def test_combined_wears_by_rolling(tmp_path):
     assert found == pytest.approx(COEFFICIENT * ratio * FORCE * RADIUS * spin * steps * TIME_STEP, rel=EXACT)
 
 
-def thrown(folder, speed):
+def thrown(folder, speed, **rest):
     """Ledger of a sphere that hits the plate once, straight at that speed (m/s), and leaves it."""
     particles = [*pin(*START, RADIUS + 1e-4), f"velocity all set 0.0 0.0 -{speed} units box"]
-    case = {"modulus": 5e6, "time_step": 1e-5, "steps": 400}
+    case = {"modulus": 5e6, "time_step": 1e-5, "steps": 400, **rest}
     return table_of_solver(run_case(folder, PLATE, particles, ["fix integrate all nve/sphere"], **case), PLATE)
 
 
@@ -89,3 +94,18 @@ def test_combined_wears_by_impact(tmp_path):
     speed, ratio = 0.4, 0.3  # m/s, -
     found = volume("combined", thrown(tmp_path, speed), rolling_ratio=0.5, impact_ratio=ratio).sum()
     assert found == pytest.approx(COEFFICIENT * ratio * 0.5 * MASS * speed**2, rel=EXACT)
+
+
+@pytest.mark.parametrize("threshold", [0.0, 0.1, 0.5])
+def test_impacts_wear_by_what_is_above_the_threshold(tmp_path, threshold):
+    """k m (v - K)^2 / 2 of one hit, in the solver and from dumps; nothing where v is below K; all with K = 0."""
+    speed, kernels = 0.4, {"impact_above_threshold": {PARAMETER: threshold}}  # m/s
+    asked = (
+        f"fix above all load/ledger mesh sample file above.bin kernels impact_above_threshold {PARAMETER} {threshold}"
+    )
+    thrown(tmp_path, speed, outputs=[asked, *DUMP_LINES], restitution=1.0)
+    exact = read_load_ledger(tmp_path / "above.bin", "sample").columns
+    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, kernels=kernels, touching=[])
+    expected = COEFFICIENT * 0.5 * MASS * max(speed - threshold, 0.0) ** 2
+    assert volume("impact_threshold", exact).sum() == pytest.approx(expected, rel=EXACT)
+    assert volume("impact_threshold", sampled).sum() == pytest.approx(expected, rel=DUMPED)

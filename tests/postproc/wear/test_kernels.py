@@ -6,7 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bulkwear.postproc.wear.kernels import KERNELS, finnie_work, kernel_column, kernel_rate
+from bulkwear.postproc.wear.kernels import (
+    KERNELS,
+    finnie_work,
+    impact_above_threshold,
+    kernel_column,
+    kernel_value,
+)
 from bulkwear.postproc.wear.ledger import LedgerBuilder, contact_kinematics
 from tests import REPOSITORY
 from tests.support.law_cases import long_slip_registered
@@ -79,6 +85,13 @@ def test_the_triangle_decides_the_angle_not_the_contact():
     np.testing.assert_allclose(finnie_work(leaning, moving([-1.0, 0.0, -0.2]), UP), expected, rtol=ROUND_OFF)
 
 
+def test_an_impact_above_the_threshold_brings_what_is_above():
+    """m (v - K)^2 / 2, nothing at K and below, m v^2 / 2 with K = 0 (Bitter 1963)."""
+    motion = SimpleNamespace(mass=np.array([2.0, 2.0, 3.0]), approach_speed=np.array([5.0, 0.5, 1.0]))
+    np.testing.assert_allclose(impact_above_threshold(None, motion, None, 1.0), [16.0, 0.0, 0.0], rtol=ROUND_OFF)
+    np.testing.assert_allclose(impact_above_threshold(None, motion, None, 0.0), [25.0, 0.25, 1.5], rtol=ROUND_OFF)
+
+
 def test_units_are_neutral():
     """Speed times force: mm, ms and kN give the same power in their unit."""
     small = finnie_work(contact(), at_angle(0.2, 2.0), UP)
@@ -92,8 +105,9 @@ def test_every_kernel_has_a_column_and_takes_no_contacts():
     nothing = SimpleNamespace(radius=np.zeros(0), **{name: np.zeros((0, 3)) for name in vectors})
     for name, kernel in KERNELS.items():
         assert kernel_column(name) == f"{name}_{kernel.unit}"
-        rate = kernel_rate(name, dict.fromkeys(kernel.parameters, 1.0))
-        assert rate(nothing, contact_kinematics(nothing), np.zeros((0, 3))).shape == (0,)
+        value = kernel_value(name, dict.fromkeys(kernel.parameters, 1.0))
+        motion = SimpleNamespace(**vars(contact_kinematics(nothing)), mass=np.zeros(0))
+        assert value(nothing, motion, np.zeros((0, 3))).shape == (0,)
 
 
 def test_the_solver_has_the_same_kernels():
