@@ -58,6 +58,16 @@ inline double impact_above_threshold(const Contact& contact, const double* given
   return 0.5 * contact.mass * above * above;
 }
 
+// Energy (J) of an impact at the angle a and the speed v by the law of Oka (Oka et al. 2005), m V^2 / 2 (v / V)^k2 times
+// sin^n1 a (1 + H (1 - sin a))^n2. given: n1, n2 (-), H (Pa, which the law takes in GPa), k2 (-), V (m/s)
+inline double oka_energy(const Contact& contact, const double* given) {
+  const double speed = length(contact.velocity_before), hardness = 1e-9 * given[2];
+  if (speed == 0.0) return 0.0;
+  const double sine = std::min(1.0, contact.approach_speed / speed);
+  const double angle_function = std::pow(sine, given[0]) * std::pow(1.0 + hardness * (1.0 - sine), given[1]);
+  return 0.5 * contact.mass * given[4] * given[4] * std::pow(speed / given[4], given[3]) * angle_function;
+}
+
 constexpr int MOST_PARAMETERS = 8;
 
 struct Kernel {
@@ -71,6 +81,8 @@ struct Kernel {
 constexpr Kernel KERNELS[] = {
     {"finnie_work", "finnie_work_J", finnie_work, {}},
     {"impact_above_threshold", "impact_above_threshold_J", impact_above_threshold, {"threshold_velocity_m_per_s"}, true},
+    {"oka_energy", "oka_energy_J", oka_energy,
+     {"angle_exponent", "hardness_exponent", "hardness_pa", "velocity_exponent", "reference_velocity_m_per_s"}, true},
 };
 
 inline int parameter_count(const Kernel& kernel) {

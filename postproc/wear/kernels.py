@@ -59,6 +59,34 @@ def impact_above_threshold(
     return 0.5 * motion.mass * np.maximum(motion.approach_speed - threshold_velocity_m_per_s, 0.0) ** 2
 
 
+def oka_energy(
+    contacts,
+    motion: SimpleNamespace,
+    face_normal: np.ndarray,
+    angle_exponent: float,
+    hardness_exponent: float,
+    hardness_pa: float,
+    velocity_exponent: float,
+    reference_velocity_m_per_s: float,
+) -> np.ndarray:
+    """Return m V^2 / 2 (v / V)^k2 g(a) of each impact in J: the energy of one square to the surface that wears as much.
+
+    motion: with `mass` (n,) kg, `approach_speed` (n,) m/s, `relative_velocity` and `normal` (n, 3) m/s, -
+    angle_exponent, hardness_exponent: n1 and n2, -; hardness_pa: of the wall, Pa, which the law takes in GPa
+    velocity_exponent: k2, -; reference_velocity_m_per_s: V, m/s
+
+    g = sin^n1 a (1 + H (1 - sin a))^n2, a the angle between the velocity of the centre and the plane of the contact, v
+    its speed, both at the first touch; g(90 degrees) = 1. Y. I. Oka, K. Okamura, T. Yoshida, Wear 259 (2005) 95.
+    """
+    velocity, approach = motion.relative_velocity, motion.approach_speed
+    across = np.cross(velocity, motion.normal)
+    speed = np.sqrt(approach**2 + np.einsum("ij,ij->i", across, across))
+    sine = np.divide(approach, speed, out=np.zeros_like(speed), where=speed > 0.0)
+    angle_function = sine**angle_exponent * (1.0 + 1e-9 * hardness_pa * (1.0 - sine)) ** hardness_exponent
+    energy = 0.5 * motion.mass * reference_velocity_m_per_s**2
+    return energy * (speed / reference_velocity_m_per_s) ** velocity_exponent * angle_function
+
+
 @dataclass(frozen=True)
 class Kernel:
     """A contact kernel.
@@ -82,6 +110,14 @@ KERNELS: dict[str, Kernel] = {
     "finnie_work": Kernel(finnie_work),
     "impact_above_threshold": Kernel(
         impact_above_threshold, parameters=("threshold_velocity_m_per_s",), per_impact=True
+    ),
+    "oka_energy": Kernel(
+        oka_energy,
+        parameters=(
+            *("angle_exponent", "hardness_exponent", "hardness_pa"),
+            *("velocity_exponent", "reference_velocity_m_per_s"),
+        ),
+        per_impact=True,
     ),
 }
 

@@ -177,6 +177,29 @@ def impact_threshold(columns: Mapping[str, np.ndarray], parameters: Mapping[str,
     return _proportional(kernel_column("impact_above_threshold"), columns, parameters)
 
 
+def oka(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
+    """Worn volume of Oka's impact-angle law, V_i = k * oka_energy_i.
+
+    Parameters
+    ----------
+    columns : needs `oka_energy_J`, (m,) array of sum(m V^2 / 2 (v / V)^k2 g(a)) over impacts in J (kernels.py).
+    parameters : needs `wear_coefficient_per_pa`, k in 1/Pa, at least 0: E90 / (V^2 / 2), E90 in m3 per kg of particles
+        that hit the surface squarely with V, its dependence on their true size included.
+
+    Returns
+    -------
+    (m,) float64 array, worn volume in m3.
+
+    Raises
+    ------
+    KeyError : the column or the parameter is missing.
+    ValueError : k is negative or not finite.
+
+    Source: Y. I. Oka, K. Okamura, T. Yoshida, Wear 259 (2005) 95; Y. I. Oka, T. Yoshida, Wear 259 (2005) 102.
+    """
+    return _proportional(kernel_column("oka_energy"), columns, parameters)
+
+
 LAWS: dict[str, Law] = {
     "archard": Law(
         archard,
@@ -218,6 +241,23 @@ LAWS: dict[str, Law] = {
         kernels=("impact_above_threshold",),
         parameters=(
             Parameter("threshold_velocity_m_per_s", "velocity of impact that wears nothing", 0.0, 100.0, unit="m/s"),
+        ),
+    ),
+    "oka": Law(
+        oka,
+        "volume = coefficient times m V^2 / 2 (v / V)^k2 sin^n1 a (1 + H (1 - sin a))^n2 of every impact, v the speed "
+        "and a the angle to the surface of a particle's centre at its first touch, V {reference_velocity_m_per_s} m/s, "
+        "k2 {velocity_exponent}, n1 {angle_exponent}, n2 {hardness_exponent}, H the hardness in GPa ({hardness_pa} "
+        "Pa), coefficient {wear_coefficient_per_pa} 1/Pa, the same for all particles and places. Sliding and rolling "
+        "take no volume.",
+        "Y. I. Oka, K. Okamura, T. Yoshida, Wear 259 (2005) 95",
+        kernels=("oka_energy",),
+        parameters=(
+            Parameter("angle_exponent", "n1, by which grazing impacts wear less", 0.01, 10.0, unit="-"),
+            Parameter("hardness_exponent", "n2, by which oblique impacts cut", 0.0, 50.0, unit="-"),
+            Parameter("hardness_pa", "Vickers hardness of the wall", 1e6, 1e11, unit="Pa"),
+            Parameter("velocity_exponent", "k2, power of the speed; 2 is that of the energy", 1.0, 5.0, unit="-"),
+            Parameter("reference_velocity_m_per_s", "V, to which the coefficient belongs", 0.001, 1000.0, unit="m/s"),
         ),
     ),
 }

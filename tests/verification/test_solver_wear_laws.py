@@ -82,9 +82,9 @@ def test_combined_wears_by_rolling(tmp_path):
     assert found == pytest.approx(COEFFICIENT * ratio * FORCE * RADIUS * spin * steps * TIME_STEP, rel=EXACT)
 
 
-def thrown(folder, speed, **rest):
-    """Ledger of a sphere that hits the plate once, straight at that speed (m/s), and leaves it."""
-    particles = [*pin(*START, RADIUS + 1e-4), f"velocity all set 0.0 0.0 -{speed} units box"]
+def thrown(folder, speed, along=0.0, **rest):
+    """Ledger of a sphere that hits the plate once, at that speed (m/s) and one along the plate, and leaves it."""
+    particles = [*pin(*START, RADIUS + 1e-4), f"velocity all set 0.0 {along} -{speed} units box"]
     case = {"modulus": 5e6, "time_step": 1e-5, "steps": 400, **rest}
     return table_of_solver(run_case(folder, PLATE, particles, ["fix integrate all nve/sphere"], **case), PLATE)
 
@@ -109,3 +109,21 @@ def test_impacts_wear_by_what_is_above_the_threshold(tmp_path, threshold):
     expected = COEFFICIENT * 0.5 * MASS * max(speed - threshold, 0.0) ** 2
     assert volume("impact_threshold", exact).sum() == pytest.approx(expected, rel=EXACT)
     assert volume("impact_threshold", sampled).sum() == pytest.approx(expected, rel=DUMPED)
+
+
+def test_oblique_impacts_wear_by_the_law_of_oka(tmp_path):
+    """k m V^2 / 2 (v / V)^k2 g(a) of one hit at 53 degrees, in the solver and from dumps."""
+    square, along, exponents, hardness, reference = 0.4, 0.3, (0.7, 2.0, 2.3), 1.5e9, 1.0  # m/s, m/s, -, Pa, m/s
+    given = dict(zip(("angle_exponent", "hardness_exponent", "velocity_exponent"), exponents, strict=True))
+    given |= {"hardness_pa": hardness, "reference_velocity_m_per_s": reference}
+    words = " ".join(f"{name} {value}" for name, value in given.items())
+    asked = f"fix angle all load/ledger mesh sample file angle.bin kernels oka_energy {words}"
+    thrown(tmp_path, square, along, outputs=[asked, *DUMP_LINES], restitution=1.0, friction=0.0)
+    exact = read_load_ledger(tmp_path / "angle.bin", "sample").columns
+    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, kernels={"oka_energy": given}, touching=[])
+    speed, (n1, n2, k2) = np.hypot(square, along), exponents
+    sine = square / speed
+    expected = COEFFICIENT * 0.5 * MASS * reference**2 * (speed / reference) ** k2
+    expected *= sine**n1 * (1.0 + 1e-9 * hardness * (1.0 - sine)) ** n2
+    assert volume("oka", exact).sum() == pytest.approx(expected, rel=EXACT)
+    assert volume("oka", sampled).sum() == pytest.approx(expected, rel=DUMPED)

@@ -160,8 +160,8 @@ def test_the_neutral_law_takes_nothing_but_its_coefficient():
 
 def test_unknown_law_names_the_allowed_ones():
     """An unknown law is refused with one sentence naming it and the allowed ones."""
-    with pytest.raises(ValueError, match=rf"wear law 'oka' is unknown, allowed are: {', '.join(sorted(LAWS))}"):
-        worn_volume("oka", {}, {})
+    with pytest.raises(ValueError, match=rf"wear law 'archad' is unknown, allowed are: {', '.join(sorted(LAWS))}"):
+        worn_volume("archad", {}, {})
 
 
 @pytest.mark.parametrize(
