@@ -11,6 +11,8 @@ from bulkwear.workflows.cases.equipment import findings, heads, page_blocks
 from bulkwear.workflows.cases.equipment.heads import shown
 from bulkwear.workflows.cases.equipment.page_blocks import read_tables
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
+from bulkwear.workflows.cases.equipment.surfaces import label_of
+from bulkwear.workflows.cases.equipment.tables import FIRST_WALL
 from bulkwear.workflows.report.sections import Pictures, Section
 from bulkwear.workflows.report.text import range_text
 
@@ -73,6 +75,13 @@ def steadiness(folder: Path) -> list[str]:
     """Return of each run whether its flow is steady on the shape as built."""
     flow = read_tables(folder)["flow"]
     return flow.loc[flow["phase"] == PRISTINE, "answer"].tolist()
+
+
+def frictions(run: Mapping[str, Any]) -> dict[int, float]:
+    """Return the sliding friction (-) of each part of a run by the label of its faces."""
+    materials = [run["walls"][part["type"] - FIRST_WALL]["contact"] for part in run["parts"]]
+    labels = [label_of(number, part) for number, part in enumerate(run["parts"])]
+    return {label: contact["sliding_friction"] for label, contact in zip(labels, materials, strict=True)}
 
 
 def first_runs(study: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
