@@ -72,6 +72,12 @@ def _frictions(study: Study) -> dict[str, Any]:
     return {run.name: of_run(run.parameters) for run in study.runs} if study.case.wears else {}
 
 
+def part_names(study: Study) -> dict[int, str]:
+    """Return {label of faces that wear: what it is called}: by the case's page where it has `part_names`."""
+    page = page_of(study.case.name)
+    return page.part_names(study.runs[0].parameters) if hasattr(page, "part_names") else {0: "base"}
+
+
 def _figure_words(product: Product) -> dict[str, Any]:
     return {"title": product.title, "caption": product.paragraphs, "file": product.file}
 

@@ -33,7 +33,7 @@ WEIGHTIEST = "Wear coefficient"  # every life is in proportion to it
 # Figures of the sections, by name; a study has those that its modules of figures declare
 LIFE_FIGURES = ("life_bars", "recession_against_time")
 FLOW_FIGURES = ("flow_over_time", "flow_pictures", "velocity_fields", "charge_shape")
-WEAR_FIGURES = ("wear_map", "remaining_thickness")
+WEAR_FIGURES = ("wear_map", "remaining_thickness", "worn_surface_3d")
 LOAD_FIGURES = ("impact_and_sliding",)
 WORN_FIGURES = ("profile_sections",)
 LIFTER_FIGURES = ("lifter_profiles",)
@@ -82,6 +82,11 @@ def frictions(run: Mapping[str, Any]) -> dict[int, float]:
     materials = [run["walls"][part["type"] - FIRST_WALL]["contact"] for part in run["parts"]]
     labels = [label_of(number, part) for number, part in enumerate(run["parts"])]
     return {label: contact["sliding_friction"] for label, contact in zip(labels, materials, strict=True)}
+
+
+def part_names(run: Mapping[str, Any]) -> dict[int, str]:
+    """Return what each part is called by the label of its faces."""
+    return {label_of(number, part): part["name"].replace("_", " ") for number, part in enumerate(run["parts"])}
 
 
 def first_runs(study: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
