@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface, sum_over_nodes
+from bulkwear.postproc.mesh import SurfaceMesh, node_areas, read_surface, sum_over_nodes
 from bulkwear.postproc.tables.depths import WORN_VOLUME, area_quantile, depth_quantity, node_depth
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
 from bulkwear.postproc.tables.film import without_skirt
@@ -138,12 +138,6 @@ def _rate(name: str, scale: float = 1.0) -> Callable[[Shown], Values | None]:
         return mean * scale / shown.time_s
 
     return values
-
-
-def node_areas(mesh: SurfaceMesh) -> np.ndarray:
-    """Return the area (n,) m2 of each node: a third of its triangles'."""
-    size = areas(mesh.points, mesh.triangles)
-    return sum_over_nodes(mesh.triangles, size, len(mesh.points)) / CORNERS
 
 
 def top_of(shown: Shown, values: Values) -> float:

@@ -128,10 +128,10 @@ def wear_updates(job: Job) -> Any:
     caption="""
     Film of the worn surface without skirt, one picture per wear cycle, evenly thinned to at most 60; it starts with
     the unworn surface and repeats. Colour: wear depth, on one scale for all pictures, which ends at the
-    depth that 99 % of the sample's area does not exceed in the end. Below: section along the travel through the
-    shape of the pattern that loses most, true to scale, with the unworn section dotted. What is left of the pattern
-    is its volume over the mean height of its feet. In studies of several design rows the row with the lowest
-    relative wear is shown.
+    depth that 99 % of the sample's area does not exceed in the end. Wear is drawn as many times deeper than it is as
+    the remark says, so that it is seen. Below: section along the travel through the shape of the pattern that loses
+    most, with the unworn section dotted. What is left of the pattern is its volume over the mean height of its feet.
+    In studies of several design rows the row with the lowest relative wear is shown.
     """,
 )
 def worn_film(job: Job) -> Any:

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.mesh import HOLDER_PART, SurfaceMesh, write_surface
+from bulkwear.postproc.mesh import HOLDER_PART, SurfaceMesh, node_areas, write_surface
 from bulkwear.postproc.tables import compared_surfaces as compared
 from bulkwear.postproc.tables.compared_surfaces import Shown, packed, quantities, shown_surfaces
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS
@@ -48,7 +48,7 @@ def test_loads_are_means_over_area_and_time():
     carried = np.array([1e-12, 0.0, 0.0, 0.0, 0.0])
     shown = as_shown(square(carried_volume_m3=carried, **{LOCAL_THICKNESS: np.full(5, THICKNESS)}))
     found = {key: quantity.values(shown) for key, quantity in quantities(True).items()}
-    area = compared.node_areas(shown.mesh)
+    area = node_areas(shown.mesh)
     np.testing.assert_allclose((found["pressure"] * area).sum(), 2 * IMPULSE / TIME * 1e-3)
     np.testing.assert_allclose(found["removed"], DEPTH * 1e6)
     np.testing.assert_allclose(found["carried"], carried[:4] / area * 1e6, atol=1e-9)
@@ -61,7 +61,7 @@ def test_a_rigid_study_shows_an_equivalent_depth():
     shown = as_shown(square())
     assert {"removed", "carried", "remaining"}.isdisjoint(quantities(False))
     depth = quantities(False)["depth"].values(shown)
-    np.testing.assert_allclose((depth * compared.node_areas(shown.mesh)).sum(), 2e-12 * 1e6)
+    np.testing.assert_allclose((depth * node_areas(shown.mesh)).sum(), 2e-12 * 1e6)
 
 
 def test_a_page_unpacks_what_was_packed():
