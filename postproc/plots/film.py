@@ -118,7 +118,7 @@ def frame_title(run: str, frame: Any) -> str:
 
 
 def _section_axes(axes: Axes, sections: Sequence[np.ndarray], x: float) -> LineCollection:
-    """Draw the first, unworn one of sections (k, 2, 2; mm), with equal axes; return the lines that show the worn one."""
+    """Draw the first, unworn one of sections (k, 2, 2; mm), with equal axes; return the lines of the worn one."""
     unworn, ends = sections[0], np.concatenate(sections)
     axes.add_collection(LineCollection(unworn, colors=OTHER_COLOUR, linewidths=0.8, linestyles=":"))
     line = axes.add_collection(LineCollection(unworn, colors=PATTERN_COLOUR, linewidths=1.4))
