@@ -118,7 +118,7 @@ void FixLoadLedger::observe(int particle, const double* force, const double* off
   // The solver's own lever arm, radius less half the overlap: with it pure rolling leaves no sliding.
   seen.lever = 0.5 * (contact.radius + distance);
   seen.signed_force = dot(force, contact.normal);
-  seen.approach_speed = std::abs(dot(contact.velocity_before, contact.normal));
+  contact.approach_speed = std::abs(dot(contact.velocity_before, contact.normal));
   contact.normal_force = std::max(seen.signed_force, 0.0);
   seen.particle = particle;
   seen.triangle = mesh->id(triangle);
@@ -230,23 +230,30 @@ void FixLoadLedger::sum_loads() {
       sums_.add(BY_WORK + k, triangle, work * means[k]);
       sums_.add(BY_IMPULSE + k, triangle, impulse * means[k]);
     }
-    int column = FIRST_KERNEL;
-    for (const ChosenKernel& chosen : kernels_)
-      sums_.add(column++, triangle, chosen.kernel.rate(contact, chosen.values) * dt);
+    add_kernels(seen, false, dt);
   }
 }
 
-double FixLoadLedger::impact_energy(const Observed& strongest) const {
-  return 0.5 * strongest.contact.mass * strongest.approach_speed * strongest.approach_speed;
+// Adds the values of the kernels that are summed over time, or over impacts.
+void FixLoadLedger::add_kernels(const Observed& seen, bool per_impact, double weight) {
+  int column = FIRST_KERNEL;
+  for (const ChosenKernel& chosen : kernels_) {
+    if (chosen.kernel.per_impact == per_impact)
+      sums_.add(column, seen.triangle, chosen.kernel.value(seen.contact, chosen.values) * weight);
+    ++column;
+  }
+}
+
+void FixLoadLedger::add_impact(const Observed& strongest) {
+  const Contact& contact = strongest.contact;
+  sums_.add(IMPACT_ENERGY, strongest.triangle, 0.5 * contact.mass * contact.approach_speed * contact.approach_speed);
+  add_kernels(strongest, true, 1.0);
 }
 
 // The first touch of an episode brings its energy, to the triangle that carries most of the particle's force.
 void FixLoadLedger::sum_impacts() {
-  for (const Touch& touch : touches_) {
-    if (touched_[touch.particle] != 0.0) continue;
-    const Observed& strongest = observed_[touch.strongest];
-    sums_.add(IMPACT_ENERGY, strongest.triangle, impact_energy(strongest));
-  }
+  for (const Touch& touch : touches_)
+    if (touched_[touch.particle] == 0.0) add_impact(observed_[touch.strongest]);
 }
 
 void FixLoadLedger::remember_touching() {
@@ -271,7 +278,7 @@ void FixLoadLedger::sum_body_impacts() {
   for (const BodyTouch& touch : all) {
     now.push_back(touch.body);
     const bool lasting = std::binary_search(bodies_.begin(), bodies_.end(), touch.body);
-    if (!lasting && touch.rank == comm->me) sums_.add(IMPACT_ENERGY, static_cast<int>(touch.triangle), touch.energy);
+    if (!lasting && touch.rank == comm->me) add_impact(observed_[static_cast<int>(touch.strongest)]);
   }
   bodies_ = now;
 }
@@ -284,8 +291,7 @@ std::vector<FixLoadLedger::BodyTouch> FixLoadLedger::body_touches_of_all_ranks()
     const Observed& strongest = observed_[touch.strongest];
     const int body = multisphere_->belongs_to(touch.particle);
     mine.push_back({body >= 0 ? static_cast<double>(body) : -1.0 - static_cast<double>(atom->tag[touch.particle]),
-                    strongest.signed_force, impact_energy(strongest), static_cast<double>(strongest.triangle),
-                    static_cast<double>(comm->me)});
+                    strongest.signed_force, static_cast<double>(touch.strongest), static_cast<double>(comm->me)});
   }
   const int count = static_cast<int>(mine.size()) * fields;
   std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);

@@ -80,7 +80,6 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
     double friction_power;      // W, that the tangential force takes from the sliding
     double drive_power;         // W, that the moving mesh gives to the particle
     double signed_force;        // N, along the normal, negative where the contact pulls
-    double approach_speed;      // m/s, of the centre along the normal before this force, without sign
     double effective_modulus;   // Pa
     int touch;                  // index into touches_
   };
@@ -92,7 +91,7 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   };
   // The touch of a multisphere body, as every rank knows it.
   struct BodyTouch {
-    double body, signed_force, energy, triangle, rank;
+    double body, signed_force, strongest, rank;  // strongest: index into observed_ of its rank
   };
   // A kernel that the deck asks for, with the values of its parameters.
   struct ChosenKernel {
@@ -116,12 +115,13 @@ class FixLoadLedger : public LAMMPS_NS::Fix {
   void gather_touches();
   void add_motion(Observed& seen) const;
   void sum_loads();
+  void add_kernels(const Observed& seen, bool per_impact, double weight);
+  void add_impact(const Observed& strongest);
   void sum_impacts();
   void sum_body_impacts();
   void remember_touching();
   std::vector<BodyTouch> body_touches_of_all_ranks() const;
   double** corner_velocities(int triangle) const;
-  double impact_energy(const Observed& strongest) const;
 
   std::vector<std::string> column_names() const;
   std::string header(double contacts) const;

@@ -1,4 +1,5 @@
-// Contact kernels: what a wear law that is not linear in force and speed needs summed, one function and one line each.
+// Contact kernels: what a wear law that is not linear in force and speed needs summed over time, or over impacts, one
+// function and one line each.
 // Python has the same registry under the same names (postproc/wear/kernels.py), for contacts sampled into dumps; the
 // program tells its own when it is called with -kernels.
 #pragma once
@@ -16,6 +17,7 @@ struct Contact {
   double velocity[3];         // m/s, of the particle's centre against the wall, at the instant of the force
   double velocity_before[3];  // m/s, the same half a step earlier, before this force: what the contact law sees
   double normal_force;        // N, zero where the contact pulls
+  double approach_speed;      // m/s, of the centre along the normal before this force, without sign
   double sliding_speed;       // m/s, at the contact point, spin included
   double rolling_speed;       // m/s, radius times the spin across the normal, against the wall's
   double radius;              // m, of the particle
@@ -50,17 +52,37 @@ inline double finnie_work(const Contact& contact, const double*) {
   return 2.0 * angle_function * speed * length(contact.force);
 }
 
+// Energy (J) of an impact above a threshold (Bitter 1963), m (v_n - K)^2 / 2 where v_n is above K. given: K (m/s)
+inline double impact_above_threshold(const Contact& contact, const double* given) {
+  const double above = std::max(contact.approach_speed - given[0], 0.0);
+  return 0.5 * contact.mass * above * above;
+}
+
+// Energy (J) of an impact at the angle a and the speed v by the law of Oka (Oka et al. 2005), m V^2 / 2 (v / V)^k2 times
+// sin^n1 a (1 + H (1 - sin a))^n2. given: n1, n2 (-), H (Pa, which the law takes in GPa), k2 (-), V (m/s)
+inline double oka_energy(const Contact& contact, const double* given) {
+  const double speed = length(contact.velocity_before), hardness = 1e-9 * given[2];
+  if (speed == 0.0) return 0.0;
+  const double sine = std::min(1.0, contact.approach_speed / speed);
+  const double angle_function = std::pow(sine, given[0]) * std::pow(1.0 + hardness * (1.0 - sine), given[1]);
+  return 0.5 * contact.mass * given[4] * given[4] * std::pow(speed / given[4], given[3]) * angle_function;
+}
+
 constexpr int MOST_PARAMETERS = 8;
 
 struct Kernel {
-  const char* name;                                          // in the deck, after `kernels`
-  const char* column;                                        // in the ledger, with its unit
-  double (*rate)(const Contact&, const double* parameters);  // summed over time
-  const char* parameters[MOST_PARAMETERS];                   // in the deck after the name, with values; SI
+  const char* name;                                           // in the deck, after `kernels`
+  const char* column;                                         // in the ledger, with its unit
+  double (*value)(const Contact&, const double* parameters);  // per unit time, or of an impact
+  const char* parameters[MOST_PARAMETERS];                    // in the deck after the name, with values; SI
+  bool per_impact = false;                                    // summed over impacts, not over time
 };
 
 constexpr Kernel KERNELS[] = {
     {"finnie_work", "finnie_work_J", finnie_work, {}},
+    {"impact_above_threshold", "impact_above_threshold_J", impact_above_threshold, {"threshold_velocity_m_per_s"}, true},
+    {"oka_energy", "oka_energy_J", oka_energy,
+     {"angle_exponent", "hardness_exponent", "hardness_pa", "velocity_exponent", "reference_velocity_m_per_s"}, true},
 };
 
 inline int parameter_count(const Kernel& kernel) {

@@ -1,8 +1,9 @@
 """Contact kernels: what a wear law that is not linear in the ledger's sums takes from every contact.
 
-A kernel is one function and one line in `KERNELS`. It returns a value per contact and unit time; the ledger sums it,
-times the time step, over the contacts of every triangle. The solver has the same kernels with the same parameters
-(`solver/kernels.h`), so that both producers of a ledger write the same columns.
+A kernel is one function and one line in `KERNELS`. It returns a value per contact and unit time, which the ledger sums,
+times the time step, over the contacts of every triangle; or a value per impact, of which the ledger takes the sum. The
+solver has the same kernels with the same parameters (`solver/kernels.h`), so that both producers of a ledger write the
+same columns.
 """
 
 from __future__ import annotations
@@ -44,22 +45,81 @@ def finnie_work(contacts, motion: SimpleNamespace, face_normal: np.ndarray) -> n
     return np.where(counts, 2.0 * share * speed * force, 0.0)
 
 
+def impact_above_threshold(
+    contacts, motion: SimpleNamespace, face_normal: np.ndarray, threshold_velocity_m_per_s: float
+) -> np.ndarray:
+    """Return the energy (n,) J of each impact above a threshold, m (v_n - K)^2 / 2 where v_n is above K.
+
+    motion: with `mass` (n,) kg and `approach_speed` (n,) m/s, v_n
+    threshold_velocity_m_per_s: K, at least 0; 0 gives the impact energy
+
+    The threshold is a velocity because a surface yields from a velocity on whatever the particle's size, and so from
+    the same one under particles `scale` times as large. J. G. A. Bitter, Wear 6 (1963) 5.
+    """
+    return 0.5 * motion.mass * np.maximum(motion.approach_speed - threshold_velocity_m_per_s, 0.0) ** 2
+
+
+def oka_energy(
+    contacts,
+    motion: SimpleNamespace,
+    face_normal: np.ndarray,
+    angle_exponent: float,
+    hardness_exponent: float,
+    hardness_pa: float,
+    velocity_exponent: float,
+    reference_velocity_m_per_s: float,
+) -> np.ndarray:
+    """Return m V^2 / 2 (v / V)^k2 g(a) of each impact in J: the energy of one square to the surface that wears as much.
+
+    motion: with `mass` (n,) kg, `approach_speed` (n,) m/s, `relative_velocity` and `normal` (n, 3) m/s, -
+    angle_exponent, hardness_exponent: n1 and n2, -; hardness_pa: of the wall, Pa, which the law takes in GPa
+    velocity_exponent: k2, -; reference_velocity_m_per_s: V, m/s
+
+    g = sin^n1 a (1 + H (1 - sin a))^n2, a the angle between the velocity of the centre and the plane of the contact, v
+    its speed, both at the first touch; g(90 degrees) = 1. Y. I. Oka, K. Okamura, T. Yoshida, Wear 259 (2005) 95.
+    """
+    velocity, approach = motion.relative_velocity, motion.approach_speed
+    across = np.cross(velocity, motion.normal)
+    speed = np.sqrt(approach**2 + np.einsum("ij,ij->i", across, across))
+    sine = np.divide(approach, speed, out=np.zeros_like(speed), where=speed > 0.0)
+    angle_function = sine**angle_exponent * (1.0 + 1e-9 * hardness_pa * (1.0 - sine)) ** hardness_exponent
+    energy = 0.5 * motion.mass * reference_velocity_m_per_s**2
+    return energy * (speed / reference_velocity_m_per_s) ** velocity_exponent * angle_function
+
+
 @dataclass(frozen=True)
 class Kernel:
     """A contact kernel.
 
-    rate: (contacts, motion, normals of their triangles, parameters by name) -> (n,) array per unit time, as
-        `finnie_work`; motion as of `postproc.wear.ledger.contact_kinematics`
-    unit: of the sum over time, as the ledger's column spells it
-    parameters: names of the numbers that `rate` takes, SI, each with its unit; a law that needs the kernel has them too
+    value: (contacts, motion, normals of their triangles, parameters by name) -> (n,) array per unit time, as
+        `finnie_work`, or of impacts, as `impact_above_threshold`; motion as of
+        `postproc.wear.ledger.contact_kinematics`, of impacts with their mass too
+    unit: of the sum, as the ledger's column spells it
+    parameters: names of the numbers that `value` takes, SI, each with its unit; a law that needs the kernel has them
+        too
+    per_impact: summed over the first touches of episodes, not over time
     """
 
-    rate: Callable[..., np.ndarray]
+    value: Callable[..., np.ndarray]
     unit: str = "J"
     parameters: tuple[str, ...] = ()
+    per_impact: bool = False
 
 
-KERNELS: dict[str, Kernel] = {"finnie_work": Kernel(finnie_work)}
+KERNELS: dict[str, Kernel] = {
+    "finnie_work": Kernel(finnie_work),
+    "impact_above_threshold": Kernel(
+        impact_above_threshold, parameters=("threshold_velocity_m_per_s",), per_impact=True
+    ),
+    "oka_energy": Kernel(
+        oka_energy,
+        parameters=(
+            *("angle_exponent", "hardness_exponent", "hardness_pa"),
+            *("velocity_exponent", "reference_velocity_m_per_s"),
+        ),
+        per_impact=True,
+    ),
+}
 
 
 def register_kernel(name: str, kernel: Kernel) -> None:
@@ -79,7 +139,12 @@ def kernel_parameters(name: str) -> tuple[str, ...]:
     return _kernel(name).parameters
 
 
-def kernel_rate(name: str, parameters: Mapping[str, float]) -> Callable[..., np.ndarray]:
+def is_per_impact(name: str) -> bool:
+    """Return whether a kernel is summed over impacts. Raises ValueError for a name that is no kernel."""
+    return _kernel(name).per_impact
+
+
+def kernel_value(name: str, parameters: Mapping[str, float]) -> Callable[..., np.ndarray]:
     """Return a kernel as a function of (contacts, motion, normals of their triangles).
 
     Raises ValueError for a name that is no kernel and for parameters that are not exactly those of the kernel.
@@ -88,7 +153,7 @@ def kernel_rate(name: str, parameters: Mapping[str, float]) -> Callable[..., np.
     if set(parameters) != set(kernel.parameters):
         found, allowed = (", ".join(names) or "nothing" for names in (parameters, kernel.parameters))
         raise ValueError(f"parameters of the contact kernel '{name}' are {found}, allowed are: {allowed}")
-    return partial(kernel.rate, **parameters)
+    return partial(kernel.value, **parameters)
 
 
 def _kernel(name: str) -> Kernel:

@@ -14,7 +14,7 @@ from types import MappingProxyType, SimpleNamespace
 import numpy as np
 
 from bulkwear.postproc.wear.dumped_forces import step_forces
-from bulkwear.postproc.wear.kernels import kernel_column, kernel_rate
+from bulkwear.postproc.wear.kernels import is_per_impact, kernel_column, kernel_value
 from bulkwear.postproc.wear.mesh_frame import MeshFrame, Pose, facet_frames
 from bulkwear.postproc.wear.touches import episode_begins, touches
 
@@ -185,7 +185,8 @@ class LedgerBuilder:
         self.n_triangles, self.mesh_index = n_triangles, mesh_index
         self.effective_modulus, self.density = effective_modulus, density
         self.wall_angular_velocity = wall_angular_velocity
-        self._kernels = {kernel_column(name): kernel_rate(name, given) for name, given in kernels.items()}
+        self._kernels = {kernel_column(name): kernel_value(name, given) for name, given in kernels.items()}
+        self._of_impacts = {kernel_column(name) for name in kernels if is_per_impact(name)}
         self._pose, self._periods = pose, np.asarray(periods, np.float64)
         self._corners = None if corners is None else np.asarray(corners, np.float64)
         found = None if corners is None else self._corners.shape
@@ -289,7 +290,7 @@ class LedgerBuilder:
         self._loads(contacts, motion, force, interval_s)
         self._means(contacts, motion, pairs, point, interval_s)
         self._vectors(contacts, motion, force, frame, point, interval_s)
-        self._impacts(contacts, motion, pairs, counts.size)
+        self._impacts(contacts, motion, pairs, counts.size, frame)
         self._samples += counts.size
         self._time_s += counts.size * interval_s
 
@@ -317,7 +318,7 @@ class LedgerBuilder:
                 self._sum(f"{kind}_{letter}", contacts.triangle, weight * point[:, axis])
 
     def _vectors(self, contacts, motion, force, frame: MeshFrame, point: np.ndarray, interval_s: float) -> None:
-        """Adds impulses and moments on the mesh, in its own frame, and the kernels, which need the facets' normals."""
+        """Adds impulses and moments on the mesh, in its own frame, and the kernels that are summed over time."""
         triangle = contacts.triangle
         impulse = frame.in_body(-interval_s * force)
         self._sum_vectors("impulse", triangle, impulse)
@@ -326,10 +327,14 @@ class LedgerBuilder:
         back = np.einsum("ij,ij->i", self._normals[triangle], frame.in_body(motion.normal)) < -STRAIGHT
         self._sum_vectors("back_impulse", triangle[back], impulse[back])
         self._sum_vectors("moment", triangle, np.cross(point - self._centroids[triangle], impulse))
-        if self._kernels:
-            normals = frame.in_space(self._normals[triangle])
-            for name, kernel in self._kernels.items():
-                self._sum(name, triangle, kernel(contacts, motion, normals) * interval_s)
+        self._sum_kernels(self._kernels.keys() - self._of_impacts, contacts, motion, frame, interval_s)
+
+    def _sum_kernels(self, names, contacts, motion, frame: MeshFrame, weight: float) -> None:
+        """Adds the values of the kernels of some columns, each times the weight."""
+        if names:
+            normals = frame.in_space(self._normals[contacts.triangle])
+            for name in names:
+                self._sum(name, contacts.triangle, self._kernels[name](contacts, motion, normals) * weight)
 
     def _sum_vectors(self, name: str, triangle: np.ndarray, vectors: np.ndarray) -> None:
         if triangle.size:
@@ -339,18 +344,19 @@ class LedgerBuilder:
     def _sum(self, name: str, triangle: np.ndarray, values: np.ndarray) -> None:
         self._sums[name] += np.bincount(triangle, weights=values, minlength=self.n_triangles)
 
-    def _impacts(self, contacts, motion, pairs, n_samples: int) -> None:
-        """Energy brought by particles that touch now and did not in the sample before.
+    def _impacts(self, contacts, motion, pairs, n_samples: int, frame: MeshFrame) -> None:
+        """Energy brought by particles that touch now and did not in the sample before, and what kernels make of it.
 
         An estimate from one sample: m v_n^2/2 plus the elastic energy stored by then, exact for an elastic
         contact at whatever moment it is sampled; contacts shorter than the interval can be missed altogether.
-        Attributed to the triangle with the particle's largest normal force.
+        Attributed to the triangle with the particle's largest normal force. Kernels see the speed of that energy.
         """
         if n_samples == 0:
             return
         known = self._touching
         earlier = np.empty(0, np.int64) if known is None else known
         begins = episode_begins(pairs.sample, pairs.particle, earlier)
+        self._touching = pairs.particle[pairs.sample == n_samples - 1]
         if known is None:
             begins &= pairs.sample > 0
         at = pairs.strongest[begins]
@@ -359,4 +365,9 @@ class LedgerBuilder:
         energy = 0.5 * mass * motion.approach_speed[at] ** 2
         energy += hertz_elastic_energy(force, radius, self.effective_modulus)
         self._sum("impact_energy_J", contacts.triangle[at], energy)
-        self._touching = pairs.particle[pairs.sample == n_samples - 1]
+        if not self._of_impacts:
+            return
+        of_impacts = SimpleNamespace(**{name: getattr(contacts, name)[at] for name in _ARRAYS})
+        moving = {name: values[at] for name, values in vars(motion).items()}
+        moving |= {"mass": mass, "approach_speed": np.sqrt(2.0 * energy / mass)}
+        self._sum_kernels(self._of_impacts, of_impacts, SimpleNamespace(**moving), frame.of(at), 1.0)

@@ -42,6 +42,10 @@ class MeshFrame:
         translations = np.array([translation for _, translation in poses], np.float64).reshape(-1, 3)
         return cls(rotations[sample], translations[sample])
 
+    def of(self, contacts: np.ndarray) -> MeshFrame:
+        """Return the frame of some of the contacts, (k,) int."""
+        return self if self.rotation is None else MeshFrame(self.rotation[contacts], self.translation[contacts])
+
     def in_body(self, vectors: np.ndarray) -> np.ndarray:
         """Return vectors (n, 3) of the simulation's frame in the mesh's own."""
         return vectors if self.rotation is None else np.einsum("nji,nj->ni", self.rotation, vectors)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from tests.verification.ledger_cases import DENSITY, LOAD, MASS, RADIUS, hertz_overlap, run_case, total
 
 pytestmark = pytest.mark.solver
@@ -17,6 +18,11 @@ LAW_TOLERANCE = 1e-4  # relative; the lever arm varies with the overlap, which o
 ENERGY_TOLERANCE = 1e-9  # relative; the mass goes through the deck as text
 RANK_TOLERANCE = 1e-6  # relative; each run places the body at random within SMALL of its overlap of 1e-4 m
 SMALL = 1e-9  # m, size of the region that the body's middle is placed in
+THRESHOLD = 0.1  # m/s
+ABOVE_LINE = (
+    "fix above all load/ledger mesh sample file above.bin kernels impact_above_threshold "
+    f"threshold_velocity_m_per_s {THRESHOLD}"
+)
 LEVEL, TILTED = 0.0, 0.01  # rad, about x
 
 
@@ -42,7 +48,7 @@ def run_body(folder, particles, gravity, ranks=1, **rest):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "pair.txt").write_text("".join(f"0.0 {y} 0.0 {RADIUS}\n" for y in (-ARM, ARM)))
     motion = [f"fix gravity all gravity {gravity} vector 0.0 0.0 -1.0"]
-    outputs = ["dump spheres all custom 1 spheres.dump id fz"]
+    outputs = ["dump spheres all custom 1 spheres.dump id fz", ABOVE_LINE]
     box = {"domain": "-0.02 0.02 -0.02 0.02 -0.01 0.02", "processors": f"1 {ranks} 1", "friction": 0.0}
     return run_case(folder, flat_plate(0.02, 0.02, 1e-3), particles, motion, ranks, outputs=outputs, **box, **rest)
 
@@ -57,7 +63,9 @@ def lifting_forces(folder):
 
 @pytest.mark.parametrize("tilt", [LEVEL, TILTED], ids=["level", "tilted"])
 def test_body_brings_its_energy_once(tmp_path, tilt):
-    """A body that falls on both spheres, at once or one after the other: M v^2/2 once, on one process and on two."""
+    """A body that falls on both spheres, at once or one after the other: M v^2/2 once, on one process and on two; the
+    kernel of impacts, M (v - K)^2/2, once too.
+    """
     found = {}
     for ranks in (1, 2):
         folder = tmp_path / str(ranks)
@@ -67,6 +75,8 @@ def test_body_brings_its_energy_once(tmp_path, tilt):
         lifting = lifting_forces(folder)
         assert total(ledger, "impact_energy_J") == pytest.approx(0.5 * BODY_MASS * SPEED**2, rel=ENERGY_TOLERANCE)
         assert np.count_nonzero(ledger.columns["impact_energy_J"]) == 1
+        above = read_load_ledger(folder / "above.bin", "sample").columns["impact_above_threshold_J"].sum()
+        assert above == pytest.approx(0.5 * BODY_MASS * (SPEED - THRESHOLD) ** 2, rel=ENERGY_TOLERANCE)
         first = (lifting > 0).argmax(axis=0)
         assert (lifting > 0).any(axis=0).all(), "a sphere never touched"
         assert abs(first[1] - first[0]) > 5 if tilt else abs(first[1] - first[0]) <= 1

@@ -6,7 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bulkwear.postproc.wear.kernels import KERNELS, finnie_work, kernel_column, kernel_rate
+from bulkwear.postproc.wear.kernels import (
+    KERNELS,
+    finnie_work,
+    impact_above_threshold,
+    kernel_column,
+    kernel_value,
+    oka_energy,
+)
 from bulkwear.postproc.wear.ledger import LedgerBuilder, contact_kinematics
 from tests import REPOSITORY
 from tests.support.law_cases import long_slip_registered
@@ -79,6 +86,40 @@ def test_the_triangle_decides_the_angle_not_the_contact():
     np.testing.assert_allclose(finnie_work(leaning, moving([-1.0, 0.0, -0.2]), UP), expected, rtol=ROUND_OFF)
 
 
+def test_an_impact_above_the_threshold_brings_what_is_above():
+    """m (v - K)^2 / 2, nothing at K and below, m v^2 / 2 with K = 0 (Bitter 1963)."""
+    motion = SimpleNamespace(mass=np.array([2.0, 2.0, 3.0]), approach_speed=np.array([5.0, 0.5, 1.0]))
+    np.testing.assert_allclose(impact_above_threshold(None, motion, None, 1.0), [16.0, 0.0, 0.0], rtol=ROUND_OFF)
+    np.testing.assert_allclose(impact_above_threshold(None, motion, None, 0.0), [25.0, 0.25, 1.5], rtol=ROUND_OFF)
+
+
+OKA = {"angle_exponent": 0.7, "hardness_exponent": 2.0, "hardness_pa": 1.5e9}
+SPEEDS = {"velocity_exponent": 2.3, "reference_velocity_m_per_s": 4.0}
+
+
+def oka_of(angle, speed=4.0, mass=2.0):
+    """Energy of an impact at an angle (rad) in the law of Oka, J."""
+    motion = at_angle(angle, speed)
+    motion.normal, motion.mass, motion.approach_speed = UP, np.array([mass]), np.array([speed * np.sin(angle)])
+    return oka_energy(None, motion, None, **OKA, **SPEEDS)[0]
+
+
+def test_a_square_impact_is_the_reference_of_oka():
+    """At 90 degrees and V it is m V^2 / 2, grazing nothing; with the speed it grows by (v / V)^k2 (Oka et al. 2005)."""
+    assert oka_of(np.pi / 2.0) == pytest.approx(0.5 * 2.0 * 4.0**2, rel=ROUND_OFF)
+    assert oka_of(0.0) == 0.0
+    assert oka_of(0.6, speed=6.0) == pytest.approx(1.5**2.3 * oka_of(0.6), rel=ROUND_OFF)
+
+
+def test_oka_is_worst_where_its_closed_form_says():
+    """d ln g / d sin a = n1 / sin a - n2 H / (1 + H (1 - sin a)) = 0: sin a = n1 (1 + H) / (H (n1 + n2))."""
+    n1, n2, hardness = OKA["angle_exponent"], OKA["hardness_exponent"], 1e-9 * OKA["hardness_pa"]
+    worst = np.arcsin(n1 * (1.0 + hardness) / (hardness * (n1 + n2)))
+    angle_function = np.sin(worst) ** n1 * (1.0 + hardness * (1.0 - np.sin(worst))) ** n2
+    assert oka_of(worst) == pytest.approx(16.0 * angle_function, rel=ROUND_OFF)
+    assert max(oka_of(worst - 0.05), oka_of(worst + 0.05), oka_of(np.pi / 2.0)) < oka_of(worst)
+
+
 def test_units_are_neutral():
     """Speed times force: mm, ms and kN give the same power in their unit."""
     small = finnie_work(contact(), at_angle(0.2, 2.0), UP)
@@ -92,8 +133,9 @@ def test_every_kernel_has_a_column_and_takes_no_contacts():
     nothing = SimpleNamespace(radius=np.zeros(0), **{name: np.zeros((0, 3)) for name in vectors})
     for name, kernel in KERNELS.items():
         assert kernel_column(name) == f"{name}_{kernel.unit}"
-        rate = kernel_rate(name, dict.fromkeys(kernel.parameters, 1.0))
-        assert rate(nothing, contact_kinematics(nothing), np.zeros((0, 3))).shape == (0,)
+        value = kernel_value(name, dict.fromkeys(kernel.parameters, 1.0))
+        motion = SimpleNamespace(**vars(contact_kinematics(nothing)), mass=np.zeros(0))
+        assert value(nothing, motion, np.zeros((0, 3))).shape == (0,)
 
 
 def test_the_solver_has_the_same_kernels():

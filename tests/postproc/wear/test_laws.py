@@ -18,9 +18,12 @@ from bulkwear.postproc.wear.laws import (
     register_law,
     worn_volume,
 )
+from bulkwear.postproc.wear.ledger import SUMMED_FIELDS
 from bulkwear.workflows.config.law_settings import parameters_schema
 from bulkwear.workflows.config.units import to_si
 from tests.support.law_cases import ALPHA, parameters_of
+
+SIGNED = ("tangential_work_J", "drive_work_J")  # sums of a ledger that can be negative
 
 
 def test_archard_is_coefficient_times_sliding_work():
@@ -33,9 +36,9 @@ def test_archard_is_coefficient_times_sliding_work():
 
 
 def columns_for(law, m=4, seed=3):
-    """Ledger columns that a law needs, as float32."""
+    """Sums of a ledger and of the kernels that a law needs, as float32."""
     random = np.random.default_rng(seed)
-    names = ("sliding_work_J", *map(kernel_column, LAWS[law].kernels))
+    names = (*SUMMED_FIELDS, *map(kernel_column, LAWS[law].kernels))
     return {name: random.uniform(0.0, 5.0, m).astype(np.float32) for name in names}
 
 
@@ -43,6 +46,44 @@ def test_finnie_is_coefficient_times_finnie_work():
     """V = k sum(2 E v F dt); the work of sliding has no part in it."""
     volume = worn_volume("finnie", {"finnie_work_J": np.array([3.0, 0.0])}, {"wear_coefficient_per_pa": ALPHA})
     assert volume.tolist() == [3.0 * ALPHA, 0.0]
+
+
+def test_shear_work_is_coefficient_times_tangential_work():
+    """V = k W; with k = alpha / mu a contact that slides, W = mu F L, wears as by Archard; below 0 is nothing."""
+    friction, work = 0.5, np.array([900.0, 0.0])  # -, J
+    columns = {"sliding_work_J": work, "tangential_work_J": friction * work + [0.0, -1.0]}
+    volume = worn_volume("tangential_work", columns, {"wear_coefficient_per_pa": ALPHA / friction})
+    np.testing.assert_array_equal(volume, worn_volume("archard", columns, {"wear_coefficient_per_pa": ALPHA}))
+
+
+def combined_of(columns, rolling, impact):
+    """Volume by the combined law with these ratios."""
+    given = {"wear_coefficient_per_pa": ALPHA, "rolling_ratio": rolling, "impact_ratio": impact}
+    return worn_volume("combined", columns, given)
+
+
+def test_combined_adds_rolling_and_impact_by_their_ratios():
+    """V = k (W_sliding + r W_rolling + q E), Archard's with both 0; a ratio adds k times it times its sum."""
+    columns = {name: values.astype(float) for name, values in columns_for("combined").items()}
+    archard_alone = worn_volume("archard", columns, parameters_of("archard"))
+    np.testing.assert_array_equal(combined_of(columns, 0.0, 0.0), archard_alone)
+    for ratios, name in (((0.25, 0.0), "rolling_work_J"), ((0.0, 0.25), "impact_energy_J")):
+        added = combined_of(columns, *ratios) - archard_alone
+        np.testing.assert_allclose(added, 0.25 * ALPHA * columns[name], rtol=1e-12)  # a difference of like numbers
+
+
+@pytest.mark.parametrize("ratios", [(-0.1, 0.0), (0.0, np.nan)])
+def test_an_impossible_ratio_is_refused(ratios):
+    """It would let the surface grow or vanish."""
+    with pytest.raises(ValueError, match=r"(rolling|impact)_ratio is .*, allowed is a finite number >= 0 \(-\)"):
+        combined_of(columns_for("combined"), *ratios)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_no_law_lets_a_surface_grow(law):
+    """Sums that can be negative, those of work that a contact gives back, take no volume then."""
+    columns = {name: -values if name in SIGNED else values for name, values in columns_for(law).items()}
+    assert (worn_volume(law, columns, parameters_of(law)) >= 0.0).all()
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -119,8 +160,8 @@ def test_the_neutral_law_takes_nothing_but_its_coefficient():
 
 def test_unknown_law_names_the_allowed_ones():
     """An unknown law is refused with one sentence naming it and the allowed ones."""
-    with pytest.raises(ValueError, match=rf"wear law 'oka' is unknown, allowed are: {', '.join(sorted(LAWS))}"):
-        worn_volume("oka", {}, {})
+    with pytest.raises(ValueError, match=rf"wear law 'archad' is unknown, allowed are: {', '.join(sorted(LAWS))}"):
+        worn_volume("archad", {}, {})
 
 
 @pytest.mark.parametrize(

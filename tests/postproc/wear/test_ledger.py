@@ -371,6 +371,27 @@ def test_stored_energy_is_the_integral_of_the_hertz_force():
     assert stored == pytest.approx(stiffness * overlap**2.5 / 2.5, rel=ROUND_OFF)
 
 
+@pytest.mark.parametrize("pose", [None, lambda step: (np.eye(3), np.zeros(3))])
+def test_kernels_of_impacts_count_each_episode_once(pose):
+    """Its speed is that of the impact energy E, with the threshold 0 it is E, else m (sqrt(2 E / m) - K)^2 / 2."""
+    crowd, threshold = random_samples(), 0.4  # m/s
+    free, held = (
+        ledger(crowd, kernels={"impact_above_threshold": {"threshold_velocity_m_per_s": given}}, touching=[], pose=pose)
+        for given in (0.0, threshold)
+    )
+    assert free["impact_energy_J"].any()
+    np.testing.assert_allclose(free["impact_above_threshold_J"], free["impact_energy_J"], rtol=ROUND_OFF)
+    assert 0.0 < held["impact_above_threshold_J"].sum() < free["impact_energy_J"].sum()
+    hit, mass = (
+        sample(particle_velocity=[[0.1, 0.0, -0.7]], force=[[0, 0, 0.0]]),
+        4.0 / 3.0 * np.pi * RADIUS**3 * DENSITY,
+    )
+    once = ledger(
+        [hit, hit], kernels={"impact_above_threshold": {"threshold_velocity_m_per_s": threshold}}, touching=[]
+    )
+    assert once["impact_above_threshold_J"][0] == pytest.approx(0.5 * mass * (0.7 - threshold) ** 2, rel=ROUND_OFF)
+
+
 def test_crossing_to_the_next_triangle_is_no_impact():
     """One episode per particle and mesh: only the first touch counts, on the triangle that carries most."""
     falling = {"particle_velocity": [[0.0, 0.0, -0.7]], "force": [[0.0, 0.0, 0.0]]}

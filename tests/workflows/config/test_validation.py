@@ -264,8 +264,8 @@ BAD_VALUES = [
     (
         SETTINGS,
         "law: archard",
-        "law: oka",
-        f"config/default.yaml, line 4: wear.law is 'oka', allowed is one of {', '.join(LAWS)}.",
+        "law: archad",
+        f"config/default.yaml, line 4: wear.law is 'archad', allowed is one of {', '.join(LAWS)}.",
     ),
     (
         SETTINGS,

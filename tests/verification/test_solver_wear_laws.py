@@ -1,0 +1,129 @@
+"""Wear laws on the solver's ledger: a sphere that slides, one that sticks, against their closed forms."""
+
+import numpy as np
+import pytest
+
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.postproc.wear.laws import worn_volume
+from tests.verification.ledger_cases import (
+    DUMP_LINES,
+    MASS,
+    PIN_MOTION,
+    RADIUS,
+    hertz_force,
+    hertz_overlap,
+    ledger_of_dumps,
+    pin,
+    run_case,
+    table_of_solver,
+)
+
+pytestmark = pytest.mark.solver
+
+COEFFICIENT, FRICTION, SPEED, TIME_STEP = 1e-11, 0.4, 1.0, 2e-6  # 1/Pa, -, m/s, s
+START = (1.31234567e-4, -0.0020007123456)  # m, no node and no edge below it, nor within AMPLITUDE
+FORCE = hertz_force(hertz_overlap())  # N
+EXACT = 1e-6  # relative; the nine digits of the STL move the overlap (test_solver_ledger_vectors.py)
+STEPPED = 1e-4  # relative; a path of 500 steps per period. Measured: 1e-5
+STUCK = 0.01  # of friction times sliding work; what steps leave of a spring's work. Measured: 0.002
+AMPLITUDE, PERIOD = 5e-6, 500  # m, a fifth of the spring's length at which the contact slides; steps
+DUMPED = 0.01  # relative; the dump's velocity is half a step later than its force
+PARAMETER = "threshold_velocity_m_per_s"
+HELD = "fix carry all move linear 0.0 0.0 0.0 units box"
+PLATE = flat_plate(0.006, 0.012, 1e-3)
+
+
+def volume(law, table, **parameters):
+    """Worn volume of each triangle, m3."""
+    return worn_volume(law, table, {"wear_coefficient_per_pa": COEFFICIENT, **parameters})
+
+
+def rubbed(folder, settling, steps):
+    """Ledger of a held sphere on a plate that goes to and fro by less than the contact's spring gives, undamped."""
+    moving = f"fix rub all move/mesh mesh sample wiggle amplitude 0.0 {AMPLITUDE} 0.0 period {PERIOD * TIME_STEP}"
+    case = {"mesh_lines": [moving], "settling": settling, "steps": steps, "friction": FRICTION, "restitution": 1.0}
+    return table_of_solver(run_case(folder, PLATE, pin(*START), [HELD], time_step=TIME_STEP, **case), PLATE)
+
+
+def test_shear_work_of_a_sliding_contact_is_friction_times_archard(tmp_path):
+    """k mu F L; with k = alpha / mu it is Archard's volume on every triangle."""
+    dragged = [*pin(*START), f"velocity all set 0.0 {SPEED} 0.0 units box"]
+    case = {"friction": FRICTION, "settling": 300, "steps": 2000, "time_step": TIME_STEP}  # it slides after some 10
+    table = table_of_solver(run_case(tmp_path, PLATE, dragged, PIN_MOTION, **case), PLATE)
+    archard, shear = volume("archard", table), volume("tangential_work", table)
+    assert shear.sum() == pytest.approx(COEFFICIENT * FRICTION * FORCE * SPEED * 2000 * TIME_STEP, rel=EXACT)
+    np.testing.assert_allclose(shear / FRICTION, archard, rtol=EXACT)
+
+
+def test_a_contact_that_sticks_does_no_shear_work(tmp_path):
+    """Two periods: Archard counts alpha F 8 A, the spring gives back what it took."""
+    table = rubbed(tmp_path, settling=0, steps=2 * PERIOD)
+    archard = volume("archard", table).sum()
+    assert archard == pytest.approx(COEFFICIENT * FORCE * 8 * AMPLITUDE, rel=STEPPED)
+    assert volume("tangential_work", table).sum() < STUCK * FRICTION * archard
+
+
+def test_a_triangle_that_gives_back_more_than_it_took_wears_nothing(tmp_path):
+    """A ledger that begins where the spring is longest: negative work, no volume, and no growth."""
+    table = rubbed(tmp_path, settling=PERIOD // 4, steps=PERIOD // 4)
+    assert table["tangential_work_J"].min() < -0.01 * FRICTION * table["sliding_work_J"].sum()
+    assert not volume("tangential_work", table).any()
+
+
+def test_combined_wears_by_rolling(tmp_path):
+    """A pin that rolls without slip: k r F R omega T, with its lever of R less half the overlap it slides nowhere."""
+    spin, steps, ratio = 300.0, 1000, 0.2  # rad/s, -, -
+    rolling = f"velocity all set 0.0 -{spin * (RADIUS - hertz_overlap() / 2):.17g} 0.0 units box"
+    particles = [*pin(*START), f"set group all omegax {spin}", rolling]
+    case = {"friction": FRICTION, "steps": steps, "time_step": TIME_STEP}
+    table = table_of_solver(run_case(tmp_path, PLATE, particles, PIN_MOTION, **case), PLATE)
+    found = volume("combined", table, rolling_ratio=ratio, impact_ratio=0.5).sum()
+    assert found == pytest.approx(COEFFICIENT * ratio * FORCE * RADIUS * spin * steps * TIME_STEP, rel=EXACT)
+
+
+def thrown(folder, speed, along=0.0, **rest):
+    """Ledger of a sphere that hits the plate once, at that speed (m/s) and one along the plate, and leaves it."""
+    particles = [*pin(*START, RADIUS + 1e-4), f"velocity all set 0.0 {along} -{speed} units box"]
+    case = {"modulus": 5e6, "time_step": 1e-5, "steps": 400, **rest}
+    return table_of_solver(run_case(folder, PLATE, particles, ["fix integrate all nve/sphere"], **case), PLATE)
+
+
+def test_combined_wears_by_impact(tmp_path):
+    """Where nothing slides or rolls: k q m v^2 / 2."""
+    speed, ratio = 0.4, 0.3  # m/s, -
+    found = volume("combined", thrown(tmp_path, speed), rolling_ratio=0.5, impact_ratio=ratio).sum()
+    assert found == pytest.approx(COEFFICIENT * ratio * 0.5 * MASS * speed**2, rel=EXACT)
+
+
+@pytest.mark.parametrize("threshold", [0.0, 0.1, 0.5])
+def test_impacts_wear_by_what_is_above_the_threshold(tmp_path, threshold):
+    """k m (v - K)^2 / 2 of one hit, in the solver and from dumps; nothing where v is below K; all with K = 0."""
+    speed, kernels = 0.4, {"impact_above_threshold": {PARAMETER: threshold}}  # m/s
+    asked = (
+        f"fix above all load/ledger mesh sample file above.bin kernels impact_above_threshold {PARAMETER} {threshold}"
+    )
+    thrown(tmp_path, speed, outputs=[asked, *DUMP_LINES], restitution=1.0)
+    exact = read_load_ledger(tmp_path / "above.bin", "sample").columns
+    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, kernels=kernels, touching=[])
+    expected = COEFFICIENT * 0.5 * MASS * max(speed - threshold, 0.0) ** 2
+    assert volume("impact_threshold", exact).sum() == pytest.approx(expected, rel=EXACT)
+    assert volume("impact_threshold", sampled).sum() == pytest.approx(expected, rel=DUMPED)
+
+
+def test_oblique_impacts_wear_by_the_law_of_oka(tmp_path):
+    """k m V^2 / 2 (v / V)^k2 g(a) of one hit at 53 degrees, in the solver and from dumps."""
+    square, along, exponents, hardness, reference = 0.4, 0.3, (0.7, 2.0, 2.3), 1.5e9, 1.0  # m/s, m/s, -, Pa, m/s
+    given = dict(zip(("angle_exponent", "hardness_exponent", "velocity_exponent"), exponents, strict=True))
+    given |= {"hardness_pa": hardness, "reference_velocity_m_per_s": reference}
+    words = " ".join(f"{name} {value}" for name, value in given.items())
+    asked = f"fix angle all load/ledger mesh sample file angle.bin kernels oka_energy {words}"
+    thrown(tmp_path, square, along, outputs=[asked, *DUMP_LINES], restitution=1.0, friction=0.0)
+    exact = read_load_ledger(tmp_path / "angle.bin", "sample").columns
+    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, kernels={"oka_energy": given}, touching=[])
+    speed, (n1, n2, k2) = np.hypot(square, along), exponents
+    sine = square / speed
+    expected = COEFFICIENT * 0.5 * MASS * reference**2 * (speed / reference) ** k2
+    expected *= sine**n1 * (1.0 + 1e-9 * hardness * (1.0 - sine)) ** n2
+    assert volume("oka", exact).sum() == pytest.approx(expected, rel=EXACT)
+    assert volume("oka", sampled).sum() == pytest.approx(expected, rel=DUMPED)
