@@ -18,6 +18,7 @@ import pytest
 
 from bulkwear.postproc.mesh import areas, read_surface, stl_corners
 from bulkwear.postproc.readers.load_ledger import LoadLedgerError
+from bulkwear.postproc.tables.law_volumes import laws_beside, volumes_by_law
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
@@ -42,6 +43,7 @@ pytestmark = pytest.mark.solver
 STL_ROUNDING = 1e-9  # m; %.9g of coordinates below 0.1 m is good to 5e-11
 FORCE_TOLERANCE = 0.1  # relative; ledger and log sample the same fluctuating force at different steps
 RANKS_TOLERANCE = 1e-2  # relative; rounding differs between ranks and chaos lets it grow over 580 steps
+ALL_SLIDE = 0.01  # relative; what the few contacts that stick, or pull, make. Measured: 0.002
 ROUND_OFF = 1e-9  # relative; sums of 580 equal time steps
 LEAST_EXCESS = 0.01  # -, of the wear due: the per-triangle rule takes more, seen 0.06 to 0.15; others by rounding
 STRETCH_TOLERANCE = 0.05  # relative; a stretch is a whole number of some 58 time steps, the last one what is left
@@ -307,6 +309,15 @@ def both_ledgers(finished, tmp_path_factory):
         chain = twin(finished, tmp_path_factory.mktemp(name))
         ledgers[name] = first_ledger(replace(chain, parameters=study.run(chain.name).parameters), finished)
     return ledgers
+
+
+def test_laws_side_by_side_find_the_volume_that_the_run_wore_by(finished):
+    """The sum over ledgers and surfaces is that of wear.csv; where all slides, friction works by its coefficient."""
+    ((own, given),) = finished.case.laws(finished.parameters)
+    volumes = volumes_by_law(finished.folder, laws_beside(own), given)
+    assert volumes[own] == pytest.approx(wear_table(finished)["worn_volume_m3"].sum(), rel=ROUND_OFF)
+    friction = finished.parameters["sample_material"]["contact"]["sliding_friction"]
+    assert volumes["tangential_work"] == pytest.approx(friction * volumes["archard"], rel=ALL_SLIDE)
 
 
 def test_both_producers_write_the_same_ledger(both_ledgers):

@@ -69,7 +69,7 @@ class SlidingSample(SampleCase):
     more_templates = ("packed_container", "bed_contacts", "collision")
     seed_setting = "bed.seed"
     figure_modules = ("particle_size.figures", "screening.figures", "screening.regression_figures", "figures")
-    shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "worn_film")
+    shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "worn_film", "volume_by_law")
     solver_rules = (*SampleCase.solver_rules, "packing_profiles")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")
