@@ -19,8 +19,8 @@ from bulkwear.postproc.mesh import SurfaceMesh, node_areas, read_surface, sum_ov
 from bulkwear.postproc.tables.depths import WORN_VOLUME, area_quantile, depth_quantity, node_depth
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
 from bulkwear.postproc.tables.film import without_skirt
+from bulkwear.postproc.wear.fields import CARRIED_VOLUME, REMOVED_THICKNESS
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS
-from bulkwear.postproc.wear.update import CARRIED_VOLUME, REMOVED_THICKNESS
 
 MOST_NODES = 400_000  # of all surfaces together: the page then has some four megabytes of numbers
 MOST_CYCLES = 10  # of a run

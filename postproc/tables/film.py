@@ -13,8 +13,8 @@ from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, node_area_vectors, node_a
 from bulkwear.postproc.tables.depths import area_quantile
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.summary import rows_to_show, runs_of_rows
+from bulkwear.postproc.wear.fields import REMOVED_THICKNESS
 from bulkwear.postproc.wear.pattern_left import pattern_volume
-from bulkwear.postproc.wear.update import REMOVED_THICKNESS
 
 MOST_FRAMES = 60  # of a film: more would make its file large, and not easier to see
 SEEN_SHARE = 0.99  # -, of the area
