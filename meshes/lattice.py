@@ -14,7 +14,6 @@ from dataclasses import Field, field, fields
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from bulkwear.meshes.shell import Shell, height_area, height_shell, shell_element_size
 
@@ -220,6 +219,8 @@ def _overlap_fault(pattern: Pattern, width: float, length: float) -> str | None:
             f"{pattern.noun}s overlap: {along_name} {millimetres(lengthwise)} needs each row more than "
             f"{millimetres(lengthwise)} from the next, found {millimetres(pattern.row_spacing)}"
         )
+    from scipy.spatial import cKDTree  # slow to import, and every start of Snakemake reads this module
+
     centres, _ = pattern_centres(pattern, width, length)
     pairs = cKDTree(centres / (2 * across, 2 * lengthwise)).query_pairs(1.0, output_type="ndarray")
     if not len(pairs):

@@ -151,6 +151,11 @@ def sum_over_nodes(triangles: np.ndarray, per_triangle: np.ndarray, n_points: in
     return whole.reshape((n_points, *np.shape(per_triangle)[1:]))
 
 
+def node_areas(mesh: SurfaceMesh) -> np.ndarray:
+    """Area of each node, (n,) m2: a third of its triangles'."""
+    return sum_over_nodes(mesh.triangles, areas(mesh.points, mesh.triangles), len(mesh.points)) / 3.0
+
+
 def node_area_vectors(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """A third of the area vectors of the triangles round each node, summed, (n, 3) m2: gradient of volume."""
     return sum_over_nodes(triangles, area_vectors(points, triangles) / 3.0, len(points))

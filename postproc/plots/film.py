@@ -32,7 +32,14 @@ from bulkwear.postproc.plots.style import (
 )
 from bulkwear.postproc.tables.depths import area_quantile, face_depth
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
-from bulkwear.postproc.tables.film import section, section_place
+from bulkwear.postproc.tables.film import (
+    DEEPEST_DRAWN,
+    drawn_height,
+    exaggerated,
+    exaggeration,
+    section,
+    section_place,
+)
 
 FRAME_RESOLUTION = 100  # dots per inch: 800 pixels wide
 VIEW = (1000, 560)  # pixels of a rendered view
@@ -53,9 +60,13 @@ def film_pictures(
     """Return the frames (h, w, 3) of a film: the surface obliquely, coloured by wear depth, and a section below.
 
     surfaces: one per frame, the unworn one first; frames: as from `analysis.film.frame_table`; quantity: what the
-    colour is. Colour scale, view and section are the same on all frames.
+    colour is. Colour scale, view, section and exaggeration of the wear are the same on all frames.
     """
     limits = film_limits(surfaces[-1])
+    factor, most = exaggeration(surfaces[0], surfaces[-1]), DEEPEST_DRAWN * drawn_height(surfaces[0])
+    if factor > 1.0:
+        remarks = [*remarks, f"wear is drawn {factor:,.0f} times as deep as it is, at most {most * MILLIMETRES:.2g} mm"]
+    surfaces = [exaggerated(mesh, factor, most) for mesh in surfaces]
     bounds, x = common_bounds(surfaces), section_place(surfaces[0], surfaces[-1])
     views = trimmed([surface_oblique(mesh, True, limits, bounds, VIEW) for mesh in surfaces])
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -107,7 +118,7 @@ def frame_title(run: str, frame: Any) -> str:
 
 
 def _section_axes(axes: Axes, sections: Sequence[np.ndarray], x: float) -> LineCollection:
-    """Draw the first, unworn one of sections (k, 2, 2; mm), true to scale; return the lines that show the worn one."""
+    """Draw the first, unworn one of sections (k, 2, 2; mm), with equal axes; return the lines of the worn one."""
     unworn, ends = sections[0], np.concatenate(sections)
     axes.add_collection(LineCollection(unworn, colors=OTHER_COLOUR, linewidths=0.8, linestyles=":"))
     line = axes.add_collection(LineCollection(unworn, colors=PATTERN_COLOUR, linewidths=1.4))

@@ -1,5 +1,4 @@
-"""Rendered pictures: worn surfaces and beds as arrays of pixels, interactive 3-D pages. Off-screen, no X
-needed."""
+"""Rendered pictures: worn surfaces and beds as arrays of pixels. Off-screen, no X needed."""
 
 from __future__ import annotations
 

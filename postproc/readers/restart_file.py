@@ -4,8 +4,8 @@ LIGGGHTS does not look whether its writing succeeds. On a full disk it ends with
 that is cut, or that lacks a piece in its middle. The file has no end marker; what proves it whole is its own layout
 (write_restart.cpp, group.cpp, pair_gran.cpp and modify.cpp of LIGGGHTS 3.8.0): a header with the numbers of particles,
 types and ranks, the groups, the contact model and a number per pair of types, the state of each fix after its length,
-then for each rank the length of its record and in it one record per particle that begins with its own length. It is whole where these lengths meet the file's last byte and
-the records are as many as the header has particles.
+then for each rank the length of its record and in it one record per particle that begins with its own length. It is
+whole where these lengths meet the file's last byte and the records are as many as the header has particles.
 """
 
 from __future__ import annotations

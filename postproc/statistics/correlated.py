@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy import optimize, special  # scipy.stats is slow to import
+from scipy import special  # scipy.stats is slow to import
 
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
 
@@ -166,6 +166,8 @@ def _reaches(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> list[
 
 def _where(rising: Callable[[float], float], share: float, low: float, high: float) -> float:
     """Return where a function that rises reaches a share between two places."""
+    from scipy import optimize  # slow to import, and every page reads this module
+
     return float(optimize.brentq(lambda tried: rising(tried) - share, low, high, rtol=PRECISION, xtol=PRECISION * high))
 
 

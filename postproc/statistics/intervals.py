@@ -25,7 +25,6 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
-from scipy import special  # scipy.stats is slow to import, and every start of Snakemake reads this module
 
 CONFIDENCE = 0.95  # -, of every interval that is shown
 UNKNOWN = "one packing, scatter unknown"
@@ -139,6 +138,8 @@ class Ends:
 @cache  # few different ones are asked for, by many estimates
 def students_t(share: float, freedom: float) -> float:
     """Return the quantile of Student's t at a share (-), on so many degrees of freedom."""
+    from scipy import special  # slow to import, and every start of Snakemake reads this module
+
     return float(special.stdtrit(freedom, share))
 
 

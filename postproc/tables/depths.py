@@ -14,7 +14,7 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids, read_surface, sum_over_nodes, worn_faces
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES, SQUARE_MILLIMETRES
-from bulkwear.postproc.wear.update import CARRIED_VOLUME, REMOVED_THICKNESS
+from bulkwear.postproc.wear.fields import CARRIED_VOLUME, REMOVED_THICKNESS
 
 WORN_VOLUME = "worn_volume_m3"
 ROUNDED_SHARE = 1e-9  # -, of the worn volume: less is rounding of the displacement, which balances to that

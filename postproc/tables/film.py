@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, read_surface, worn_faces
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, node_area_vectors, node_areas, read_surface, worn_faces
+from bulkwear.postproc.tables.depths import area_quantile
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.summary import rows_to_show, runs_of_rows
+from bulkwear.postproc.wear.fields import REMOVED_THICKNESS
 from bulkwear.postproc.wear.pattern_left import pattern_volume
-from bulkwear.postproc.wear.update import REMOVED_THICKNESS
 
 MOST_FRAMES = 60  # of a film: more would make its file large, and not easier to see
+SEEN_SHARE = 0.99  # -, of the area
+DRAWN_DEPTH = 0.1  # -, of a pattern's height: wear so deep is seen
+DEEPEST_DRAWN = 0.4  # -, of that height: single spots are many times deeper than the rest, and would go through
+PLAIN_HEIGHT = 0.05  # -, of a plain sample's length, what stands for the height of a pattern
 ON_PLANE = 1e-9  # -, of the mesh's size: a node so near to the plane of a section counts as beside it
 
 
@@ -57,6 +63,35 @@ def without_skirt(mesh: SurfaceMesh) -> SurfaceMesh:
     cells = {name: values[worn] for name, values in mesh.cell_data.items()}
     data = {name: values[nodes] for name, values in mesh.point_data.items()}
     return SurfaceMesh(mesh.points[nodes], triangles.reshape(-1, 3), cells, data)
+
+
+def exaggeration(unworn: SurfaceMesh, last: SurfaceMesh) -> float:
+    """Return how many times deeper than it is wear must be drawn to be seen: 1, 2 or 5 times a power of ten, or 1.
+
+    The depth that SEEN_SHARE of the area does not exceed in the end then is no more than DRAWN_DEPTH of the pattern's
+    height, or of PLAIN_HEIGHT of a plain sample's length.
+    """
+    depth = area_quantile(last.point_data[REMOVED_THICKNESS], node_areas(last), SEEN_SHARE)
+    wanted = DRAWN_DEPTH * drawn_height(unworn) / depth if depth > 0.0 else 1.0
+    power = 10.0 ** math.floor(math.log10(max(wanted, 1.0)))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= max(wanted, 1.0))
+
+
+def drawn_height(unworn: SurfaceMesh) -> float:
+    """Return the height (m) of a pattern, or what stands for it on a plain sample."""
+    width, length, height = np.ptp(unworn.points, axis=0)
+    return float(max(height, PLAIN_HEIGHT * max(width, length)))
+
+
+def exaggerated(mesh: SurfaceMesh, factor: float, most: float) -> SurfaceMesh:
+    """Return a surface with wear drawn `factor` times as deep as it is, along its normals, but no more than `most` (m)
+    deeper.
+    """
+    vectors = node_area_vectors(mesh.points, mesh.triangles)
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    normals = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
+    deeper = np.minimum((factor - 1.0) * mesh.point_data[REMOVED_THICKNESS], most)
+    return replace(mesh, points=mesh.points - deeper[:, None] * normals)
 
 
 def frame_table(frames: pd.DataFrame, surfaces: list[SurfaceMesh]) -> pd.DataFrame:

@@ -12,10 +12,8 @@ Where the worn surface would be beyond repair, steps become smaller (`Caps`).
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from bulkwear.postproc.mesh import SurfaceMesh, shortest_edge_at_nodes
-from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, with_target_edges
 
 GRAVITY = 9.81  # m/s2
 AIMED_DEMAND = 0.8  # -, of the cap, that the next cycle is planned for: rates change from cycle to cycle
@@ -125,6 +123,9 @@ class Caps:
     """
 
     def __init__(self, limit: np.ndarray, surface: SurfaceMesh):
+        # slow to import, and every start of Snakemake and every job reads this module
+        from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, with_target_edges
+
         self._limit, self._points = limit, surface.points
         sized = surface if TARGET_EDGE in surface.point_data else with_target_edges(surface)
         self._reach = HELD_BACK * np.asarray(sized.point_data[TARGET_EDGE])
@@ -139,6 +140,8 @@ class Caps:
         """Make the caps near places (k, 3) m smaller, down to nothing; everywhere, down to the last share, where that
         does not help, none is told, or it went on for too long. Return whether any became smaller.
         """
+        from scipy.spatial import cKDTree
+
         self._tries += 1
         near = np.zeros(len(self._level), dtype=bool)
         if places is not None and self._tries <= MOST_TRIES:

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE
 from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch, barycentric, border_nodes
-from bulkwear.postproc.wear.update import CARRIED_VOLUME
 
 
 def labels_of(mesh: SurfaceMesh) -> np.ndarray:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, node_area_vectors, worn_faces
+from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, node_normals
 from bulkwear.postproc.wear.remesh_patch import border_nodes, rings, six_volumes
 from bulkwear.postproc.wear.remesh_transfer import labels_at_nodes
-from bulkwear.postproc.wear.update import CARRIED_VOLUME
 
 MARGIN_RINGS = (1, 3, 8, 20, 60, 200)  # round what changed, tried one after the other
 LARGEST_OUTWARD_SHIFT = 0.0015  # -, over the target edge

@@ -10,6 +10,14 @@ from bulkwear.postproc.wear.built_shape import PRISTINE_RISE, face_labels, with_
 from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, pristine_normal_depth, ray_depth
 from bulkwear.postproc.wear.directions import SliceEnds, inward_directions, rim_directions, slice_directions
 from bulkwear.postproc.wear.displacement import Displacement, volume_at_corners
+from bulkwear.postproc.wear.fields import (
+    CARRIED_VOLUME,
+    FREE_RIM,
+    HEIGHT_LOSS,
+    NORMAL_DEPTH,
+    RAY_DEPTH,
+    REMOVED_THICKNESS,
+)
 from bulkwear.postproc.wear.patch import ContactPatch, spread
 from bulkwear.postproc.wear.schemes import scheme_of
 from bulkwear.postproc.wear.side import PIECE, turned_to_flow
@@ -23,12 +31,6 @@ from bulkwear.postproc.wear.thickness import (
     worn_through,
 )
 
-REMOVED_THICKNESS = "removed_thickness_m"
-HEIGHT_LOSS = "height_loss_m"
-RAY_DEPTH = "ray_depth_m"
-NORMAL_DEPTH = "normal_depth_m"
-FREE_RIM = "free_rim"  # point data: 1 at the nodes of `free_rim`
-CARRIED_VOLUME = "carried_volume_m3"
 UPRIGHT = 0.2  # -, sine: coarse faces at the foot of a half ellipsoid lean over by 6 degrees; they count as upright
 LEAST_PLAN = 0.5  # -, area in plan over area: a surface is steeper than 60 degrees on average below
 BACKS = ("go_on", "cap")  # what a node does whose local thickness is worn away

@@ -124,6 +124,12 @@ class Study:
         """Return the names of the settings that the rows of the study are packings of."""
         return list(dict.fromkeys(self.setting_of[str(row["row"])] for row in self.design_rows))
 
+    @property
+    def settings_left_out(self) -> list[str]:
+        """Return the names of the settings of the design of which no row is run."""
+        chosen = self.chosen_settings
+        return [name for name in dict.fromkeys(self.setting_of.values()) if name not in chosen]
+
     def run(self, name: str) -> Run:
         """Return the run of that name. Raises ConfigError naming the runs there are."""
         found = next((run for run in self.runs if run.name == name), None)

@@ -21,12 +21,13 @@ from bulkwear.postproc.wear.balance import BalanceError, GrowthError, lost_volum
 from bulkwear.postproc.wear.built_shape import with_built_shape
 from bulkwear.postproc.wear.caps import Caps, edge_limit
 from bulkwear.postproc.wear.displacement import StepTooLargeError
+from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.ledger import columns_of_solver, pressed_sides
 from bulkwear.postproc.wear.mesh_faults import Bounds, with_target_edges
 from bulkwear.postproc.wear.remesh import RemeshError, remesh
 from bulkwear.postproc.wear.side import TouchedSideError
-from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update
+from bulkwear.postproc.wear.update import wear_update
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, run_deck
 from bulkwear.workflows.engine.wear_step import WearError
 

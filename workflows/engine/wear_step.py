@@ -27,13 +27,14 @@ from bulkwear.postproc.wear.balance import GrowthError, lost_volume, volume_bala
 from bulkwear.postproc.wear.bodies import body, together
 from bulkwear.postproc.wear.caps import Caps, next_cycle_factor, wanted_step
 from bulkwear.postproc.wear.displacement import StepTooLargeError
+from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.ledger import pressed_sides
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, Bounds, with_target_edges
 from bulkwear.postproc.wear.patch import ContactPatch, chosen_radius
 from bulkwear.postproc.wear.remesh import RemeshError, remesh
 from bulkwear.postproc.wear.side import TouchedSideError, with_sides
 from bulkwear.postproc.wear.thickness import with_thickness
-from bulkwear.postproc.wear.update import CARRIED_VOLUME, wear_update, with_depths
+from bulkwear.postproc.wear.update import wear_update, with_depths
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.chain import SURFACE, Chain

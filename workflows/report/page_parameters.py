@@ -52,15 +52,30 @@ def page_parameters(study: Study) -> dict[str, Any]:
         "settings": study.settings,
         "paper_settings": study.paper_settings,
         "design_rows": list(study.design_rows),
+        "left_out": study.settings_left_out,
         "remarks": figure_remarks(study),
         "figures": {product.name: _figure_words(product) for product in figures_of(study)},
         "told": page_of(study.case.name).told(study),
         "jobs": job_names(study),
         "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},
         "parameters": {run.name: run.parameters for run in study.runs},
+        "frictions": _frictions(study),
         "beds": list(study.beds),
         "bed_of": {run.name: study.bed_of(run.name) for run in study.runs},
     }
+
+
+def _frictions(study: Study) -> dict[str, Any]:
+    """Return {run: sliding friction (-) of what wears}, by label of its faces where the case's page has `frictions`."""
+    page = page_of(study.case.name)
+    of_run = getattr(page, "frictions", lambda run: run["sample_material"]["contact"]["sliding_friction"])
+    return {run.name: of_run(run.parameters) for run in study.runs} if study.case.wears else {}
+
+
+def part_names(study: Study) -> dict[int, str]:
+    """Return {label of faces that wear: what it is called}: by the case's page where it has `part_names`."""
+    page = page_of(study.case.name)
+    return page.part_names(study.runs[0].parameters) if hasattr(page, "part_names") else {0: "base"}
 
 
 def _figure_words(product: Product) -> dict[str, Any]:

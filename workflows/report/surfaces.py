@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.report import figure_findings
-from bulkwear.workflows.report.page_parameters import is_deformed
+from bulkwear.workflows.report.page_parameters import is_deformed, part_names
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
@@ -50,32 +50,43 @@ def worn_surface(job: Job) -> Any:
 
 @figure(
     "Wear",
-    "Worn surfaces, interactive",
+    "Worn surfaces, compared",
     finding=figure_findings.deepest_run,
-    inputs={"summary": SUMMARY, "surfaces": SURFACES},
-    told={"deformed": is_deformed},
+    # the surfaces of the cycles, whose number may follow from the wear, lie beside these
+    inputs={"design": DESIGN, "wear": WEAR, "surfaces": SURFACES, "pristine": every_run("surface.vtu")},
+    told={"deformed": is_deformed, "parts": part_names},
     suffix="html",
     digits=6,
     caption="""
-    The worn surfaces in three dimensions: drag to turn, scroll to zoom. Heights are true to scale. In studies of
-    several design rows the row with the lowest relative wear is shown. Colours as in the picture, with a scale of
-    its own.
+    One to four runs beside one another, each at a cycle of choice: drag to turn all of them, scroll to zoom, point at a
+    place for its value. What is shown is chosen: depth, what is removed and what caps hold back, remaining thickness,
+    and loads, as means over the time until then. One scale holds for all views; it ends at the value that 99 % of the
+    area of the surface with the largest ones does not exceed. Differences from the first view are taken between nodes
+    nearest to one another, on one scale as well. A section cuts all views at one place, with the unworn shape dotted
+    and what is shown along it below. What does not wear is left out. Of many cycles some are shown, of several packings
+    the first.
     """,
 )
 def worn_surface_3d(job: Job) -> Any:
-    """Draw all runs of the row that is shown in detail on a page of their own."""
-    from bulkwear.postproc.plots.page import surfaces_page
-    from bulkwear.postproc.plots.pictures import colour_limits
-    from bulkwear.postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
-    from bulkwear.postproc.tables.summary import read_summary, rows_to_show, runs_of_rows
+    """Draw the surfaces of all runs and of some of their cycles on a page of their own."""
+    import pandas as pd
 
-    summary, deformed = read_summary(job.files.summary), job.told.deformed
-    shown = runs_of_rows(summary, rows_to_show(summary))
-    files = dict(zip(summary["run"], job.files.surfaces, strict=True))
-    meshes = read_worn_surfaces(shown, [files[run] for run in shown])
-    depths = depth_table(meshes, deformed)
-    remarks, limits = [*job.remarks, carried_remark(meshes, deformed)], colour_limits(depths)
-    return lambda path: surfaces_page(path, meshes, deformed, limits, depth_quantity(deformed), remarks), depths
+    from bulkwear.postproc.plots.page import surfaces_page
+    from bulkwear.postproc.tables.compared_surfaces import shown_surfaces
+    from bulkwear.postproc.tables.depths import carried_remark, depth_table, read_worn_surfaces
+    from bulkwear.postproc.tables.packings import first_packings, shown_remark
+    from bulkwear.postproc.tables.summary import NAMES
+
+    design, deformed = pd.read_csv(job.files.design, dtype=NAMES), job.told.deformed
+    files = dict(zip(design["run"], job.files.surfaces, strict=True))
+    first = list(first_packings(design)["run"])
+    wear = {Path(path).parent.name: pd.read_csv(path) for path in job.files.wear}
+    shown = shown_surfaces({run: Path(files[run]).parent for run in first}, wear)
+    meshes = read_worn_surfaces(first, [files[run] for run in first])
+    left_out = len(first) - len({each.run for each in shown})
+    remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(design)]
+    remarks += [f"{left_out} runs are left out, so that the page stays small"] if left_out else []
+    return lambda path: surfaces_page(path, shown, deformed, job.told.parts, remarks), depth_table(meshes, deformed)
 
 
 @figure(
@@ -122,10 +133,10 @@ def wear_updates(job: Job) -> Any:
     caption="""
     Film of the worn surface without skirt, one picture per wear cycle, evenly thinned to at most 60; it starts with
     the unworn surface and repeats. Colour: wear depth, on one scale for all pictures, which ends at the
-    depth that 99 % of the sample's area does not exceed in the end. Below: section along the travel through the
-    shape of the pattern that loses most, true to scale, with the unworn section dotted. What is left of the pattern
-    is its volume over the mean height of its feet. In studies of several design rows the row with the lowest
-    relative wear is shown.
+    depth that 99 % of the sample's area does not exceed in the end. Wear is drawn as many times deeper than it is as
+    the remark says, so that it is seen. Below: section along the travel through the shape of the pattern that loses
+    most, with the unworn section dotted. What is left of the pattern is its volume over the mean height of its feet.
+    In studies of several design rows the row with the lowest relative wear is shown.
     """,
 )
 def worn_film(job: Job) -> Any:

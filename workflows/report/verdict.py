@@ -12,6 +12,7 @@ import pandas as pd
 
 from bulkwear.postproc.statistics.steady import DRIFTING, FEWEST_VALUES, STEADY, UNSAID, steady_window
 from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.workflows.report.friction import friction_light
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_of
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Block, Light, Lights, Points, Section, Text
 from bulkwear.workflows.report.text import range_text, simplifications
@@ -21,6 +22,7 @@ LEAST_CARRIED, MUCH_CARRIED = 0.01, 0.1  # -, of the worn volume: less changes n
 ENOUGH_PACKINGS = 3  # from which on an interval tells something
 UNEVEN = 0.01  # -, of a distance between cycles: more is no series for `steady_window`
 PERCENT = 100.0
+MOST_NAMED = 5  # settings of the design that were not run
 
 
 def with_verdict(study: Mapping[str, Any], folder: Path) -> list[Section]:
@@ -41,15 +43,25 @@ def verdict(study: Mapping[str, Any], folder: Path) -> Section:
     """
     page, summary = page_of(study["case"]), read_summary(folder / "summary.csv")
     facts = page.facts(study, folder) if hasattr(page, "facts") else []
-    said = [*answers_of_study(study["case"], folder), *facts]
+    said = [*answers_of_study(study["case"], folder), *facts, *left_out_words(study["left_out"])]
     lights = [
         steady_light(page.steadiness(folder) if hasattr(page, "steadiness") else steadiness(study, folder)),
         cap_light(study, summary),
+        friction_light(study, folder),
         packings_light(pd.read_csv(folder / "design.csv", dtype=str)),
         scale_light(study),
     ]
     blocks: list[Block] = [*([Points(said)] if said else []), Lights(lights), *weightiest(study, summary)]
     return Section(TITLE, blocks)
+
+
+def left_out_words(settings: Sequence[str]) -> list[str]:
+    """Return what is not told where no row of some settings of the design was run; nothing where all were."""
+    if not settings:
+        return []
+    first, more = settings[:MOST_NAMED], len(settings) - MOST_NAMED
+    named = ", ".join(first) + (f" and {more} more" if more > 0 else "")
+    return [f"Not run: {named} of the design. What needs them, or is over the whole design, is not told."]
 
 
 def steadiness(study: Mapping[str, Any], folder: Path) -> list[str]:

@@ -1,7 +1,5 @@
 """Rendered pictures: right place, right colour, right scale. One sample is rendered for all tests."""
 
-import re
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,7 +8,6 @@ from matplotlib import colormaps
 from bulkwear.meshes.sample import sliding_sample
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.plots import pictures
-from bulkwear.postproc.plots.page import surfaces_page
 from bulkwear.postproc.plots.scene import surface_plan, trimmed
 from bulkwear.postproc.plots.style import MAP, remarks_of
 from bulkwear.postproc.tables.depths import depth_table
@@ -107,17 +104,6 @@ def test_figure_of_the_bed(mesh):
     table = pictures.bed_table({"R9_convex": cut})
     np.testing.assert_allclose(table["x_mm"], cut["x_m"] * 1e3)
     assert table["speed_m_per_s"].tolist() == cut["speed_m_per_s"].tolist()
-
-
-def test_interactive_page_needs_no_network(mesh, tmp_path):
-    """The page loads nothing from elsewhere and carries its colour scale and remarks in words."""
-    path = tmp_path / "page.html"
-    surfaces_page(path, {"R9_convex": mesh}, True, (0.0, 2.0), "Removed thickness", REMARKS)
-    page = path.read_text()
-    assert re.findall(r"""(?:src|href)\s*=\s*["']?https?:""", page) == []
-    assert "favicon-" not in page
-    assert "Removed thickness (µm)" in page
-    assert "; ".join(REMARKS) in page
 
 
 def test_margins_are_cut_off():

@@ -8,6 +8,12 @@ from bulkwear.meshes.pattern import ConvexPattern
 from bulkwear.meshes.sample import sliding_sample
 from bulkwear.postproc.mesh import SurfaceMesh, write_surface
 from bulkwear.postproc.tables.film import (
+    DEEPEST_DRAWN,
+    DRAWN_DEPTH,
+    PLAIN_HEIGHT,
+    drawn_height,
+    exaggerated,
+    exaggeration,
     film_frames,
     film_run,
     film_surfaces,
@@ -51,6 +57,32 @@ def test_the_patterned_run_of_the_row_in_detail_is_filmed():
     )
     assert film_run(summary) == "B_convex"
     assert film_run(summary[summary["surface"] == "plain"]) == "A_plain"
+
+
+@pytest.mark.parametrize(("lost", "factor"), [(1e-9, 500_000.0), (1e-6, 500.0), (1e-5, 50.0), (5e-3, 1.0), (0.0, 1.0)])
+def test_wear_is_drawn_as_deep_as_is_seen(lost, factor):
+    """By 1, 2 or 5 times a power of ten, so that it reaches no more than a share of the height; never shallower."""
+    unworn = tilted_square()
+    assert drawn_height(unworn) == pytest.approx(2 * HALF * SLOPE)
+    worn = SurfaceMesh(unworn.points, unworn.triangles, {}, {"removed_thickness_m": np.full(5, lost)})
+    assert exaggeration(unworn, worn) == pytest.approx(factor)
+    assert factor == 1.0 or 0.4 * DRAWN_DEPTH <= factor * lost / drawn_height(unworn) <= DRAWN_DEPTH
+
+
+def test_a_plain_sample_has_a_share_of_its_length_as_height():
+    """It has no pattern."""
+    flat = SurfaceMesh(tilted_square().points * [1.0, 1.0, 0.0], tilted_square().triangles, {})
+    assert drawn_height(flat) == pytest.approx(PLAIN_HEIGHT * 2 * HALF)
+
+
+def test_wear_is_drawn_along_the_normal():
+    """Worn nodes go deeper, up to a bound; others stay."""
+    unworn = tilted_square()
+    thickness, most = np.array([0.0, 1e-6, 2e-6, 0.0, 1e-3]), DEEPEST_DRAWN * HALF
+    worn = SurfaceMesh(unworn.points, unworn.triangles, {}, {"removed_thickness_m": thickness})
+    moved = exaggerated(worn, 101.0, most).points - unworn.points
+    normal = np.array([0.0, -SLOPE, 1.0]) / np.hypot(1.0, SLOPE)
+    np.testing.assert_allclose(moved, -np.minimum(100.0 * thickness, most)[:, None] * normal, atol=EXACT)
 
 
 @pytest.mark.parametrize(("cycles", "most", "shown"), [(3, 60, [0, 1, 2, 3]), (100, 5, [0, 25, 50, 75, 100])])

@@ -52,6 +52,12 @@ def test_a_row_that_was_not_chosen_refuses_nothing(config, wrong):
     assert [run.name for run in study.runs] == ["R9_convex", "R9_plain"]
 
 
+@pytest.mark.parametrize(("rows", "left_out"), [(["R9"], ["R5"]), (["R5", "R9"], [])])
+def test_a_study_knows_what_was_not_chosen(config, rows, left_out):
+    """The settings of the design of which no row is run."""
+    assert load_study("small", project=config.project, overrides={"rows": rows}).settings_left_out == left_out
+
+
 def test_an_unknown_row_is_named(config):
     """With the rows that there are."""
     with pytest.raises(ConfigError, match=r"row is 'R7', allowed is one of R9, R5"):

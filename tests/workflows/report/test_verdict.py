@@ -35,6 +35,14 @@ def test_the_setting_of_fewest_packings_decides(packings, state):
     assert light.state == state and ("unknown" in light.said) == (packings == 1)
 
 
+def test_rows_that_were_not_run_are_named():
+    """A whole design says nothing; of a long list the first ones are named and the others counted."""
+    assert verdict.left_out_words([]) == []
+    names = [f"R{number}" for number in range(verdict.MOST_NAMED + 2)]
+    assert "Not run: R0, R1 of the design." in verdict.left_out_words(names[:2])[0]
+    assert "R4 and 2 more of the design" in verdict.left_out_words(names)[0]
+
+
 def test_particles_of_another_size_call_for_care():
     """The scale is told; particles of their true size are sound."""
     runs = {f"run_{scale:g}": {"particle": {"scale": scale}} for scale in (1.0, 2.5)}

@@ -52,7 +52,7 @@ class CircularTester(SampleCase):
     bed_template = "tester_bed"
     seed_setting = "bed.seed"
     figure_modules = ("figures", "place_figures", "flow_figures", "sensitivity_figures")
-    shared_figures = ("beds", "worn_surface", "wear_updates", "volume_by_law")
+    shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "volume_by_law")
     geometry = ("sample", "pattern")
     consumed = ("wear", "remeshing", "sliding", "tester")
     length = (("sliding", "revolutions"), ("sliding", "cycles"), ("derived", "travel_steps"))

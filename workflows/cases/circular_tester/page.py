@@ -49,7 +49,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     Of a choice of rows in which no packing has a plain and a patterned run there are its runs alone.
     """
     if not study["told"]["paired"]:
-        runs = [Text(UNPAIRED), *key_numbers.every_run(folder), Pictures(("worn_surface",))]
+        runs = [Text(UNPAIRED), *key_numbers.every_run(folder), Pictures(("worn_surface", "worn_surface_3d"))]
         return [Section("Every run", runs), Section("Beds", blocks_of_beds(folder, NOTE))]
     places = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
@@ -62,7 +62,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ("Findings of the source", key_numbers.findings(study, folder), ()),
         ("Volume by revolution", key_numbers.rates(folder), ("tester_volume", "tester_increments")),
         ("Patterned over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
-        ("Every run", key_numbers.every_run(folder), ("worn_surface",)),
+        ("Every run", key_numbers.every_run(folder), ("worn_surface", "worn_surface_3d")),
         ("Beds", blocks_of_beds(folder, NOTE), ()),
         ("Steadiness", key_numbers.steadiness(folder), ("tester_steadiness",)),
         ("Where it wears", key_numbers.by_column(folder), places),

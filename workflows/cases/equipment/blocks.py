@@ -20,10 +20,10 @@ from bulkwear.postproc.mesh import SurfaceMesh, areas, edge_lengths_per_triangle
 from bulkwear.postproc.statistics.intervals import error_of_mean, students_t
 from bulkwear.postproc.wear.area_patches import area_patches, patch_means, patch_sums, patch_table, patches_of
 from bulkwear.postproc.wear.caps import edge_limit
+from bulkwear.postproc.wear.fields import REMOVED_THICKNESS
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.part_loads import part_loads
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, with_thickness
-from bulkwear.postproc.wear.update import REMOVED_THICKNESS
 from bulkwear.workflows.cases.equipment.motions import axis_point
 from bulkwear.workflows.cases.equipment.parameters import law_values
 from bulkwear.workflows.cases.equipment.phases import PRISTINE, phase_of

@@ -53,6 +53,7 @@ class Equipment(Case):
     counts_on = True
     forces_table = "parts.csv"
     by_part = True
+    shared_figures = ("worn_surface_3d",)
 
     def named_materials(self, settings: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
         """Return the path of each setting that names a material, and its kind."""

@@ -11,6 +11,8 @@ from bulkwear.workflows.cases.equipment import findings, heads, page_blocks
 from bulkwear.workflows.cases.equipment.heads import shown
 from bulkwear.workflows.cases.equipment.page_blocks import read_tables
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
+from bulkwear.workflows.cases.equipment.surfaces import label_of
+from bulkwear.workflows.cases.equipment.tables import FIRST_WALL
 from bulkwear.workflows.report.sections import Pictures, Section
 from bulkwear.workflows.report.text import range_text
 
@@ -31,7 +33,7 @@ WEIGHTIEST = "Wear coefficient"  # every life is in proportion to it
 # Figures of the sections, by name; a study has those that its modules of figures declare
 LIFE_FIGURES = ("life_bars", "recession_against_time")
 FLOW_FIGURES = ("flow_over_time", "flow_pictures", "velocity_fields", "charge_shape")
-WEAR_FIGURES = ("wear_map", "remaining_thickness")
+WEAR_FIGURES = ("wear_map", "remaining_thickness", "worn_surface_3d")
 LOAD_FIGURES = ("impact_and_sliding",)
 WORN_FIGURES = ("profile_sections",)
 LIFTER_FIGURES = ("lifter_profiles",)
@@ -73,6 +75,18 @@ def steadiness(folder: Path) -> list[str]:
     """Return of each run whether its flow is steady on the shape as built."""
     flow = read_tables(folder)["flow"]
     return flow.loc[flow["phase"] == PRISTINE, "answer"].tolist()
+
+
+def frictions(run: Mapping[str, Any]) -> dict[int, float]:
+    """Return the sliding friction (-) of each part of a run by the label of its faces."""
+    materials = [run["walls"][part["type"] - FIRST_WALL]["contact"] for part in run["parts"]]
+    labels = [label_of(number, part) for number, part in enumerate(run["parts"])]
+    return {label: contact["sliding_friction"] for label, contact in zip(labels, materials, strict=True)}
+
+
+def part_names(run: Mapping[str, Any]) -> dict[int, str]:
+    """Return what each part is called by the label of its faces."""
+    return {label_of(number, part): part["name"].replace("_", " ") for number, part in enumerate(run["parts"])}
 
 
 def first_runs(study: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:

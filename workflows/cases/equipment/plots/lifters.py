@@ -13,6 +13,7 @@ from bulkwear.postproc.plots.style import SMALLEST_FONT, label_all, new_figure
 from bulkwear.workflows.cases.equipment.plots.curves import setting_colour
 
 FIGURE_HEIGHT = 4.6  # inches
+TOP_MARGIN = 0.1  # -, of the height of a panel, so that markers and caps of intervals are clear of its end
 NONE_FOUND = "No part that turns has lifters."
 DRAWN = {"height_mm": "Height (mm)", "leading_face_angle_deg": "Leading face (degrees)"}
 
@@ -35,6 +36,7 @@ def lifter_profiles(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
             grid[0, column].set_title(part.replace("_", " "), loc="left", fontsize=SMALLEST_FONT)
     for axes, words in zip(grid[:, 0], DRAWN.values(), strict=True):
         axes.set_ylabel(words)
+        axes.margins(y=TOP_MARGIN)
         axes.set_ylim(bottom=0.0)
     label_all(figure, True, "Operation (h)", "")
     if len(settings) > 1:
