@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 
 from tests import REPOSITORY
+from tests.support.compiled import take_compiled
 from tests.test_house import name_of, tracked
 
 PATCHES = sorted((REPOSITORY / "docs" / "extend").glob("*.patch"))
 MOST_FILES = {"wear_law": 5, "figure": 2, "pattern": 4, "solver_option": 4}  # of the product, tests not counted
 GENERATED = "config/README.md"  # by a command, from what the other files say
+COMPILED = ("bulkwear", "workflows", "meshes", "postproc", "tests")  # folders of modules
 PROGRAM = "solver/build/liggghts-ledger"
 
 
@@ -29,6 +31,8 @@ def copy_of_the_repository(folder: Path) -> Path:
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(path, target)
     shutil.copytree(REPOSITORY / "solver" / "build", folder / "solver" / "build")
+    for name in COMPILED:
+        take_compiled(folder / name, REPOSITORY / name)
     return folder
 
 

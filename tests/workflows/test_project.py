@@ -1,8 +1,8 @@
 """Projects outside the package: run by --directory and as a module, side by side; told in a sentence what is wrong."""
 
+import multiprocessing
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pandas as pd
@@ -11,9 +11,13 @@ import pytest
 from bulkwear.__main__ import main
 from bulkwear.workflows.config.targets import Naming, naming, requested_studies
 from bulkwear.workflows.engine.project import PACKAGE, Project
+from tests.support.loaded_project import load_project
 from tests.support.own_project import STUDY, TEMPLATE, WORD, own_project
 from tests.workflows.test_snakemake import finish, planned_jobs, snakemake
 
+# Each process is forked from one that has read our modules and entered no project: starting Python costs a second.
+CLEAN = multiprocessing.get_context("forkserver")
+CLEAN.set_forkserver_preload([load_project.__module__])
 ROUNDING = 1e-12  # relative; of a sum over triangles
 PROFILE = ("--workflow-profile", str(PACKAGE / "workflows/profiles/default"))
 
@@ -284,25 +288,14 @@ def test_a_study_of_the_package_s_name_is_refused(tmp_path):
 
 def told_of(folder: Path, study: str = STUDY) -> str:
     """What is said of a project that cannot be worked in, and nothing else: one line."""
-    done = subprocess.run(
-        [sys.executable, "-c", LOADED, str(folder), study], cwd=PACKAGE, capture_output=True, text=True
-    )
-    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    said = folder.parent / "said.txt"
+    process = CLEAN.Process(target=load_project, args=(folder, study, said))
+    process.start()
+    process.join()
+    told = said.read_text()
+    assert process.exitcode == 1 and told.count("\n") == 1, told
     assert not (folder / "results").exists()
-    return done.stderr
-
-
-LOADED = """
-import sys
-from pathlib import Path
-from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.engine.project import enter_project
-try:
-    enter_project(Path(sys.argv[1]))
-    load_study(sys.argv[2])
-except ValueError as fault:
-    sys.exit(str(fault))
-"""
+    return told
 
 
 def test_a_bad_project_ends_snakemake(tmp_path):
