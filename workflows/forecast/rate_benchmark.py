@@ -76,7 +76,7 @@ GROUPS = {  # kind of measurement -> the rates that those of its kind tell, give
     "job": ("jobs",),
 }
 MOST_COPIES = 8  # side by side: more processors share no more of a cache, and each copy needs its memory
-LEAST_SECONDS = 0.2  # processor time of a `run` command; shorter ones tell more about the clock
+LEAST_SECONDS = 0.1  # processor time of a `run` command; shorter ones tell more about the clock
 Say = Callable[[str], None]
 
 
@@ -146,18 +146,18 @@ def _sliding(title: str, settings: Mapping[str, Mapping[str, float]], folder: Pa
     if not bed_folder.exists():
         fill_bed(study.case, name, study.beds[name], bed_folder)
         cost = pd.read_csv(bed_folder / "cost.csv").iloc[0].to_dict()
-        found += _loops(f"bed for the {title}", bed_folder, cost, 0, (False, False))
+        found += _loops(f"bed for the {title}", bed_folder, cost, 0, slides=False)
     chain, meshed = _chain(study, BED_RUN, title, folder)
-    found += [meshed, *_cycle(chain, title, None, (False, True))]
-    return found + [each for cycle in (1, 2) for each in _cycle(chain, title, span_of(chain, cycle), (True,))]
+    found += [meshed, *_cycle(chain, title, None, slides=True)]
+    return found + [each for cycle in (1, 2) for each in _cycle(chain, title, span_of(chain, cycle), slides=True)]
 
 
 def _pin(title: str, settings: Mapping[str, Mapping[str, float]], folder: Path) -> list[Measurement]:
     """Return what the first wear cycle of a pin on a disc tells."""
     study = load_study(PIN_STUDY, overrides={"fidelity": "quick", **settings})
     chain, meshed = _chain(study, PIN_RUN, title, folder)
-    set_down = _cycle(chain, title, None, (False,))
-    return [meshed, *set_down, *_cycle(chain, title, span_of(chain, 1), (False, False))]
+    set_down = _cycle(chain, title, None, slides=False)
+    return [meshed, *set_down, *_cycle(chain, title, span_of(chain, 1), slides=False)]
 
 
 def _chain(study: Study, run: str, title: str, folder: Path) -> tuple[Chain, Measurement]:
@@ -173,13 +173,13 @@ def _chain(study: Study, run: str, title: str, folder: Path) -> tuple[Chain, Mea
     return Chain(title, surface.parent, study.case, parameters, surface, *beds), meshed
 
 
-def _cycle(chain: Chain, title: str, span: Span | None, moving: Sequence[bool]) -> list[Measurement]:
-    """Run a cycle and return what it tells; moving: of each of its `run` commands, whether the bulk slides."""
+def _cycle(chain: Chain, title: str, span: Span | None, slides: bool) -> list[Measurement]:
+    """Run a cycle and return what it tells; slides: whether the bulk does so in the last of its `run` commands."""
     cycle, started = span.cycle if span else 0, time.process_time()
     run_cycle(chain, span, inputs_digest(chain), Progress(title, 1, stream=io.StringIO()))  # of a part of a run: untold
     outside = time.process_time() - started
     what, done = f"{title}, cycle {cycle}", state.read_state(chain.folder, cycle)["cost"]
-    found = _loops(what, state.cycle_folder(chain.folder, cycle), done, done["triangles"], moving)
+    found = _loops(what, state.cycle_folder(chain.folder, cycle), done, done["triangles"], slides)
     in_steps = sum(each.seconds for each in found if each.kind == "steps")
     start = {"decks": 1, "triangles_read": done["triangles"]}
     found.append(Measurement("start", what, start, done["processor_s"] - in_steps))
@@ -189,20 +189,19 @@ def _cycle(chain: Chain, title: str, span: Span | None, moving: Sequence[bool]) 
     return found
 
 
-def _loops(
-    what: str, folder: Path, cost: Mapping[str, float], triangles: int, moving: Sequence[bool]
-) -> list[Measurement]:
-    """Return what the `run` commands of a finished deck tell, set-up steps left out."""
+def _loops(what: str, folder: Path, cost: Mapping[str, float], triangles: int, slides: bool) -> list[Measurement]:
+    """Return what the `run` commands of a finished deck tell, set-up steps left out; slides: see `_cycle`."""
     times = pd.DataFrame(run_times(folder / LOG))
     times, share = times[times["steps"] > 1], cost["processor_s"] / cost["solver_s"]
     found = []
-    for number, (run, slides) in enumerate(zip(times.itertuples(), moving, strict=True), start=1):
+    for number, run in enumerate(times.itertuples(), start=1):
         if share * run.loop_s < LEAST_SECONDS:
             continue
-        stage = Stage(0, run.steps, run.particles, triangles, run.builds, slides)
+        moving = slides and number == len(times)
+        stage = Stage(0, run.steps, run.particles, triangles, run.builds, moving)
         terms = {term: stage.terms()[term] for term in GROUPS["steps"]}
         found.append(Measurement("steps", f"{what}, run {number}", terms, share * run.loop_s))
-        if slides:
+        if moving:
             lists = {"particle_builds": run.particles * run.builds}
             found.append(Measurement("neighbour lists", f"{what}, run {number}", lists, share * run.neighbour_s))
     return found
