@@ -32,6 +32,7 @@ class Stage:
     builds: of the neighbour list, of all decks together
     moving: the bulk flows or slides, it neither falls nor rests
     surface_triangles: of the whole surface, where each deck is followed by a wear update; 0 where none is
+    wall_triangles: further ones whose time a step takes, without their memory: what walls that move cost
     """
 
     decks: int
@@ -41,10 +42,12 @@ class Stage:
     builds: float = 0.0
     moving: bool = False
     surface_triangles: float = 0.0
+    wall_triangles: float = 0.0
 
     def terms(self) -> dict[str, float]:
         """Return the amounts of work by term, see `workflows.forecast.rates`."""
         particle_steps = self.particles * self.steps
+        triangle_steps = (self.triangles + self.wall_triangles) * self.steps
         cycles = self.decks if self.surface_triangles else 0
         return {
             "decks": self.decks,
@@ -53,8 +56,8 @@ class Stage:
             "particle_steps": particle_steps,
             "moving_particle_steps": particle_steps if self.moving else 0.0,
             "particle_builds": self.particles * self.builds,
-            "triangle_steps": self.triangles * self.steps,
-            "loaded_triangle_steps": self.triangles * self.steps if self.particles > 1.0 else 0.0,
+            "triangle_steps": triangle_steps,
+            "loaded_triangle_steps": triangle_steps if self.particles > 1.0 else 0.0,
             "jobs": 0,
             "meshed_triangles": 0.0,
             "cycles": cycles,

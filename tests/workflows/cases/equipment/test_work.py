@@ -5,7 +5,7 @@ import pytest
 from bulkwear.workflows.cases.equipment import work
 from bulkwear.workflows.cases.equipment.parameters import most_blocks
 from bulkwear.workflows.cases.equipment.surfaces import machine_surface
-from bulkwear.workflows.cases.equipment.work import MOVING_OVER_RESTING, run_bytes, run_stages, triangles_of
+from bulkwear.workflows.cases.equipment.work import MOVING_PER_PARTICLE, run_bytes, run_stages, triangles_of
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.forecast.forecast import work_of
 from tests.support.own_machine_project import machine_study
@@ -37,16 +37,17 @@ def test_more_pictures_and_blocks_need_more_disk(run):
 
 
 def test_a_mesh_that_moves_costs_more_than_one_at_rest(run):
-    """Moved at every step, it makes new lists of neighbours; the surface of a belt moves on a mesh at rest."""
-    parts, axis = run["parts"], {"point_m": [0, 0, 0], "axis": [0, 1, 0], "speed_rad_per_s": 1.0}
-    triangles = {}
+    """Each particle looks for its walls more often, without more memory; a belt's surface moves on a mesh at rest."""
+    still = [{**part, "motion": None} for part in run["parts"]]
+    axis = {"point_m": [0, 0, 0], "axis": [0, 1, 0], "speed_rad_per_s": 1.0}
+    stages = {}
     for kind in ("rest", "turning_surface", "rotation"):
         motion = None if kind == "rest" else {"kind": kind, **axis}
-        moved = {**run, "parts": [{**parts[0], "motion": motion}, *parts[1:]]}
-        triangles[kind] = run_stages(moved)[1].triangles
-    assert triangles["rest"] == triangles["turning_surface"]
-    more = (MOVING_OVER_RESTING - 1.0) * triangles_of(parts[0])
-    assert triangles["rotation"] - triangles["rest"] == pytest.approx(more)
+        stages[kind] = run_stages({**run, "parts": [{**still[0], "motion": motion}, *still[1:]]})[1]
+    rest, turning = stages["rest"], stages["rotation"]
+    assert rest == stages["turning_surface"] and turning.triangles == rest.triangles
+    more = MOVING_PER_PARTICLE * rest.particles * rest.steps
+    assert turning.terms()["triangle_steps"] - rest.terms()["triangle_steps"] == pytest.approx(more)
 
 
 COUNT = 0.2  # relative: `work.OVER_EQUILATERAL` is the middle of 1.04 to 1.19, and edges of plates are not finer
