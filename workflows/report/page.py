@@ -144,17 +144,24 @@ def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path)
     told, figures = study["figures"][product.name], folder / "figures"
     file, table = figures / told["file"], figures / f"{product.name}.csv"
     interactive = file.suffix == ".html"
-    finding = product.finding(pd.read_csv(table, dtype=NAMES)) if product.finding else ""
     return {
         "name": product.name,
         "number": index,
         "title": told["title"],
-        "finding": finding,
+        "finding": finding_of(product, folder),
         "caption": told["caption"],
         "page": file.read_text(encoding="utf-8") if interactive else None,
         "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
         "files": [linked(study, figures / name) for name in (table.name, *product.vectors.values())],
     }
+
+
+def finding_of(product: Product, folder: Path) -> str:
+    """Return in a sentence what a figure of results/<study> shows; "" where its table has no row that tells it."""
+    if product.finding is None:
+        return ""
+    table = pd.read_csv(folder / "figures" / f"{product.name}.csv", dtype=NAMES)
+    return "" if table.empty else product.finding(table)
 
 
 def linked(study: Mapping[str, Any], path: Path) -> dict[str, Any]:

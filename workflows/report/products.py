@@ -54,7 +54,8 @@ class Product:
     when: whether a study has it
     title, category, caption: of a figure; the caption's paragraphs are apart by an empty line
     suffix: png of a figure of matplotlib, which is written as VECTORS too; gif of a film, html of an interactive page
-    finding: takes the figure's table and returns in one sentence what the figure shows; None: the title stands for it
+    finding: takes the figure's table, which has a row or more, and returns in one sentence what the figure shows, "" if
+        its rows do not tell it; the title then stands for it, as with None
     digits: significant ones of its tables, or of the tables by key; None: all
     """
 
