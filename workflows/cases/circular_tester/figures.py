@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.circular_tester import figure_findings
 from bulkwear.workflows.cases.circular_tester.runs import (
     SIZE,
     VOLUME,
@@ -79,6 +80,7 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
 @figure(
     "Volume",
     "Volume against hours of the test",
+    finding=figure_findings.reduction,
     inputs={**of_study("lost_volumes", "time_scale", "comparison"), **PUBLISHED},
     **OF_PAIRS,
     caption="""
@@ -103,6 +105,7 @@ def tester_hours(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume by revolution",
+    finding=figure_findings.lost,
     inputs={**of_study("lost_volumes", "rates"), **PUBLISHED_FITS},
     **OF_PAIRS,
     caption="""
@@ -125,6 +128,7 @@ def tester_volume(job: Job) -> Any:
 @figure(
     "Volume",
     "What an element and a sample lose per revolution",
+    finding=figure_findings.increments,
     inputs={**of_study("lost_volumes", "mean_ratios"), **PUBLISHED},
     **OF_PAIRS,
     caption="""
@@ -147,6 +151,7 @@ def tester_increments(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume after 56 hours by particle scale",
+    finding=figure_findings.reduction_by_scale,
     inputs={**of_study("predictions"), **PUBLISHED, **PUBLISHED_FITS},
     **OF_PAIRS,
     caption="""
@@ -166,6 +171,7 @@ def tester_benchmark(job: Job) -> Any:
 @figure(
     "Volume",
     "Until the pattern is gone",
+    finding=figure_findings.worn_off,
     inputs={**of_study("lost_volumes", "rates"), **WEAR},
     told=ALL_RUNS,
     when=has_series(WORN_OUT),

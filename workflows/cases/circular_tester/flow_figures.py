@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from bulkwear.workflows.cases.circular_tester import figure_findings
 from bulkwear.workflows.cases.circular_tester.figures import OF_PAIRS, PAIRS, PUBLISHED, WEAR, of_study, read, runs_of
 from bulkwear.workflows.cases.circular_tester.runs import SURFACE, shown_pair
 from bulkwear.workflows.report.products import Job, figure
@@ -16,6 +17,7 @@ SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
 @figure(
     "Flow",
     "Steadiness",
+    finding=figure_findings.variations,
     caption="""
     Counterpart of Fig 6.7 (Yan 2022): standard deviation over mean (Eq 6.1) of each revolution since the trough began
     to turn, mean over packings with its 95 % interval. Velocity and height are those of the particles over the sample,
@@ -38,6 +40,7 @@ def tester_steadiness(job: Job) -> Any:
 @figure(
     "Flow",
     "Spin of the lowest layer",
+    finding=figure_findings.spin,
     caption="""
     Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity of particles whose centres are within
     a median diameter of the sample's plane, by revolution of wear; the table has the mean of their own angular speeds
@@ -55,6 +58,7 @@ def tester_spin(job: Job) -> Any:
 @figure(
     "Flow",
     "Velocity of the lowest layer",
+    finding=figure_findings.velocity,
     caption="""
     Counterpart of Fig 6.18 (Yan 2022): velocity along the travel of the same particles, mean over packings with its
     95 % interval.
@@ -71,6 +75,7 @@ def tester_velocity(job: Job) -> Any:
 @figure(
     "Flow",
     "Normal force by revolution",
+    finding=figure_findings.force,
     caption="""
     Counterpart of Fig 6.21 (Yan 2022): sum of the normal forces on the faces that wear, by revolution of wear;
     mean over packings with its 95 % interval. Bands: the source's standard deviations.
@@ -98,6 +103,7 @@ def _by_revolution(job: Job, measure: str, *beside: str) -> Any:
 @figure(
     "Flow",
     "Map of spin",
+    finding=figure_findings.turning,
     caption="""
     Counterpart of Fig 6.19 (Yan 2022): the particles of the lowest layer at the end of the wear cycle nearest to
     revolution 5, coloured by their angular speed over the plain sample's mean; of the first packing.
@@ -112,6 +118,7 @@ def tester_spin_map(job: Job) -> Any:
 @figure(
     "Flow",
     "Map of velocity",
+    finding=figure_findings.passing,
     caption="Counterpart of Fig 6.20 (Yan 2022): the same particles by their speed, with arrows of their velocity.",
     **OF_PARTICLES,
 )
