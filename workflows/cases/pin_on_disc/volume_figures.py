@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from bulkwear.workflows.cases.pin_on_disc import figure_findings
 from bulkwear.workflows.cases.pin_on_disc.page import update_remark
 from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure
 
@@ -22,6 +23,7 @@ def has_series(name: str) -> OfStudy:
 @figure(
     "Laboratory",
     "Thesis, laboratory and ours",
+    finding=figure_findings.compared,
     inputs={"design": DESIGN, "published": PUBLISHED, "contours": CONTOURS, "volumes": VOLUMES},
     caption="""
     Counterpart of Table 5.4 (Yan 2022): mean depth and width of the contours and removed volume, beside the
@@ -46,6 +48,7 @@ def pin_comparison(job: Job) -> Any:
 @figure(
     "Volume",
     "What exceeds Archard's volume",
+    finding=figure_findings.excess,
     inputs={"published": PUBLISHED, "factors": "results/{study}/figures/force_rise.csv"},
     told={"update_remark": update_remark},
     caption="""
@@ -84,6 +87,7 @@ def excess_volume(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume against revolutions",
+    finding=figure_findings.over_law,
     inputs={"design": DESIGN, "fits": FITS, "volumes": VOLUMES},
     tables={"trends": "figures/wear_volume_trends.csv"},
     caption="""
@@ -113,6 +117,7 @@ def wear_volume(job: Job) -> Any:
 @figure(
     "Forces",
     "Rise of the summed normal force",
+    finding=figure_findings.force_over_load,
     inputs={"fits": FITS, "volumes": "results/{study}/figures/wear_volume.csv"},
     caption="""
     Counterpart of Fig 5.16 (Yan 2022), which explains the excess volume by a horizontal part of the normal force in
@@ -134,6 +139,7 @@ def force_rise(job: Job) -> Any:
 @figure(
     "Laboratory",
     "Calibration of the wear coefficient",
+    finding=figure_findings.coefficients,
     inputs={
         "design": DESIGN,
         "published": PUBLISHED,
@@ -185,6 +191,7 @@ def calibration(job: Job) -> Any:
 @figure(
     "Volume",
     "Size invariance of Archard's law",
+    finding=figure_findings.sizes,
     inputs={"design": DESIGN, "published": PUBLISHED, "volumes": VOLUMES},
     when=has_series("size"),
     caption="""
