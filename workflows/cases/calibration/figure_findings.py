@@ -47,7 +47,7 @@ def family(table: pd.DataFrame) -> str:
         f"{parameter_words(name)} {inside[place].min():.2f} to {inside[place].max():.2f}"
         for name, place in zip(names, ("first_value", "second_value"), strict=True)
     ]
-    return f"Pairs that hold {PERCENT * FAMILY_SHARE:.0f} % of what fits have {listed(said)}, not in any combination."
+    return f"Pairs that hold {PERCENT * FAMILY_SHARE:.0f} % of what fits have {listed(said)}, in certain combinations."
 
 
 def reproduced(statements: pd.DataFrame, pair: str) -> str:
@@ -70,8 +70,8 @@ def reproduced(statements: pd.DataFrame, pair: str) -> str:
     count = int(asked["seeds"].min())
     packings = f"means of {count} packings or more" if count > 1 else "of one packing, whose scatter is unknown"
     return (
-        f"The {spoken(pair)} pair ({values}) reproduces {len(met)} of {len(rows)} responses that were measured and simulated,"
-        f" within their uncertainty ({packings})"
+        f"The {spoken(pair)} pair ({values}) reproduces {len(met)} of {len(rows)} responses that were measured and"
+        f" simulated, within their uncertainty ({packings})"
         f"{f'; off are {listed(off)}' if off else ''}{f'; not simulated: {listed(missing)}' if missing else ''}."
     )
 
