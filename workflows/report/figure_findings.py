@@ -5,7 +5,8 @@ from __future__ import annotations
 import pandas as pd
 
 from bulkwear.postproc.tables.depths import depth_summary
-from bulkwear.workflows.report.sentences import PERCENT, measured
+from bulkwear.workflows.report.sentences import PERCENT, listed, measured
+from bulkwear.workflows.report.text import range_text
 
 HALF = 0.5  # -, of an area
 
@@ -81,3 +82,19 @@ def mean_forces(table: pd.DataFrame) -> str:
         for surface, row in means.iterrows()
     ]
     return f"On average the bed loads {', '.join(said)}."
+
+
+def finnie_over_law(table: pd.DataFrame) -> str:
+    """Return Finnie's volume over the study's law by surface. table: a row per setting and surface, with the ratio."""
+    said = [
+        f"{range_text([PERCENT * each for each in rows['finnie_over_archard']])} % on {surface} samples"
+        for surface, rows in table.groupby("surface", sort=False)
+    ]
+    return f"The solver's Finnie volume is, of that by the study's law, {listed(said)}."
+
+
+def particle_speeds(particles: pd.DataFrame) -> str:
+    """Return the mean speed of the particles shown over each sample. particles: of a snapshot, with their run."""
+    means = particles.groupby("run", sort=False)["speed_m_per_s"].mean()
+    said = [f"{measured(speed, 'm/s')} over {run}" for run, speed in means.items()]
+    return f"The particles shown pass the sample at {listed(said)}, on average."

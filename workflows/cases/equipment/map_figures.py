@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.equipment import figure_findings
 from bulkwear.workflows.cases.equipment.figures import TABLES
 from bulkwear.workflows.cases.equipment.tables import values_of_runs
 from bulkwear.workflows.report.products import Job, every_run, figure
@@ -63,6 +64,7 @@ PACKINGS = "means over blocks and packings, told by area patches"
 @figure(
     "Life",
     "Life of the parts",
+    finding=figure_findings.shortest_life,
     inputs=of_study("life"),
     told={"runs": values_of_runs},
     digits=DIGITS,
@@ -85,6 +87,7 @@ def life_bars(job: Job) -> Any:
 @figure(
     "Life",
     "Depth of the deciding place against hours of operation",
+    finding=figure_findings.depth_reached,
     inputs={**of_study("life", "worst_places"), "wear": every_run(BESIDE)},
     told={"runs": values_of_runs},
     digits=DIGITS,
@@ -112,6 +115,7 @@ def recession_against_time(job: Job) -> Any:
 @figure(
     "Wear",
     "Where it wears",
+    finding=figure_findings.fastest_place,
     inputs={**of_study("rates", "worst_places"), **SURFACES},
     told=TOLD,
     digits=DIGITS,
@@ -146,6 +150,7 @@ def wear_map(job: Job) -> Any:
 @figure(
     "Wear",
     "Remaining thickness",
+    finding=figure_findings.thinnest_place,
     inputs=SURFACES,
     told=TOLD,
     digits=DIGITS,
@@ -177,6 +182,7 @@ def remaining_thickness(job: Job) -> Any:
 @figure(
     "Loads",
     "Impact and sliding",
+    finding=figure_findings.impact_share,
     inputs={**of_study("rates"), **SURFACES},
     told=TOLD,
     digits=DIGITS,
@@ -202,6 +208,7 @@ def impact_and_sliding(job: Job) -> Any:
 @figure(
     "Wear",
     "Sections through the worst places",
+    finding=figure_findings.deepest_section,
     inputs={**of_study("worst_places"), **SURFACES},
     told=TOLD,
     when=deforms,

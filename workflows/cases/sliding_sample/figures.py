@@ -99,6 +99,7 @@ def depth_distribution(job: Job) -> Any:
 @figure(
     "Bed",
     "Bed over the sample",
+    finding=figure_findings.particle_speeds,
     inputs={"summary": SUMMARY, "surfaces": SURFACES},
     digits=6,
     caption="""
@@ -208,6 +209,7 @@ def forces(job: Job) -> Any:
 @figure(
     "Wear laws",
     "The study's law and the solver's Finnie model",
+    finding=figure_findings.finnie_over_law,
     inputs={"summary": SUMMARY},
     caption="""
     Wear volume by the study's law (from the load ledger) and by the Finnie model that LIGGGHTS has built in, both

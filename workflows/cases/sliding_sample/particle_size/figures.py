@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.sliding_sample.particle_size import figure_findings
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
     bed_floors,
     bumps_and_particles,
@@ -17,6 +18,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
 from bulkwear.workflows.cases.sliding_sample.study import flow_runs, plain_runs, varies_scale
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.templates import templates_digest
+from bulkwear.workflows.report.figure_findings import deepest_run
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure, tables
 
@@ -48,6 +50,7 @@ def below(folder: str) -> OfStudy:
 
 @size_figure(
     "Wear against particle scale",
+    finding=figure_findings.ratios_by_scale,
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
     tables=WEAR_TABLES,
     caption="""
@@ -79,6 +82,7 @@ def wear_against_scale(job: Job) -> Any:
 
 @size_figure(
     "Wear against ratios of size",
+    finding=figure_findings.ratios_by_size,
     inputs={"wear": "results/{study}/figures/wear_against_scale.csv", "published": PUBLISHED_LINES},
     told={"rows": bumps_and_particles},
     when=lambda study: varies_scale(study) and bool(bumps_and_particles(study)),
@@ -114,6 +118,7 @@ def wear_against_size_ratios(job: Job) -> Any:
 
 @size_figure(
     "Relative velocity and wear rate by particle scale",
+    finding=figure_findings.steady_ends,
     inputs={"summary": SUMMARY, "steady": "results/{study}/flow/steady.csv", "published": PUBLISHED_SIZES},
     caption="""
     Relative velocity of the particles (Yan 2022, Eq 4.10) and wear rate over the largest of all runs (Eq 4.12) in the
@@ -137,6 +142,7 @@ def steady_by_scale(job: Job) -> Any:
 
 @size_figure(
     "Wear of the smallest and the largest particles",
+    finding=deepest_run,
     inputs={"summary": SUMMARY, "surfaces": every_run("worn_surface.vtu")},
     told={"deformed": is_deformed},
     digits=6,
@@ -167,6 +173,7 @@ def wear_maps(job: Job) -> Any:
 
 @size_figure(
     "Velocity by layer and particle scale",
+    finding=figure_findings.velocity,
     inputs={"summary": SUMMARY, "profiles": PROFILES, "published": PUBLISHED_SIZES},
     caption="""
     Mean velocity of the particles over the sample in the direction in which it moves, seen from the bed at rest, as
@@ -182,6 +189,7 @@ def velocity_by_layer(job: Job) -> Any:
 
 @size_figure(
     "Upward velocity by layer and particle scale",
+    finding=figure_findings.upward,
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
     Mean upward velocity of the particles over the sample as the radius; the height of the layer goes clockwise round
@@ -197,6 +205,7 @@ def upward_velocity_by_layer(job: Job) -> Any:
 
 @size_figure(
     "Sideways velocity by layer and particle scale",
+    finding=figure_findings.sideways,
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
     Mean velocity of the particles over the sample across the travel as the radius, to +x outside the grey circle; the
@@ -227,6 +236,7 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
 
 @size_figure(
     "Angular speed along the sample",
+    finding=figure_findings.spin_along,
     # what the snapshots of the bed were reduced to lies beside the tables of wear
     inputs={"summary": SUMMARY, "profiles": PROFILES, "wear": every_run("wear.csv")},
     told={"runs": flow_runs},
@@ -265,6 +275,7 @@ def _shaken(study: Study) -> dict[str, Any]:
 
 @size_figure(
     "Packing of a container",
+    finding=figure_findings.packing,
     inputs={"profiles": "results/{study}/packings/profiles.csv", "published": PUBLISHED_PACKING},
     told={"packing": _shaken},
     caption="""
@@ -290,6 +301,7 @@ def packing_profiles(job: Job) -> Any:
 
 @size_figure(
     "Packing of the bed",
+    finding=figure_findings.packing,
     inputs={
         "wear": lambda study: [f"results/{study.name}/{run}/wear.csv" for run in plain_runs(study)],
         "beds": settled_beds,
