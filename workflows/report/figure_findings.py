@@ -95,6 +95,15 @@ def finnie_over_law(table: pd.DataFrame) -> str:
 
 def particle_speeds(particles: pd.DataFrame) -> str:
     """Return the mean speed of the particles shown over each sample. particles: of a snapshot, with their run."""
-    means = particles.groupby("run", sort=False)["speed_m_per_s"].mean()
-    said = [f"{measured(speed, 'm/s')} over {run}" for run, speed in means.items()]
-    return f"The particles shown pass the sample at {listed(said)}, on average."
+    return f"The particles shown pass the sample at {_means(particles, 'speed_m_per_s', 'm/s')}, on average."
+
+
+def particle_spins(particles: pd.DataFrame) -> str:
+    """Return the mean angular speed of the particles shown over each sample, each once. particles: of all views."""
+    shown = particles.drop_duplicates(["run", "id"])
+    return f"The particles shown turn at {_means(shown, 'angular_speed_deg_per_s', '°/s')}, on average."
+
+
+def _means(particles: pd.DataFrame, column: str, unit: str) -> str:
+    means = particles.groupby("run", sort=False)[column].mean()
+    return listed([f"{measured(value, unit)} over {run}" for run, value in means.items()])

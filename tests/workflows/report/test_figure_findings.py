@@ -73,11 +73,14 @@ def test_the_solvers_measure_beside_the_law():
 
 
 def test_speeds_over_the_samples_shown():
-    """Mean of the particles of each run."""
+    """Mean of the particles of each run; one that two views show counts once."""
     particles = pd.DataFrame({"run": ["A", "A", "B"], "speed_m_per_s": [0.1, 0.3, 0.4]})
     assert findings.particle_speeds(particles) == (
         "The particles shown pass the sample at 0.2 m/s over A and 0.4 m/s over B, on average."
     )
+    views = pd.DataFrame({"run": "A", "view": ["side", "bottom", "side"], "id": [1, 1, 2]})
+    views = views.assign(angular_speed_deg_per_s=[100.0, 100.0, 300.0])
+    assert findings.particle_spins(views) == "The particles shown turn at 200 °/s over A, on average."
 
 
 def test_large_depths_are_told_in_millimetres():

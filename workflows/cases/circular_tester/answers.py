@@ -179,4 +179,4 @@ def claims(findings: pd.DataFrame) -> str:
     """Return how the source's findings stand; findings: as from `findings.findings_table`."""
     counts = findings["verdict"].value_counts().reindex(VERDICTS, fill_value=0)
     others = ", ".join(f"{verdict} {count}" for verdict, count in counts.items() if verdict != AGREES and count)
-    return f"Of {len(findings)} findings of the source {counts[AGREES]} agree{f' ({others})' if others else ''}."
+    return f"Of the source's findings {counts[AGREES]} of {len(findings)} agree{f' ({others})' if others else ''}."

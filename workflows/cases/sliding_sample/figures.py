@@ -125,6 +125,7 @@ def bed(job: Job) -> Any:
 
 
 VIEWS = {
+    "finding": figure_findings.particle_spins,
     "inputs": {
         "summary": SUMMARY,
         "surfaces": SURFACES,

@@ -116,8 +116,8 @@ def test_a_pattern_that_is_gone_is_told_in_hours():
 def test_claims_are_counted():
     """Those that agree first, others beside; a study without a pair has nothing to say but that."""
     verdicts = pd.DataFrame({"verdict": [AGREES, UNSAID, UNSAID, CONTRADICTS]})
-    assert answers.claims(verdicts) == "Of 4 findings of the source 1 agree (contradicts 1, cannot be said 2)."
-    assert answers.claims(verdicts.head(1)) == "Of 1 findings of the source 1 agree."
+    assert answers.claims(verdicts) == "Of the source's findings 1 of 4 agree (contradicts 1, cannot be said 2)."
+    assert answers.claims(verdicts.head(1)) == "Of the source's findings 1 of 1 agree."
 
 
 def test_rows_without_a_pair_are_not_compared(tmp_path):
