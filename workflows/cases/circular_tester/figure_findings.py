@@ -113,22 +113,23 @@ def share_on_pattern(columns: pd.DataFrame, unit: str) -> float:
     return float(sums.iloc[1] / sums.sum()) if sums.sum() else math.nan
 
 
-def columns_of(unit: str, shown: str, verb: str):
-    """Return the finding of a figure by column; unit: of its table's columns; shown: as read; verb: of the pattern."""
+def columns_of(unit: str, shown: str, what: str):
+    """Return the finding of a figure by column; unit: of its table's columns; shown: as read; what: is told."""
 
     def finding(columns: pd.DataFrame) -> str:
         share, total = share_on_pattern(columns, unit), f"total_{unit}"
         most = columns.loc[columns.groupby("surface", sort=False)[total].idxmax()]
         ends = [
-            f"column {row['column']} on {row['surface']} ({measured(row[total], shown)})" for _, row in most.iterrows()
+            f"column {row['column']} of the {row['surface']} sample ({measured(row[total], shown)})"
+            for _, row in most.iterrows()
         ]
-        start = f"The pattern {verb} {PERCENT * share:.0f} %; m" if math.isfinite(share) else "M"
-        return f"{start}ost is in {listed(ends)}."
+        start = f"The pattern bears {PERCENT * share:.0f} % of its sample's {what}; m" if math.isfinite(share) else "M"
+        return f"{start}ost is on {listed(ends)}."
 
     return finding
 
 
-wear_by_column, force_by_column = columns_of("mm3", "mm³", "bears"), columns_of("N", "N", "carries")
+wear_by_column, force_by_column = columns_of("mm3", "mm³", "wear"), columns_of("N", "N", "normal force")
 
 
 def most_worn(bumps: pd.DataFrame) -> str:

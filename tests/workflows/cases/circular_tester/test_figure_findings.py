@@ -51,9 +51,9 @@ def test_columns_and_the_share_of_the_pattern():
     """Most of each surface, and how much the pattern bears; of plain samples alone there is no share."""
     columns = {"surface": ["convex", "convex", "plain"], "column": [1, 2, 1], "base_mm3": [1.0, 2.0, 4.0]}
     table = pd.DataFrame(columns | {"bumps_mm3": [6.0, 3.0, 0.0], "total_mm3": [7.0, 5.0, 4.0]})
-    said = "The pattern bears 75 %; most is in column 1 on convex (7 mm³) and column 1 on plain (4 mm³)."
-    assert findings.wear_by_column(table) == said
-    assert findings.wear_by_column(table.tail(1)) == "Most is in column 1 on plain (4 mm³)."
+    said = "ost is on column 1 of the convex sample (7 mm³) and column 1 of the plain sample (4 mm³)."
+    assert findings.wear_by_column(table) == f"The pattern bears 75 % of its sample's wear; m{said}"
+    assert findings.wear_by_column(table.tail(1)) == "Most is on column 1 of the plain sample (4 mm³)."
 
 
 @pytest.mark.parametrize(("reach", "sure"), [(0.1, True), (0.6, False)])
