@@ -24,6 +24,7 @@ from bulkwear.workflows.engine.inputs import (
 from bulkwear.workflows.engine.job import let_jobs_import
 from bulkwear.workflows.engine.project import ProjectError, enter_project
 from bulkwear.workflows.engine.solver import LAUNCHER, cycle_fault, executable_of
+from bulkwear.workflows.engine.study_folder import StudyFolderError, date_back, take
 from bulkwear.workflows.engine.templates import DeckError, templates_digest
 from bulkwear.workflows.engine.terminal import Terminal, listen
 from bulkwear.workflows.forecast.rates import rates_file
@@ -99,7 +100,12 @@ SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
 BEFORE_TABLES = {"surface_mesh", "cost_rates", "further_packings", *SOLVER_RULES}
 
 
+HELD = []  # locks of studies' folders, until Snakemake ends
+
+
 onstart:
+    for study in sorted({job.wildcards.get("study", "") for job in workflow.dag.needrun_jobs()} & set(STUDIES)):
+        HELD.append(prepared(Path("results") / study))
     # before the first job: a bed takes minutes to fill, and without its solver no run can follow
     for job in workflow.dag.needrun_jobs():
         if NAMING.ours(job.rule.name) == "worn_run":
@@ -125,6 +131,17 @@ onsuccess:
             for sentence in answers_of(study.case.name, page.parent):
                 logger.info(f"{study.name}: {sentence}")
             logger.info(f"{study.name}: its page is {page}")
+
+
+def prepared(folder):
+    """The lock of a study's folder, of which no file is of the future any more."""
+    try:
+        lock = take(folder)
+    except StudyFolderError as fault:
+        raise WorkflowError(str(fault)) from None
+    if ahead := date_back(folder):
+        logger.info(f"{folder}: {ahead} files were dated after now, the clock was set back; they are dated now.")
+    return lock
 
 
 def answers_of(case, folder):
