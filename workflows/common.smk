@@ -104,8 +104,6 @@ HELD = []  # locks of studies' folders, until Snakemake ends
 
 
 onstart:
-    for study in sorted({job.wildcards.get("study", "") for job in workflow.dag.needrun_jobs()} & set(STUDIES)):
-        HELD.append(prepared(Path("results") / study))
     # before the first job: a bed takes minutes to fill, and without its solver no run can follow
     for job in workflow.dag.needrun_jobs():
         if NAMING.ours(job.rule.name) == "worn_run":
@@ -117,6 +115,8 @@ onstart:
         for study in STUDIES:
             if fault := beyond_machine(study, needed.get(study, ()), workflow.dag.needrun_jobs()):
                 raise WorkflowError(fault)
+    for study in sorted({job.wildcards.get("study", "") for job in workflow.dag.needrun_jobs()} & set(STUDIES)):
+        HELD.append(prepared(Path("results") / study))
     for study, jobs in needed.items():
         announce_cost(study, jobs)
         if STUDIES[study].until:
