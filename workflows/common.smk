@@ -10,6 +10,7 @@ from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
+from bulkwear.workflows.config.published_tables import check_published
 from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
 from bulkwear.workflows.config.until import read_round
 from bulkwear.workflows.engine.cases import case_folders
@@ -69,8 +70,10 @@ def checked_studies():
     try:
         names = named or requested_studies(GIVEN.targets, GIVEN.target_jobs, names=NAMING)
         studies = {name: load_study(name, overrides=settings) for name in names}
-        for study in studies.values() if not GIVEN.target_jobs else ():
-            study.case.check_files(study.runs)
+        if not GIVEN.target_jobs:
+            check_published(PROJECT)
+            for study in studies.values():
+                study.case.check_files(study.runs)
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None
