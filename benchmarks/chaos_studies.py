@@ -44,7 +44,7 @@ def new_study(folder: Path) -> Path:
     return folder
 
 
-def snakemake(folder: Path, before: Sequence[str] = ()) -> subprocess.Popen:
+def start(folder: Path, before: Sequence[str] = ()) -> subprocess.Popen:
     """Start Snakemake on the study of a folder; what it says goes to a file there. before: a command that starts it."""
     choices = ("--snakefile", ROOT / "Snakefile", "--workflow-profile", ROOT / "workflows/profiles/default")
     # jobs of a killed Snakemake live on and still speak
@@ -75,7 +75,7 @@ def ends(process: subprocess.Popen) -> bool:
 def finished_study(folder: Path) -> float:
     """Run a study undisturbed; return the seconds that it took. Raises RuntimeError where it fails."""
     started = time.monotonic()
-    if not ends(snakemake(new_study(folder))):
+    if not ends(start(new_study(folder))):
         raise RuntimeError(words(folder).read_text("utf-8", "replace")[-2000:])
     return time.monotonic() - started
 
@@ -98,13 +98,13 @@ def killed(expected: Path, folder: Path, kills: int, chance: random.Random, long
     outcome = Outcome(f"studies after {kills} kill -9 of Snakemake alone")
     here = new_study(folder / "killed")
     for _ in range(kills):
-        process = snakemake(here)
+        process = start(here)
         try:
             process.wait(chance.uniform(0.2, 1.0) * longest_s)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-    judge(outcome, here, expected, ends(snakemake(here)))
+    judge(outcome, here, expected, ends(start(here)))
     return outcome
 
 
@@ -113,11 +113,11 @@ def twice(expected: Path, folder: Path, count: int, chance: random.Random, longe
     outcome = Outcome("studies with two Snakemakes at once")
     for number in range(count):
         here = new_study(folder / f"twice_{number}")
-        first = snakemake(here)
+        first = start(here)
         time.sleep(chance.uniform(0.0, longest_s))
-        second = ends(snakemake(here))  # refused, or there was nothing left to do
+        second = ends(start(here))  # refused, or there was nothing left to do
         told = second or AT_WORK in words(here).read_text("utf-8", "replace")
-        judge(outcome, here, expected, ends(first) and told and ends(snakemake(here)))
+        judge(outcome, here, expected, ends(first) and told and ends(start(here)))
     return outcome
 
 
@@ -126,7 +126,7 @@ def clock_steps(expected: Path, folder: Path, steps: int, chance: random.Random,
     outcome = Outcome(f"studies after {steps} steps of the clock, of every file")
     here = new_study(folder / "clock")
     for _ in range(steps):
-        process = snakemake(here)
+        process = start(here)
         try:
             process.wait(chance.uniform(0.2, 1.0) * longest_s)
         except subprocess.TimeoutExpired:
@@ -136,7 +136,7 @@ def clock_steps(expected: Path, folder: Path, steps: int, chance: random.Random,
             if path.is_file():
                 moment = time.time() + chance.uniform(-YEARS, YEARS)
                 os.utime(path, (moment, moment))
-    judge(outcome, here, expected, ends(snakemake(here)))
+    judge(outcome, here, expected, ends(start(here)))
     return outcome
 
 
@@ -144,7 +144,7 @@ def without_network(expected: Path, folder: Path) -> Outcome:
     """Run a study where no network is, not even the machine's own."""
     outcome = Outcome("studies without a network")
     here = new_study(folder / "offline")
-    judge(outcome, here, expected, ends(snakemake(here, WITHOUT_NETWORK)))
+    judge(outcome, here, expected, ends(start(here, WITHOUT_NETWORK)))
     return outcome
 
 
@@ -160,11 +160,11 @@ def unwritable(expected: Path, folder: Path) -> Outcome:
     subprocess.run(["mount", "--bind", results, results], check=True)
     try:
         subprocess.run(["mount", "-o", "remount,ro,bind", results], check=True)
-        refused = not ends(snakemake(here))
+        refused = not ends(start(here))
         said = words(here).read_text("utf-8", "replace")
     finally:
         subprocess.run(["umount", results], check=True)
-    judge(outcome, here, expected, ends(snakemake(here)) and refused and any(each in said for each in READ_ONLY))
+    judge(outcome, here, expected, ends(start(here)) and refused and any(each in said for each in READ_ONLY))
     return outcome
 
 
