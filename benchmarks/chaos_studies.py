@@ -33,6 +33,9 @@ fidelities:
 YEARS = 10.0 * 365.25 * 24 * 3600.0  # s, by which a clock jumps at most
 # nothing but the machine itself, which MPI talks to
 WITHOUT_NETWORK = ("unshare", "--net", "sh", "-c", 'ip link set lo up && exec "$@"', "sh")
+# a user who owns nothing and has no home: the code can be read only
+NOBODY_ID = 65534
+NOBODY = ("setpriv", f"--reuid={NOBODY_ID}", f"--regid={NOBODY_ID}", "--clear-groups", "env", "HOME=/nonexistent")
 AT_WORK = "another Snakemake"
 READ_ONLY = ("Read-only file system", "Write-protected output files")  # as Snakemake says it where outputs are there
 
@@ -148,6 +151,25 @@ def without_network(expected: Path, folder: Path) -> Outcome:
     return outcome
 
 
+def is_open_to_nobody() -> bool:
+    """Return whether a user who owns nothing can read this clone and run its Python."""
+    tried = [*NOBODY, sys.executable, "-c", "import bulkwear.workflows"]
+    return subprocess.run(tried, cwd="/", capture_output=True).returncode == 0
+
+
+def as_nobody(expected: Path, folder: Path) -> Outcome:
+    """Run a study as a user who owns nothing but the study's folder."""
+    outcome = Outcome("studies of a user without a home, the code read-only")
+    folder.chmod(0o755)  # temporary folders are their owner's
+    here = new_study(folder / "nobody")
+    (here / "cache").mkdir()
+    for path in (here, *here.rglob("*")):
+        os.chown(path, NOBODY_ID, NOBODY_ID)
+    cache = ("env", f"XDG_CACHE_HOME={here / 'cache'}")
+    judge(outcome, here, expected, ends(start(here, (*NOBODY, *cache))))
+    return outcome
+
+
 def unwritable(expected: Path, folder: Path) -> Outcome:
     """Start a study half of which is done where nobody may write; once somebody may again, it ends."""
     outcome = Outcome("studies in a folder that is read-only")
@@ -180,4 +202,5 @@ def studies(folder: Path, counts: dict[str, int], chance: random.Random) -> list
     ]
     if os.geteuid() == 0:
         found += [without_network(*given), unwritable(*given)]
+        found += [as_nobody(*given)] if is_open_to_nobody() else []
     return found
