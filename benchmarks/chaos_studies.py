@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.chaos_files import Outcome
@@ -190,17 +190,16 @@ def unwritable(expected: Path, folder: Path) -> Outcome:
     return outcome
 
 
-def studies(folder: Path, counts: dict[str, int], chance: random.Random) -> list[Outcome]:
-    """Return what came of all of them; those that need root are left out without it. counts: see `chaos.WHOLE`."""
+def studies(folder: Path, counts: dict[str, int], chance: random.Random) -> Iterator[Outcome]:
+    """Yield what came of all of them; those that need root are left out without it. counts: see `chaos.WHOLE`."""
     expected = folder / "expected"
     longest_s = finished_study(expected)
     given = (expected, folder)
-    found = [
-        killed(*given, counts["snakemakes"], chance, longest_s),
-        twice(*given, counts["twins"], chance, longest_s),
-        clock_steps(*given, counts["clocks"], chance, longest_s),
-    ]
+    yield killed(*given, counts["snakemakes"], chance, longest_s)
+    yield twice(*given, counts["twins"], chance, longest_s)
+    yield clock_steps(*given, counts["clocks"], chance, longest_s)
     if os.geteuid() == 0:
-        found += [without_network(*given), unwritable(*given)]
-        found += [as_nobody(*given)] if is_open_to_nobody() else []
-    return found
+        yield without_network(*given)
+        yield unwritable(*given)
+        if is_open_to_nobody():
+            yield as_nobody(*given)
