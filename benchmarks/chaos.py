@@ -5,8 +5,8 @@
     python -m benchmarks.chaos --share 0.1    # a tenth of the faults, with the page
     python -m benchmarks.chaos --seed 7       # other faults; --only files, runs or studies: a part of it
 
-Writes docs/chaos.csv and .md, after each part its rows. Small disks, disks without write and a machine without a network need
-root; without it they are left out, and the page says so.
+Writes docs/chaos.csv and .md, after each part its rows. Small disks, disks without write and a machine without a
+network need root; without it they are left out.
 """
 
 from __future__ import annotations
