@@ -27,7 +27,7 @@ def colour_limits(depths: pd.DataFrame) -> tuple[float, float]:
     """Return the colour scale (um) of all runs of a figure: 0 to the depth that 99 % of the worn area of
     the run with the deepest wear does not exceed.
 
-    depths: as from `analysis.depth.depth_table`.
+    depths: as from `tables.depths.depth_table`.
     """
     tops = [
         area_quantile(faces["depth_um"].to_numpy(), faces["area_mm2"].to_numpy(), TOP_SHARE)
@@ -46,7 +46,7 @@ def worn_surface(
 ) -> Figure:
     """Draw worn surfaces, all runs on one colour scale: obliquely and from above for one row, else from above only.
 
-    meshes: by run; runs: run, row, surface; depths: as from `analysis.depth.depth_table`; quantity: what the colour is.
+    meshes: by run; runs: run, row, surface; depths: as from `tables.depths.depth_table`; quantity: what the colour is.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     limits, bounds = colour_limits(depths), common_bounds(meshes.values())
@@ -151,7 +151,7 @@ def bed(
     """Draw the bed over the sample, cut open along the travel, one picture per run; colour: speed over the
     sample.
 
-    cuts: particles by run, as from `analysis.bed.behind_cut`; meshes: worn surfaces by run.
+    cuts: particles by run, as from `flow.bed.behind_cut`; meshes: worn surfaces by run.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     limits = (0.0, max(float(cut["speed_m_per_s"].quantile(0.98)) for cut in cuts.values()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import errno
 import os
 import sys
 import time
@@ -18,6 +19,7 @@ from bulkwear.workflows.engine.machine import machine_facts
 from bulkwear.workflows.engine.project import enter_project
 
 SECONDS_BETWEEN_LINES = 15.0
+WITHOUT_THREAD = ("can't start new thread", os.strerror(errno.EAGAIN))  # Python's words, and those of C++
 STOPPED = "Stopped by Ctrl-C. The same command goes on after the last finished cycle or piece."
 INTERRUPTED = 130  # exit code of what Ctrl-C has ended
 SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
@@ -73,11 +75,17 @@ def project_job(log_path: str | Path) -> Iterator[None]:
             raise
 
 
+def is_exhausted(fault: BaseException) -> bool:
+    """Return whether a fault is of the machine's memory; libraries tell a thread without memory by its errno alone."""
+    of_threads = isinstance(fault, RuntimeError) and str(fault) in WITHOUT_THREAD
+    return isinstance(fault, MemoryError) or of_threads or getattr(fault, "errno", None) == errno.ENOMEM
+
+
 def sentence(fault: BaseException) -> str:
     """Return a fault in one sentence; those of the machine say what it lacks and what to do."""
     if is_full(fault):
         return full_sentence(Path.cwd())
-    if isinstance(fault, MemoryError):
+    if is_exhausted(fault):
         return (
             f"The memory is exhausted, {machine_facts()['memory_gb']} GB for all jobs together; start again with fewer"
             " of them side by side (--cores 1), or with larger elements or a larger particle_scale. Finished cycles and"

@@ -61,6 +61,19 @@ def test_axes_of_the_plan_fit_the_picture(plan, mesh):
     assert abs((coloured[-1] - coloured[0] + 1) * per_pixel - WIDTH * 1e3) <= 2.0 * PIXEL * per_pixel
 
 
+def test_held_back_wear_is_hatched(mesh, plan):
+    """Lines cross the half of the sample where a cap held wear back, and none the other half."""
+    held = np.where(mesh.points[:, 0] > 1e-6, DEPTH, 0.0) * 1e-6  # m3, of nodes: more than a tenth of the depth
+    carrying = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, {**mesh.point_data, "carried_volume_m3": held})
+    pixels, _ = surface_plan(carrying, True, (0.0, DEPTH * 1e6), longest=300)
+    differs = np.ptp([pixels, plan[0]], axis=0).max(axis=2) > 40
+    half, face = pixels.shape[1] // 2, 30  # pixels, of a face that belongs to both halves
+    inside = slice(40, -40)  # pixels, clear of the sample's outline
+    lines = differs[inside, half + face : -40]
+    assert lines.any() and not lines.all()
+    assert not differs[inside, 40 : half - face].any()
+
+
 def test_figure_of_worn_surfaces(mesh):
     """The figure shows each run obliquely and from above, mm on the axes, µm on the colour bar, and the remarks."""
     runs = pd.DataFrame({"run": ["R9_convex", "R9_plain"], "row": "R9", "surface": ["convex", "plain"]})
