@@ -12,6 +12,7 @@ import pandas as pd
 from bulkwear.postproc.inference.loop import Posterior
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, posterior_weights
 from bulkwear.postproc.inference.problem import Problem
+from bulkwear.postproc.inference.told import LEFT
 from bulkwear.workflows.cases.calibration.figure_findings import MET, parameter_words, reproduced, said_of, values_of
 from bulkwear.workflows.cases.calibration.outcome import Calibrated
 from bulkwear.workflows.cases.calibration.responses import (
@@ -45,16 +46,21 @@ def on_posterior(done: Calibrated) -> list[str]:
     """Return the intervals of the parameters, which measurement decides, and which pairs of others are rejected."""
     problem, known = done.problem, done.known
     intervals = interval_table(problem, known, done.pairs[done.compared])
-    said = [
-        f"{parameter_words(row.parameter)} is {row.recommended:.2f}, {PERCENT * FAMILY_SHARE:.0f} % of what fits"
-        f" between {row.low:.2f} and {row.high:.2f}"
-        for row in intervals.itertuples()
-    ]
-    ends = f"{capital('; '.join(said))}."
+    ends = f"{capital('; '.join(interval_words(row) for _, row in intervals.iterrows()))}."
     best = information_table(problem, known).iloc[0]
     bits = measured(best["information_bits"], "bit")
     further = f"Measuring the {said_of(best['response'])[0]} once more is expected to tell most, {bits}."
     return [ends, *deciding(shares_left(problem, known)), further, *rejected(done)]
+
+
+def interval_words(row: pd.Series) -> str:
+    """Return a parameter's value and interval, and whether that is most of the range; row: of `interval_table`."""
+    left = (row["high"] - row["low"]) / (FAMILY_SHARE * (row["searched_to"] - row["searched_from"]))
+    hardly = f" ({PERCENT * left:.0f} % of the range is left: hardly told alone)" if left > LEFT else ""
+    return (
+        f"{parameter_words(row['parameter'])} is {row['recommended']:.2f}, {PERCENT * FAMILY_SHARE:.0f} % of what fits"
+        f" between {row['low']:.2f} and {row['high']:.2f}{hardly}"
+    )
 
 
 def shares_left(problem: Problem, known: Posterior) -> dict[str, float]:
@@ -121,7 +127,7 @@ def reproduced_light(own: pd.DataFrame) -> Light:
         return Light("Reproduced", WEAK, f"{off} of {len(asked)} responses that were simulated are not.")
     if len(asked) < len(own) or asked.empty:
         return Light("Reproduced", CARE, f"{len(own) - len(asked)} of {len(own)} responses were not simulated again.")
-    return Light("Reproduced", SOUND, "All measured responses are, within their uncertainty.")
+    return Light("Reproduced", SOUND, f"{len(own)} of {len(own)} that were measured and simulated are.")
 
 
 def surrogate_light(looks: pd.DataFrame, most_share: float) -> Light:

@@ -65,6 +65,22 @@ def test_the_response_that_leaves_least_decides():
     assert "the only response" in answers.deciding({"": 0.2, "shear_angle_deg": 0.2})[0]
 
 
+@pytest.mark.parametrize(("high", "hardly"), [(0.3, False), (0.68, True)])
+def test_an_interval_as_wide_as_the_range_hardly_tells(high, hardly):
+    """Value and interval; where most of the range is left, that is said."""
+    row = {
+        "parameter": ROLLING,
+        "searched_from": 0.1,
+        "searched_to": 0.7,
+        "recommended": 0.2,
+        "low": 0.12,
+        "high": high,
+    }
+    said = answers.interval_words(pd.Series(row))
+    assert said.startswith(f"rolling friction is 0.20, 95 % of what fits between 0.12 and {high:.2f}")
+    assert ("98 % of the range is left: hardly told alone" in said) == hardly
+
+
 def test_published_pairs_are_rejected_or_kept(done):
     """Those in the range are looked at; pairs of other parameters are not."""
     (said,) = answers.rejected(done)
