@@ -79,8 +79,13 @@ def _layers(
                 rows = rows[rows[name].isin(_listed(wanted))]
             for name, unwanted in each.but.items():
                 rows = rows[~rows[name].isin(_listed(unwanted))]
-            if rows[each.y].notna().any():
+            if rows[_valued(each, rows)].notna().any():
                 yield each, table, rows
+
+
+def _valued(layer: Layer, rows: pd.DataFrame) -> str:
+    """Return the column of a layer's values: y, or x of bars that lie."""
+    return layer.y if layer.kind == LEVELS or pd.api.types.is_numeric_dtype(rows[layer.y]) else layer.along[0]
 
 
 def _spelled(layer: Layer, table: pd.DataFrame) -> list[Layer]:

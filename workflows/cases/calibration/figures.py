@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.calibration import charts
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
 from bulkwear.workflows.report.products import Job, figure, tables
 
@@ -118,6 +119,7 @@ def family(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Recommended and published pair",
+    charts=(charts.PAIRS,),
     inputs={"statements": "results/{study}/summary.csv", "pairs": pairs_file},
     told={"compared": lambda study: calibration_box(study)["calibration"]["compared_pair"]},
     digits=6,
@@ -141,6 +143,7 @@ def pairs_against_bands(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Size and width of the shear box",
+    charts=(charts.BOX_SIZES,),
     inputs={"sizes": "results/{study}/box_sizes.csv", "before": SIZES_BEFORE},
     digits=6,
     caption="""
@@ -162,6 +165,7 @@ def box_sizes(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Stopping rule, and what to measure next",
+    charts=(charts.PROGRESS,),
     inputs={**SIMULATED, "looks": "results/{study}/looks.csv"},
     told=TOLD,
     digits=6,

@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.circular_tester import charts
 from bulkwear.workflows.cases.circular_tester.runs import (
     SIZE,
     VOLUME,
@@ -79,6 +80,7 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
 @figure(
     "Volume",
     "Volume against hours of the test",
+    charts=(charts.HOURS,),
     inputs={**of_study("lost_volumes", "time_scale", "comparison"), **PUBLISHED},
     **OF_PAIRS,
     caption="""
@@ -103,6 +105,7 @@ def tester_hours(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume by revolution",
+    charts=(charts.VOLUME,),
     inputs={**of_study("lost_volumes", "rates"), **PUBLISHED_FITS},
     **OF_PAIRS,
     caption="""
@@ -115,16 +118,17 @@ def tester_hours(job: Job) -> Any:
 def tester_volume(job: Job) -> Any:
     """Draw volumes by revolution (Fig 6.11)."""
     from bulkwear.workflows.cases.circular_tester.plots.volume import volume_by_revolution
-    from bulkwear.workflows.cases.circular_tester.volume import chosen, mean_volumes, whole_revolutions
+    from bulkwear.workflows.cases.circular_tester.volume import beside_fits, chosen, mean_volumes, whole_revolutions
 
     lost, rates, published = read(job, "lost_volumes", "rates", "published_fits")
     means = mean_volumes(whole_revolutions(chosen(lost, VOLUME, SIZE)))
-    return volume_by_revolution(means, rates, published, job.remarks), means
+    return volume_by_revolution(means, rates, published, job.remarks), beside_fits(means, published)
 
 
 @figure(
     "Volume",
     "What an element and a sample lose per revolution",
+    charts=(charts.INCREMENTS,),
     inputs={**of_study("lost_volumes", "mean_ratios"), **PUBLISHED},
     **OF_PAIRS,
     caption="""
@@ -147,6 +151,7 @@ def tester_increments(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume after 56 hours by particle scale",
+    charts=(charts.BENCHMARK,),
     inputs={**of_study("predictions"), **PUBLISHED, **PUBLISHED_FITS},
     **OF_PAIRS,
     caption="""
@@ -166,6 +171,7 @@ def tester_benchmark(job: Job) -> Any:
 @figure(
     "Volume",
     "Until the pattern is gone",
+    charts=(charts.WORN_OUT,),
     inputs={**of_study("lost_volumes", "rates"), **WEAR},
     told=ALL_RUNS,
     when=has_series(WORN_OUT),

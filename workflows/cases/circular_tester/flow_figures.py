@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from bulkwear.workflows.cases.circular_tester import charts
 from bulkwear.workflows.cases.circular_tester.figures import OF_PAIRS, PAIRS, PUBLISHED, WEAR, of_study, read, runs_of
 from bulkwear.workflows.cases.circular_tester.runs import SURFACE, shown_pair
 from bulkwear.workflows.report.products import Job, figure
@@ -16,6 +17,7 @@ SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
 @figure(
     "Flow",
     "Steadiness",
+    charts=(charts.STEADINESS,),
     caption="""
     Counterpart of Fig 6.7 (Yan 2022): standard deviation over mean (Eq 6.1) of each revolution since the trough began
     to turn, mean over packings with its 95 % interval. Velocity and height are those of the particles over the sample,
@@ -38,6 +40,7 @@ def tester_steadiness(job: Job) -> Any:
 @figure(
     "Flow",
     "Spin of the lowest layer",
+    charts=(charts.SPIN,),
     caption="""
     Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity of particles whose centres are within
     a median diameter of the sample's plane, by revolution of wear; the table has the mean of their own angular speeds
@@ -55,6 +58,7 @@ def tester_spin(job: Job) -> Any:
 @figure(
     "Flow",
     "Velocity of the lowest layer",
+    charts=(charts.VELOCITY,),
     caption="""
     Counterpart of Fig 6.18 (Yan 2022): velocity along the travel of the same particles, mean over packings with its
     95 % interval.
@@ -71,6 +75,7 @@ def tester_velocity(job: Job) -> Any:
 @figure(
     "Flow",
     "Normal force by revolution",
+    charts=(charts.FORCE,),
     caption="""
     Counterpart of Fig 6.21 (Yan 2022): sum of the normal forces on the faces that wear, by revolution of wear;
     mean over packings with its 95 % interval. Bands: the source's standard deviations.

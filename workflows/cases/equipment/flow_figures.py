@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.equipment import charts
 from bulkwear.workflows.cases.equipment.map_figures import (
     BESIDE,
     DIGITS,
@@ -54,6 +55,7 @@ def remarks_on_panels(job: Job) -> list[str]:
 @figure(
     "Flow",
     "Flow over time",
+    charts=(charts.FLOW,),
     inputs={"wear": every_run(BESIDE)},
     told={"runs": values_of_runs},
     digits=DIGITS,

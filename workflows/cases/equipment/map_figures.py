@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.equipment import charts
 from bulkwear.workflows.cases.equipment.figures import TABLES
 from bulkwear.workflows.cases.equipment.tables import values_of_runs
 from bulkwear.workflows.report.products import Job, every_run, figure
@@ -63,6 +64,7 @@ PACKINGS = "means over blocks and packings, told by area patches"
 @figure(
     "Life",
     "Life of the parts",
+    charts=(charts.LIFE,),
     inputs=of_study("life"),
     told={"runs": values_of_runs},
     digits=DIGITS,
@@ -85,6 +87,7 @@ def life_bars(job: Job) -> Any:
 @figure(
     "Life",
     "Depth of the deciding place against hours of operation",
+    charts=(charts.RECESSION,),
     inputs={**of_study("life", "worst_places"), "wear": every_run(BESIDE)},
     told={"runs": values_of_runs},
     digits=DIGITS,

@@ -6,6 +6,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+from bulkwear.workflows.cases.pin_on_disc import charts
 from bulkwear.workflows.cases.pin_on_disc.case import MESHES
 from bulkwear.workflows.cases.pin_on_disc.volume_figures import (
     CONTOURS,
@@ -210,6 +211,7 @@ def contour_distribution(job: Job) -> Any:
 @figure(
     "Contours",
     "Run-in",
+    charts=(charts.RUN_IN,),
     inputs={**OF_CONTOURS, "normality": NORMALITY, "volumes": VOLUMES},
     tables={"change_points": "figures/run_in_change_points.csv"},
     caption="""
