@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from fnmatch import fnmatchcase
@@ -15,6 +16,7 @@ from bulkwear.postproc.plots.legend import Legend, plain, telling
 from bulkwear.postproc.plots.traces import Trace, traces_of
 
 Tables = Mapping[str, pd.DataFrame]
+FROM_ZERO = 0.5  # -, least over largest value, up to which an axis begins at zero
 LONGEST_LINE = 38  # characters at an axis: more do not fit on a phone
 BESIDE = 0.5  # of the unit of an axis: how far a level reaches beside a single place
 
@@ -158,17 +160,29 @@ def _levels(
             yield trace | ({"mode": "lines"} if kind == LINES else {})
 
 
+def _in_order(places: list[str]) -> list[str]:
+    """Return places in words in the order of the table, those that are numbers by size."""
+    return sorted(places, key=float) if all(map(_is_number, places)) else places
+
+
+def _is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False
+
+
 def _layout(axes: tuple[Axis, Axis], data: Sequence[Trace], words: bool, stacked: bool) -> dict[str, Any]:
-    """Return the axes of a panel; from zero on, where no value is below."""
+    """Return the axes of a panel; from zero on, where no value is below and some are near it."""
     found = {}
     for name, axis in zip(("x", "y"), axes, strict=True):
         values = [value for trace in data for value in trace[name] if value is not None]
         of_words = bool(values) and isinstance(values[0], str)
         kind = {"type": "category" if of_words else "log" if axis.log else "linear"}
         if of_words:
-            kind |= {"categoryorder": "array", "categoryarray": list(dict.fromkeys(values))}
+            kind |= {"categoryorder": "array", "categoryarray": _in_order(list(dict.fromkeys(values)))}
             kind |= {"autorange": "reversed"} if name == "y" else {}
-        elif min(values) >= 0.0 and not axis.log:
+        elif values and not axis.log and 0.0 <= min(values) <= FROM_ZERO * max(values):
             kind |= {"rangemode": "tozero"}
         found[f"{name}axis"] = {"title": {"text": "<br>".join(wrap(axis.label, LONGEST_LINE))}, **kind}
     return found | {"barmode": "stack" if stacked else "group"}

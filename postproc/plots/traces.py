@@ -96,10 +96,14 @@ def _pointed(
     known = np.array([each for each in across if not isinstance(each, str) and each is not None], dtype=float)
     form = f":{number_format(known)}" if len(known) else ""
     place = f"%{{{'y' if level else 'x'}{form}}}"
-    value = f"%{{{'x' if level else 'y'}:{number_format(values)}}}%{{customdata}} {escape(valued.unit, quote=False)}"
+    value = f"%{{{'x' if level else 'y'}:{number_format(values)}}}%{{customdata}} {_unit(valued)}"
     lines = [f"<b>{', '.join(named[name] for name in told)}</b>"] if told else []
-    lines += [f"{named[placed.title]}: {place} {escape(placed.unit, quote=False)}".strip(" :")]
+    lines += [f"{named[placed.title]}: {place} {_unit(placed)}".strip(" :")]
     return "<br>".join([*lines, f"{named[layer.said or valued.title]}: {value}".strip()]) + "<extra></extra>"
+
+
+def _unit(axis: Axis) -> str:
+    return escape(axis.unit, quote=False) if axis.unit != "-" else ""
 
 
 def _kind(layer: Layer, look: Look, count: int, level: bool) -> Trace:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.plots.chart import BARS, LEVELS, LINES, Axis, Chart, Layer, Panel, one_panel
 from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
 
@@ -14,13 +15,20 @@ OF_SURFACES = {"x": "revolution", "group": ("surface",), **INTERVAL}
 YAN = {"name": "Yan 2022", "published": True}
 PERCENT = 100.0
 
+
+def _of_surfaces(quantities: tuple[str, ...]) -> dict[str, str]:
+    """Return the colours of published quantities: those of the surface that their name begins with."""
+    return {name: "ORANGE" if name.startswith(PLAIN) else "BLUE" for name in quantities}
+
+
 VOLUME = one_panel(
     REVOLUTIONS,
     LOST,
     Layer(LINES, "volume_mm3", **OF_SETTINGS, **INTERVAL),
     Layer(LINES, "published_volume_mm3", **OF_SETTINGS, **YAN),
 )
-FIRST_AND_LAST = {"quantity": ("plain_first_increment", "plain_last_increment")}
+FIRST_AND_LAST = ("plain_first_increment", "plain_last_increment")
+OF_THESE = {"only": {"quantity": FIRST_AND_LAST}}
 INCREMENTS = Chart(
     (
         Panel(
@@ -28,7 +36,7 @@ INCREMENTS = Chart(
             Axis("Lost per revolution by an element", "mm³"),
             (
                 Layer(LINES, "element_increment_mm3", **OF_SETTINGS),
-                Layer(LEVELS, "value", table="published", group=("quantity",), only=FIRST_AND_LAST, **YAN),
+                Layer(LEVELS, "value", table="published", group=("quantity",), **OF_THESE, **YAN),
             ),
         ),
         Panel(
@@ -36,7 +44,8 @@ INCREMENTS = Chart(
             Axis("Lost per revolution by the sample", "mm³"),
             (Layer(LINES, "increment_mm3", **OF_SETTINGS, **INTERVAL),),
         ),
-    )
+    ),
+    colours=_of_surfaces(FIRST_AND_LAST),
 )
 VALUES = {"x": ("quantity", "hours")}
 HOURS = one_panel(
@@ -53,12 +62,14 @@ HOURS = one_panel(
 )
 SHORT = {"hours": 56.0}
 PREDICTED = {"low": "volume_mm3_low", "high": "volume_mm3_high", "only": SHORT}
-MEASURED = {"quantity": ("plain_volume_56_h", "convex_volume_56_h"), "of": "laboratory"}
+SHORT_TEST = ("plain_volume_56_h", "convex_volume_56_h")
+MEASURED = {"quantity": SHORT_TEST, "of": "laboratory"}
 BENCHMARK = one_panel(
     Axis("Particle scale", "-"),
     Axis("Volume after the short test", "mm³"),
     Layer(BARS, "volume_mm3", "particle_scale", **PREDICTED, group=("surface",), name="ours"),
     Layer(LEVELS, "value", table="published", group=("quantity",), only=MEASURED, name="measured", published=True),
+    colours=_of_surfaces(SHORT_TEST),
 )
 STEADINESS = one_panel(
     REVOLUTION,
@@ -89,6 +100,7 @@ def _by_revolution(measure: str, axis: Axis, factor: float, *published: str) -> 
             only={"quantity": published},
             **YAN,
         ),
+        colours=_of_surfaces(published),
     )
 
 

@@ -63,9 +63,9 @@ COMPARED = {"depth": "mm", "width": "mm", "volume": "mm³"}
 COMPARISON = Chart(
     tuple(
         Panel(
-            Axis("Case"),
             Axis(name.capitalize(), unit),
-            (Layer(BARS, f"{name}_{unit.replace('³', '3')}", "case", name=name),),
+            Axis("Case"),
+            (Layer(BARS, "case", f"{name}_{unit.replace('³', '3')}", name=name),),
         )
         for name, unit in COMPARED.items()
     )

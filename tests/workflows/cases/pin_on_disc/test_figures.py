@@ -79,7 +79,7 @@ def test_charts_show_the_tables_beside_published_values(figures, pins):
     )
     assert values(bound, "Yan 2022, at most") == [[0.6, 0.6], [-0.6, -0.6]]
     compared = drawn_chart(products["pin_comparison"], tables["pin_comparison"])
-    assert values(compared, "volume", 2) == [pytest.approx(tables["pin_comparison"]["volume_mm3"], rel=1e-5)]
+    assert values(compared, "volume", 2, "x") == [pytest.approx(tables["pin_comparison"]["volume_mm3"], rel=1e-5)]
 
 
 def test_the_worn_disc_has_the_table_of_its_track(figures, pins):
