@@ -32,6 +32,7 @@ from bulkwear.workflows.report.simulated import figure_remark, versions_of
 if TYPE_CHECKING:
     import pandas as pd
 
+    from bulkwear.postproc.plots.chart import Chart
     from bulkwear.workflows.config.design import Study
 
 SHARED = ("bulkwear.workflows.report.beds", "bulkwear.workflows.report.surfaces")  # any case may show what is there
@@ -56,6 +57,8 @@ class Product:
     suffix: png of a figure of matplotlib, which is written as VECTORS too; gif of a film, html of an interactive page
     finding: takes the figure's table, which has a row or more, and returns in one sentence what the figure shows, "" if
         its rows do not tell it; the title then stands for it, as with None
+    charts: what of its table is interactive on the page, the first of them whose columns the table has; keys of their
+        layers' tables are those of `tables` and of `inputs` that are one path
     digits: significant ones of its tables, or of the tables by key; None: all
     """
 
@@ -70,6 +73,7 @@ class Product:
     caption: str = ""
     suffix: str = "png"
     finding: Callable[[pd.DataFrame], str] | None = None
+    charts: tuple[Chart, ...] = ()
     digits: int | Mapping[str, int] | None = None
 
     @property

@@ -6,12 +6,11 @@ import re
 import shutil
 import subprocess
 
-import numpy as np
 import pytest
 
-from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.plots.page import surfaces_page
 from bulkwear.postproc.tables.compared_surfaces import Shown
+from tests.support.shapes import worn_plate
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 DEPTHS = {"R9": 5e-6, "plain": 2e-6}  # m, in the last cycle; a half of it before
@@ -40,20 +39,12 @@ wait();
 </script>"""
 
 
-def plate(depth):
-    """A plate of 20 by 10 mm in two triangles, 1 mm higher at its end, worn to a depth."""
-    points = 1e-3 * np.array([[0, 0, 0], [20, 0, 0], [20, 10, 1], [0, 10, 1]], dtype=float)
-    nodes = {"removed_thickness_m": np.full(4, depth), "carried_volume_m3": np.zeros(4)}
-    cells = {"part": np.zeros(2, dtype=int), "worn_volume_m3": np.full(2, 1e-12)}
-    return SurfaceMesh(points, np.array([[0, 1, 2], [0, 2, 3]]), cells, nodes)
-
-
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     """A page of two runs, unworn and after two cycles."""
     path = tmp_path_factory.mktemp("page") / "page.html"
     shown = [
-        Shown(run, cycle, 0.1 * cycle, f"cycle {cycle}", plate(depth * cycle / 2))
+        Shown(run, cycle, 0.1 * cycle, f"cycle {cycle}", worn_plate(depth * cycle / 2))
         for run, depth in DEPTHS.items()
         for cycle in range(3)
     ]

@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.cases.sliding_sample.particle_size import figures
+from bulkwear.workflows.cases.sliding_sample.particle_size import study as study_of_size
 from bulkwear.workflows.cases.sliding_sample.study import published_flow
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.products import (
@@ -60,7 +61,7 @@ def test_a_changed_deck_is_simulated_again(study, name, monkeypatch):
     told = told_to(products_of_study(study)[name], study)
     assert told["folder"].startswith("results/particle_size/particle_size/")
     assert told == told_to(products_of_study(study)[name], study)
-    monkeypatch.setattr(figures, "templates_digest", lambda template: f"{SIMULATING[name]}, changed")
+    monkeypatch.setattr(study_of_size, "templates_digest", lambda template: f"{SIMULATING[name]}, changed")
     assert told_to(products_of_study(study)[name], study)["template"] != told["template"]
 
 
