@@ -80,8 +80,13 @@ def environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters |= {"number": number, "kind": kind, "cells": cells}
+    found.filters |= {"number": number, "kind": kind, "cells": cells, "css": css_text}
     return found
+
+
+def css_text(text: str) -> str:
+    """Return a text as it stands between quotes in a style sheet."""
+    return "".join(letter if letter.isalnum() or letter == " " else f"\\{ord(letter):x} " for letter in text)
 
 
 def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -140,10 +145,13 @@ def cells(table: Table) -> dict[str, Any]:
 
 
 def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path) -> dict[str, Any]:
-    """Return one figure of the page: number, title, what it shows in a sentence, caption, picture or page, files."""
+    """Return one figure of the page: number, title, what it shows in a sentence, caption, picture or page and
+    what stands for it in print, files.
+    """
     told, figures = study["figures"][product.name], folder / "figures"
     file, table = figures / told["file"], figures / f"{product.name}.csv"
     interactive = file.suffix == ".html"
+    still = product.stills.get("still")
     finding = product.finding(pd.read_csv(table, dtype=NAMES)) if product.finding else ""
     return {
         "name": product.name,
@@ -153,6 +161,7 @@ def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path)
         "caption": told["caption"],
         "page": file.read_text(encoding="utf-8") if interactive else None,
         "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
+        "still": data_uri((figures / still).read_bytes(), "image/png") if still else None,
         "files": [linked(study, figures / name) for name in (table.name, *product.vectors.values())],
     }
 

@@ -77,6 +77,17 @@ def test_figure_of_worn_surfaces(mesh):
     assert remarks_of(figure) == "; ".join(REMARKS)
 
 
+def test_the_still_of_a_page_shows_its_first_views(mesh):
+    """Of five runs four are drawn, in two lines, on one scale; the rest is told of."""
+    meshes = {f"R{k}_plain": mesh for k in range(pictures.MOST_VIEWS + 1)}
+    figure = pictures.surface_views(meshes, True, depth_table(meshes, True), "Removed thickness", REMARKS)
+    *views, bar = figure.axes
+    assert [axes.get_title() for axes in views] == [f"R{k} plain" for k in range(pictures.MOST_VIEWS)]
+    assert len({axes.get_subplotspec().rowspan.start for axes in views}) == 2
+    assert bar.get_ylim() == pytest.approx((0.0, DEPTH * 1e6))
+    assert remarks_of(figure) == "; ".join([*REMARKS, "the first 4 of 5 runs are shown"])
+
+
 def test_many_rows_share_one_scale(mesh):
     """A row worn half as deep has the colours of half the depth; pictures end at the sample's edge."""
     shallow = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, dict(mesh.point_data))
