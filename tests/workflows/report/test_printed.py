@@ -9,13 +9,12 @@ import pytest
 
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.printed import PrintError, browser, print_page
+from tests.support.accessibility import NEEDS_BROWSER, SCHEMES
 from tests.support.finished_samples import finished_page
 
 A4 = (595.3, 841.9)  # pt
 PIXEL = 0.75  # pt, to which the browser rounds a page
-DARK = 0  # as the browser numbers the schemes that a user prefers
 PAPER = 688  # pixels, between the margins of A4
-NEEDS_BROWSER = pytest.mark.skipif(browser() is None, reason="needs Chromium")
 PROBE = """<details><summary>evidence</summary><p id="evidence">told</p></details>
 <script>addEventListener("load", () => {
   const shown = (each) => each.checkVisibility({ contentVisibilityAuto: true }) && each.offsetHeight > 0;
@@ -56,14 +55,14 @@ def test_a_page_becomes_a_pdf(page):
 
 @NEEDS_BROWSER
 def test_paper_shows_what_it_can(page, tmp_path):
-    """What moves is its picture, evidence is open, diagnostics stay folded, nothing is wider than the paper, and that is
+    """What moves is its picture, evidence is open, diagnostics stay folded, nothing is wider than the paper, which is
     white where the screen is dark."""
     text = page.read_text(encoding="utf-8")
     on_paper = text.replace("@media print", "@media all").replace("@media screen", "@media speech")
     probed = tmp_path / "probed.html"
     probed.write_text(on_paper.replace("</main>", f"{PROBE}</main>"), encoding="utf-8")
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--window-size={PAPER},900", "--dump-dom"]
-    options += [f"--blink-settings=preferredColorScheme={DARK}", f"--user-data-dir={tmp_path / 'b'}"]
+    options += [f"--blink-settings=preferredColorScheme={SCHEMES['dark']}", f"--user-data-dir={tmp_path / 'b'}"]
     command = [browser(), *options, "--virtual-time-budget=3000", probed.as_uri()]
     shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
     found = json.loads(html.unescape(re.search(r"FOUND(.*)END", shown).group(1)))
