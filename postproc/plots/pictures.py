@@ -12,7 +12,15 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, worn_faces
-from bulkwear.postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface_oblique, surface_plan, trimmed
+from bulkwear.postproc.plots.scene import (
+    bed_bounds,
+    bed_picture,
+    common_bounds,
+    surface_oblique,
+    surface_plan,
+    trimmed,
+    worn_side,
+)
 from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
 from bulkwear.postproc.tables.depths import area_quantile, depth_quantity, face_depth
 from bulkwear.postproc.tables.display import MICROMETRES, SQUARE_MILLIMETRES, in_display_units
@@ -69,7 +77,8 @@ def worn_surface(
 def surface_views(
     meshes: Mapping[str, SurfaceMesh], deformed: bool, depths: pd.DataFrame, quantity: str, remarks: Sequence[str]
 ) -> Figure:
-    """Draw worn surfaces obliquely side by side, all on one colour scale; of more than MOST_VIEWS the first ones.
+    """Draw worn surfaces obliquely side by side, from where their wear is seen, all on one colour scale; of more than
+    MOST_VIEWS the first ones.
 
     meshes: by run; depths: as from `analysis.depth.depth_table`; quantity: what the colour is
     """
@@ -78,11 +87,13 @@ def surface_views(
         remarks = [*remarks, f"the first {len(shown)} of {len(meshes)} runs are shown"]
     figure = new_figure(remarks, LARGEST_HEIGHT)
     limits, bounds = colour_limits(depths), common_bounds(shown.values())
-    columns = math.ceil(math.sqrt(len(shown)))
+    seen_from = worn_side(shown.values(), deformed)
+    views = trimmed([surface_oblique(mesh, deformed, limits, bounds, direction=seen_from) for mesh in shown.values()])
+    height, width = views[0].shape[:2]
+    columns = len(shown) if height > width else math.ceil(math.sqrt(len(shown)))
     grid = figure.subplots(math.ceil(len(shown) / columns), columns, squeeze=False)
     for axes in grid.ravel()[len(shown) :]:
         axes.set_axis_off()
-    views = trimmed([surface_oblique(mesh, deformed, limits, bounds) for mesh in shown.values()])
     for axes, run, pixels in zip(grid.ravel(), shown, views, strict=False):
         picture(axes, pixels)
         axes.set_title(run.replace("_", " "))

@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from bulkwear.meshes.sample import sliding_sample
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.plots import pictures
-from bulkwear.postproc.plots.scene import surface_plan, trimmed
+from bulkwear.postproc.plots.scene import OBLIQUE, surface_plan, trimmed, worn_side
 from bulkwear.postproc.plots.style import MAP, remarks_of
 from bulkwear.postproc.tables.depths import depth_table
 
@@ -115,6 +115,13 @@ def test_figure_of_the_bed(mesh):
     table = pictures.bed_table({"R9_convex": cut})
     np.testing.assert_allclose(table["x_mm"], cut["x_m"] * 1e3)
     assert table["speed_m_per_s"].tolist() == cut["speed_m_per_s"].tolist()
+
+
+def test_wear_is_looked_at_from_its_side(mesh):
+    """A sample worn from above is seen from above as ever; turned upside down, from below."""
+    assert worn_side([mesh], True) == OBLIQUE
+    turned = SurfaceMesh(mesh.points * [1, -1, -1], mesh.triangles, mesh.cell_data, mesh.point_data)
+    assert worn_side([turned], True)[2] == -OBLIQUE[2]
 
 
 def test_margins_are_cut_off():
