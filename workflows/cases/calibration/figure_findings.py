@@ -15,7 +15,7 @@ def said_of(response: str) -> tuple[str, str]:
     from bulkwear.workflows.cases.calibration.responses import response_name  # slow to import
 
     name, _, unit = response_name(response).removesuffix(")").partition(" (")
-    return f"{name[0].lower()}{name[1:]}", unit
+    return f"{name[0].lower()}{name[1:]}".replace(", ", " of the "), unit
 
 
 def heap_angles(slopes: pd.DataFrame) -> str:

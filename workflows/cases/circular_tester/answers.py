@@ -5,6 +5,7 @@ test, what of the published numbers is reached, and where it wears most. One pac
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from pathlib import Path
 
 import pandas as pd
@@ -25,16 +26,17 @@ from bulkwear.workflows.report.text import number
 
 PUBLISHED = PUBLISHED_FITS.with_name("circular_tester.csv")
 RATE = "rate_mm3_per_revolution"
+PLACES = ("tester_columns", "tester_bumps", "tester_force")  # figures: where it wears, and what presses on it
+WORN_OUT, SENSITIVITY = "tester_worn_out", "tester_sensitivity"  # figures that not every study has
 
 
-def all_answers(folder: Path) -> list[str]:
-    """Return the answers of a study with a pair, from its tables; folder: results/<study>."""
+def all_answers(folder: Path, figures: Collection[str]) -> list[str]:
+    """Return the answers of a study with a pair, from its tables; folder: results/<study>; figures: that it has."""
     published = pd.read_csv(PUBLISHED)
     rates, scale = of_study(folder, "rates"), of_study(folder, "time_scale").iloc[0]
     name = patterned_name(rates["surface"])
-    columns, bumps, force = (pd.read_csv(folder / "figures" / f"tester_{each}.csv") for each in _PLACES)
-    worn_out = folder / "figures" / "tester_worn_out.csv"
-    said = folder / SETTINGS_SAID
+    columns, bumps, force = (pd.read_csv(folder / "figures" / f"{each}.csv") for each in PLACES)
+    worn_out, said = folder / "figures" / f"{WORN_OUT}.csv", folder / SETTINGS_SAID
     return [
         *ratios(of_study(folder, "mean_ratios"), name),
         hours(scale),
@@ -42,13 +44,10 @@ def all_answers(folder: Path) -> list[str]:
         *plain_rates(rates, pd.read_csv(PUBLISHED_FITS), published, scale["simulated_coefficient"]),
         *forces(force, published, name),
         *places(columns, bumps, name),
-        *(gone(pd.read_csv(worn_out), scale["hours_per_revolution"]) if worn_out.is_file() else []),
+        *(gone(pd.read_csv(worn_out), scale["hours_per_revolution"]) if WORN_OUT in figures else []),
         claims(of_study(folder, "findings")),
-        *(said.read_text(encoding="utf-8").splitlines()[:1] if said.is_file() else []),
+        *(said.read_text(encoding="utf-8").splitlines()[:1] if SENSITIVITY in figures else []),
     ]
-
-
-_PLACES = ("columns", "bumps", "force")  # of figures whose tables tell where it wears, and what presses on it
 
 
 def ratios(means: pd.DataFrame, name: str) -> list[str]:

@@ -43,11 +43,11 @@ def told(study: Study) -> dict[str, Any]:
     return {"paired": has_pairs(study)}
 
 
-def answers(folder: Path) -> list[str]:
-    """Return in sentences what a study that is done answers."""
+def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return in sentences what a study that is done answers, whatever tables an earlier choice of rows has left."""
     from bulkwear.workflows.cases.circular_tester.answers import all_answers  # every job reads this page
 
-    return all_answers(folder) if (folder / "tester" / "mean_ratios.csv").is_file() else [UNPAIRED]
+    return all_answers(folder, study["figures"]) if study["told"]["paired"] else [UNPAIRED]
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:

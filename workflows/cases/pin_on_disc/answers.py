@@ -5,6 +5,7 @@ interval but that of the run that was simulated.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from pathlib import Path
 
 import pandas as pd
@@ -16,18 +17,22 @@ from bulkwear.workflows.cases.pin_on_disc.figure_findings import at_coefficient,
 from bulkwear.workflows.report.sentences import capital, measured, spoken
 
 
-def all_answers(folder: Path) -> list[str]:
-    """Return the answers of a study; folder: results/<study>. What its rows do not tell is left out."""
-    summary = folder / "summary.csv"
-    tables = {path.stem: path for path in (folder / "figures").glob("*.csv")}
+def all_answers(folder: Path, figures: Collection[str]) -> list[str]:
+    """Return the answers of a study; folder: results/<study>; figures: that it has. What its rows do not tell is left
+    out.
+    """
+
+    def read(name: str) -> pd.DataFrame:
+        return pd.read_csv(folder / "figures" / f"{name}.csv")
+
     parts = {
-        "pin_comparison": figure_findings.beside_laboratory,
-        "calibration": coefficients,
-        "mesh_stability": lambda table: fine_meshes(table, pd.read_csv(tables["mesh_series"])),
-        "run_in_change_points": run_ins,
+        "pin_comparison": lambda: figure_findings.beside_laboratory(read("pin_comparison")),
+        "calibration": lambda: coefficients(read("calibration")),
+        "mesh_series": lambda: fine_meshes(read("mesh_stability"), read("mesh_series")),
+        "run_in": lambda: run_ins(read("run_in_change_points")),
     }
-    said = [answer for name, tell in parts.items() if name in tables for answer in tell(pd.read_csv(tables[name]))]
-    return [*(over_law(pd.read_csv(summary)) if summary.is_file() else []), *said]
+    said = [answer for figure, tell in parts.items() if figure in figures for answer in tell()]
+    return [*over_law(pd.read_csv(folder / "summary.csv")), *said]
 
 
 def over_law(summary: pd.DataFrame) -> list[str]:

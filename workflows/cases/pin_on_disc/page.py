@@ -64,13 +64,13 @@ def told(study: Study) -> dict[str, Any]:
     return {}
 
 
-def answers(folder: Path) -> list[str]:
-    """Return in sentences what a study that is done answers."""
+def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return in sentences what a study that is done answers, whatever tables an earlier choice of rows has left."""
     from bulkwear.workflows.cases.pin_on_disc.answers import (
         all_answers,
     )  # slow to import, and every job reads this page
 
-    return all_answers(folder)
+    return all_answers(folder, study["figures"])
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:

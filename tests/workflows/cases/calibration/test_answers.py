@@ -59,8 +59,8 @@ def test_the_response_that_leaves_least_decides():
     assert left[""] == left["shear_angle_deg"] == pytest.approx(0.2, abs=0.02) and left["discharge_time_s"] > 0.9
     (said,) = answers.deciding({"": 0.1, "shear_angle_deg": 0.2, "discharge_time_s": 0.9})
     assert said == (
-        "The shear angle, shear box decides most: alone it leaves 20 % of the range of the parameters, discharge time"
-        " 90 %; all together leave 10 %."
+        "The shear angle of the shear box decides most: alone it leaves 20 % of the range of the parameters, discharge"
+        " time 90 %; all together leave 10 %."
     )
     assert "the only response" in answers.deciding({"": 0.2, "shear_angle_deg": 0.2})[0]
 

@@ -66,9 +66,14 @@ def test_run_ins_of_the_volume():
     assert said == "The volume that a revolution removes in c50: cannot be said."
 
 
-def test_answers_are_of_the_tables_that_there_are(pins, figures, tmp_path):
-    """A whole study tells of all; without tables nothing is said."""
-    said = answers.all_answers(pins[0])
+def test_answers_are_of_the_figures_that_a_study_has(pins, figures, tmp_path):
+    """A whole study tells of all; without figures the volume is told alone."""
+    for file in (pins[0] / "figures").glob("*.csv"):
+        (tmp_path / "figures").mkdir(exist_ok=True)
+        (tmp_path / "figures" / file.name).symlink_to(file)
+    summary = {"scheme": ["conserving"], "removed_volume_m3": 1e-10, "alpha_F_L_volume_m3": 1e-10}
+    pd.DataFrame(summary).to_csv(tmp_path / "summary.csv", index=False)
+    said = answers.all_answers(tmp_path, figures)
     assert sum("times the laboratory's and" in each for each in said) == 3
     assert any("which mesh is fine enough cannot be said" in each for each in said)
-    assert answers.all_answers(tmp_path) == []
+    assert answers.all_answers(tmp_path, {}) == said[:1]
