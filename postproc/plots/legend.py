@@ -69,8 +69,8 @@ class Legend:
             return LETTERS
         if key not in self.taken:
             used = {look.colour for look in self.looks.values()}
-            free = [colour for colour in style.PALETTE if _themed(colour) not in used]
-            self.taken[key] = (free or style.PALETTE)[0 if free else len(self.taken) % len(style.PALETTE)]
+            free = [colour for colour in style.SERIES_COLOURS if _themed(colour) not in used]
+            self.taken[key] = (free or style.SERIES_COLOURS)[0 if free else len(self.taken) % len(style.SERIES_COLOURS)]
         return _themed(self.taken[key])
 
     def _symbol(self, key: str, colour: str) -> str:
