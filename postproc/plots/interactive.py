@@ -124,7 +124,7 @@ def _curves(
     sift: str,
 ) -> Iterator[Trace]:
     """Yield the traces of a layer: one curve for each group and what tells its curves apart."""
-    group = telling(layer, table)
+    group = telling(layer, table, legend.chart)
     keys = list(dict.fromkeys([*group, *layer.curve]))
     used = [*keys, *layer.along, layer.y, *filter(None, (layer.low, layer.high, layer.spread))]
     rows = rows[rows[layer.y].notna()].drop_duplicates(list(dict.fromkeys(used)))
@@ -150,7 +150,7 @@ def _levels(
     layer: Layer, table: pd.DataFrame, rows: pd.DataFrame, axes: tuple[Axis, Axis], legend: Legend, reach: list[Any]
 ) -> Iterator[Trace]:
     """Yield a line right across for every value."""
-    group = telling(layer, table)
+    group = telling(layer, table, legend.chart)
     for _, row in rows.drop_duplicates([*group, layer.y]).dropna(subset=[layer.y]).iterrows():
         look = legend.look(layer, {name: row[name] for name in group}, layer.said or axes[1].title)
         line = pd.DataFrame([row] * len(reach)).infer_objects().assign(reach=reach)

@@ -69,8 +69,8 @@ class Legend:
             return LETTERS
         if key not in self.taken:
             used = {look.colour for look in self.looks.values()}
-            free = [colour for colour in style.PALETTE if _themed(colour) not in used]
-            self.taken[key] = (free or style.PALETTE)[0 if free else len(self.taken) % len(style.PALETTE)]
+            free = [colour for colour in style.SERIES_COLOURS if _themed(colour) not in used]
+            self.taken[key] = (free or style.SERIES_COLOURS)[0 if free else len(self.taken) % len(style.SERIES_COLOURS)]
         return _themed(self.taken[key])
 
     def _symbol(self, key: str, colour: str) -> str:
@@ -81,9 +81,12 @@ class Legend:
         return self.symbols[key]
 
 
-def telling(layer: Layer, table: pd.DataFrame) -> list[str]:
-    """Return the columns of a layer's group that tell its rows apart; the first one if none does and it has no name."""
-    several = [name for name in layer.group if table[name].nunique() > 1]
+def telling(layer: Layer, table: pd.DataFrame, chart: Chart) -> list[str]:
+    """Return the columns of a layer's group that tell its rows apart, or whose values the chart has words for; the
+    first one if none does and the layer has no name.
+    """
+    worded = set(chart.names)
+    several = [name for name in layer.group if table[name].nunique() > 1 or worded & set(map(str, table[name]))]
     return several or ([] if layer.name else list(layer.group[:1]))
 
 

@@ -11,7 +11,7 @@ OVER_PLAIN = Axis("Wear volume over the plain sample's", "-")
 PLAIN_SAMPLE = {"plain sample": 1.0}  # by definition
 RUNS = {"x": "travel_mm", "group": ("surface",), "curve": ("setting", "run")}
 SIFTED = {"sift": "setting"}
-RELATIONS = {"above": "at least", "below": "at most"}
+RELATIONS = {"about": "about", "above": "at least", "below": "at most"}
 YAN = {"name": "Yan 2022", "published": True}
 
 APPLIED = {"name": "applied", "said": "Applied to the surface", "dashed": True}
@@ -71,20 +71,21 @@ FORCES = (
 PUBLISHED_VELOCITY = Layer(
     LEVELS, "value", table="published", split="of", only={"quantity": "relative_velocity"}, **YAN
 )
+BY_ROW = RUNS | {"curve": ("row", "run")}
 RELATIVE_VELOCITY = one_panel(
     TRAVEL,
     Axis("Relative velocity of the particles", "%"),
-    Layer(LINES, "relative_velocity_percent", **RUNS),
+    Layer(LINES, "relative_velocity_percent", **BY_ROW),
     PUBLISHED_VELOCITY,
     split="regime",
-    **SIFTED,
+    sift="row",
 )
 WEAR_GRADIENT = one_panel(
     TRAVEL,
     Axis("Wear gradient over the largest of all runs", "-"),
-    Layer(LINES, "relative_gradient", **RUNS),
+    Layer(LINES, "relative_gradient", **BY_ROW),
     split="regime",
-    **SIFTED,
+    sift="row",
 )
 BY_SCALE = {"x": "particle_scale", "group": ("curve",)}
 WEAR_AGAINST_SCALE = one_panel(

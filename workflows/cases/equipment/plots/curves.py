@@ -16,7 +16,7 @@ from bulkwear.postproc.plots.style import (
     BLUE,
     LARGEST_HEIGHT,
     ORANGE,
-    PALETTE,
+    SERIES_COLOURS,
     SMALLEST_FONT,
     facets,
     label_all,
@@ -43,7 +43,7 @@ BAR_INCHES = 0.32  # height of a bar and its share of gaps
 
 def setting_colour(settings: Sequence[str], setting: str) -> str:
     """Return the colour of a setting in all figures of curves."""
-    return PALETTE[list(settings).index(setting) % len(PALETTE)]
+    return SERIES_COLOURS[list(settings).index(setting) % len(SERIES_COLOURS)]
 
 
 # ---------------------------------------------------------------- flow
