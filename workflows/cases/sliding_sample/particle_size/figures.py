@@ -1,4 +1,7 @@
-"""Figures and tables of studies of particle size: wear against scale, flow by layer, packings, single collisions."""
+"""Figures and tables of studies of particle size: wear against scale, flow by layer, the source beside them.
+
+Those of packings and of single collisions are in `contact_figures`.
+"""
 
 from __future__ import annotations
 
@@ -6,24 +9,14 @@ import math
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from bulkwear.workflows.cases.sliding_sample.particle_size import figure_findings
-from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
-    bed_floors,
-    bumps_and_particles,
-    plain_parameters,
-    settled_beds,
-)
-from bulkwear.workflows.cases.sliding_sample.study import flow_runs, plain_runs, varies_scale
-from bulkwear.workflows.config.units import to_si
-from bulkwear.workflows.engine.templates import templates_digest
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
+from bulkwear.workflows.cases.sliding_sample.study import flow_runs, varies_scale
 from bulkwear.workflows.report.figure_findings import deepest_run
 from bulkwear.workflows.report.page_parameters import is_deformed
-from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure, tables
-
-if TYPE_CHECKING:
-    from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 SUMMARY, PROFILES = "results/{study}/summary.csv", "results/{study}/flow/profiles.csv"
 PUBLISHED_LINES = "config/published/particle_size_lines.csv"
@@ -33,16 +26,6 @@ PUBLISHED_SCALES = (1.0, 8.0)  # of the source
 OF_WEAR = {"lines": "lines", "critical": "critical_scale", "forms": "critical_scale_forms", "ratios": "wear_over_plain"}
 WEAR_TABLES = {name: f"particle_size/{file}.csv" for name, file in OF_WEAR.items()}
 size_figure = partial(figure, "Particle size", when=varies_scale)
-
-
-def of_template(name: str) -> OfStudy:
-    """Return what a product that runs a deck is told of its template: another text makes it again."""
-    return lambda study: templates_digest(name)
-
-
-def below(folder: str) -> OfStudy:
-    """Return what a product is told of the folder in which it simulates."""
-    return lambda study: f"results/{study.name}/particle_size/{folder}"
 
 
 # ---------------------------------------------------------------- wear
@@ -262,108 +245,6 @@ def angular_velocity_along_sample(job: Job) -> Any:
     table = in_display_units(summary.merge(spin_profiles(folders, runs, starts.to_dict()), on="run"))
     labels = ("averaged angular velocity of the lowest layer (°/s)", "distance behind the front edge (mm)")
     return spider_charts(table, "averaged_angular_velocity_deg_per_s", "along_mm", labels, job.remarks), table
-
-
-# ---------------------------------------------------------------- packings and single collisions
-
-
-def _shaken(study: Study) -> dict[str, Any]:
-    """Return what the figure of the containers says of them."""
-    packing = to_si(study.settings)["packing"]
-    return {key: packing[key] for key in ("width_diameters", "axis", "shaking_s")}
-
-
-@size_figure(
-    "Packing of a container",
-    finding=figure_findings.packing,
-    inputs={"profiles": "results/{study}/packings/profiles.csv", "published": PUBLISHED_PACKING},
-    told={"packing": _shaken},
-    caption="""
-    Contacts of a particle with others and porosity by slabs, each four median diameters high, of a container that is
-    filled (loose) and shaken by A sin(w t), and the difference. Porosity cuts particles at the slabs' edges; dotted,
-    by the source's rule, a particle counts whole where its centre is. Grey: what the source's text gives for its
-    scales 1 to 8. The counterpart of Yan 2022, Fig 4.3 and 4.4, in a narrower container.
-    """,
-)
-def packing_profiles(job: Job) -> Any:
-    """Draw how the particles of a container per particle scale are packed."""
-    import pandas as pd
-
-    from bulkwear.postproc.flow.packing import slabs_remark
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
-
-    table, packing = pd.read_csv(job.files.profiles), job.told.packing
-    published = pd.read_csv(job.files.published).query("case == 'container'")
-    sides = f"container of {packing['width_diameters']:g} median diameters to a side"
-    remarks = [sides, f"shaken along {packing['axis']} for {packing['shaking_s']:g} s", slabs_remark(table)]
-    return contacts.packing_profiles(table, published, remarks), table
-
-
-@size_figure(
-    "Packing of the bed",
-    finding=figure_findings.packing,
-    inputs={
-        "wear": lambda study: [f"results/{study.name}/{run}/wear.csv" for run in plain_runs(study)],
-        "beds": settled_beds,
-        "published": PUBLISHED_PACKING,
-    },
-    told={
-        "runs": plain_parameters,
-        "floors": bed_floors,
-        "folder": below("beds"),
-        "template": of_template("bed_contacts"),
-    },
-    caption="""
-    Contacts per particle and porosity in the lower three quarters of the bed, settled before the plain sample and at
-    rest behind it: packings small, their means with 95 % intervals large. Porosity cuts particles at the slab's edges;
-    dotted, they count whole at their centre. Triangles: the source's. The counterpart of Yan 2022, Fig 4.9 and 4.10.
-    """,
-)
-def bed_packing(job: Job) -> Any:
-    """Count contacts in the beds of plain runs before and after the sample passed; draw them by particle scale."""
-    import pandas as pd
-
-    from bulkwear.workflows.cases.sliding_sample.particle_size.packings import bed_packing_table
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
-
-    told = job.told
-    folders = {run: Path(path).parent for run, path in zip(told.runs, job.files.wear, strict=True)}
-    beds = dict(zip(told.runs, zip(map(Path, job.files.beds), told.floors, strict=True), strict=True))
-    table = bed_packing_table(told.runs, folders, beds, Path(told.folder))
-    published = pd.read_csv(job.files.published).query("case == 'bed'")
-    return contacts.bed_packing(table, published, job.remarks), table
-
-
-def _collision_tests(study: Study) -> list[dict[str, Any]]:
-    from bulkwear.workflows.cases.sliding_sample.particle_size.collision import collision_tests
-
-    return collision_tests({run.name: run.parameters for run in study.runs})
-
-
-@size_figure(
-    "Single collisions",
-    inputs={},
-    told={"tests": _collision_tests, "folder": below("collisions"), "template": of_template("collision")},
-    tables={"measures": "particle_size/collisions.csv"},
-    digits={"table": 6},
-    caption="""
-    Two spheres, and a sphere and the sample, that collide head-on at 1 m/s, and two that collide obliquely with spin,
-    without gravity, at every particle scale: in units of radius, modulus and density. Marks of all scales lie on one
-    curve, which is what coarse graining asks of a contact (Yan 2022, Eq 4.1 to 4.7); head-on it is that of Hertz with
-    viscoelastic damping. Gravity at a given velocity does not scale: a bed's own weight is in balance with the same
-    relative overlap, a falling particle is not.
-    """,
-)
-def collisions(job: Job) -> Any:
-    """Simulate single collisions at every particle scale; draw them in units of their size."""
-    from bulkwear.workflows.cases.sliding_sample.particle_size import collision
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
-
-    histories, measures = collision.collision_tables(job.told.tests, Path(job.told.folder))
-    largest = collision.spread_over_scales(measures)["spread"].max()
-    closed = collision.closed_forms(job.told.tests[0])
-    remarks = [f"largest difference between scales {100.0 * largest:.1g} %"]
-    return contacts.collisions(histories, closed, remarks), histories, {"measures": measures}
 
 
 # ---------------------------------------------------------------- beside the source

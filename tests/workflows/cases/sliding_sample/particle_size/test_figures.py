@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.sliding_sample.particle_size import figures
+from bulkwear.workflows.cases.sliding_sample.particle_size import contact_figures, figures
 from bulkwear.workflows.cases.sliding_sample.study import published_flow
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.products import (
@@ -19,7 +19,12 @@ from bulkwear.workflows.report.products import (
 )
 from tests import REPOSITORY
 
-OWN = {each.product.name for each in vars(figures).values() if hasattr(each, "product")}
+OWN = {
+    each.product.name
+    for module in (figures, contact_figures)
+    for each in vars(module).values()
+    if hasattr(each, "product")
+}
 SIMULATING = {"collisions": "collision", "bed_packing": "bed_contacts"}  # figure -> template of its deck
 
 
@@ -60,7 +65,7 @@ def test_a_changed_deck_is_simulated_again(study, name, monkeypatch):
     told = told_to(products_of_study(study)[name], study)
     assert told["folder"].startswith("results/particle_size/particle_size/")
     assert told == told_to(products_of_study(study)[name], study)
-    monkeypatch.setattr(figures, "templates_digest", lambda template: f"{SIMULATING[name]}, changed")
+    monkeypatch.setattr(contact_figures, "templates_digest", lambda template: f"{SIMULATING[name]}, changed")
     assert told_to(products_of_study(study)[name], study)["template"] != told["template"]
 
 
