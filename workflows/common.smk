@@ -100,7 +100,7 @@ wildcard_constraints:
 CASES = {study.case.name: study.case for study in STUDIES.values()}
 SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
 # What comes before the tables of a study: on a cluster all that is not named here is one submission.
-BEFORE_TABLES = {"surface_mesh", "cost_rates", "further_packings", *SOLVER_RULES}
+BEFORE_TABLES = {"surface_mesh", "cost_rates", "forecast_table", "further_packings", *SOLVER_RULES}
 
 
 HELD = []  # locks of studies' folders, until Snakemake ends

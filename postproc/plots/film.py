@@ -144,6 +144,11 @@ def save_film(pictures: Sequence[np.ndarray], path: str | Path, largest: int = L
     Path(path).write_bytes(content if content is not None else _packed(shown, COLOUR_COUNTS[-1]))
 
 
+def save_still(pictures: Sequence[np.ndarray], path: str | Path) -> None:
+    """Write the last picture (h, w, 3) of a film as PNG."""
+    Image.fromarray(pictures[-1]).save(path, "PNG", optimize=True)
+
+
 def _packed(pictures: Sequence[np.ndarray], colours: int) -> bytes:
     """Return an animated GIF of one palette without dithering: what does not change takes no room."""
     sample = np.linspace(0, len(pictures) - 1, min(len(pictures), PALETTE_FRAMES)).round().astype(int)

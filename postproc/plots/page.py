@@ -45,14 +45,21 @@ def surfaces_page(
     for mark, text in {
         "/*TOLD*/": json.dumps(told).replace("</", "<\\/"),
         "/*NUMBERS*/": base64.b64encode(numbers).decode(),
-        "/*LIBRARY*/": _library(),
+        "/*LIBRARY*/": plotly_script(),
     }.items():
         page = page.replace(mark, text, 1)
     Path(path).write_text(page, encoding="utf-8")
 
 
+def within_a_page(page: str) -> str:
+    """Return the text of a page of surfaces without plotly's script, which it then takes from the page that frames it:
+    from the element "plotly".
+    """
+    return page.replace(plotly_script(), "", 1)
+
+
 @cache
-def _library() -> str:
+def plotly_script() -> str:
     """Return plotly's script, compressed, in letters."""
     script = importlib.resources.files(LIBRARY[0]).joinpath(*LIBRARY[1:]).read_bytes()
     return base64.b64encode(zlib.compress(script, 9)).decode()

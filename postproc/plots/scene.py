@@ -8,12 +8,16 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges, worn_faces
+from bulkwear.postproc.mesh import SurfaceMesh, area_vectors, boundary_edges, worn_faces
 from bulkwear.postproc.plots.style import MAP, SKIRT_COLOUR
 from bulkwear.postproc.tables.depths import face_depth, held_back_faces
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
 
+Direction = tuple[float, float, float]
+
 OBLIQUE = (0.55, -1.0, 0.75)  # from upstream, above: the bed comes towards the back
+OTHER_OBLIQUE = tuple((x, y, z) for z in (0.75, -0.75) for x in (0.55, -0.55) for y in (-1.0, 1.0))[1:]
+SEEN_BETTER = 1.2  # -, over what is seen of the wear from OBLIQUE, before another direction is taken
 FROM_THE_CUT = (1.0, -0.25, 0.32)  # from the side on which the bed is cut away
 MARGIN = 1.03  # -, room round what is shown
 SPHERE_SIDES = 10  # of a particle's sphere: round enough at a few pixels
@@ -79,7 +83,7 @@ def _matt() -> dict[str, float]:
     return {"ambient": 0.45, "diffuse": 0.55, "specular": 0.0}
 
 
-def _look(plotter, direction: tuple[float, float, float], bounds: np.ndarray) -> None:
+def _look(plotter, direction: Direction, bounds: np.ndarray) -> None:
     """Look from a direction, z up, at a box with these bounds (3, 2) in mm, as large as the window takes."""
     centre = bounds.mean(axis=1)
     corners = np.stack(np.meshgrid(*bounds), axis=-1).reshape(-1, 3) - centre
@@ -119,12 +123,27 @@ def surface_oblique(
     limits: tuple[float, float],
     bounds: np.ndarray,
     size: tuple[int, int] = (1300, 720),
+    direction: Direction = OBLIQUE,
 ) -> np.ndarray:
     """Return pixels (h, w, 3) of a worn surface seen obliquely.
 
-    limits: um, see `tables.depths.face_depth`; bounds: (3, 2) mm, what the picture takes in.
+    limits: um, see `tables.depths.face_depth`; bounds: (3, 2) mm, what the picture takes in; direction: to the eye
     """
-    return depth_oblique(mesh, face_depth(mesh, deformed), limits, bounds, size, deformed)
+    return depth_oblique(mesh, face_depth(mesh, deformed), limits, bounds, size, direction, deformed)
+
+
+def worn_side(meshes: Iterable[SurfaceMesh], deformed: bool) -> Direction:
+    """Return the oblique direction from which most of the wear is seen: OBLIQUE, unless another one shows far more.
+
+    What hides behind other faces counts as seen.
+    """
+    seen = dict.fromkeys((OBLIQUE, *OTHER_OBLIQUE), 0.0)
+    for mesh in meshes:
+        worn = np.nan_to_num(face_depth(mesh, deformed))[:, None] * area_vectors(mesh.points, mesh.triangles)
+        for direction in seen:
+            seen[direction] += float(np.maximum(worn @ np.array(direction), 0.0).sum())
+    best = max(seen, key=seen.__getitem__)
+    return best if seen[best] > SEEN_BETTER * seen[OBLIQUE] else OBLIQUE
 
 
 def depth_oblique(
@@ -133,6 +152,7 @@ def depth_oblique(
     limits: tuple[float, float],
     bounds: np.ndarray,
     size: tuple[int, int] = (1300, 720),
+    direction: Direction = OBLIQUE,
     deformed: bool = False,
 ) -> np.ndarray:
     """Return pixels (h, w, 3) of a surface seen obliquely, coloured by any depth (m,) m of its triangles.
@@ -142,7 +162,7 @@ def depth_oblique(
     """
     plotter = new_plotter(size)
     add_sample(plotter, mesh, depth, limits, deformed)
-    _look(plotter, OBLIQUE, bounds)
+    _look(plotter, direction, bounds)
     return pixels_of(plotter)
 
 

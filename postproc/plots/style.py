@@ -37,6 +37,7 @@ SKIRT_COLOUR = "#c9c9c9"
 # distinguishable with colour-blindness and in grey (M. Okabe and K. Ito, 2008)
 BLUE, ORANGE = "#0072B2", "#D55E00"
 BASE_COLOUR, PATTERN_COLOUR = "#56B4E9", BLUE
+SERIES_COLOURS = (BLUE, ORANGE, "#009E73", "#CC79A7", BASE_COLOUR, "#E69F00", OTHER_COLOUR)
 PATTERNED_LOOK, PLAIN_LOOK, OTHER_LOOK = (BLUE, "o"), (ORANGE, "s"), (OTHER_COLOUR, "^")  # colour and marker
 LOOK = {
     "font.family": "sans-serif",

@@ -30,6 +30,14 @@ def plate(length: float, width: float, cells: int) -> SurfaceMesh:
     )
 
 
+def worn_plate(depth: float) -> SurfaceMesh:
+    """Return a plate of 20 by 10 mm in two triangles, 1 mm higher at its end, worn to a depth (m)."""
+    points = 1e-3 * np.array([[0, 0, 0], [20, 0, 0], [20, 10, 1], [0, 10, 1]], dtype=float)
+    nodes = {"removed_thickness_m": np.full(4, depth), "carried_volume_m3": np.zeros(4)}
+    cells = {"part": np.zeros(2, dtype=int), "worn_volume_m3": np.full(2, 1e-12)}
+    return SurfaceMesh(points, np.array([[0, 1, 2], [0, 2, 3]]), cells, nodes)
+
+
 def welded(*meshes: SurfaceMesh, digits: int = 12, labels: bool = False) -> SurfaceMesh:
     """Several meshes as one with equal points shared; labels: each mesh is a part, 0, 1, ..."""
     points = np.concatenate([mesh.points for mesh in meshes])

@@ -20,7 +20,9 @@ from bulkwear.workflows.engine.project import enter_project
 
 SECONDS_BETWEEN_LINES = 15.0
 WITHOUT_THREAD = ("can't start new thread", os.strerror(errno.EAGAIN))  # Python's words, and those of C++
+STARTED = "--- started %Y-%m-%d %H:%M:%S"  # begins what a log says of a start of its job
 STOPPED = "Stopped by Ctrl-C. The same command goes on after the last finished cycle or piece."
+UNITS = {"s": 1, "min": 60, "h": 3600}  # s, of durations
 INTERRUPTED = 130  # exit code of what Ctrl-C has ended
 SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
 
@@ -59,7 +61,7 @@ def project_job(log_path: str | Path) -> Iterator[None]:
     it is said once for all jobs, see `terminal`.
     """
     with open(log_path, "a") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
-        print(time.strftime("--- started %Y-%m-%d %H:%M:%S"), file=log)
+        print(time.strftime(STARTED), file=log)
         try:
             enter_project(Path.cwd())
             yield
@@ -101,6 +103,12 @@ def duration_text(seconds: float) -> str:
         return f"{whole} s"
     minutes, rest = divmod(whole, 60)
     return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def seconds_of(text: str) -> float:
+    """Return the seconds of a duration as `duration_text` says it; it rounds, so they are those of its last unit."""
+    words = text.split()
+    return float(sum(int(number) * UNITS[unit] for number, unit in zip(words[::2], words[1::2], strict=True)))
 
 
 class Progress:

@@ -17,6 +17,7 @@ from typing import Any
 import jinja2
 import pandas as pd
 
+from bulkwear.postproc.plots.page import plotly_script, within_a_page
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
@@ -28,6 +29,7 @@ from bulkwear.workflows.engine.provenance import commit_of, git, package_cases, 
 from bulkwear.workflows.engine.provenance import package_version as installed_version
 from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.solver import LOG
+from bulkwear.workflows.report.charts import chart_text
 from bulkwear.workflows.report.cost import (
     BENCHMARK_SUFFIX,
     against_forecast,
@@ -80,8 +82,13 @@ def environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters |= {"number": number, "kind": kind, "cells": cells}
+    found.filters |= {"number": number, "kind": kind, "cells": cells, "css": css_text}
     return found
+
+
+def css_text(text: str) -> str:
+    """Return a text as it stands between quotes in a style sheet."""
+    return "".join(letter if letter.isalnum() or letter == " " else f"\\{ord(letter):x} " for letter in text)
 
 
 def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -90,11 +97,13 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     sections = with_all_figures(with_verdict(study, folder), list(study["figures"]))
     names = [name for section in sections for block in section.blocks for name in getattr(block, "names", ())]
     products = products_of(find_case(study["case"]))
+    figures = {name: figure(study, products[name], k, folder) for k, name in enumerate(names, start=1)}
     return {
         "study": study,
         "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "sections": sections,
-        "figures": {name: figure(study, products[name], k, folder) for k, name in enumerate(names, start=1)},
+        "figures": figures,
+        "plotly": plotly_script() if any(each["page"] or each["chart"] for each in figures.values()) else "",
         "run_columns": run_columns(study, summary),
         "runs_note": page.RUNS_NOTE,
         "thumbnails": thumbnails(folder / "figures" / "worn_surface.csv"),
@@ -140,18 +149,23 @@ def cells(table: Table) -> dict[str, Any]:
 
 
 def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path) -> dict[str, Any]:
-    """Return one figure of the page: number, title, what it shows in a sentence, caption, picture or page, files."""
+    """Return one figure of the page: number, title, what it shows in a sentence, caption, picture and chart, or page,
+    what stands for it in print, and files.
+    """
     told, figures = study["figures"][product.name], folder / "figures"
     file, table = figures / told["file"], figures / f"{product.name}.csv"
     interactive = file.suffix == ".html"
+    still = product.stills.get("still")
     return {
         "name": product.name,
         "number": index,
         "title": told["title"],
         "finding": finding_of(product, folder),
         "caption": told["caption"],
-        "page": file.read_text(encoding="utf-8") if interactive else None,
+        "page": within_a_page(file.read_text(encoding="utf-8")) if interactive else None,
+        "chart": chart_text(product, told["beside"], folder),
         "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
+        "still": data_uri((figures / still).read_bytes(), "image/png") if still else None,
         "files": [linked(study, figures / name) for name in (table.name, *product.vectors.values())],
     }
 

@@ -10,11 +10,12 @@ from bulkwear.postproc.wear.laws import NEUTRAL_LAW
 from bulkwear.workflows.config.design import Study
 from bulkwear.workflows.engine.cases import case_module, find_case
 from bulkwear.workflows.engine.own_code import code_of_pages
+from bulkwear.workflows.report.charts import tables_of_charts
 from bulkwear.workflows.report.products import Product, figures_of, products_of_study
 from bulkwear.workflows.report.text import number_and_unit
 
 REPORT_FOLDER = Path(__file__).resolve().parent
-TEMPLATES = ("study.html.j2", "style.html.j2", "sections.html.j2", "runs.html.j2", "script.html.j2")
+TEMPLATES = ("study.html.j2", "style.html.j2", "sections.html.j2", "runs.html.j2", "script.html.j2", "charts.html.j2")
 
 
 def page_templates(study: Study) -> list[str]:
@@ -54,7 +55,7 @@ def page_parameters(study: Study) -> dict[str, Any]:
         "design_rows": list(study.design_rows),
         "left_out": study.settings_left_out,
         "remarks": figure_remarks(study),
-        "figures": {product.name: _figure_words(product) for product in figures_of(study)},
+        "figures": {product.name: _figure_words(product, study) for product in figures_of(study)},
         "told": page_of(study.case.name).told(study),
         "jobs": job_names(study),
         "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},
@@ -78,8 +79,9 @@ def part_names(study: Study) -> dict[int, str]:
     return page.part_names(study.runs[0].parameters) if hasattr(page, "part_names") else {0: "base"}
 
 
-def _figure_words(product: Product) -> dict[str, Any]:
-    return {"title": product.title, "caption": product.paragraphs, "file": product.file}
+def _figure_words(product: Product, study: Study) -> dict[str, Any]:
+    words = {"title": product.title, "caption": product.paragraphs, "file": product.file}
+    return words | {"beside": tables_of_charts(product, study)}
 
 
 def page_of(case: str) -> ModuleType:

@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from bulkwear.meshes.sample import sliding_sample
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.plots import pictures
-from bulkwear.postproc.plots.scene import surface_plan, trimmed
+from bulkwear.postproc.plots.scene import OBLIQUE, surface_plan, trimmed, worn_side
 from bulkwear.postproc.plots.style import MAP, remarks_of
 from bulkwear.postproc.tables.depths import depth_table
 
@@ -90,6 +90,17 @@ def test_figure_of_worn_surfaces(mesh):
     assert remarks_of(figure) == "; ".join(REMARKS)
 
 
+def test_the_still_of_a_page_shows_its_first_views(mesh):
+    """Of five runs four are drawn, in two lines, on one scale; the rest is told of."""
+    meshes = {f"R{k}_plain": mesh for k in range(pictures.MOST_VIEWS + 1)}
+    figure = pictures.surface_views(meshes, True, depth_table(meshes, True), "Removed thickness", REMARKS)
+    *views, bar = figure.axes
+    assert [axes.get_title() for axes in views] == [f"R{k} plain" for k in range(pictures.MOST_VIEWS)]
+    assert len({axes.get_subplotspec().rowspan.start for axes in views}) == 2
+    assert bar.get_ylim() == pytest.approx((0.0, DEPTH * 1e6))
+    assert remarks_of(figure) == "; ".join([*REMARKS, "the first 4 of 5 runs are shown"])
+
+
 def test_many_rows_share_one_scale(mesh):
     """A row worn half as deep has the colours of half the depth; pictures end at the sample's edge."""
     shallow = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, dict(mesh.point_data))
@@ -117,6 +128,13 @@ def test_figure_of_the_bed(mesh):
     table = pictures.bed_table({"R9_convex": cut})
     np.testing.assert_allclose(table["x_mm"], cut["x_m"] * 1e3)
     assert table["speed_m_per_s"].tolist() == cut["speed_m_per_s"].tolist()
+
+
+def test_wear_is_looked_at_from_its_side(mesh):
+    """A sample worn from above is seen from above as ever; turned upside down, from below."""
+    assert worn_side([mesh], True) == OBLIQUE
+    turned = SurfaceMesh(mesh.points * [1, -1, -1], mesh.triangles, mesh.cell_data, mesh.point_data)
+    assert worn_side([turned], True)[2] == -OBLIQUE[2]
 
 
 def test_margins_are_cut_off():

@@ -6,12 +6,12 @@ import re
 import shutil
 import subprocess
 
-import numpy as np
 import pytest
 
-from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.plots.page import surfaces_page
 from bulkwear.postproc.tables.compared_surfaces import Shown
+from tests.support.accessibility import NEEDS_BROWSER, axe_findings
+from tests.support.shapes import worn_plate
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 DEPTHS = {"R9": 5e-6, "plain": 2e-6}  # m, in the last cycle; a half of it before
@@ -38,14 +38,10 @@ const wait = () => {
 };
 wait();
 </script>"""
-
-
-def plate(depth):
-    """A plate of 20 by 10 mm in two triangles, 1 mm higher at its end, worn to a depth."""
-    points = 1e-3 * np.array([[0, 0, 0], [20, 0, 0], [20, 10, 1], [0, 10, 1]], dtype=float)
-    nodes = {"removed_thickness_m": np.full(4, depth), "carried_volume_m3": np.zeros(4)}
-    cells = {"part": np.zeros(2, dtype=int), "worn_volume_m3": np.full(2, 1e-12)}
-    return SurfaceMesh(points, np.array([[0, 1, 2], [0, 2, 3]]), cells, nodes)
+DRAWN = 'document.documentElement.dataset.ready === "yes"'
+WITH_SECTION = """const section = document.querySelector("select[name=section]");
+section.value = "0";
+section.dispatchEvent(new Event("change"));"""
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +49,7 @@ def page(tmp_path_factory):
     """A page of two runs, unworn and after two cycles."""
     path = tmp_path_factory.mktemp("page") / "page.html"
     shown = [
-        Shown(run, cycle, 0.1 * cycle, f"cycle {cycle}", plate(depth * cycle / 2))
+        Shown(run, cycle, 0.1 * cycle, f"cycle {cycle}", worn_plate(depth * cycle / 2))
         for run, depth in DEPTHS.items()
         for cycle in range(3)
     ]
@@ -68,7 +64,7 @@ def test_the_page_needs_no_network(page):
     assert re.findall(r"/\*[A-Z]+\*/", text) == []
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+@NEEDS_BROWSER
 def test_views_differences_and_sections_say_what_they_show(page, tmp_path):
     """Scales, differences from the first view, and a section through all views with the unworn shape; another cycle is
     drawn when it is chosen, and what needs WebGL says so."""
@@ -89,3 +85,10 @@ def test_views_differences_and_sections_say_what_they_show(page, tmp_path):
         assert (min(places), max(places)) == pytest.approx((0.0, 10.0), abs=0.01), run  # mm along y
         assert [value for value in values if value is not None] == pytest.approx([1e6 * depth] * 4, abs=1e-3)
     assert found["earlier"] == "R9, cycle 1"
+
+
+@NEEDS_BROWSER
+def test_nobody_is_kept_from_it(page, tmp_path):
+    """axe-core finds nothing that keeps people from choosing and reading, the section drawn."""
+    for key, found in axe_findings(page.read_text(encoding="utf-8"), tmp_path, DRAWN, WITH_SECTION).items():
+        assert found["faults"] == [], key

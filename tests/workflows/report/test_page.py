@@ -2,10 +2,12 @@
 
 import base64
 import html
+import json
 import re
 
 import pytest
 
+from bulkwear.postproc.plots.page import plotly_script
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.page import commit
 from bulkwear.workflows.report.page_parameters import page_parameters
@@ -59,6 +61,22 @@ def test_page_needs_nothing_else(page):
     assert loads
     assert [address for address in loads if not address.startswith(("data:", "#"))] == []
     assert re.findall(r"@import|url\(", page) == []
+
+
+def test_charts_stand_beside_pictures(page, study):
+    """An interactive figure is made of the table behind the picture's link; the picture needs no script."""
+    _, _, shown = page.partition('<figure id="wear_against_travel">')
+    picture, _, chart = shown.partition("</figure>")[0].partition('<script type="application/json">')
+    found, table = json.loads(chart.partition("</script>")[0]), embedded(page, f"{study.name}_wear_against_travel.csv")
+    assert picture.strip().startswith("<img") and "<button" not in picture
+    drawn = [value for trace in found["panels"][0]["data"] for value in trace["y"]]
+    volumes = [*table["worn_volume_mm3"], *table.loc[table["applied_volume_mm3"] > 0.0, "applied_volume_mm3"]]
+    assert sorted(drawn) == pytest.approx(sorted(volumes), rel=1e-5)  # six digits are drawn
+
+
+def test_the_script_of_all_charts_is_there_once(page):
+    """A page is as large as one copy of it and its content."""
+    assert page.count(plotly_script()) == 1
 
 
 def test_inner_page_survives_embedding(page):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.calibration import figure_findings
+from bulkwear.workflows.cases.calibration import charts, figure_findings
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
 from bulkwear.workflows.report.products import Job, figure, tables
 
@@ -123,6 +123,7 @@ def family(job: Job) -> Any:
     CATEGORY,
     "Recommended and published pair",
     finding=figure_findings.first_reproduced,
+    charts=(charts.PAIRS,),
     inputs={"statements": "results/{study}/summary.csv", "pairs": pairs_file},
     told={"compared": lambda study: calibration_box(study)["calibration"]["compared_pair"]},
     digits=6,
@@ -147,6 +148,7 @@ def pairs_against_bands(job: Job) -> Any:
     CATEGORY,
     "Size and width of the shear box",
     finding=figure_findings.box_effect,
+    charts=(charts.BOX_SIZES,),
     inputs={"sizes": "results/{study}/box_sizes.csv", "before": SIZES_BEFORE},
     digits=6,
     caption="""
@@ -169,6 +171,7 @@ def box_sizes(job: Job) -> Any:
     CATEGORY,
     "Stopping rule, and what to measure next",
     finding=figure_findings.progress,
+    charts=(charts.PROGRESS,),
     inputs={**SIMULATED, "looks": "results/{study}/looks.csv"},
     told=TOLD,
     digits=6,

@@ -13,18 +13,13 @@ from bulkwear.postproc.inference.acquisition import expected_information
 from bulkwear.postproc.inference.loop import Posterior, posterior
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, distance_from, interval
 from bulkwear.postproc.inference.problem import Measured, Problem
+from bulkwear.workflows.cases.calibration.charts import RESPONSES
 
 GRID_POINTS = 41  # along each of the two parameters of a map
 PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior
 PICTURE_BINS = 40  # along each parameter
 RECOMMENDED = "recommended"  # name of the pair that a calibration found
-RESPONSE_NAMES = {
-    "shear_angle_deg": "Shear angle, shear box (°)",
-    "draw_down_shear_angle_deg": "Shear angle, draw-down (°)",
-    "repose_angle_deg": "Angle of repose (°)",
-    "discharge_time_s": "Discharge time (s)",
-    "wall_friction_angle_deg": "Wall friction angle (°)",
-}
+RESPONSE_NAMES = {name: axis.label for name, axis in RESPONSES.items()}
 PARAMETER_NAMES = {
     "particle.contact.sliding_friction": "Sliding friction, particles (-)",
     "particle.contact.rolling_friction": "Rolling friction, particles (-)",

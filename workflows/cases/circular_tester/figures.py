@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.circular_tester import figure_findings
+from bulkwear.workflows.cases.circular_tester import charts, figure_findings
 from bulkwear.workflows.cases.circular_tester.runs import (
     SIZE,
     VOLUME,
@@ -81,6 +81,7 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
     "Volume",
     "Volume against hours of the test",
     finding=figure_findings.reduction,
+    charts=(charts.HOURS,),
     inputs={**of_study("lost_volumes", "time_scale", "comparison"), **PUBLISHED},
     **OF_PAIRS,
     caption="""
@@ -106,6 +107,7 @@ def tester_hours(job: Job) -> Any:
     "Volume",
     "Volume by revolution",
     finding=figure_findings.lost,
+    charts=(charts.VOLUME,),
     inputs={**of_study("lost_volumes", "rates"), **PUBLISHED_FITS},
     **OF_PAIRS,
     caption="""
@@ -118,17 +120,18 @@ def tester_hours(job: Job) -> Any:
 def tester_volume(job: Job) -> Any:
     """Draw volumes by revolution (Fig 6.11)."""
     from bulkwear.workflows.cases.circular_tester.plots.volume import volume_by_revolution
-    from bulkwear.workflows.cases.circular_tester.volume import chosen, mean_volumes, whole_revolutions
+    from bulkwear.workflows.cases.circular_tester.volume import beside_fits, chosen, mean_volumes, whole_revolutions
 
     lost, rates, published = read(job, "lost_volumes", "rates", "published_fits")
     means = mean_volumes(whole_revolutions(chosen(lost, VOLUME, SIZE)))
-    return volume_by_revolution(means, rates, published, job.remarks), means
+    return volume_by_revolution(means, rates, published, job.remarks), beside_fits(means, published)
 
 
 @figure(
     "Volume",
     "What an element and a sample lose per revolution",
     finding=figure_findings.increments,
+    charts=(charts.INCREMENTS,),
     inputs={**of_study("lost_volumes", "mean_ratios"), **PUBLISHED},
     **OF_PAIRS,
     caption="""
@@ -152,6 +155,7 @@ def tester_increments(job: Job) -> Any:
     "Volume",
     "Volume after 56 hours by particle scale",
     finding=figure_findings.reduction_by_scale,
+    charts=(charts.BENCHMARK,),
     inputs={**of_study("predictions"), **PUBLISHED, **PUBLISHED_FITS},
     **OF_PAIRS,
     caption="""
@@ -172,6 +176,7 @@ def tester_benchmark(job: Job) -> Any:
     "Volume",
     "Until the pattern is gone",
     finding=figure_findings.worn_off,
+    charts=(charts.WORN_OUT,),
     inputs={**of_study("lost_volumes", "rates"), **WEAR},
     told=ALL_RUNS,
     when=has_series(WORN_OUT),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bulkwear.workflows.cases.circular_tester import figure_findings
+from bulkwear.workflows.cases.circular_tester import charts, figure_findings
 from bulkwear.workflows.cases.circular_tester.figures import OF_PAIRS, PAIRS, PUBLISHED, WEAR, of_study, read, runs_of
 from bulkwear.workflows.cases.circular_tester.runs import SURFACE, shown_pair
 from bulkwear.workflows.report.products import Job, figure
@@ -18,6 +18,7 @@ SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
     "Flow",
     "Steadiness",
     finding=figure_findings.variations,
+    charts=(charts.STEADINESS,),
     caption="""
     Counterpart of Fig 6.7 (Yan 2022): standard deviation over mean (Eq 6.1) of each revolution since the trough began
     to turn, mean over packings with its 95 % interval. Velocity and height are those of the particles over the sample,
@@ -41,6 +42,7 @@ def tester_steadiness(job: Job) -> Any:
     "Flow",
     "Spin of the lowest layer",
     finding=figure_findings.spin,
+    charts=(charts.SPIN,),
     caption="""
     Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity of particles whose centres are within
     a median diameter of the sample's plane, by revolution of wear; the table has the mean of their own angular speeds
@@ -59,6 +61,7 @@ def tester_spin(job: Job) -> Any:
     "Flow",
     "Velocity of the lowest layer",
     finding=figure_findings.velocity,
+    charts=(charts.VELOCITY,),
     caption="""
     Counterpart of Fig 6.18 (Yan 2022): velocity along the travel of the same particles, mean over packings with its
     95 % interval.
@@ -76,6 +79,7 @@ def tester_velocity(job: Job) -> Any:
     "Flow",
     "Normal force by revolution",
     finding=figure_findings.force,
+    charts=(charts.FORCE,),
     caption="""
     Counterpart of Fig 6.21 (Yan 2022): sum of the normal forces on the faces that wear, by revolution of wear;
     mean over packings with its 95 % interval. Bands: the source's standard deviations.

@@ -175,6 +175,15 @@ def volume_of_terms(terms: np.ndarray, revolution: np.ndarray | float) -> np.nda
     return terms[0] * x + terms[1] * x**2
 
 
+def beside_fits(means: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Return a table as from `mean_volumes` with published_volume_mm3, by Eq 6.2 to 6.6; NaN of other cases."""
+    of_rows = [
+        float(volume_of_terms(published_terms(published, row.surface, row.particle_scale), row.revolution))
+        for row in means.itertuples()
+    ]
+    return means.assign(published_volume_mm3=of_rows)
+
+
 def change_of_terms(terms: np.ndarray, revolutions: float) -> float:
     """Change (%) of what the source's terms (2,) take per revolution, up to a revolution, over its mean."""
     linear, quadratic = terms

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.equipment import figure_findings
+from bulkwear.workflows.cases.equipment import charts, figure_findings
 from bulkwear.workflows.cases.equipment.map_figures import (
     BESIDE,
     DIGITS,
@@ -56,6 +56,7 @@ def remarks_on_panels(job: Job) -> list[str]:
     "Flow",
     "Flow over time",
     finding=figure_findings.held_and_power,
+    charts=(charts.FLOW,),
     inputs={"wear": every_run(BESIDE)},
     told={"runs": values_of_runs},
     digits=DIGITS,

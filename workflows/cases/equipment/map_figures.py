@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.equipment import figure_findings
+from bulkwear.workflows.cases.equipment import charts, figure_findings
 from bulkwear.workflows.cases.equipment.figures import TABLES
 from bulkwear.workflows.cases.equipment.tables import values_of_runs
 from bulkwear.workflows.report.products import Job, every_run, figure
@@ -65,6 +65,7 @@ PACKINGS = "means over blocks and packings, told by area patches"
     "Life",
     "Life of the parts",
     finding=figure_findings.shortest_life,
+    charts=(charts.LIFE,),
     inputs=of_study("life"),
     told={"runs": values_of_runs},
     digits=DIGITS,
@@ -88,6 +89,7 @@ def life_bars(job: Job) -> Any:
     "Life",
     "Depth of the deciding place against hours of operation",
     finding=figure_findings.depth_reached,
+    charts=(charts.RECESSION,),
     inputs={**of_study("life", "worst_places"), "wear": every_run(BESIDE)},
     told={"runs": values_of_runs},
     digits=DIGITS,

@@ -92,6 +92,15 @@ def coefficient_of_laboratory(published: pd.DataFrame) -> tuple[float, float]:
     return laboratory_coefficient(*laboratory_volume(published), load, distance)
 
 
+def beside_laboratory(table: pd.DataFrame, laboratory: tuple[float, float]) -> pd.DataFrame:
+    """A table as from `calibration_table` with the laboratory's coefficient and error (1/Pa) times the scaling factor:
+    laboratory_per_pa and the ends of its range.
+    """
+    value, error = laboratory
+    ends = {"laboratory_per_pa": value, "laboratory_low_per_pa": value - error, "laboratory_high_per_pa": value + error}
+    return table.assign(**{name: each * table["scaling_factor"] for name, each in ends.items()})
+
+
 def scaling_limits(run_in: pd.DataFrame, test_revolutions: float) -> pd.DataFrame:
     """Largest scaling factor of each run, which its run-in allows: `run`, `run_in_revolution`, `largest_factor`.
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from bulkwear.workflows.cases.pin_on_disc import figure_findings
+from bulkwear.workflows.cases.pin_on_disc import charts, figure_findings
 from bulkwear.workflows.cases.pin_on_disc.case import MESHES
 from bulkwear.workflows.cases.pin_on_disc.findings import trend
 from bulkwear.workflows.cases.pin_on_disc.volume_figures import (
@@ -217,6 +217,7 @@ def contour_distribution(job: Job) -> Any:
     "Contours",
     "Run-in",
     finding=figure_findings.ended,
+    charts=(charts.RUN_IN,),
     inputs={**OF_CONTOURS, "normality": NORMALITY, "volumes": VOLUMES},
     tables={"change_points": "figures/run_in_change_points.csv"},
     caption="""

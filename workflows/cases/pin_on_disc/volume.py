@@ -174,6 +174,19 @@ def published_volume(published: pd.DataFrame, coefficient: float, revolutions: n
     return np.polynomial.polynomial.polyval(x, terms) / CUBIC_MILLIMETRES
 
 
+def beside_laws(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Volumes of runs with law_volume_m3, alpha F L, and published_volume_m3, by the source's fits.
+
+    Arguments as for `excess_factors`.
+    """
+    parts = []
+    for (coefficient, load, track), rows in volumes.groupby(list(FIXED), sort=False):
+        theirs = published_volume(published, coefficient, rows["revolution"].to_numpy())
+        law = law_volume(coefficient, load, track, rows["revolution"])
+        parts.append(rows.assign(law_volume_m3=law, published_volume_m3=theirs))
+    return pd.concat(parts).sort_index()
+
+
 def excess_factors(volumes: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     """What a volume over alpha F L is made of, per run and whole revolution, all summed since the start.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bulkwear.workflows.cases.pin_on_disc import figure_findings
+from bulkwear.workflows.cases.pin_on_disc import charts, figure_findings
 from bulkwear.workflows.cases.pin_on_disc.page import update_remark
 from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure
 
@@ -24,6 +24,7 @@ def has_series(name: str) -> OfStudy:
     "Laboratory",
     "Thesis, laboratory and ours",
     finding=figure_findings.compared,
+    charts=(charts.COMPARISON,),
     inputs={"design": DESIGN, "published": PUBLISHED, "contours": CONTOURS, "volumes": VOLUMES},
     caption="""
     Counterpart of Table 5.4 (Yan 2022): mean depth and width of the contours and removed volume, beside the
@@ -88,6 +89,7 @@ def excess_volume(job: Job) -> Any:
     "Volume",
     "Volume against revolutions",
     finding=figure_findings.over_law,
+    charts=(charts.WEAR_VOLUME,),
     inputs={"design": DESIGN, "fits": FITS, "volumes": VOLUMES},
     tables={"trends": "figures/wear_volume_trends.csv"},
     caption="""
@@ -105,19 +107,20 @@ def wear_volume(job: Job) -> Any:
 
     from bulkwear.workflows.cases.pin_on_disc.plots import volume as plots
     from bulkwear.workflows.cases.pin_on_disc.runs import of_runs, pin_runs
-    from bulkwear.workflows.cases.pin_on_disc.volume import volume_trends
+    from bulkwear.workflows.cases.pin_on_disc.volume import beside_laws, volume_trends
 
     volumes = of_runs(pin_runs(job.files.design), job.files.volumes)
     volumes = volumes[volumes["series"] == "coefficient"]
-    trends = volume_trends(volumes)
-    drawn = plots.wear_volume(volumes, pd.read_csv(job.files.fits), trends, job.remarks)
-    return drawn, volumes, {"trends": trends}
+    trends, fits = volume_trends(volumes), pd.read_csv(job.files.fits)
+    drawn = plots.wear_volume(volumes, fits, trends, job.remarks)
+    return drawn, beside_laws(volumes, fits), {"trends": trends}
 
 
 @figure(
     "Forces",
     "Rise of the summed normal force",
     finding=figure_findings.force_over_load,
+    charts=(charts.FORCE_RISE,),
     inputs={"fits": FITS, "volumes": "results/{study}/figures/wear_volume.csv"},
     caption="""
     Counterpart of Fig 5.16 (Yan 2022), which explains the excess volume by a horizontal part of the normal force in
@@ -140,6 +143,7 @@ def force_rise(job: Job) -> Any:
     "Laboratory",
     "Calibration of the wear coefficient",
     finding=figure_findings.coefficients,
+    charts=(charts.CALIBRATION,),
     inputs={
         "design": DESIGN,
         "published": PUBLISHED,
@@ -185,6 +189,7 @@ def calibration(job: Job) -> Any:
     remarks = [f"run-in: {reference_remark(runs, published, REFERENCE)}", *job.remarks]
     drawn = plots.calibration(table, laboratory, revolutions, limits, remarks)
     caps = coefficient.step_cap_limits(volumes, laboratory[0])
+    table = coefficient.beside_laboratory(table, laboratory)
     return drawn, table, {"limits": limits.merge(caps, on="run", how="left")}
 
 
@@ -192,6 +197,7 @@ def calibration(job: Job) -> Any:
     "Volume",
     "Size invariance of Archard's law",
     finding=figure_findings.sizes,
+    charts=(charts.SIZE_INVARIANCE,),
     inputs={"design": DESIGN, "published": PUBLISHED, "volumes": VOLUMES},
     when=has_series("size"),
     caption="""

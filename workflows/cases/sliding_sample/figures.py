@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, plain_runs, published_rows
 from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed
@@ -21,6 +22,7 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
     "Wear",
     "Wear against travel",
     finding=figure_findings.total_wear,
+    charts=(charts.WEAR_AGAINST_TRAVEL,),
     inputs={"design": DESIGN, "wear": WEAR},
     caption="""
     Cumulative wear volume of the sample, without skirt. Full line: worn by the law from the loads. Dashed line:
@@ -51,6 +53,7 @@ def intervals(job: Job) -> dict[str, pd.DataFrame]:
     "Wear",
     "Wear of base and pattern",
     finding=figure_findings.share_of_pattern,
+    charts=(charts.WEAR_SPLIT,),
     inputs={"summary": SUMMARY},
     caption="""
     Worn volume on the flat base and on the pattern, over the volume of the plain sample in the same packing, geometric
@@ -72,6 +75,7 @@ def wear_split(job: Job) -> Any:
     "Wear",
     "Distribution of depth",
     finding=figure_findings.depth_of_half,
+    charts=(charts.DEPTHS,),
     inputs={"design": DESIGN, "depths": "results/{study}/figures/worn_surface.csv"},
     told={"deformed": is_deformed},
     caption="""
@@ -187,6 +191,7 @@ def _views(job: Job, place: int) -> Any:
     "Bed",
     "Forces on the sample",
     finding=figure_findings.mean_forces,
+    charts=charts.FORCES,
     inputs={"design": DESIGN, "wear": WEAR},
     caption="""
     Force of the bed on the sample after the run-in: vertical (downwards) and drag (along the motion of the bed).
@@ -211,6 +216,7 @@ def forces(job: Job) -> Any:
     "Wear laws",
     "The study's law and the solver's Finnie model",
     finding=figure_findings.finnie_over_law,
+    charts=(charts.LAWS,),
     inputs={"summary": SUMMARY},
     caption="""
     Wear volume by the study's law (from the load ledger) and by the Finnie model that LIGGGHTS has built in, both

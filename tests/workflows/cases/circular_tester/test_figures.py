@@ -1,9 +1,12 @@
 """Declarations of figures of the circular wear tester: which studies have them, and what they need of the runs."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.circular_tester import figures, place_figures
+from bulkwear.workflows.cases.circular_tester import figures, flow, hours, place_figures, tables, volume
 from bulkwear.workflows.cases.circular_tester.comparison import ratios_by_revolution
 from bulkwear.workflows.cases.circular_tester.runs import (
     has_pairs,
@@ -17,7 +20,10 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.report.products import figures_of, job_of, products_of
 from tests.support import tester_study as study
+from tests.support.charts import drawn_chart, names, values
 
+RUN = SimpleNamespace(coefficient=5e-9, width=0.1, length=0.1, distance_per_revolution=1.071)
+PUBLISHED_BOTH = study.PUBLISHED, study.PUBLISHED_FITS
 SERIES_OF = {
     "tester_mesh": "mesh",
     "tester_mesh_contours": "mesh",
@@ -43,6 +49,60 @@ def test_every_table_keeps_nine_digits():
         product for product in products_of(find_case("circular_tester")).values() if product.name.startswith("tester")
     ]
     assert len(own) == 20 and {product.digits for product in own} == {figures.DIGITS}
+
+
+@pytest.fixture
+def charts():
+    """What draws the chart of a figure by name, with its published table."""
+    products = products_of(find_case("circular_tester"))
+    return lambda name, table: drawn_chart(products[name], table, published=study.PUBLISHED)
+
+
+def test_charts_of_volumes_show_their_tables(charts):
+    """With intervals of three packings, the source's fit where it has the particle scale, and measured volumes."""
+    lost = study.volumes(packings=3, scatter=0.02)
+    means = volume.beside_fits(volume.mean_volumes(lost), study.PUBLISHED_FITS)
+    found = charts("tester_volume", means)
+    for name, rows in means.groupby(["surface", "particle_scale"], sort=False):
+        words = f"{name[0]}, particle scale {name[1]:g}"
+        assert values(found, words) == [pytest.approx(rows["volume_mm3"], rel=1e-5)]
+        assert values(found, f"{words}, Yan 2022") == [pytest.approx(rows["published_volume_mm3"], rel=1e-5)]
+    assert "error_y" in found["panels"][0]["data"][0]
+    grown = charts("tester_increments", volume.mean_increments(lost))
+    settings = len(means.groupby(volume.SETTING))
+    assert [len(panel["data"]) for panel in grown["panels"]] == [settings + 2, settings]  # first and last published
+    main = lost[lost["particle_scale"] == 3.0]
+    scale = hours.time_scale(main[main["surface"] == "plain"], RUN, study.PUBLISHED)
+    predicted = hours.predictions(lost, scale, [56.0, 184.0])
+    bars = charts("tester_benchmark", predicted)
+    assert values(bars, "plain volume 56 h, measured") == [[145.2, 145.2]]
+    compared = tables.comparison_table(predicted[predicted["particle_scale"] == 3.0], *PUBLISHED_BOTH, 3.0)
+    assert [panel["layout"]["yaxis"]["title"]["text"] for panel in charts("tester_hours", compared)["panels"]] == [
+        "Volume (mm³)",
+        "Reduction (%)",
+    ]
+
+
+def test_charts_of_the_flow_show_their_measure(charts):
+    """In the unit of the axis, with the source's values and deviations as fields; each criterion has its panel."""
+    series = study.series(packings=3)
+    means = flow.revolutions_over_packings(flow.flow_means(series.assign(worn_revolution=series["revolution"])), "mean")
+    for name, measure, factor in (
+        ("tester_spin", flow.SPIN, 180.0 / np.pi),
+        ("tester_velocity", flow.VELOCITY, 1e3),
+        ("tester_force", flow.FORCE, 1.0),
+    ):
+        found = charts(name, means[means["measure"] == measure])
+        drawn = [value for surface in ("plain", "convex") for curve in values(found, surface) for value in curve]
+        shown = means[means["measure"] == measure]["mean"]
+        assert sorted(drawn) == pytest.approx(sorted(factor * shown), rel=1e-5), name
+        assert sum("Yan 2022" in entry for entry in names(found)) == (2 if name == "tester_velocity" else 4)
+    variations = flow.revolutions_over_packings(flow.revolution_means(series, flow.STEADINESS), "variation")
+    assert [panel["title"] for panel in charts("tester_steadiness", variations)["panels"]] == [
+        "particle velocity",
+        "bed height",
+        "wear rate",
+    ]
 
 
 def test_runs_come_back_from_their_values(tmp_path):

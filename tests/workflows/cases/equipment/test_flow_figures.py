@@ -20,6 +20,7 @@ from bulkwear.workflows.cases.equipment.flow_views import (
 )
 from bulkwear.workflows.cases.equipment.histories import WINDOW, flow_series, phase_spans
 from bulkwear.workflows.cases.equipment.tables import read_runs
+from tests.support.charts import drawn_chart, names, values
 from tests.workflows.cases.equipment import scenes
 
 FIGURES = [each for each in vars(flow_figures).values() if hasattr(each, "product")]
@@ -63,6 +64,18 @@ def test_figures_of_a_mill_are_readable(mill, make, tmp_path):
 
 
 # ---------------------------------------------------------------- over time
+
+
+def test_charts_of_the_flow_have_a_panel_for_each_unit(chute, mill):
+    """A feed in and out where there is one, mass held, and the power of each part that moves, by its name."""
+    product = flow_figures.flow_over_time.product
+    fed, filled = (flow_series(read_runs(runs, folder)) for folder, runs in (chute, mill))
+    assert names(drawn_chart(product, fed))[:3] == ["in", "out", "held"]
+    found = drawn_chart(product, filled)
+    assert names(found) == ["held", "power of shell"]
+    assert [panel["layout"]["yaxis"]["title"]["text"] for panel in found["panels"]] == ["Mass held (kg)", "Power (kW)"]
+    first = filled[filled["run"] == filled["run"].iloc[0]]
+    assert values(found, "power of shell", 1)[0] == pytest.approx(first["power_shell_kW"], rel=1e-5)
 
 
 def test_rates_are_those_of_the_feed(chute):

@@ -10,6 +10,7 @@ from bulkwear.workflows.cases.equipment import lifter_figures
 from bulkwear.workflows.cases.equipment.figures import LIFTERS
 from bulkwear.workflows.cases.equipment.lifters import LEADING, LOSS, TRAILING, lifters_table
 from bulkwear.workflows.report.products import job_of
+from tests.support.charts import drawn_chart, values
 from tests.workflows.cases.equipment import scenes
 
 HEIGHT, COUNT = 0.1, 8  # m, of lifters as built, and how many
@@ -66,6 +67,16 @@ def mill(tmp_path_factory):
 def table(mill):
     """The table of both packings."""
     return lifters_table(mill[1], mill[0])
+
+
+def test_the_chart_shows_heights_and_faces(table):
+    """Against hours, each with its interval over packings."""
+    found = drawn_chart(lifter_figures.lifter_profiles.product, table)
+    for panel, name in enumerate(("height_mm", "leading_face_angle_deg")):
+        assert values(found, "A", panel) == [pytest.approx(table[name], rel=1e-5)]
+        assert found["panels"][panel]["data"][0]["error_y"]["array"] == pytest.approx(
+            table[f"{name}_high"] - table[name], rel=1e-4, abs=1e-9
+        )
 
 
 def test_heights_against_hours(table):

@@ -12,6 +12,7 @@ from bulkwear.workflows.cases.equipment import map_figures, pictures, remaining
 from bulkwear.workflows.cases.equipment.life_tables import BEYOND, SIMULATED
 from bulkwear.workflows.cases.equipment.sections import COLUMNS, _plane, worst_sections
 from bulkwear.workflows.config.schema import case_schema
+from tests.support.charts import drawn_chart, names, values
 from tests.workflows.cases.equipment import scenes
 
 FIGURES = [each for each in vars(map_figures).values() if hasattr(each, "product")]
@@ -217,6 +218,27 @@ def test_depths_of_deciding_places(study):
         if own["life_h"] < 2.0 * asked:
             assert beyond["depth_mm"].iloc[-1] == pytest.approx(own["allowed_mm"], rel=ROUNDED)
             assert beyond["operation_h"].iloc[-1] == pytest.approx(own["life_h"], rel=SCATTER)
+
+
+def test_charts_of_lives_and_depths_show_their_tables(study):
+    """Lives as bars that lie, with both ends; per part the mean depth, packings, what follows and the change-out."""
+    folder, runs, tables = study
+    job, life = scenes.job_of_study(folder, runs), tables["life"]
+    (_, table), product = map_figures.life_bars(job), map_figures.life_bars.product
+    found = drawn_chart(product, table)
+    drawn = [value for name in names(found) for bars in values(found, name, along="x") for value in bars]
+    known = life["life_h"][np.isfinite(life["life_h"])]
+    assert sorted(value for value in drawn if value is not None) == pytest.approx(sorted(known), rel=1e-5)
+    (_, depths), product = map_figures.recession_against_time(job), map_figures.recession_against_time.product
+    found = drawn_chart(product, depths, life=life)
+    assert [panel["title"] for panel in found["panels"]] == list(dict.fromkeys(depths["part"].str.replace("_", " ")))
+    entries = names(found)
+    of_setting = entries[0]
+    means = depths[(depths["packing"] == 0) & depths["simulated"] & (depths["part"] == depths["part"].iloc[0])]
+    own = means[means["setting"] == means["setting"].iloc[0]]
+    assert values(found, of_setting) == [pytest.approx(own["depth_mm"], rel=1e-5)]
+    for words in ("extrapolated", "packings", "change-out"):
+        assert any(words in entry for entry in entries), words
 
 
 def test_figures_of_the_page_are_declared():

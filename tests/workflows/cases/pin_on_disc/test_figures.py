@@ -13,9 +13,10 @@ from bulkwear.workflows.cases.pin_on_disc.runs import window_forces
 from bulkwear.workflows.cases.pin_on_disc.volume import published_volume
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.cases import find_case
-from bulkwear.workflows.report.products import figures_of
+from bulkwear.workflows.report.products import figures_of, products_of
 from tests import PUBLISHED
 from tests.support import pin_study
+from tests.support.charts import drawn_chart, names, values
 
 FITS = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv")
 NORMALITY = pd.read_csv(PUBLISHED / "pin_on_disc_normality.csv")
@@ -46,6 +47,39 @@ def test_every_figure_is_drawn_and_leaves_its_table(figures, pins):
     folder = pins[0] / "figures"
     further = {"wear_volume_trends", "run_in_change_points", "scaling_limits", "mesh_stability"}
     assert {path.stem for path in folder.glob("*.csv")} == {*figures, *further} and len(figures) == 17
+
+
+def test_charts_show_the_tables_beside_published_values(figures, pins):
+    """Volumes by coefficient with the source's fit and Archard's; coefficients with the laboratory's; both sizes."""
+    products = products_of(find_case("pin_on_disc"))
+    tables = {name: pd.read_csv(pins[0] / "figures" / f"{name}.csv") for name in products if products[name].charts}
+    volume = drawn_chart(products["wear_volume"], tables["wear_volume"])
+    table = tables["wear_volume"]
+    of_first = table[table["wear_coefficient_per_pa"] == table["wear_coefficient_per_pa"].iloc[0]]
+    conserving = of_first[of_first["scheme"] == "conserving"]
+    assert values(volume, "conserving") == [pytest.approx(1e9 * conserving["removed_volume_m3"], rel=1e-5)]
+    work = conserving["wear_coefficient_per_pa"] * conserving["load_n"] * 2e9 * np.pi * conserving["track_radius_m"]
+    assert values(volume, "alpha F L") == [pytest.approx(work * conserving["revolution"], rel=1e-5)]
+    assert "Yan 2022, Eq 5.11 to 5.15" in names(volume)
+    assert len(volume["panels"]) == table["wear_coefficient_per_pa"].nunique()
+    assert set(names(drawn_chart(products["force_rise"], tables["force_rise"]))) == set(
+        table["scheme"].str.replace("_", " ")
+    )
+    calibrated = drawn_chart(products["calibration"], tables["calibration"])
+    law = 6.3e-13 * 1302.5 / tables["calibration"]["revolutions"].drop_duplicates()
+    assert values(calibrated, "laboratory's, by Archard") == [pytest.approx(law, rel=0.01)]  # 6.3 is rounded
+    sizes = drawn_chart(products["run_in"], tables["run_in"])
+    depth = tables["run_in"].query("size == 'depth'")
+    drawn = [value for scheme in names(sizes) for curve in values(sizes, scheme) for value in curve]
+    assert sorted(drawn) == pytest.approx(sorted(1e6 * depth["mean_m"]), rel=1e-5)
+    bound = drawn_chart(
+        products["size_invariance"],
+        tables["size_invariance"],
+        published=pd.read_csv(PUBLISHED / "pin_on_disc.csv"),
+    )
+    assert values(bound, "Yan 2022, at most") == [[0.6, 0.6], [-0.6, -0.6]]
+    compared = drawn_chart(products["pin_comparison"], tables["pin_comparison"])
+    assert values(compared, "volume", 2, "x") == [pytest.approx(tables["pin_comparison"]["volume_mm3"], rel=1e-5)]
 
 
 def test_the_worn_disc_has_the_table_of_its_track(figures, pins):

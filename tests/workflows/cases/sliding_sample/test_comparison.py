@@ -4,12 +4,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.tables.history import force_summary
 from bulkwear.workflows.cases.sliding_sample.comparison import (
     law_comparison,
     plain_of_row,
     relative_wear_table,
     wear_split,
 )
+from bulkwear.workflows.engine.cases import find_case
+from bulkwear.workflows.report.products import products_of
+from tests.support.charts import drawn_chart, values
 
 RELATIVE = 1e-12  # rounding of a few quotients
 
@@ -32,6 +36,37 @@ def summary():
         finnie_volume_m3=0.01 * volume,
         wear_over_plain=[1.5, 1.0, 0.5, 1.0, 0.72, 1.0],
     )
+
+
+@pytest.fixture
+def shown():
+    """What draws the chart of a figure by name."""
+    products = products_of(find_case("sliding_sample"))
+    return lambda name, table, **beside: drawn_chart(products[name], table, **beside)
+
+
+def test_charts_show_settings_with_their_intervals(summary, shown):
+    """Parts stand upon one another below the plain sample's line; the source's value at its row; both laws; forces."""
+    split, relative = wear_split(summary), relative_wear_table(summary, {})
+    found = shown("wear_split", split)
+    assert found["panels"][0]["layout"]["barmode"] == "stack"
+    assert values(found, "pattern") == [pytest.approx(split["pattern_over_plain"], rel=1e-5)]
+    assert values(found, "plain sample") == [[1.0, 1.0]]
+    published = pd.DataFrame({"row": ["A"], "relation": ["above"], "value": [0.5], "source": ["Yan 2022"]})
+    found = shown("relative_wear", relative, published=published)
+    assert values(found, "convex") == [pytest.approx(relative["wear_over_plain"], rel=1e-5)]
+    theirs = "at least, Yan 2022"
+    assert values(found, theirs) == [[0.5]] and values(found, theirs, along="x") == [["A"]]
+    laws = law_comparison(summary)
+    assert values(shown("wear_law_comparison", laws), "the study's law") == [pytest.approx(laws["worn_volume_mm3"])]
+    forces = summary[["run", "row", "setting", "packing", "surface"]].assign(vertical_force_N=2.0, drag_force_N=1.0)
+    found = shown("forces", force_summary(forces))
+    assert [(panel["title"], panel["data"][0]["y"]) for panel in found["panels"]] == [
+        ("vertical", [2.0, 2.0]),
+        ("drag", [1.0, 1.0]),
+    ]
+    along = shown("forces", forces.assign(travel_mm=1.0))
+    assert along["sift"] == ["B", "A"] and len(along["panels"]) == 2
 
 
 def test_twins_are_of_the_same_packing(summary):

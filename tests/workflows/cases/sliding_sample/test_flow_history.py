@@ -8,6 +8,7 @@ import pytest
 
 from bulkwear.postproc.flow.moving_bins import bin_history
 from bulkwear.postproc.statistics.steady import UNSAID
+from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.flow_history import (
     INTERVAL,
     RunFlow,
@@ -140,6 +141,7 @@ def test_tables_of_a_study(tmp_path):
     np.testing.assert_allclose(regimes["surcharge"], 1.0)  # as many particles over the sample as anywhere
     np.testing.assert_allclose(along.loc[along["run"] == "R1_convex", "relative_velocity_percent"], 50.0, rtol=1e-4)
     assert along["travel_mm"].max() == pytest.approx(155.0)
+    assert charts.RELATIVE_VELOCITY.columns() <= set(along)
     assert set(bins["run"]) == set(speeds)
     profiles = row_profiles(bins, along, dict.fromkeys(speeds, RUN.velocity), ["R1"])
     plain = profiles[(profiles["surface"] == "plain") & (profiles["zone"] == "central")]

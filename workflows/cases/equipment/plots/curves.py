@@ -16,7 +16,7 @@ from bulkwear.postproc.plots.style import (
     BLUE,
     LARGEST_HEIGHT,
     ORANGE,
-    OTHER_COLOUR,
+    SERIES_COLOURS,
     SMALLEST_FONT,
     facets,
     label_all,
@@ -24,8 +24,6 @@ from bulkwear.postproc.plots.style import (
 )
 from bulkwear.postproc.tables.display import few_digits
 
-# distinguishable with colour-blindness (M. Okabe and K. Ito, 2008)
-SETTING_COLOURS = (BLUE, ORANGE, "#009E73", "#CC79A7", "#56B4E9", "#E69F00", OTHER_COLOUR)
 PHASES = {  # phase: what it is called, and its shade
     "start_up": ("start-up", "#d9d9d9"),
     "pristine": ("as built", "white"),
@@ -45,7 +43,7 @@ BAR_INCHES = 0.32  # height of a bar and its share of gaps
 
 def setting_colour(settings: Sequence[str], setting: str) -> str:
     """Return the colour of a setting in all figures of curves."""
-    return SETTING_COLOURS[list(settings).index(setting) % len(SETTING_COLOURS)]
+    return SERIES_COLOURS[list(settings).index(setting) % len(SERIES_COLOURS)]
 
 
 # ---------------------------------------------------------------- flow

@@ -1,7 +1,4 @@
-"""Figures and tables of studies of particle size: wear against scale, flow by layer, the source beside them.
-
-Those of packings and of single collisions are in `contact_figures`.
-"""
+"""Figures and tables of studies of particle size: wear against scale, flow by layer, all of it beside the source."""
 
 from __future__ import annotations
 
@@ -9,14 +6,20 @@ import math
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.particle_size import figure_findings
-from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
+    bumps_and_particles,
+)
 from bulkwear.workflows.cases.sliding_sample.study import flow_runs, varies_scale
 from bulkwear.workflows.report.figure_findings import deepest_run
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
+
+if TYPE_CHECKING:
+    pass
 
 SUMMARY, PROFILES = "results/{study}/summary.csv", "results/{study}/flow/profiles.csv"
 PUBLISHED_LINES = "config/published/particle_size_lines.csv"
@@ -35,7 +38,8 @@ size_figure = partial(figure, "Particle size", when=varies_scale)
     "Wear against particle scale",
     finding=figure_findings.ratios_by_scale,
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
-    tables=WEAR_TABLES,
+    tables=WEAR_TABLES | {"published_lines": "particle_size/published_lines.csv"},
+    charts=(charts.WEAR_AGAINST_SCALE,),
     caption="""
     Worn volume of the plain sample, of the patterned sample, its base and its pattern, over that of the plain sample
     with the smallest particles simulated: small marks are packings, large ones their means with 95 % intervals. Thin
@@ -60,7 +64,8 @@ def wear_against_scale(job: Job) -> Any:
     remarks = [*job.remarks, reference, by_scale.critical_scale_text(critical)]
     lines = by_scale.beside_published(by_scale.wear_lines(wear), published)
     told = (lines, pd.DataFrame([asdict(critical)]), forms, by_scale.ratio_by_scale(wear))
-    return drawn.wear_against_scale(wear, published, critical, remarks), wear, dict(zip(WEAR_TABLES, told, strict=True))
+    further = dict(zip(WEAR_TABLES, told, strict=True)) | {"published_lines": by_scale.points_of(published, wear)}
+    return drawn.wear_against_scale(wear, published, critical, remarks), wear, further
 
 
 @size_figure(
@@ -102,6 +107,7 @@ def wear_against_size_ratios(job: Job) -> Any:
 @size_figure(
     "Relative velocity and wear rate by particle scale",
     finding=figure_findings.steady_ends,
+    charts=(charts.STEADY_BY_SCALE,),
     inputs={"summary": SUMMARY, "steady": "results/{study}/flow/steady.csv", "published": PUBLISHED_SIZES},
     caption="""
     Relative velocity of the particles (Yan 2022, Eq 4.10) and wear rate over the largest of all runs (Eq 4.12) in the

@@ -8,9 +8,21 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.workflows.cases.sliding_sample.study import plain_runs
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.engine.case import Parameters
+from bulkwear.workflows.engine.templates import templates_digest
+from bulkwear.workflows.report.products import OfStudy
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
+
+
+def of_template(name: str) -> OfStudy:
+    """Return what a product that runs a deck is told of its template: another text makes it again."""
+    return lambda study: templates_digest(name)
+
+
+def below(folder: str) -> OfStudy:
+    """Return what a product is told of the folder in which it simulates."""
+    return lambda study: f"results/{study.name}/particle_size/{folder}"
 
 
 def by_scale(runs: Mapping[str, Parameters]) -> dict[float, Parameters]:

@@ -193,6 +193,14 @@ def lines_beside(published: pd.DataFrame, wear: pd.DataFrame) -> pd.DataFrame:
     return published if patterned_curve(wear) == CONVEX else published[published["curve"] == PLAIN]
 
 
+def points_of(published: pd.DataFrame, wear: pd.DataFrame) -> pd.DataFrame:
+    """Return curve, particle_scale and relative_wear of published lines at the least and the largest scale of ours."""
+    ends = wear["particle_scale"].agg(["min", "max"]).to_frame()
+    points = published[["curve", "intercept", "slope"]].merge(ends, how="cross")
+    wear = points["intercept"] + points["slope"] * points["particle_scale"]
+    return points[["curve", "particle_scale"]].assign(relative_wear=wear)
+
+
 def beside_published(lines: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     """Return our lines with the published ones beside them: columns published_intercept, published_slope, source."""
     names = {"intercept": "published_intercept", "slope": "published_slope"}

@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.figures import DESIGN, SUMMARY, WEAR
 from bulkwear.workflows.cases.sliding_sample.screening import figure_findings
 from bulkwear.workflows.cases.sliding_sample.study import (
@@ -42,6 +43,8 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
         "published": PUBLISHED_RESULTS,
     },
     told={"size_ratios": equivalent_size_ratios, "published_rows": published_rows},
+    tables={"published": "figures/relative_wear_published.csv"},
+    charts=(charts.RELATIVE_WEAR,),
     when=compares_rows,
     caption="""
     Worn volume of the patterned sample over that of the plain sample in the same packing, geometric mean over the
@@ -64,7 +67,8 @@ def relative_wear(job: Job) -> Any:
     files, told = job.files, job.told
     table = relative_wear_table(read_summary(files.summary), told.size_ratios)
     published = published_relative_wear(pd.read_csv(files.published), told.published_rows)
-    return bars.relative_wear(table, published, [*job.remarks, packings_remark(table["packings"])]), table
+    drawn = bars.relative_wear(table, published, [*job.remarks, packings_remark(table["packings"])])
+    return drawn, table, {"published": published[published["row"].isin(table["setting"])]}
 
 
 # ---------------------------------------------------------------- the flow
@@ -78,6 +82,7 @@ def relative_wear(job: Job) -> Any:
     inputs={"design": DESIGN, "wear": WEAR, "costs": every_run("cost.csv"), "published": published_flow},
     told={"runs": flow_runs, "run_in": run_in},
     tables={"bins": "flow/moving_bins.csv", "regimes": "flow/regimes.csv"},
+    charts=(charts.RELATIVE_VELOCITY,),
     when=finds_regimes,
     digits={"table": 6, "bins": 6},
     caption="""
@@ -121,6 +126,7 @@ def relative_velocity(job: Job) -> Any:
     inputs={"design": DESIGN, "wear": WEAR, "regimes": REGIMES, "along": ALONG, "published": published_flow},
     told={"run_in": run_in},
     tables={"steady": "flow/steady.csv"},
+    charts=(charts.WEAR_GRADIENT,),
     when=finds_regimes,
     caption="""
     Wear volume per length of travel over stretches of some 10 mm (of whole cycles, where contacts are sampled), over

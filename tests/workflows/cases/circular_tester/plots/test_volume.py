@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.workflows.cases.circular_tester import figures
 from bulkwear.workflows.cases.circular_tester.comparison import (
     MACHINE,
     mean_ratios,
@@ -20,6 +21,7 @@ from bulkwear.workflows.cases.circular_tester.plots.volume import channel_and_ri
 from bulkwear.workflows.cases.circular_tester.tables import comparison_table
 from bulkwear.workflows.cases.circular_tester.volume import mean_increments, mean_volumes, rates
 from tests.support import tester_study as study
+from tests.support.charts import drawn_chart, names, values
 from tests.support.tester_study import REMARKS, missing_words
 
 UNKNOWN = "one packing, scatter unknown"
@@ -105,3 +107,6 @@ def test_worn_out(tmp_path):
     words = ["worn-out, coefficient x 40", "worn-out: gone at 320", "convex: 94.3 % left", "plain sample"]
     words += ["convex: slower than plain throughout"]
     assert missing_words(figure, tmp_path / "a.png", words) == []
+    found = drawn_chart(figures.tester_worn_out.product, left)
+    assert names(found) == ["convex", "worn-out", "plain sample"]
+    assert values(found, "worn-out")[0][0] == 100.0 and values(found, "plain sample", 1) == [[45.0, 45.0]]

@@ -5,7 +5,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.sliding_sample.particle_size import contact_figures, figures
+from bulkwear.workflows.cases.sliding_sample.particle_size import figures, packing_figures
+from bulkwear.workflows.cases.sliding_sample.particle_size import study as study_of_size
 from bulkwear.workflows.cases.sliding_sample.study import published_flow
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.products import (
@@ -21,7 +22,7 @@ from tests import REPOSITORY
 
 OWN = {
     each.product.name
-    for module in (figures, contact_figures)
+    for module in (figures, packing_figures)
     for each in vars(module).values()
     if hasattr(each, "product")
 }
@@ -65,7 +66,7 @@ def test_a_changed_deck_is_simulated_again(study, name, monkeypatch):
     told = told_to(products_of_study(study)[name], study)
     assert told["folder"].startswith("results/particle_size/particle_size/")
     assert told == told_to(products_of_study(study)[name], study)
-    monkeypatch.setattr(contact_figures, "templates_digest", lambda template: f"{SIMULATING[name]}, changed")
+    monkeypatch.setattr(study_of_size, "templates_digest", lambda template: f"{SIMULATING[name]}, changed")
     assert told_to(products_of_study(study)[name], study)["template"] != told["template"]
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.postproc.statistics.verdicts import AGREES, CONTRADICTS, OTHER_SIZE, UNSAID
+from bulkwear.workflows.cases.sliding_sample.particle_size import figures
 from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import (
     beside_the_source,
     critical_sentences,
@@ -23,6 +24,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import 
     wear_by_scale,
 )
 from tests import PUBLISHED
+from tests.support.charts import drawn_chart, values
 from tests.workflows.cases.sliding_sample.particle_size.test_wear_by_scale import summary
 
 RESULTS, PACKING = (pd.read_csv(PUBLISHED / f"{name}.csv") for name in ("particle_size_results", "packing"))
@@ -173,3 +175,17 @@ def test_maps_show_the_smallest_and_the_largest_particles():
     table = summary([8.0, 2.0, 4.0])
     runs = smallest_and_largest(table.assign(run=table["row"] + "_" + table["surface"]))
     assert runs["row"].tolist() == ["S2", "S2", "S8", "S8"] and set(runs["surface"]) == {"convex", "plain"}
+
+
+def test_the_chart_has_a_panel_for_each_measure_beside_the_source():
+    """Means with the deviations of their windows; levels of the source in the panel of their quantity."""
+    table = steady_rows()
+    found = drawn_chart(figures.steady_by_scale.product, table, published=RESULTS)
+    velocity = RESULTS[RESULTS["quantity"] == "relative_velocity"]
+    assert len(found["panels"][0]["data"]) == len(table) // 2 + len(velocity)
+    assert values(found, "plain, at most, Yan 2022") == [[15.0, 15.0]]
+    assert found["panels"][0]["data"][0]["error_y"]["array"] == [0.5]
+    assert [panel["layout"]["yaxis"]["title"]["text"] for panel in found["panels"]] == [
+        "Relative velocity of the particles (%)",
+        "Wear rate over the largest of all runs<br>(%)",
+    ]

@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
+from bulkwear.workflows.cases.sliding_sample.particle_size import figures
 from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
     PARTS,
     RATIOS,
@@ -13,6 +14,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import 
     critical_scale,
     critical_scale_text,
     lines_beside,
+    points_of,
     published_by_size_ratio,
     ratio_by_scale,
     wear_by_scale,
@@ -20,6 +22,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import 
     wear_lines,
 )
 from tests import PUBLISHED
+from tests.support.charts import drawn_chart, values
 
 LINES = pd.read_csv(PUBLISHED / "particle_size_lines.csv")
 SCALES = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0])
@@ -153,3 +156,16 @@ def test_another_pattern_is_not_set_beside_the_sources():
     assert critical_scale(other)[0].value == critical_scale(wear)[0].value
     assert lines_beside(lines, wear)["curve"].tolist() == lines["curve"].tolist()
     assert lines_beside(lines, other)["curve"].tolist() == ["plain"]
+
+
+def test_the_chart_has_the_published_lines_from_end_to_end():
+    """Ours lie on them: the summary follows them; each line goes from the least to the largest scale simulated."""
+    wear = wear_by_scale(summary())
+    ends = points_of(LINES, wear)
+    found = drawn_chart(figures.wear_against_scale.product, wear, published_lines=ends)
+    bumps = ends[ends["curve"] == "bumps"]
+    assert values(found, "pattern, Yan 2022") == [pytest.approx(bumps["relative_wear"], rel=1e-5)]
+    assert values(found, "pattern, Yan 2022", along="x") == [[1.0, 8.0]]
+    ours = np.ravel(values(found, "pattern"))
+    expected = ends.loc[ends["curve"] == "bumps", "relative_wear"] / ends["relative_wear"].iloc[0]
+    assert (ours[0], ours[-1]) == pytest.approx(tuple(expected), rel=1e-5)

@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
+from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS, UNDECIDED
 from bulkwear.workflows.cases.sliding_sample.screening.regime_groups import (
     by_group,
@@ -112,6 +113,7 @@ def test_gradients_have_the_group_of_their_row(regimes):
     ]
     table = gradients_by_group(pd.concat(tables, ignore_index=True), regimes)
     np.testing.assert_allclose(table.loc[table["run"] == "R2_plain", "relative_gradient"], 4.0 / 6.0, rtol=ROUNDING)
+    assert charts.WEAR_GRADIENT.columns() <= set(table)
     assert table.groupby("row")["regime"].first().to_dict() == {"R1": CONTINUOUS, "R2": DISCONTINUOUS, "R3": CONTINUOUS}
 
 

@@ -1,4 +1,4 @@
-"""Figures of how particles are packed at every particle scale, and of single collisions."""
+"""Figures of studies of particle size without wear: packings, and single collisions."""
 
 from __future__ import annotations
 
@@ -7,24 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample.particle_size import figure_findings
 from bulkwear.workflows.cases.sliding_sample.particle_size.figures import PUBLISHED_PACKING, size_figure
-from bulkwear.workflows.cases.sliding_sample.particle_size.study import bed_floors, plain_parameters, settled_beds
+from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
+    bed_floors,
+    below,
+    of_template,
+    plain_parameters,
+    settled_beds,
+)
 from bulkwear.workflows.cases.sliding_sample.study import plain_runs
 from bulkwear.workflows.config.units import to_si
-from bulkwear.workflows.engine.templates import templates_digest
-from bulkwear.workflows.report.products import Job, OfStudy
+from bulkwear.workflows.report.products import Job
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
-
-
-def of_template(name: str) -> OfStudy:
-    """Return what a product that runs a deck is told of its template: another text makes it again."""
-    return lambda study: templates_digest(name)
-
-
-def below(folder: str) -> OfStudy:
-    """Return what a product is told of the folder in which it simulates."""
-    return lambda study: f"results/{study.name}/particle_size/{folder}"
 
 
 def _shaken(study: Study) -> dict[str, Any]:
