@@ -84,7 +84,7 @@ def test_a_few_rows_make_a_page_without_a_regression(few, tmp_path):
     assert "Of 1 claims: 1 cannot be said." in " ".join(text.split()) and "| R12 wears more |" in text
     assert "12 of 12 windows are steady" in text
     assert "## Regression" not in text
-    assert "![wear by regime](screening_quick_wear_by_regime.png)" in text
+    assert "](screening_quick_wear_by_regime.png)\n\n**Relative wear by flow regime.** " in text
     assert (docs / "screening_quick_wear_by_regime.png").is_file()
 
 
