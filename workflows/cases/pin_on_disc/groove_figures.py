@@ -87,6 +87,7 @@ def contour_extraction(job: Job) -> Any:
 @figure(
     "Contours",
     "Depth and width by mesh",
+    charts=(charts.MESHES,),
     inputs={"design": DESIGN, "published": PUBLISHED, "statistics": "results/{study}/figures/run_in.csv"},
     tables={"stability": "figures/mesh_stability.csv"},
     when=has_series(MESHES),

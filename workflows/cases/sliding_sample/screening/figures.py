@@ -253,6 +253,7 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
 @figure(
     "Wear",
     "Relative wear by flow regime",
+    charts=(charts.WEAR_BY_REGIME,),
     inputs={"summary": SUMMARY, "regimes": REGIMES},
     told={"beds": passing_beds},
     when=finds_regimes,
@@ -281,6 +282,7 @@ def wear_by_regime(job: Job) -> Any:
 @figure(
     "Bed",
     "Normal force by flow regime",
+    charts=(charts.FORCE_BY_REGIME,),
     inputs={"summary": SUMMARY, "regimes": REGIMES},
     when=finds_regimes,
     caption="""
