@@ -58,9 +58,10 @@ screening: setup ## Run the screening study
 decks: setup ## Render every deck of a study without running the solver (STUDY=demo)
 	$(SNAKEMAKE) $(STUDY)_decks
 
-report: setup ## Build results/<STUDY>/report.html and Snakemake's own snakemake_report.html beside it
+report: setup ## Build results/<STUDY>/report.html, the same as report.pdf, and Snakemake's own snakemake_report.html
 	$(SNAKEMAKE) results/$(STUDY)/report.html
 	$(SNAKEMAKE) $(STUDY) --report results/$(STUDY)/snakemake_report.html
+	$(SNAKEMAKE) results/$(STUDY)/report.pdf
 
 results: setup ## Remake every page of results in docs from its runs, or say which are stale and what redoing costs (RUN=1: do it, PAGE=one)
 	@.venv/bin/python -m bulkwear.workflows.results.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE))

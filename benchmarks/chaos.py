@@ -1,11 +1,12 @@
-"""What becomes of runs, files and configurations under faults: the page docs/chaos.md.
+"""What becomes of studies, runs, files and configurations under faults: the page docs/chaos.md.
 
     make chaos                                # everything: some hours
     python -m benchmarks.chaos --quick        # a little of everything, printed only: minutes
     python -m benchmarks.chaos --share 0.1    # a tenth of the faults, with the page
-    python -m benchmarks.chaos --seed 7       # other faults; --only files, --only runs: a part of it
+    python -m benchmarks.chaos --seed 7       # other faults; --only files, runs or studies: a part of it
 
-Writes docs/chaos.csv and .md. Small disks need root; without it they are left out, and the page says so.
+Writes docs/chaos.csv and .md, after each part its rows. Small disks, disks without write and a machine without a
+network need root; without it they are left out.
 """
 
 from __future__ import annotations
@@ -17,13 +18,14 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from datetime import date
 from pathlib import Path
 
 import pandas as pd
 
-from benchmarks import chaos_files, chaos_runs
+from benchmarks import chaos_files, chaos_runs, chaos_studies
 from benchmarks.chaos_files import Outcome
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.chain import Chain
@@ -34,8 +36,15 @@ from bulkwear.workflows.report.markdown import markdown
 ROOT = Path(__file__).parents[1]
 TABLE, PAGE = ROOT / "docs" / "chaos.csv", ROOT / "docs" / "chaos.md"
 SEED = 27
-WHOLE = {"kills": 50, "levels": 20, "hangs": 5, "flips": 500, "configurations": 10_000, "readers": 20_000}
-QUICK = {"kills": 2, "levels": 1, "hangs": 1, "flips": 60, "configurations": 40, "readers": 200}
+WHOLE = {
+    **{"kills": 50, "levels": 20, "hangs": 5, "stutters": 5, "flips": 500, "configurations": 10_000, "readers": 20_000},
+    **{"snakemakes": 20, "twins": 10, "clocks": 10},
+}
+QUICK = {
+    **{"kills": 2, "levels": 1, "hangs": 1, "stutters": 1, "flips": 60, "configurations": 40, "readers": 200},
+    **{"snakemakes": 2, "twins": 1, "clocks": 1},
+}
+PARTS = ("files", "runs", "studies")
 CONFIGURATION = ("config/studies/demo.yaml", "config/designs/demo.csv", "config/default.yaml", "config/materials.yaml")
 SAMPLES = ROOT / "tests" / "data"
 BAD = ("lost", "wrong", "tracebacks", "hangs")
@@ -48,18 +57,15 @@ HEADS = {
 }
 
 
-def of_files(chain: Chain, folder: Path, counts: dict[str, int], chance: random.Random) -> list[Outcome]:
-    """Return what came of flipped bits, mutated files and mutated configurations."""
+def of_files(chain: Chain, folder: Path, counts: dict[str, int], chance: random.Random) -> Iterator[Outcome]:
+    """Yield what came of flipped bits, mutated files and mutated configurations."""
     samples = samples_of(chain, folder / "samples")
     here = folder / "reading"
     shutil.copytree(folder / "samples", here)
-    return [
-        chaos_files.flipped_bits(chain.folder, inputs_digest(chain), counts["flips"], chance),
-        chaos_files.mutated_files(samples, here, counts["readers"], chance),
-        chaos_files.mutated_configurations(
-            spoilt_project(folder / "project"), "demo", CONFIGURATION, counts["configurations"], chance
-        ),
-    ]
+    yield chaos_files.flipped_bits(chain.folder, inputs_digest(chain), counts["flips"], chance)
+    yield chaos_files.mutated_files(samples, here, counts["readers"], chance)
+    project = spoilt_project(folder / "project")
+    yield chaos_files.mutated_configurations(project, "demo", CONFIGURATION, counts["configurations"], chance)
 
 
 def samples_of(chain: Chain, folder: Path) -> list[Path]:
@@ -81,32 +87,37 @@ def spoilt_project(folder: Path) -> Project:
 
 def of_runs(
     chain: Chain, folder: Path, counts: dict[str, int], chance: random.Random, longest_s: float
-) -> list[Outcome]:
-    """Return what came of kills, full disks and hanging solvers."""
-    found = [
-        chaos_runs.killed(chain, folder, counts["kills"], chance, longest_s),
-        chaos_runs.hanging(chain, folder, counts["hangs"]),
-    ]
+) -> Iterator[Outcome]:
+    """Yield what came of kills, full disks, and solvers that hang or stand still."""
+    yield chaos_runs.killed(chain, folder, counts["kills"], chance, longest_s)
+    yield chaos_runs.hanging(chain, folder, counts["hangs"])
+    yield chaos_runs.stuttering(chain, folder, counts["stutters"], chance)
     if os.geteuid() == 0:
-        found += [chaos_runs.filled(chain, counts["levels"], each, chance, longest_s) for each in (False, True)]
-    return found
+        for momentary in (False, True):
+            yield chaos_runs.filled(chain, counts["levels"], momentary, chance, longest_s)
 
 
-def table_of(outcomes: list[Outcome]) -> pd.DataFrame:
-    """Return a row per kind of fault."""
-    return pd.DataFrame([{name: asdict(each)[name] for name in HEADS} for each in outcomes])
+def table_of(part: str, outcomes: Sequence[Outcome], seed: int) -> pd.DataFrame:
+    """Return a row per kind of fault of a part; its number is not that of another seed."""
+    rows = [{name: asdict(each)[name] for name in HEADS} for each in outcomes]
+    return pd.DataFrame([{"part": part, "seed": seed, "date": f"{date.today():%Y-%m-%d}", **row} for row in rows])
 
 
-def page(table: pd.DataFrame, seed: int) -> str:
+def with_part(table: pd.DataFrame, part: str, found: pd.DataFrame) -> pd.DataFrame:
+    """Return a table whose rows of a part are those that were found; the parts keep their order."""
+    joined = pd.concat([table[table["part"] != part], found], ignore_index=True)
+    return joined.sort_values("part", key=lambda names: names.map(PARTS.index), kind="stable", ignore_index=True)
+
+
+def page(table: pd.DataFrame) -> str:
     """Return docs/chaos.md."""
-    rows = markdown(table.rename(columns=HEADS))
+    rows = markdown(table.drop(columns="part").rename(columns=HEADS))
     return (
         "# Faults\n\n"
-        f"Generated by `make chaos` (seed {seed}, {date.today():%Y-%m-%d}); not to be edited. What is promised is in"
-        " [reliability.md](reliability.md). Kills and full disks strike a run of two wear cycles at random moments; it"
-        " is started again, and its table must be that of the undisturbed run, bit for bit. A flipped bit is noticed"
-        " where its cycle does not count any more. A file or configuration is noticed where it is refused in one"
-        " sentence.\n\n"
+        "Generated by `make chaos`; not to be edited. What is promised is in [reliability.md](reliability.md). Kills"
+        " and full disks strike a run of two wear cycles, or its study in Snakemake, at random moments; it is started"
+        " again, and its table must be that of the undisturbed one, bit for bit. A flipped bit is noticed where its"
+        " cycle does not count any more. A file or configuration is noticed where it is refused in one sentence.\n\n"
         f"{rows}\n\n[Table]({TABLE.name}).\n"
     )
 
@@ -119,24 +130,34 @@ def main(words: list[str] | None = None) -> int:
     parser.add_argument(
         "--share", type=float, default=1.0, help="of the faults of the whole, at least one of each kind"
     )
-    parser.add_argument("--only", choices=("files", "runs"))
+    parser.add_argument("--only", choices=PARTS)
     given = parser.parse_args(words)
     counts = QUICK if given.quick else {name: max(1, round(given.share * count)) for name, count in WHOLE.items()}
-    chance = random.Random(given.seed)
+    bad = False
     with tempfile.TemporaryDirectory(prefix="chaos_") as name:
         folder, started = Path(name), time.monotonic()
         chain = chaos_runs.undisturbed(folder / "undisturbed")
         longest_s = time.monotonic() - started
-        outcomes = [] if given.only == "runs" else of_files(chain, folder, counts, chance)
-        outcomes += [] if given.only == "files" else of_runs(chain, folder, counts, chance, longest_s)
-    table = table_of(outcomes)
-    print(table.to_string(index=False))
-    for said in (said for each in outcomes for said in each.said):
-        print(said, file=sys.stderr)
-    if not (given.quick or given.only):
-        table.to_csv(TABLE, index=False)
-        PAGE.write_text(page(table, given.seed), encoding="utf-8")
-    return int(table[list(BAD)].to_numpy().any())
+        for part in PARTS if given.only is None else (given.only,):
+            chance = random.Random(f"{given.seed} {part}")
+            of_part = {
+                "files": lambda chance: of_files(chain, folder, counts, chance),
+                "runs": lambda chance: of_runs(chain, folder, counts, chance, longest_s),
+                "studies": lambda chance: chaos_studies.studies(folder, counts, chance),
+            }
+            outcomes = []
+            for outcome in of_part[part](chance):
+                outcomes.append(outcome)
+                print(f"{time.monotonic() - started:.0f} s: {outcome.what}, {outcome.tried} tried", file=sys.stderr)
+                print(*outcome.said, sep="\n", end="", file=sys.stderr)
+            table = table_of(part, outcomes, given.seed)
+            print(table.to_string(index=False))
+            bad |= bool(table[list(BAD)].to_numpy().any())
+            if not given.quick:
+                whole = with_part(pd.read_csv(TABLE), part, table)
+                whole.to_csv(TABLE, index=False)
+                PAGE.write_text(page(whole), encoding="utf-8")
+    return int(bad)
 
 
 if __name__ == "__main__":

@@ -11,9 +11,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+
+import psutil
 
 from benchmarks.chaos_files import Outcome
 from benchmarks.runs import simulated_run
@@ -33,6 +35,7 @@ SETTINGS = {
 STUDY, RUN = "demo", "R9_convex"
 WEAR = "wear.csv"
 ROOM = 400  # MB, of a disk that is not full
+STILL_S = 1.0  # that a solver stands still at most, and that it goes on
 LONGEST_S = 1800.0  # that a run of seconds may take on a busy machine
 # The reserve is put off, or a disk of the test would never come to be full.
 DRIVER = """
@@ -172,6 +175,26 @@ def filled(expected: Chain, levels: int, momentary: bool, chance: random.Random,
             enlarge(here)
             judge(outcome, chain, expected, words, ended or finished(driver(chain, words)))
             shutil.rmtree(words)
+    return outcome
+
+
+def stuttering(expected: Chain, folder: Path, count: int, chance: random.Random) -> Outcome:
+    """Stop a run's solver and let it go on, again and again, as a machine does that swaps or sleeps."""
+    outcome = Outcome("runs whose solver stands still now and then")
+    for number in range(count):
+        here = folder / f"stuttering_{number}"
+        here.mkdir()
+        chain = twin(expected, here)
+        process = driver(chain, here)
+        while process.poll() is None:
+            with suppress(psutil.NoSuchProcess):
+                for child in psutil.Process(process.pid).children(recursive=True):
+                    child.suspend()
+                    time.sleep(chance.uniform(0.0, STILL_S))
+                    child.resume()
+            time.sleep(chance.uniform(0.0, STILL_S))
+        judge(outcome, chain, expected, here, process.returncode == 0)
+        shutil.rmtree(here)
     return outcome
 
 

@@ -1,6 +1,7 @@
-"""Make a project, or a surface for the solver of CAD and mesh files.
+"""Make a project, or a surface for the solver of CAD and mesh files; tell how far a study is.
 
 python -m bulkwear project DIR
+python -m bulkwear status [STUDY] [--page]
 python -m bulkwear mesh chute.step --unit mm --edge 10 -o chute.vtu
 """
 
@@ -50,6 +51,11 @@ def _parser() -> argparse.ArgumentParser:
     project = commands.add_parser("project", help="make a project: a folder with a small study that works")
     project.add_argument("folder", type=Path, metavar="DIR")
     project.set_defaults(do=_project)
+    status = commands.add_parser("status", help="how far a study is: each run, and the time left of all of them")
+    status.add_argument("study", nargs="?", metavar="STUDY", help="by default the one that last did something")
+    status.add_argument("--cores", type=_cores, metavar="N", help="that it runs on, by default those that it uses now")
+    status.add_argument("--page", action="store_true", help="write results/STUDY/live.html until the study has run")
+    status.set_defaults(do=_status)
     mesh = commands.add_parser("mesh", help="make a surface of CAD and mesh files", description=f"{LENGTHS}.")
     mesh.add_argument(
         "files", nargs="+", type=Path, metavar="FILE", help="STL, STEP, IGES, BREP, OBJ, PLY, VTK, VTU, MSH"
@@ -84,6 +90,26 @@ def _project(given: argparse.Namespace) -> str:
     from bulkwear.workflows.environment.new_project import make_project
 
     return make_project(given.folder)
+
+
+def _cores(word: str) -> int:
+    if not (word.isdecimal() and int(word) > 0):
+        raise argparse.ArgumentTypeError(f"it is '{word}', allowed is a whole number above 0")
+    return int(word)
+
+
+def _status(given: argparse.Namespace) -> str:
+    """Return how far a study is; with `--page` write that again and again before."""
+    from bulkwear.workflows.engine.project import work_here
+    from bulkwear.workflows.forecast.status import latest_study, read_status, status_text
+
+    work_here()
+    study = given.study or latest_study()
+    if not given.page:
+        return status_text(read_status(study, given.cores))
+    from bulkwear.workflows.results.live import write_until_over
+
+    return write_until_over(study, given.cores)
 
 
 def _mesh(given: argparse.Namespace) -> str:

@@ -10,6 +10,7 @@ from snakemake.exceptions import WorkflowError
 from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
+from bulkwear.workflows.config.published_tables import check_published
 from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
 from bulkwear.workflows.config.until import read_round
 from bulkwear.workflows.engine.cases import case_folders
@@ -24,6 +25,7 @@ from bulkwear.workflows.engine.inputs import (
 from bulkwear.workflows.engine.job import let_jobs_import
 from bulkwear.workflows.engine.project import ProjectError, enter_project
 from bulkwear.workflows.engine.solver import LAUNCHER, cycle_fault, executable_of
+from bulkwear.workflows.engine.study_folder import StudyFolderError, date_back, take
 from bulkwear.workflows.engine.templates import DeckError, templates_digest
 from bulkwear.workflows.engine.terminal import Terminal, listen
 from bulkwear.workflows.forecast.rates import rates_file
@@ -68,8 +70,10 @@ def checked_studies():
     try:
         names = named or requested_studies(GIVEN.targets, GIVEN.target_jobs, names=NAMING)
         studies = {name: load_study(name, overrides=settings) for name in names}
-        for study in studies.values() if not GIVEN.target_jobs else ():
-            study.case.check_files(study.runs)
+        if not GIVEN.target_jobs:
+            check_published(PROJECT)
+            for study in studies.values():
+                study.case.check_files(study.runs)
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None
@@ -96,7 +100,10 @@ wildcard_constraints:
 CASES = {study.case.name: study.case for study in STUDIES.values()}
 SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
 # What comes before the tables of a study: on a cluster all that is not named here is one submission.
-BEFORE_TABLES = {"surface_mesh", "cost_rates", "further_packings", *SOLVER_RULES}
+BEFORE_TABLES = {"surface_mesh", "cost_rates", "forecast_table", "further_packings", *SOLVER_RULES}
+
+
+HELD = []  # locks of studies' folders, until Snakemake ends
 
 
 onstart:
@@ -111,6 +118,8 @@ onstart:
         for study in STUDIES:
             if fault := beyond_machine(study, needed.get(study, ()), workflow.dag.needrun_jobs()):
                 raise WorkflowError(fault)
+    for study in sorted({job.wildcards.get("study", "") for job in workflow.dag.needrun_jobs()} & set(STUDIES)):
+        HELD.append(prepared(Path("results") / study))
     for study, jobs in needed.items():
         announce_cost(study, jobs)
         if STUDIES[study].until:
@@ -125,6 +134,17 @@ onsuccess:
             for sentence in answers_of(study.case.name, page.parent):
                 logger.info(f"{study.name}: {sentence}")
             logger.info(f"{study.name}: its page is {page}")
+
+
+def prepared(folder):
+    """The lock of a study's folder, of which no file is of the future any more."""
+    try:
+        lock = take(folder)
+    except StudyFolderError as fault:
+        raise WorkflowError(str(fault)) from None
+    if ahead := date_back(folder):
+        logger.info(f"{folder}: {ahead} files were dated after now, the clock was set back; they are dated now.")
+    return lock
 
 
 def answers_of(case, folder):

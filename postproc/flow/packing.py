@@ -73,7 +73,7 @@ def layer_edges(height: np.ndarray, radius: np.ndarray, median_diameter: float, 
 def packing_profile(particles: pd.DataFrame, edges: np.ndarray, area: float) -> pd.DataFrame:
     """Return how particles are packed layer by layer.
 
-    particles: z_m, radius_m and contacts of each, as from `analysis.bed.read_snapshot`, all over one area (m2)
+    particles: z_m, radius_m and contacts of each, as from `flow.bed.read_snapshot`, all over one area (m2)
     edges: (k + 1,) m, of the layers
 
     Columns layer (from 1, the lowest), height_m (its middle above the lowest edge), particles, coordination_number

@@ -31,7 +31,7 @@ def wear_against_travel(history: pd.DataFrame, remarks: Sequence[str]) -> Figure
     """Draw cumulative wear (mm3) against travel (mm), one small multiple per setting: the mean over its packings, and
     each of them thin where there are several.
 
-    history: as from `analysis.history.wear_history`. Applied volume is drawn where any was applied.
+    history: as from `tables.history.wear_history`. Applied volume is drawn where any was applied.
     """
     rows = list(dict.fromkeys(history["setting"]))
     figure = new_figure(remarks, 4.0 if len(rows) <= FEW_ROWS else LARGEST_HEIGHT)
@@ -150,7 +150,7 @@ def forces(history: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 def sampling_error(errors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     """Draw the error (%) of sampled sliding work against the stride (steps), and the numbers beside it.
 
-    errors: as from `analysis.sampling.sampling_errors`. The error of short windows is against stride 1.
+    errors: as from `benchmarks.sampling_error.sampling_errors`. The error of short windows is against stride 1.
     """
     figure = new_figure(remarks)
     axes, numbers = figure.subplots(1, 2, width_ratios=(3, 2))

@@ -59,7 +59,7 @@ def film_pictures(
 ) -> list[np.ndarray]:
     """Return the frames (h, w, 3) of a film: the surface obliquely, coloured by wear depth, and a section below.
 
-    surfaces: one per frame, the unworn one first; frames: as from `analysis.film.frame_table`; quantity: what the
+    surfaces: one per frame, the unworn one first; frames: as from `tables.film.frame_table`; quantity: what the
     colour is. Colour scale, view, section and exaggeration of the wear are the same on all frames.
     """
     limits = film_limits(surfaces[-1])
@@ -107,7 +107,7 @@ def section_height(sections: Sequence[np.ndarray]) -> float:
 
 
 def frame_title(run: str, frame: Any) -> str:
-    """Return what stands above a frame, a row of `analysis.film.frame_table`."""
+    """Return what stands above a frame, a row of `tables.film.frame_table`."""
     left = frame.bumps_left_percent
     pattern = "" if np.isnan(left) else f", {left:.{0 if left > SMALL_PERCENT else 1}f} % of the pattern left"
     name, travel = (
@@ -142,6 +142,11 @@ def save_film(pictures: Sequence[np.ndarray], path: str | Path, largest: int = L
         film = _packed(shown, COLOUR_COUNTS[-1])
         content = film if len(film) <= largest else None
     Path(path).write_bytes(content if content is not None else _packed(shown, COLOUR_COUNTS[-1]))
+
+
+def save_still(pictures: Sequence[np.ndarray], path: str | Path) -> None:
+    """Write the last picture (h, w, 3) of a film as PNG."""
+    Image.fromarray(pictures[-1]).save(path, "PNG", optimize=True)
 
 
 def _packed(pictures: Sequence[np.ndarray], colours: int) -> bytes:

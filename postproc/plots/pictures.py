@@ -12,7 +12,15 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, worn_faces
-from bulkwear.postproc.plots.scene import bed_bounds, bed_picture, common_bounds, surface_oblique, surface_plan, trimmed
+from bulkwear.postproc.plots.scene import (
+    bed_bounds,
+    bed_picture,
+    common_bounds,
+    surface_oblique,
+    surface_plan,
+    trimmed,
+    worn_side,
+)
 from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
 from bulkwear.postproc.tables.depths import area_quantile, depth_quantity, face_depth
 from bulkwear.postproc.tables.display import MICROMETRES, SQUARE_MILLIMETRES, in_display_units
@@ -20,6 +28,7 @@ from bulkwear.postproc.tables.display import MICROMETRES, SQUARE_MILLIMETRES, in
 ROWS_PER_LINE = 7  # design rows side by side in small multiples
 SINGLES_PER_LINE = 3  # of them where each has one run
 MAPS_HEIGHT = 4.4  # inches, of a figure with maps side by side
+MOST_VIEWS = 4  # surfaces obliquely side by side
 TOP_SHARE = 0.99  # of the worn area: deeper spots share the top colour
 
 
@@ -27,7 +36,7 @@ def colour_limits(depths: pd.DataFrame) -> tuple[float, float]:
     """Return the colour scale (um) of all runs of a figure: 0 to the depth that 99 % of the worn area of
     the run with the deepest wear does not exceed.
 
-    depths: as from `analysis.depth.depth_table`.
+    depths: as from `tables.depths.depth_table`.
     """
     tops = [
         area_quantile(faces["depth_um"].to_numpy(), faces["area_mm2"].to_numpy(), TOP_SHARE)
@@ -46,7 +55,7 @@ def worn_surface(
 ) -> Figure:
     """Draw worn surfaces, all runs on one colour scale: obliquely and from above for one row, else from above only.
 
-    meshes: by run; runs: run, row, surface; depths: as from `analysis.depth.depth_table`; quantity: what the colour is.
+    meshes: by run; runs: run, row, surface; depths: as from `tables.depths.depth_table`; quantity: what the colour is.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     limits, bounds = colour_limits(depths), common_bounds(meshes.values())
@@ -61,6 +70,34 @@ def worn_surface(
         grid[0, column].set_title(run.replace("_", " "))
         picture(grid[1, column], *surface_plan(meshes[run], deformed, limits))
         grid[1, column].set(xlabel="Across the travel, x (mm)", ylabel="y (mm)\nbed moves to +y →")
+    _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
+    return figure
+
+
+def surface_views(
+    meshes: Mapping[str, SurfaceMesh], deformed: bool, depths: pd.DataFrame, quantity: str, remarks: Sequence[str]
+) -> Figure:
+    """Draw worn surfaces obliquely side by side, from where their wear is seen, all on one colour scale; of more than
+    MOST_VIEWS the first ones.
+
+    meshes: by run; depths: as from `tables.depths.depth_table`; quantity: what the colour is
+    """
+    shown = dict(list(meshes.items())[:MOST_VIEWS])
+    if len(shown) < len(meshes):
+        remarks = [*remarks, f"the first {len(shown)} of {len(meshes)} runs are shown"]
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    limits, bounds = colour_limits(depths), common_bounds(shown.values())
+    seen_from = worn_side(shown.values(), deformed)
+    views = trimmed([surface_oblique(mesh, deformed, limits, bounds, direction=seen_from) for mesh in shown.values()])
+    height, width = views[0].shape[:2]
+    columns = len(shown) if height > width else math.ceil(math.sqrt(len(shown)))
+    grid = figure.subplots(math.ceil(len(shown) / columns), columns, squeeze=False)
+    for axes in grid.ravel()[len(shown) :]:
+        axes.set_axis_off()
+    for axes, run, pixels in zip(grid.ravel(), shown, views, strict=False):
+        picture(axes, pixels)
+        axes.set_title(run.replace("_", " "))
+    unit, ticks = scaled("µm", limits[1])
     _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
     return figure
 
@@ -151,7 +188,7 @@ def bed(
     """Draw the bed over the sample, cut open along the travel, one picture per run; colour: speed over the
     sample.
 
-    cuts: particles by run, as from `analysis.bed.behind_cut`; meshes: worn surfaces by run.
+    cuts: particles by run, as from `flow.bed.behind_cut`; meshes: worn surfaces by run.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     limits = (0.0, max(float(cut["speed_m_per_s"].quantile(0.98)) for cut in cuts.values()))

@@ -32,7 +32,7 @@ SURFACE_COLOURS = (BLUE, ORANGE, "#009E73", "#CC79A7")
 def depth_maps(cells: pd.DataFrame, pristine: SurfaceMesh, names: Sequence[str], remarks: Sequence[str]) -> Figure:
     """Draw the measured depth (um) in plan and obliquely, and of every worn surface its depth and the deviation.
 
-    cells: as from `analysis.scan_comparison.depth_cells`; names: of the worn surfaces, as in its columns. All depths
+    cells: as from `scans.comparison.depth_cells`; names: of the worn surfaces, as in its columns. All depths
     share a scale; deviations share one about zero: positive where the scan stands out of the worn surface.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
@@ -83,7 +83,7 @@ def bump_sections(
 ) -> Figure:
     """Draw the sections of some bumps, side view above, front view below: pristine, measured with a band, simulated.
 
-    sections: as from `analysis.scan_comparison.bump_sections`; names: of the worn surfaces; accuracy: um.
+    sections: as from `scans.comparison.bump_sections`; names: of the worn surfaces; accuracy: um.
     """
     figure, panels = _panels(sections, bumps, "Height (mm)", remarks)
     for axes, section in panels:

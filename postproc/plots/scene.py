@@ -8,15 +8,21 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.mesh import SurfaceMesh, boundary_edges, worn_faces
+from bulkwear.postproc.mesh import SurfaceMesh, area_vectors, boundary_edges, worn_faces
 from bulkwear.postproc.plots.style import MAP, SKIRT_COLOUR
-from bulkwear.postproc.tables.depths import face_depth
+from bulkwear.postproc.tables.depths import face_depth, held_back_faces
 from bulkwear.postproc.tables.display import MICROMETRES, MILLIMETRES
 
+Direction = tuple[float, float, float]
+
 OBLIQUE = (0.55, -1.0, 0.75)  # from upstream, above: the bed comes towards the back
+OTHER_OBLIQUE = tuple((x, y, z) for z in (0.75, -0.75) for x in (0.55, -0.55) for y in (-1.0, 1.0))[1:]
+SEEN_BETTER = 1.2  # -, over what is seen of the wear from OBLIQUE, before another direction is taken
 FROM_THE_CUT = (1.0, -0.25, 0.32)  # from the side on which the bed is cut away
 MARGIN = 1.03  # -, room round what is shown
 SPHERE_SIDES = 10  # of a particle's sphere: round enough at a few pixels
+HATCH_LINES = 40  # across a surface's box
+HATCH_NORMAL = np.array([1.0, 1.0, 1.0]) / np.sqrt(3.0)  # of the planes that cut hatching: along no edge of a sample
 WHITE = 255  # of a pixel's background
 STEEL = "#9aa0a6"
 
@@ -48,8 +54,18 @@ def _outline(mesh: SurfaceMesh):
     return load_pyvista().PolyData(mesh.points * MILLIMETRES, lines=lines.ravel())
 
 
-def add_sample(plotter, mesh: SurfaceMesh, depth: np.ndarray, limits: tuple[float, float]) -> None:
-    """Add a worn surface: faces that wear by depth (m; colours in um), skirt grey, edge of the sample black."""
+def _hatching(mesh: SurfaceMesh, faces: np.ndarray):
+    """Return lines (mm) across some faces (m,), where parallel planes cut them; nothing where none does."""
+    surface, along = _poly(mesh.points, mesh.triangles[faces]), mesh.points * MILLIMETRES @ HATCH_NORMAL
+    levels = np.linspace(along.min(), along.max(), HATCH_LINES + 2)[1:-1]
+    return surface.contour(levels, scalars=along)
+
+
+def add_sample(plotter, mesh: SurfaceMesh, depth: np.ndarray, limits: tuple[float, float], deformed: bool) -> None:
+    """Add a worn surface: faces that wear by depth (m; colours in um), skirt grey, edge of the sample black.
+
+    deformed: hatch where caps on a step hold wear back, see `tables.depths.held_back_faces`.
+    """
     worn = worn_faces(mesh)
     surface = _poly(mesh.points, mesh.triangles[worn])
     surface.cell_data["depth"] = depth[worn] * MICROMETRES
@@ -57,6 +73,9 @@ def add_sample(plotter, mesh: SurfaceMesh, depth: np.ndarray, limits: tuple[floa
     if not worn.all():
         plotter.add_mesh(_poly(mesh.points, mesh.triangles[~worn]), color=SKIRT_COLOUR, **_matt())
     plotter.add_mesh(_outline(mesh), color="black", line_width=1.5)
+    held = held_back_faces(mesh) if deformed else np.zeros(len(mesh.triangles), dtype=bool)
+    if held.any() and (lines := _hatching(mesh, held)).n_points:
+        plotter.add_mesh(lines, color="black", line_width=2.0, render_lines_as_tubes=True, lighting=False)
 
 
 def _matt() -> dict[str, float]:
@@ -64,7 +83,7 @@ def _matt() -> dict[str, float]:
     return {"ambient": 0.45, "diffuse": 0.55, "specular": 0.0}
 
 
-def _look(plotter, direction: tuple[float, float, float], bounds: np.ndarray) -> None:
+def _look(plotter, direction: Direction, bounds: np.ndarray) -> None:
     """Look from a direction, z up, at a box with these bounds (3, 2) in mm, as large as the window takes."""
     centre = bounds.mean(axis=1)
     corners = np.stack(np.meshgrid(*bounds), axis=-1).reshape(-1, 3) - centre
@@ -104,12 +123,27 @@ def surface_oblique(
     limits: tuple[float, float],
     bounds: np.ndarray,
     size: tuple[int, int] = (1300, 720),
+    direction: Direction = OBLIQUE,
 ) -> np.ndarray:
     """Return pixels (h, w, 3) of a worn surface seen obliquely.
 
-    limits: um, see `analysis.depth.face_depth`; bounds: (3, 2) mm, what the picture takes in.
+    limits: um, see `tables.depths.face_depth`; bounds: (3, 2) mm, what the picture takes in; direction: to the eye
     """
-    return depth_oblique(mesh, face_depth(mesh, deformed), limits, bounds, size)
+    return depth_oblique(mesh, face_depth(mesh, deformed), limits, bounds, size, direction, deformed)
+
+
+def worn_side(meshes: Iterable[SurfaceMesh], deformed: bool) -> Direction:
+    """Return the oblique direction from which most of the wear is seen: OBLIQUE, unless another one shows far more.
+
+    What hides behind other faces counts as seen.
+    """
+    seen = dict.fromkeys((OBLIQUE, *OTHER_OBLIQUE), 0.0)
+    for mesh in meshes:
+        worn = np.nan_to_num(face_depth(mesh, deformed))[:, None] * area_vectors(mesh.points, mesh.triangles)
+        for direction in seen:
+            seen[direction] += float(np.maximum(worn @ np.array(direction), 0.0).sum())
+    best = max(seen, key=seen.__getitem__)
+    return best if seen[best] > SEEN_BETTER * seen[OBLIQUE] else OBLIQUE
 
 
 def depth_oblique(
@@ -118,14 +152,17 @@ def depth_oblique(
     limits: tuple[float, float],
     bounds: np.ndarray,
     size: tuple[int, int] = (1300, 720),
+    direction: Direction = OBLIQUE,
+    deformed: bool = False,
 ) -> np.ndarray:
     """Return pixels (h, w, 3) of a surface seen obliquely, coloured by any depth (m,) m of its triangles.
 
     limits: um; bounds: (3, 2) mm, what the picture takes in. Triangles without a depth (NaN) are grey.
+    deformed: the surface carries wear that is not in its shape, which is hatched.
     """
     plotter = new_plotter(size)
-    add_sample(plotter, mesh, depth, limits)
-    _look(plotter, OBLIQUE, bounds)
+    add_sample(plotter, mesh, depth, limits, deformed)
+    _look(plotter, direction, bounds)
     return pixels_of(plotter)
 
 
@@ -140,7 +177,7 @@ def surface_plan(
     low, high = shown[:, :2].min(axis=0) * MILLIMETRES, shown[:, :2].max(axis=0) * MILLIMETRES
     width, height = np.maximum(np.round((high - low) * longest / (high - low).max()), 1).astype(int)
     plotter = new_plotter((int(width), int(height)))
-    add_sample(plotter, mesh, face_depth(mesh, deformed), limits)
+    add_sample(plotter, mesh, face_depth(mesh, deformed), limits, deformed)
     middle, top = (low + high) / 2.0, float(mesh.points[:, 2].max()) * MILLIMETRES
     far = float((high - low).max())
     plotter.camera_position = [(*middle, top + far), (*middle, top), (0.0, 1.0, 0.0)]
@@ -165,7 +202,7 @@ def bed_picture(
 ) -> np.ndarray:
     """Return pixels (h, w, 3) of particles (colour: speed within limits, m/s) with the sample that they slide over.
 
-    particles: as from `analysis.bed`, already cut; bounds: (3, 2) mm, what the picture takes in.
+    particles: as from `flow.bed`, already cut; bounds: (3, 2) mm, what the picture takes in.
     """
     cloud = load_pyvista().PolyData(particles[["x_m", "y_m", "z_m"]].to_numpy() * MILLIMETRES)
     cloud["diameter"] = particles["radius_m"].to_numpy() * 2.0 * MILLIMETRES

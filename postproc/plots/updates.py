@@ -39,7 +39,7 @@ BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 def wear_updates(updates: pd.DataFrame, angle_bound: float, remarks: Sequence[str]) -> Figure:
     """Draw volumes, steps, angle with remeshed faces and the balance of each update against travel (mm).
 
-    updates: as from `analysis.updates.wear_updates`; angle_bound: degrees, below which faces are remeshed.
+    updates: as from `tables.updates.wear_updates`; angle_bound: degrees, below which faces are remeshed.
     """
     figure, panels = _panels(remarks, angle_bound)
     faces = _face_axes(panels[ANGLE], updates)
@@ -65,7 +65,7 @@ def wear_updates(updates: pd.DataFrame, angle_bound: float, remarks: Sequence[st
 def worst_updates(summary: pd.DataFrame, angle_bound: float, remarks: Sequence[str]) -> Figure:
     """Draw the worst update of each setting and surface: points, and remeshed faces as bars.
 
-    summary: as from `analysis.updates.update_summary`; angle_bound: degrees, below which faces are remeshed.
+    summary: as from `tables.updates.update_summary`; angle_bound: degrees, below which faces are remeshed.
     """
     figure, panels = _panels(remarks, angle_bound)
     rows, surfaces = (list(dict.fromkeys(summary[name])) for name in ("setting", "surface"))

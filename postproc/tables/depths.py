@@ -17,6 +17,7 @@ from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MIL
 from bulkwear.postproc.wear.fields import CARRIED_VOLUME, REMOVED_THICKNESS
 
 WORN_VOLUME = "worn_volume_m3"
+HELD_BACK_SHARE = 0.1  # -, of a face's depth: less that is not in the shape yet cannot be seen in it
 ROUNDED_SHARE = 1e-9  # -, of the worn volume: less is rounding of the displacement, which balances to that
 CORNERS = 3.0  # of a triangle
 DISTRIBUTION_LEVELS = 200  # points of a distribution's curve
@@ -68,6 +69,13 @@ def carried_share(mesh: SurfaceMesh) -> float:
     return float(mesh.point_data[CARRIED_VOLUME].sum()) / total if total else 0.0
 
 
+def held_back_faces(mesh: SurfaceMesh) -> np.ndarray:
+    """Return the mask (m,) of worn faces of whose depth caps on a step hold back `HELD_BACK_SHARE` or more."""
+    depth = face_depth(mesh, True)
+    applied = mesh.point_data[REMOVED_THICKNESS][mesh.triangles].mean(axis=1)
+    return worn_faces(mesh) & (depth > 0.0) & (depth - applied >= HELD_BACK_SHARE * depth)
+
+
 def carried_remark(meshes: Mapping[str, SurfaceMesh], deformed: bool) -> str:
     """Return what a map of depth must say about the volume that is not in the shape."""
     if not deformed:
@@ -75,7 +83,10 @@ def carried_remark(meshes: Mapping[str, SurfaceMesh], deformed: bool) -> str:
     share = max(carried_share(mesh) for mesh in meshes.values())
     if abs(share) < ROUNDED_SHARE:
         return "all worn volume is applied, nothing is carried"
-    return f"caps on a step hold back up to {100.0 * share:.3g} % of a run's wear: in the colours, not yet in the shape"
+    held = f"caps on a step hold back up to {100.0 * share:.3g} % of a run's wear: in the colours, not yet in the shape"
+    if any(held_back_faces(mesh).any() for mesh in meshes.values()):
+        return f"{held} (hatched: {100.0 * HELD_BACK_SHARE:.0f} % or more of the depth there)"
+    return held
 
 
 def read_worn_surfaces(runs: Sequence[str], paths: Sequence[str]) -> dict[str, SurfaceMesh]:

@@ -1,12 +1,13 @@
 """A little of `make chaos`: files and configurations under faults, without the solver."""
 
 import random
+import re
 import shutil
 
 import pytest
 
 from benchmarks import chaos_files
-from benchmarks.chaos import BAD, CONFIGURATION, SAMPLES, SEED, page, spoilt_project, table_of
+from benchmarks.chaos import BAD, CONFIGURATION, SAMPLES, SEED, page, spoilt_project, table_of, with_part
 from benchmarks.chaos_files import Outcome
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.wear_step import TOTALS
@@ -74,5 +75,15 @@ def test_what_is_not_told_counts_as_a_traceback():
 
 def test_the_page_has_a_row_per_kind_of_fault():
     """With what must be 0 beside what was tried."""
-    text = page(table_of([Outcome("flips", tried=7, refused=7)]), SEED)
-    assert f"seed {SEED}" in text and "| flips | 7 | 7 | 0 | 0 | 0 | 0 | 0 |" in text
+    text = page(table_of("files", [Outcome("flips", tried=7, refused=7)], SEED))
+    assert re.search(rf"\| {SEED} \| \d{{4}}-\d\d-\d\d \| flips \| 7 \| 7 \| 0 \| 0 \| 0 \| 0 \| 0 \|", text)
+
+
+def test_a_part_that_is_tried_again_takes_the_place_of_its_rows():
+    """Those of other parts stay, and all keep their order."""
+    first = table_of("runs", [Outcome("kills", tried=3)], SEED)
+    both = with_part(first, "files", table_of("files", [Outcome("flips", tried=7), Outcome("reads", tried=2)], SEED))
+    assert list(both["what"]) == ["flips", "reads", "kills"]
+    again = with_part(both, "files", table_of("files", [Outcome("flips", tried=9)], SEED + 1))
+    assert list(again["what"]) == ["flips", "kills"] and list(again["tried"]) == [9, 3]
+    assert list(again["seed"]) == [SEED + 1, SEED]

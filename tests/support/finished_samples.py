@@ -75,9 +75,10 @@ def _write_figures(folder: Path, study: Study, wear_files: list[Path]) -> None:
     for product in figures_of(study):
         content = INNER_PAGE.encode() if product.suffix == "html" else PICTURE + product.name.encode()
         (folder / "figures" / product.file).write_bytes(content)
-        for file in product.vectors.values():
+        for file in (*product.vectors.values(), *product.stills.values()):
             (folder / "figures" / file).write_bytes(PICTURE + file.encode())
-        (folder / "figures" / f"{product.name}.csv").write_text(f"name\n{product.name}\n")
+        row = "" if product.finding else f"{product.name}\n"  # a finding reads its own columns
+        (folder / "figures" / f"{product.name}.csv").write_text(f"name\n{row}")
     runs = pd.DataFrame([{"run": run.name, "surface": run.surface} for run in study.runs])
     faces = runs.assign(depth_um=1.0, area_mm2=2.0)
     tables = {

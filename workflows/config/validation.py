@@ -237,7 +237,7 @@ def read_design(
     """
     source = display_name(path, root)
     header, rows = read_csv_rows(path, root)
-    _check_columns(header, schema, source)
+    check_columns(header, schema, source)
     lines: dict[str, int] = {}
     checked = []
     for line, cells in rows:
@@ -253,7 +253,7 @@ def read_design(
                 " allowed is each name once."
             )
         lines[name] = line
-        values = {c: _cell(v, schema["properties"][c]) for c, v in cells.items() if v or c in schema["required"]}
+        values = {c: cell_value(v, schema["properties"][c]) for c, v in cells.items() if v or c in schema["required"]}
         layer = Layer(source, values, {(): line}, f"row {name}" if name else "")
         try:
             check_layer(layer, schema)
@@ -265,7 +265,7 @@ def read_design(
     return checked
 
 
-def _cell(text: str, schema: dict[str, Any]) -> Any:
+def cell_value(text: str, schema: dict[str, Any]) -> Any:
     """Return the value of a cell: a number or a boolean where it spells one and the column is no text."""
     if schema.get("type") == "boolean":
         return {"true": True, "false": False}.get(text, text)
@@ -274,7 +274,8 @@ def _cell(text: str, schema: dict[str, Any]) -> Any:
     return float(text) if schema.get("type") in NUMBERS and NUMBER.match(text) else text
 
 
-def _check_columns(header: list[str], schema: dict[str, Any], source: str) -> None:
+def check_columns(header: list[str], schema: dict[str, Any], source: str) -> None:
+    """Raise ConfigError for a column of a table's header that its schema does not know, and one that it lacks."""
     for column in header:
         if column not in schema["properties"]:
             raise ConfigError(f"{source}, header: {unknown_key((column,), schema, noun='column')}.")

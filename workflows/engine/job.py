@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import errno
 import os
 import sys
 import time
@@ -18,7 +19,10 @@ from bulkwear.workflows.engine.machine import machine_facts
 from bulkwear.workflows.engine.project import enter_project
 
 SECONDS_BETWEEN_LINES = 15.0
+WITHOUT_THREAD = ("can't start new thread", os.strerror(errno.EAGAIN))  # Python's words, and those of C++
+STARTED = "--- started %Y-%m-%d %H:%M:%S"  # begins what a log says of a start of its job
 STOPPED = "Stopped by Ctrl-C. The same command goes on after the last finished cycle or piece."
+UNITS = {"s": 1, "min": 60, "h": 3600}  # s, of durations
 INTERRUPTED = 130  # exit code of what Ctrl-C has ended
 SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
 
@@ -57,7 +61,7 @@ def project_job(log_path: str | Path) -> Iterator[None]:
     it is said once for all jobs, see `terminal`.
     """
     with open(log_path, "a") as log, contextlib.redirect_stderr(_Both(sys.stderr, log)):
-        print(time.strftime("--- started %Y-%m-%d %H:%M:%S"), file=log)
+        print(time.strftime(STARTED), file=log)
         try:
             enter_project(Path.cwd())
             yield
@@ -73,11 +77,17 @@ def project_job(log_path: str | Path) -> Iterator[None]:
             raise
 
 
+def is_exhausted(fault: BaseException) -> bool:
+    """Return whether a fault is of the machine's memory; libraries tell a thread without memory by its errno alone."""
+    of_threads = isinstance(fault, RuntimeError) and str(fault) in WITHOUT_THREAD
+    return isinstance(fault, MemoryError) or of_threads or getattr(fault, "errno", None) == errno.ENOMEM
+
+
 def sentence(fault: BaseException) -> str:
     """Return a fault in one sentence; those of the machine say what it lacks and what to do."""
     if is_full(fault):
         return full_sentence(Path.cwd())
-    if isinstance(fault, MemoryError):
+    if is_exhausted(fault):
         return (
             f"The memory is exhausted, {machine_facts()['memory_gb']} GB for all jobs together; start again with fewer"
             " of them side by side (--cores 1), or with larger elements or a larger particle_scale. Finished cycles and"
@@ -93,6 +103,12 @@ def duration_text(seconds: float) -> str:
         return f"{whole} s"
     minutes, rest = divmod(whole, 60)
     return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def seconds_of(text: str) -> float:
+    """Return the seconds of a duration as `duration_text` says it; it rounds, so they are those of its last unit."""
+    words = text.split()
+    return float(sum(int(number) * UNITS[unit] for number, unit in zip(words[::2], words[1::2], strict=True)))
 
 
 class Progress:

@@ -21,6 +21,7 @@ from bulkwear.workflows.engine.records import RecordError, read_record, write_re
 from bulkwear.workflows.engine.records import digest as digest  # hashes of inputs are made where states are
 
 STATE = "state.json"
+LOCK = ".lock"  # of a folder that a process works on, which has it locked
 DIGEST_LETTERS = 12  # of the hash, in the name of a superseded folder
 
 
@@ -236,7 +237,7 @@ def _move(folders: Iterable[Path], target: Path) -> None:
 def only_driver(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
     """Hold a folder's lock; the kernel releases it with the process. Waits, and says so, while another one holds it."""
     folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / ".lock", "a+") as lock:
+    with open(folder / LOCK, "a+") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

@@ -280,6 +280,14 @@ def check_gmsh(python: str = sys.executable) -> Finding:
     return Finding("gmsh", "missing", last_line(probe.output), SET_UP)
 
 
+def check_browser() -> Finding:
+    """Chromium prints pages; without it they are HTML alone."""
+    found = shutil.which("chromium") or shutil.which("chromium-browser")
+    if found:
+        return Finding("browser", "OK", found)
+    return Finding("browser", "low", "no Chromium on PATH", f"{SET_UP}: report.pdf needs it, all else does not")
+
+
 def check_disk(folder: Path = REPOSITORY / "results") -> Finding:
     """Results need LEAST_FREE_DISK_GB on the disk they go to, and should have ADVISABLE_FREE_DISK_GB."""
     existing = next(path for path in (folder, *folder.parents) if path.exists())
@@ -317,6 +325,7 @@ def findings() -> Iterable[Finding]:
         check_ledger,
         check_rendering,
         check_gmsh,
+        check_browser,
         check_disk,
         check_cores,
         check_memory,

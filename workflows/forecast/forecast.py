@@ -134,7 +134,7 @@ def forecast_text(heading: str, study: str, table: pd.DataFrame, cores: int, sai
         [
             f"Forecast of {heading}",
             "",
-            *_aligned([list(SHOWN.values()), *rows]),
+            *aligned([list(SHOWN.values()), *rows]),
             "",
             summary_line(study, totals(table, cores), cores) + ".",
             f"Wall time on more cores: {more}.",
@@ -185,7 +185,7 @@ def number_text(value: float | str) -> str:
     )
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     """Return rows of text as lines with aligned columns, the first one to the left."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [

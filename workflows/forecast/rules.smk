@@ -20,6 +20,8 @@ rule forecast_table:
         "results/{study}/forecast.csv",
     log:
         "results/{study}/logs/forecast_table.log",
+    localrule: True  # at once, not with the tables: `status` tells the time left by it
+    priority: 2
     params:
         work=lambda wildcards: solver_work(wildcards.study)(wildcards),
         fidelity=lambda wildcards: study_of(wildcards).fidelity,

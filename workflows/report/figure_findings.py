@@ -5,25 +5,20 @@ from __future__ import annotations
 import pandas as pd
 
 from bulkwear.postproc.tables.depths import depth_summary
-from bulkwear.workflows.report.text import number
+from bulkwear.workflows.report.sentences import PERCENT, listed, measured
+from bulkwear.workflows.report.text import range_text
 
 HALF = 0.5  # -, of an area
-PERCENT = 100.0
-DIGITS = 2
-
-
-def _said(value: float, unit: str) -> str:
-    return f"{number(float(value), DIGITS)} {unit}"
 
 
 def deepest_run(depths: pd.DataFrame) -> str:
     """Return which run wears deepest, and how deep the most worn hundredth of each run's area is."""
     found = depth_summary(depths).sort_values("depth_of_99_percent_um", ascending=False, kind="stable")
     first, last = found.iloc[0], found.iloc[-1]
-    said = f"{first['run']} wears deepest: a hundredth of its area by {_said(first['depth_of_99_percent_um'], 'µm')}"
+    said = f"{first['run']} wears deepest: a hundredth of its area by {measured(first['depth_of_99_percent_um'], 'µm')}"
     if len(found) == 1:
         return f"{said} or more."
-    return f"{said} or more, of {last['run']} by {_said(last['depth_of_99_percent_um'], 'µm')}."
+    return f"{said} or more, of {last['run']} by {measured(last['depth_of_99_percent_um'], 'µm')}."
 
 
 def depth_of_half(shares: pd.DataFrame) -> str:
@@ -31,7 +26,7 @@ def depth_of_half(shares: pd.DataFrame) -> str:
     said = []
     for run, curve in shares.groupby("run", sort=False):
         deeper = curve[curve["area_share_percent"] >= PERCENT * HALF]["depth_um"]
-        depth = f"deeper than {_said(deeper.max(), 'µm')}" if len(deeper) else "hardly or not at all"
+        depth = f"deeper than {measured(deeper.max(), 'µm')}" if len(deeper) else "hardly or not at all"
         said.append((run, depth))
     shown = "; ".join(f"half of {run} is worn {depth}" for run, depth in said[:4])
     return f"{shown[0].upper()}{shown[1:]}."
@@ -41,8 +36,10 @@ def total_wear(history: pd.DataFrame) -> str:
     """Return how much each surface has lost in the end, mean over all runs. history: one row per run and cycle."""
     last = history.groupby("run", sort=False).last()
     means = last.groupby("surface", sort=False)[["worn_volume_mm3", "travel_mm"]].mean()
-    worn = ", ".join(f"{surface} samples {_said(row['worn_volume_mm3'], 'mm³')}" for surface, row in means.iterrows())
-    return f"After {_said(means['travel_mm'].max(), 'mm')} of travel {worn} are worn, on average."
+    worn = ", ".join(
+        f"{surface} samples {measured(row['worn_volume_mm3'], 'mm³')}" for surface, row in means.iterrows()
+    )
+    return f"After {measured(means['travel_mm'].max(), 'mm')} of travel {worn} are worn, on average."
 
 
 def largest_step(updates: pd.DataFrame) -> str:
@@ -58,7 +55,7 @@ def pattern_in_film(frames: pd.DataFrame) -> str:
     """Return what is left of a filmed pattern in the end, or how deep a plain sample is worn."""
     last = frames.iloc[-1]
     if pd.isna(last["bumps_left_percent"]):
-        return f"{last['run']} is worn by up to {_said(last['largest_depth_um'], 'µm')} in the end."
+        return f"{last['run']} is worn by up to {measured(last['largest_depth_um'], 'µm')} in the end."
     return f"{last['run']} keeps {last['bumps_left_percent']:.4g} % of its pattern."
 
 
@@ -81,7 +78,32 @@ def mean_forces(table: pd.DataFrame) -> str:
         columns = {f"{name}_force_N": name for name in ("vertical", "drag")}
         means = table.groupby("surface", sort=False)[list(columns)].mean().rename(columns=columns)
     said = [
-        f"{surface} samples with " + " and ".join(f"{_said(row[name], 'N')} ({name})" for name in means)
+        f"{surface} samples with " + " and ".join(f"{measured(row[name], 'N')} ({name})" for name in means)
         for surface, row in means.iterrows()
     ]
     return f"On average the bed loads {', '.join(said)}."
+
+
+def finnie_over_law(table: pd.DataFrame) -> str:
+    """Return Finnie's volume over the study's law by surface. table: a row per setting and surface, with the ratio."""
+    said = [
+        f"{range_text([PERCENT * each for each in rows['finnie_over_archard']])} % on {surface} samples"
+        for surface, rows in table.groupby("surface", sort=False)
+    ]
+    return f"The solver's Finnie volume is, of that by the study's law, {listed(said)}."
+
+
+def particle_speeds(particles: pd.DataFrame) -> str:
+    """Return the mean speed of the particles shown over each sample. particles: of a snapshot, with their run."""
+    return f"The particles shown pass the sample at {_means(particles, 'speed_m_per_s', 'm/s')}, on average."
+
+
+def particle_spins(particles: pd.DataFrame) -> str:
+    """Return the mean angular speed of the particles shown over each sample, each once. particles: of all views."""
+    shown = particles.drop_duplicates(["run", "id"])
+    return f"The particles shown turn at {_means(shown, 'angular_speed_deg_per_s', '°/s')}, on average."
+
+
+def _means(particles: pd.DataFrame, column: str, unit: str) -> str:
+    means = particles.groupby("run", sort=False)[column].mean()
+    return listed([f"{measured(value, unit)} over {run}" for run, value in means.items()])

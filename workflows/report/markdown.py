@@ -11,6 +11,7 @@ import argparse
 import sys
 import textwrap
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from types import MappingProxyType
@@ -25,8 +26,9 @@ from bulkwear.workflows.config.design import Study, load_study
 from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.engine.state import STATE
-from bulkwear.workflows.report.page import cost_totals, jobs_of, package_version
+from bulkwear.workflows.report.page import cost_totals, finding_of, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
+from bulkwear.workflows.report.products import figures_of
 from bulkwear.workflows.report.provenance_of_pages import FILE, LINE, Origin, keep_origin, recorded, with_banner
 from bulkwear.workflows.report.published import write_published_numbers
 from bulkwear.workflows.report.sections import (
@@ -85,8 +87,33 @@ def solver_words(log: Path) -> str:
     return said.removeprefix("Version ").partition(",")[0]
 
 
-def written(block: Block, name: str) -> str:
-    """Return a block of a section in Markdown; name: of study and fidelity, with which its pictures' names begin."""
+@dataclass(frozen=True)
+class Caption:
+    """What stands beside a picture: title of the figure, what it shows ("" where that is not told), what is drawn."""
+
+    title: str
+    finding: str
+    drawn: str
+
+
+def untold(figure: str) -> Caption:
+    """Return the caption of a figure of which the name alone is known."""
+    return Caption(figure.replace("_", " "), "", "")
+
+
+def picture(file: str, caption: Caption) -> str:
+    """Return a picture in Markdown with its caption, the finding first; it is the alternative text, too."""
+    shown = caption.finding or f"{caption.title}."
+    told = f"{caption.title}. " if caption.finding else ""
+    alternative = shown.replace("[", "(").replace("]", ")")
+    return f"![{alternative}]({file})\n\n{prose(f'**{shown}** {told}{caption.drawn}')}\n"
+
+
+def written(block: Block, name: str, captions: Mapping[str, Caption] = MappingProxyType({})) -> str:
+    """Return a block of a section in Markdown.
+
+    name: of study and fidelity, with which its pictures' names begin; captions: of the figures by name
+    """
     if isinstance(block, Text):
         return prose(block.text) + "\n"
     if isinstance(block, Points):
@@ -100,7 +127,7 @@ def written(block: Block, name: str) -> str:
         return markdown(block.data, block.digits) + note
     if isinstance(block, Listing):
         return f"{block.title}:\n\n```\n{block.content.rstrip()}\n```\n"
-    return "\n".join(f"![{shown.replace('_', ' ')}]({picture_file(name, shown)})\n" for shown in block.names)
+    return "\n".join(picture(picture_file(name, each), captions.get(each) or untold(each)) for each in block.names)
 
 
 def picture_file(name: str, figure: str) -> str:
@@ -119,10 +146,10 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
     figures = [name for name, words in told["figures"].items() if words["file"].endswith(".png")]
     kept = [found for section in with_verdict(told, folder) if (found := shown(section, figures))]
     pictures = pictures_of(kept, folder)
-    name = f"{study.name}_{study.fidelity}"
+    name, captions = f"{study.name}_{study.fidelity}", captions_of(study, folder, pictures)
     parts = [HEAD.format(title=study.title, fidelity=study.fidelity, folder=study.name), provenance(folder, study)]
     for section in kept:
-        parts.append(f"## {section.title}\n\n" + "\n".join(written(block, name) for block in section.blocks))
+        parts.append(f"## {section.title}\n\n" + "\n".join(written(block, name, captions) for block in section.blocks))
     if study.case.wears:
         parts.append(f"## Durations\n\n{durations(folder, told)}")
     path = docs / f"{study.name}_results_{study.fidelity}.md"
@@ -134,6 +161,16 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
         keep_origin(docs, origin_of(path.name, folder, study))
         write_published_numbers(docs, path.name, kept)
     return path
+
+
+def captions_of(study: Study, folder: Path, pictures: Iterable[Path]) -> dict[str, Caption]:
+    """Return the captions of pictures of a study by the names of their figures; folder: results/<study>."""
+    shown = {path.stem for path in pictures}
+    return {
+        each.name: Caption(each.title, finding_of(each, folder), " ".join(each.paragraphs))
+        for each in figures_of(study)
+        if each.name in shown
+    }
 
 
 def pictures_of(sections: Iterable[Section], folder: Path) -> list[Path]:

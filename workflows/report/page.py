@@ -82,8 +82,13 @@ def environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters |= {"number": number, "kind": kind, "cells": cells}
+    found.filters |= {"number": number, "kind": kind, "cells": cells, "css": css_text}
     return found
+
+
+def css_text(text: str) -> str:
+    """Return a text as it stands between quotes in a style sheet."""
+    return "".join(letter if letter.isalnum() or letter == " " else f"\\{ord(letter):x} " for letter in text)
 
 
 def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -145,23 +150,32 @@ def cells(table: Table) -> dict[str, Any]:
 
 def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path) -> dict[str, Any]:
     """Return one figure of the page: number, title, what it shows in a sentence, caption, picture and chart, or page,
-    and files.
+    what stands for it in print, and files.
     """
     told, figures = study["figures"][product.name], folder / "figures"
     file, table = figures / told["file"], figures / f"{product.name}.csv"
     interactive = file.suffix == ".html"
-    finding = product.finding(pd.read_csv(table, dtype=NAMES)) if product.finding else ""
+    still = product.stills.get("still")
     return {
         "name": product.name,
         "number": index,
         "title": told["title"],
-        "finding": finding,
+        "finding": finding_of(product, folder),
         "caption": told["caption"],
         "page": within_a_page(file.read_text(encoding="utf-8")) if interactive else None,
         "chart": chart_text(product, told["beside"], folder),
         "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
+        "still": data_uri((figures / still).read_bytes(), "image/png") if still else None,
         "files": [linked(study, figures / name) for name in (table.name, *product.vectors.values())],
     }
+
+
+def finding_of(product: Product, folder: Path) -> str:
+    """Return in a sentence what a figure of results/<study> shows; "" where its table has no row that tells it."""
+    if product.finding is None:
+        return ""
+    table = pd.read_csv(folder / "figures" / f"{product.name}.csv", dtype=NAMES)
+    return "" if table.empty else product.finding(table)
 
 
 def linked(study: Mapping[str, Any], path: Path) -> dict[str, Any]:

@@ -55,7 +55,9 @@ class Product:
     when: whether a study has it
     title, category, caption: of a figure; the caption's paragraphs are apart by an empty line
     suffix: png of a figure of matplotlib, which is written as VECTORS too; gif of a film, html of an interactive page
-    finding: takes the figure's table and returns in one sentence what the figure shows; None: the title stands for it
+    still: whether the function that writes a film or a page writes a PNG as well, which stands for it in print
+    finding: takes the figure's table, which has a row or more, and returns in one sentence what the figure shows, "" if
+        its rows do not tell it; the title then stands for it, as with None
     charts: what of its table is interactive on the page, the first of them whose columns the table has; keys of their
         layers' tables are those of `tables` and of `inputs` that are one path
     digits: significant ones of its tables, or of the tables by key; None: all
@@ -71,6 +73,7 @@ class Product:
     category: str = ""
     caption: str = ""
     suffix: str = "png"
+    still: bool = False
     finding: Callable[[pd.DataFrame], str] | None = None
     charts: tuple[Chart, ...] = ()
     digits: int | Mapping[str, int] | None = None
@@ -94,6 +97,11 @@ class Product:
     def vectors(self) -> dict[str, str]:
         """Return {kind: file name} of the forms of a figure that print at any size; none of a film or a page."""
         return {kind: f"{self.name}.{kind}" for kind in VECTORS} if self.is_figure and self.suffix == "png" else {}
+
+    @property
+    def stills(self) -> dict[str, str]:
+        """Return {"still": file name} of a film or a page that has one."""
+        return {"still": f"{self.name}.png"} if self.still else {}
 
     @property
     def paragraphs(self) -> list[str]:
@@ -190,12 +198,12 @@ def product_files(study: Study) -> list[str]:
 
 
 def outputs_of(product: Product, study: str = "{study}") -> dict[str, str]:
-    """Return {key: path} of all that a product's job writes: `figure`, VECTORS and `table` of a figure, and further
-    tables.
+    """Return {key: path} of all that a product's job writes: `figure`, VECTORS, `still` and `table` of a figure, and
+    further tables.
     """
     results = f"results/{study}"
-    names = {"figure": product.file, **product.vectors, "table": f"{product.name}.csv"} if product.is_figure else {}
-    drawn = {key: f"{results}/figures/{name}" for key, name in names.items()}
+    names = {"figure": product.file, **product.vectors, **product.stills, "table": f"{product.name}.csv"}
+    drawn = {key: f"{results}/figures/{name}" for key, name in names.items() if product.is_figure}
     return drawn | {key: f"{results}/{path}" for key, path in product.tables.items()}
 
 
@@ -210,7 +218,7 @@ def write_product(product: Product, job: Job, outputs: Mapping[str, str]) -> Non
     made = product.make(job)
     if product.is_figure:
         drawn, table, *further = made
-        for kind in ("figure", *product.vectors):
+        for kind in ("figure", *product.vectors, *product.stills):
             _write_figure(drawn, outputs[kind])
         made = {"table": table} | (further[0] if further else {})
     for key, table in made.items():

@@ -95,3 +95,17 @@ rule report:
         "Page of {wildcards.study}"
     script:
         "../scripts/report.py"
+
+
+rule printed_page:
+    input:
+        "results/{study}/report.html",
+    output:
+        "results/{study}/report.pdf",
+    log:
+        "results/{study}/logs/printed_page.log",
+    localrule: True  # a cluster's nodes need no browser
+    message:
+        "Page of {wildcards.study} as PDF"
+    script:
+        "../scripts/printed_page.py"

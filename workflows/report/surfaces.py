@@ -56,6 +56,7 @@ def worn_surface(job: Job) -> Any:
     inputs={"design": DESIGN, "wear": WEAR, "surfaces": SURFACES, "pristine": every_run("surface.vtu")},
     told={"deformed": is_deformed, "parts": part_names},
     suffix="html",
+    still=True,
     digits=6,
     caption="""
     One to four runs beside one another, each at a cycle of choice: drag to turn all of them, scroll to zoom, point at a
@@ -72,8 +73,10 @@ def worn_surface_3d(job: Job) -> Any:
     import pandas as pd
 
     from bulkwear.postproc.plots.page import surfaces_page
+    from bulkwear.postproc.plots.pictures import surface_views
+    from bulkwear.postproc.plots.style import save
     from bulkwear.postproc.tables.compared_surfaces import shown_surfaces
-    from bulkwear.postproc.tables.depths import carried_remark, depth_table, read_worn_surfaces
+    from bulkwear.postproc.tables.depths import carried_remark, depth_quantity, depth_table, read_worn_surfaces
     from bulkwear.postproc.tables.packings import first_packings, shown_remark
     from bulkwear.postproc.tables.summary import NAMES
 
@@ -86,7 +89,16 @@ def worn_surface_3d(job: Job) -> Any:
     left_out = len(first) - len({each.run for each in shown})
     remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(design)]
     remarks += [f"{left_out} runs are left out, so that the page stays small"] if left_out else []
-    return lambda path: surfaces_page(path, shown, deformed, job.told.parts, remarks), depth_table(meshes, deformed)
+    depths = depth_table(meshes, deformed)
+
+    def write(path: str) -> None:
+        if Path(path).suffix == ".html":
+            surfaces_page(path, shown, deformed, job.told.parts, remarks)
+        else:
+            last = {each.run: each.mesh for each in shown}
+            save(surface_views(last, deformed, depths, depth_quantity(deformed), remarks), path)
+
+    return write, depths
 
 
 @figure(
@@ -130,6 +142,7 @@ def wear_updates(job: Job) -> Any:
     inputs={"summary": SUMMARY, "wear": WEAR, "surfaces": SURFACES, "pristine": every_run("surface.vtu")},
     when=is_deformed,
     suffix="gif",
+    still=True,
     caption="""
     Film of the worn surface without skirt, one picture per wear cycle, evenly thinned to at most 60; it starts with
     the unworn surface and repeats. Colour: wear depth, on one scale for all pictures, which ends at the
@@ -143,7 +156,7 @@ def worn_film(job: Job) -> Any:
     """Film how a run of the row that is shown in detail wears, cycle by cycle."""
     import pandas as pd
 
-    from bulkwear.postproc.plots.film import film_pictures, save_film
+    from bulkwear.postproc.plots.film import film_pictures, save_film, save_still
     from bulkwear.postproc.tables.depths import depth_quantity
     from bulkwear.postproc.tables.film import film_frames, film_run, film_surfaces, frame_table
     from bulkwear.postproc.tables.summary import read_summary
@@ -155,7 +168,11 @@ def worn_film(job: Job) -> Any:
     surfaces = film_surfaces(wear_file.parent, frames)
     table = frame_table(frames, surfaces)
     pictures = film_pictures(run, surfaces, table, depth_quantity(True), job.remarks)
-    return lambda path: save_film(pictures, path), table.assign(run=run)
+
+    def write(path: str) -> None:
+        (save_film if Path(path).suffix == ".gif" else save_still)(pictures, path)
+
+    return write, table.assign(run=run)
 
 
 def laws_of_runs(study: Study) -> dict[str, tuple[str, dict[str, float]]]:

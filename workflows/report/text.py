@@ -74,8 +74,15 @@ def number(value: Any, digits: int = 4) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if value == int(value) and (isinstance(value, int) or abs(value) < 1e7):
-        return f"{int(value):,}".replace(",", "\u202f")
+        return _grouped(value)
+    rounded = float(f"{value:.{digits}g}")
+    if 10.0**digits <= abs(rounded) < WITH_EXPONENT:
+        return _grouped(rounded)
     return f"{value:.{digits}g}" if 1e-3 <= abs(value) < WITH_EXPONENT else f"{value:.{digits - 1}e}"
+
+
+def _grouped(value: float) -> str:
+    return f"{int(value):,}".replace(",", "\u202f")
 
 
 def data_uri(content: bytes, kind: str) -> str:

@@ -26,12 +26,13 @@ MOST_NAMED = 5  # settings of the design that were not run
 
 
 def with_verdict(study: Mapping[str, Any], folder: Path) -> list[Section]:
-    """Return the sections of a study's page, its verdict first; a case without wear has none.
+    """Return the sections of a study's page, its verdict first; a case without wear has one if it has lights.
 
     study: as from `page_parameters.page_parameters`; folder: results/<study>
     """
-    sections = page_of(study["case"]).sections(study, folder)
-    return [verdict(study, folder), *sections] if study["wears"] else sections
+    page = page_of(study["case"])
+    sections = page.sections(study, folder)
+    return [verdict(study, folder), *sections] if study["wears"] or hasattr(page, "lights") else sections
 
 
 def verdict(study: Mapping[str, Any], folder: Path) -> Section:
@@ -39,20 +40,26 @@ def verdict(study: Mapping[str, Any], folder: Path) -> Section:
 
     A case's module `page` may have `answers(folder)` and `facts(study, folder)`, sentences; `steadiness(folder)`, an
     answer of `statistics.steady` per run, where wear per metre does not tell it; and WEIGHTIEST, the name of the
-    simplification that its answers hang on most.
+    simplification that its answers hang on most. A case without wear has `lights(study, folder)` of its own.
     """
     page, summary = page_of(study["case"]), read_summary(folder / "summary.csv")
     facts = page.facts(study, folder) if hasattr(page, "facts") else []
     said = [*answers_of_study(study["case"], folder), *facts, *left_out_words(study["left_out"])]
-    lights = [
+    lights = lights_of_wear(study, folder, summary) if study["wears"] else page.lights(study, folder)
+    shown = Lights([*lights, scale_light(study)])
+    blocks: list[Block] = [*([Points(said)] if said else []), shown, *weightiest(study, summary)]
+    return Section(TITLE, blocks)
+
+
+def lights_of_wear(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -> list[Light]:
+    """Return how far the wear of a study can be trusted."""
+    page = page_of(study["case"])
+    return [
         steady_light(page.steadiness(folder) if hasattr(page, "steadiness") else steadiness(study, folder)),
         cap_light(study, summary),
         friction_light(study, folder),
         packings_light(pd.read_csv(folder / "design.csv", dtype=str)),
-        scale_light(study),
     ]
-    blocks: list[Block] = [*([Points(said)] if said else []), Lights(lights), *weightiest(study, summary)]
-    return Section(TITLE, blocks)
 
 
 def left_out_words(settings: Sequence[str]) -> list[str]:

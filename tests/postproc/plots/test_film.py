@@ -93,6 +93,13 @@ def test_a_film_has_all_frames_in_order(pictures, tmp_path):
         assert found.info["duration"] == 1000.0 * film.LAST_FRAME
 
 
+def test_the_still_of_a_film_is_its_last_frame(pictures, tmp_path):
+    """To the pixel, whatever palette the film has."""
+    film.save_still(pictures, tmp_path / "film.png")
+    with Image.open(tmp_path / "film.png") as found:
+        np.testing.assert_array_equal(np.asarray(found), pictures[-1])
+
+
 def test_a_large_film_is_made_small(tmp_path):
     """Frames that are too many for the bound are thinned; the first and the last one stay."""
     random = np.random.default_rng(4)

@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from bulkwear.meshes.sample import sliding_sample
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.plots import pictures
-from bulkwear.postproc.plots.scene import surface_plan, trimmed
+from bulkwear.postproc.plots.scene import OBLIQUE, surface_plan, trimmed, worn_side
 from bulkwear.postproc.plots.style import MAP, remarks_of
 from bulkwear.postproc.tables.depths import depth_table
 
@@ -61,6 +61,19 @@ def test_axes_of_the_plan_fit_the_picture(plan, mesh):
     assert abs((coloured[-1] - coloured[0] + 1) * per_pixel - WIDTH * 1e3) <= 2.0 * PIXEL * per_pixel
 
 
+def test_held_back_wear_is_hatched(mesh, plan):
+    """Lines cross the half of the sample where a cap held wear back, and none the other half."""
+    held = np.where(mesh.points[:, 0] > 1e-6, DEPTH, 0.0) * 1e-6  # m3, of nodes: more than a tenth of the depth
+    carrying = SurfaceMesh(mesh.points, mesh.triangles, mesh.cell_data, {**mesh.point_data, "carried_volume_m3": held})
+    pixels, _ = surface_plan(carrying, True, (0.0, DEPTH * 1e6), longest=300)
+    differs = np.ptp([pixels, plan[0]], axis=0).max(axis=2) > 40
+    half, face = pixels.shape[1] // 2, 30  # pixels, of a face that belongs to both halves
+    inside = slice(40, -40)  # pixels, clear of the sample's outline
+    lines = differs[inside, half + face : -40]
+    assert lines.any() and not lines.all()
+    assert not differs[inside, 40 : half - face].any()
+
+
 def test_figure_of_worn_surfaces(mesh):
     """The figure shows each run obliquely and from above, mm on the axes, µm on the colour bar, and the remarks."""
     runs = pd.DataFrame({"run": ["R9_convex", "R9_plain"], "row": "R9", "surface": ["convex", "plain"]})
@@ -75,6 +88,17 @@ def test_figure_of_worn_surfaces(mesh):
     assert [axes.get_title() for axes in figure.axes[:2]] == ["R9 convex", "R9 plain"]
     assert all("(mm)" in axes.get_xlabel() for axes in figure.axes[2:4])
     assert remarks_of(figure) == "; ".join(REMARKS)
+
+
+def test_the_still_of_a_page_shows_its_first_views(mesh):
+    """Of five runs four are drawn, in two lines, on one scale; the rest is told of."""
+    meshes = {f"R{k}_plain": mesh for k in range(pictures.MOST_VIEWS + 1)}
+    figure = pictures.surface_views(meshes, True, depth_table(meshes, True), "Removed thickness", REMARKS)
+    *views, bar = figure.axes
+    assert [axes.get_title() for axes in views] == [f"R{k} plain" for k in range(pictures.MOST_VIEWS)]
+    assert len({axes.get_subplotspec().rowspan.start for axes in views}) == 2
+    assert bar.get_ylim() == pytest.approx((0.0, DEPTH * 1e6))
+    assert remarks_of(figure) == "; ".join([*REMARKS, "the first 4 of 5 runs are shown"])
 
 
 def test_many_rows_share_one_scale(mesh):
@@ -104,6 +128,13 @@ def test_figure_of_the_bed(mesh):
     table = pictures.bed_table({"R9_convex": cut})
     np.testing.assert_allclose(table["x_mm"], cut["x_m"] * 1e3)
     assert table["speed_m_per_s"].tolist() == cut["speed_m_per_s"].tolist()
+
+
+def test_wear_is_looked_at_from_its_side(mesh):
+    """A sample worn from above is seen from above as ever; turned upside down, from below."""
+    assert worn_side([mesh], True) == OBLIQUE
+    turned = SurfaceMesh(mesh.points * [1, -1, -1], mesh.triangles, mesh.cell_data, mesh.point_data)
+    assert worn_side([turned], True)[2] == -OBLIQUE[2]
 
 
 def test_margins_are_cut_off():

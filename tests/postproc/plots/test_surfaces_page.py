@@ -10,6 +10,7 @@ import pytest
 
 from bulkwear.postproc.plots.page import surfaces_page
 from bulkwear.postproc.tables.compared_surfaces import Shown
+from tests.support.accessibility import NEEDS_BROWSER, axe_findings
 from tests.support.shapes import worn_plate
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -37,6 +38,10 @@ const wait = () => {
 };
 wait();
 </script>"""
+DRAWN = 'document.documentElement.dataset.ready === "yes"'
+WITH_SECTION = """const section = document.querySelector("select[name=section]");
+section.value = "0";
+section.dispatchEvent(new Event("change"));"""
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +64,7 @@ def test_the_page_needs_no_network(page):
     assert re.findall(r"/\*[A-Z]+\*/", text) == []
 
 
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+@NEEDS_BROWSER
 def test_views_differences_and_sections_say_what_they_show(page, tmp_path):
     """Scales, differences from the first view, and a section through all views with the unworn shape; another cycle is
     drawn when it is chosen, and what needs WebGL says so."""
@@ -80,3 +85,10 @@ def test_views_differences_and_sections_say_what_they_show(page, tmp_path):
         assert (min(places), max(places)) == pytest.approx((0.0, 10.0), abs=0.01), run  # mm along y
         assert [value for value in values if value is not None] == pytest.approx([1e6 * depth] * 4, abs=1e-3)
     assert found["earlier"] == "R9, cycle 1"
+
+
+@NEEDS_BROWSER
+def test_nobody_is_kept_from_it(page, tmp_path):
+    """axe-core finds nothing that keeps people from choosing and reading, the section drawn."""
+    for key, found in axe_findings(page.read_text(encoding="utf-8"), tmp_path, DRAWN, WITH_SECTION).items():
+        assert found["faults"] == [], key

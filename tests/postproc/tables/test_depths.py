@@ -15,6 +15,7 @@ from bulkwear.postproc.tables.depths import (
     depth_summary,
     depth_table,
     face_depth,
+    held_back_faces,
     node_depth,
 )
 
@@ -80,6 +81,24 @@ def test_a_map_says_what_is_carried_unless_it_is_rounding():
     for share, words in ((0.25, "up to 25 % of a run's"), (1e-16, "nothing is carried")):
         mesh.point_data["carried_volume_m3"][:] = share * mesh.cell_data["worn_volume_m3"].sum() / len(mesh.points)
         assert words in carried_remark({"run": mesh}, deformed=True)
+
+
+def test_faces_that_are_held_back():
+    """Where a tenth or more of the depth is carried, and there alone; the remark of the map says what hatching is."""
+    mesh = worn_plate()
+    worn = mesh.cell_data["part"] == 0
+    area = areas(mesh.points, mesh.triangles)
+    shares = np.bincount(mesh.triangles[worn].ravel(), np.repeat(area[worn] / 3.0, 3), len(mesh.points))
+    limited = mesh.points[:, 1] > 1e-9  # the upper half
+    carried = np.where(limited, 0.2, 0.05)
+    mesh.point_data["removed_thickness_m"] *= 1.0 - carried
+    mesh.point_data["carried_volume_m3"] += carried * DEPTH * shares
+    number = limited[mesh.triangles].sum(axis=1)
+    held = held_back_faces(mesh)
+    assert held[worn & (number == 3)].all() and not held[number == 0].any() and not held[~worn].any()
+    assert "(hatched: 10 % or more of the depth there)" in carried_remark({"run": mesh}, True)
+    mesh.point_data["carried_volume_m3"] *= 0.0
+    assert not held_back_faces(mesh).any()
 
 
 def test_carried_share():

@@ -26,7 +26,9 @@ TABLE = "designs/small.csv"
 MATERIALS = "materials.yaml"
 SUFFIX = ".schema.yaml"
 SCHEMAS = sorted(
-    path.relative_to(SCHEMA_FOLDER).as_posix().removesuffix(SUFFIX) for path in SCHEMA_FOLDER.rglob("*.yaml")
+    path.relative_to(SCHEMA_FOLDER).as_posix().removesuffix(SUFFIX)
+    for path in SCHEMA_FOLDER.rglob("*.yaml")
+    if path.stem != "published.schema"  # of tables: a row says its unit, and where it is from
 )
 QUICK = "config/studies/small.yaml, line 9, fidelity quick"
 ONE_PATTERN = f"a list of one pattern ({', '.join(PATTERNS)}), plain, or both"

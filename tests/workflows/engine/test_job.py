@@ -13,6 +13,8 @@ from tests import REPOSITORY
 
 FAULTS = {
     "memory": (MemoryError(), 1, "The memory is exhausted"),
+    "memory of a thread": (RuntimeError("Resource temporarily unavailable"), 1, "The memory is exhausted"),
+    "memory of a fork": (OSError(errno.ENOMEM, "Cannot allocate memory"), 1, "The memory is exhausted"),
     "memory of tables": (pyarrow.lib.ArrowMemoryError("malloc of size 64 failed"), 1, "The memory is exhausted"),
     "a full disk": (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "ledger.parquet"), 1, "the disk is full"),
     "a quota": (OSError(errno.EDQUOT, os.strerror(errno.EDQUOT)), 1, "a quota is used up"),

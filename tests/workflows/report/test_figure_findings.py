@@ -63,3 +63,27 @@ def test_what_is_left_of_a_pattern():
     frames = pd.DataFrame({"run": "R9_convex", "bumps_left_percent": [100.0, 62.5], "largest_depth_um": [0.0, 8.0]})
     assert findings.pattern_in_film(frames) == "R9_convex keeps 62.5 % of its pattern."
     assert "8 µm" in findings.pattern_in_film(frames.assign(bumps_left_percent=float("nan")))
+
+
+def test_the_solvers_measure_beside_the_law():
+    """By surface, in per cent over the settings."""
+    table = pd.DataFrame({"surface": ["convex", "convex", "plain"], "finnie_over_archard": [0.05, 0.1, 0.01]})
+    said = "The solver's Finnie volume is, of that by the study's law,"
+    assert findings.finnie_over_law(table) == f"{said} 5 to 10 % on convex samples and 1 % on plain samples."
+
+
+def test_speeds_over_the_samples_shown():
+    """Mean of the particles of each run; one that two views show counts once."""
+    particles = pd.DataFrame({"run": ["A", "A", "B"], "speed_m_per_s": [0.1, 0.3, 0.4]})
+    assert findings.particle_speeds(particles) == (
+        "The particles shown pass the sample at 0.2 m/s over A and 0.4 m/s over B, on average."
+    )
+    views = pd.DataFrame({"run": "A", "view": ["side", "bottom", "side"], "id": [1, 1, 2]})
+    views = views.assign(angular_speed_deg_per_s=[100.0, 100.0, 300.0])
+    assert findings.particle_spins(views) == "The particles shown turn at 200 °/s over A, on average."
+
+
+def test_large_depths_are_told_in_millimetres():
+    """18 mm, without an exponent."""
+    depths = pd.DataFrame({"run": ["A"], "depth_um": [18_234.0], "area_mm2": 1.0})
+    assert findings.deepest_run(depths) == "A wears deepest: a hundredth of its area by 18 mm or more."

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.markdown import durations, markdown, pictures_of, provenance
+from bulkwear.workflows.report.markdown import Caption, durations, markdown, pictures_of, provenance, written
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.sections import Pictures, Section, Text
 from tests.support.finished_runs import leave_runs
@@ -52,3 +52,12 @@ def test_a_missing_figure_is_named_with_what_draws_it(tmp_path):
     for path in files:
         path.touch()
     assert pictures_of(sections, tmp_path) == files
+
+
+def test_a_caption_says_first_what_the_figure_shows():
+    """Then title and what is drawn; the finding is the alternative text, whose brackets would end it."""
+    captions = {"depth": Caption("Worn depth", "A wears [most].", "Dots: runs."), "bed": Caption("Bed", "", "Dots.")}
+    said = written(Pictures(["depth", "bed"]), "demo_quick", captions).split("\n\n")
+    assert said[0] == "![A wears (most).](demo_quick_depth.png)"
+    assert said[1].strip() == "**A wears [most].** Worn depth. Dots: runs."
+    assert [each.strip() for each in said[2:]] == ["![Bed.](demo_quick_bed.png)", "**Bed.** Dots."]

@@ -86,12 +86,16 @@ def test_inner_page_survives_embedding(page):
 
 
 def test_figures_say_what_they_show_and_come_in_every_form(page, study):
-    """The alternative text of a figure with a finding is the finding, not its title; SVG and PDF lie behind links."""
+    """The alternative text of a figure with a finding is the finding, which comes first in its caption; without rows
+    that tell it, and without a finding, the title stands there. SVG and PDF lie behind links.
+    """
     for product in figures_of(study):
         _, _, shown = page.partition(f'<figure id="{product.name}"')
         shown = html.unescape(shown.partition("</figure>")[0])
         said = re.search(r'(?:alt|title)="([^"]+)"', shown).group(1)
-        assert (said == product.title) == (product.finding is None)
+        told = product.finding is not None and len(embedded(page, f"{study.name}_{product.name}.csv")) > 0
+        assert (said == product.title) != told
+        assert f"</b> {said if told else product.title + '.'}</p>\n<p>{told * f'{product.title}. '}" in shown
         for kind, name in product.vectors.items():
             content = base64.b64encode(PICTURE + name.encode()).decode()
             assert f'download="{study.name}_{name}"' in shown and content in shown
@@ -152,6 +156,8 @@ def test_every_figure_says_what_it_shows():
     [
         (0.5, "0.5"),
         (1234567, "1\u202f234\u202f567"),
+        (12345.6, "12\u202f350"),
+        (999_999.9, "1e+06"),
         (20220317, "20\u202f220\u202f317"),
         (6.3e-13, "6.300e-13"),
         (0, "0"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.calibration import charts
+from bulkwear.workflows.cases.calibration import charts, figure_findings
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
 from bulkwear.workflows.report.products import Job, figure, tables
 
@@ -48,6 +48,7 @@ def statements(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Heaps of the recommended pair",
+    finding=figure_findings.heap_angles,
     inputs=SIMULATED,
     told=TOLD,
     digits=6,
@@ -72,6 +73,7 @@ def heaps(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Responses over the parameters",
+    finding=figure_findings.ranges,
     inputs=SIMULATED,
     told=TOLD,
     digits=6,
@@ -96,6 +98,7 @@ def response_maps(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Pairs that fit what was measured",
+    finding=figure_findings.family,
     inputs=SIMULATED,
     told=TOLD,
     digits=6,
@@ -119,6 +122,7 @@ def family(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Recommended and published pair",
+    finding=figure_findings.first_reproduced,
     charts=(charts.PAIRS,),
     inputs={"statements": "results/{study}/summary.csv", "pairs": pairs_file},
     told={"compared": lambda study: calibration_box(study)["calibration"]["compared_pair"]},
@@ -143,6 +147,7 @@ def pairs_against_bands(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Size and width of the shear box",
+    finding=figure_findings.box_effect,
     charts=(charts.BOX_SIZES,),
     inputs={"sizes": "results/{study}/box_sizes.csv", "before": SIZES_BEFORE},
     digits=6,
@@ -165,6 +170,7 @@ def box_sizes(job: Job) -> Any:
 @figure(
     CATEGORY,
     "Stopping rule, and what to measure next",
+    finding=figure_findings.progress,
     charts=(charts.PROGRESS,),
     inputs={**SIMULATED, "looks": "results/{study}/looks.csv"},
     told=TOLD,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.calibration import boxes
 from bulkwear.workflows.cases.calibration.case import calibration_box
-from bulkwear.workflows.report.sections import Section
+from bulkwear.workflows.report.sections import Light, Section
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
@@ -17,6 +17,7 @@ RUNS_NOTE = (
     "Each row is a box in which the shear angle is compared; the calibration uses that of the first one. Width: of the "
     "periodic slice as simulated, at least four particle diameters."
 )
+WEIGHTIEST = "Discrepancy of the model"
 DECKS = ()  # `snakemake <study>_decks` renders them
 OPENINGS = {
     boxes.SLOT: "slot of {:g} mm across the whole width",
@@ -27,6 +28,31 @@ OPENINGS = {
 def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is."""
     return {"parameters": calibration_box(study)}
+
+
+def answers(folder: Path) -> list[str]:
+    """Return in sentences what the recommended pair reproduces, and whether the published one is kept."""
+    import pandas as pd  # slow to import, as what follows, and every job reads this page
+
+    from bulkwear.workflows.cases.calibration.answers import on_pairs
+
+    summary = folder / "summary.csv"
+    return on_pairs(pd.read_csv(summary)) if summary.is_file() else []
+
+
+def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return in sentences what the measurements leave of the parameters, which one decides, and what they reject."""
+    from bulkwear.workflows.cases.calibration.answers import on_posterior
+    from bulkwear.workflows.cases.calibration.findings import read_finished
+
+    return on_posterior(read_finished(study, folder))
+
+
+def lights(study: Mapping[str, Any], folder: Path) -> list[Light]:
+    """Return how far the answers can be trusted."""
+    from bulkwear.workflows.cases.calibration.answers import lights_of
+
+    return lights_of(study, folder)
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.circular_tester import charts
+from bulkwear.workflows.cases.circular_tester import charts, figure_findings
 from bulkwear.workflows.cases.circular_tester.runs import (
     SIZE,
     VOLUME,
@@ -80,6 +80,7 @@ def tester_runs(job: Job) -> dict[str, pd.DataFrame]:
 @figure(
     "Volume",
     "Volume against hours of the test",
+    finding=figure_findings.reduction,
     charts=(charts.HOURS,),
     inputs={**of_study("lost_volumes", "time_scale", "comparison"), **PUBLISHED},
     **OF_PAIRS,
@@ -105,6 +106,7 @@ def tester_hours(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume by revolution",
+    finding=figure_findings.lost,
     charts=(charts.VOLUME,),
     inputs={**of_study("lost_volumes", "rates"), **PUBLISHED_FITS},
     **OF_PAIRS,
@@ -128,6 +130,7 @@ def tester_volume(job: Job) -> Any:
 @figure(
     "Volume",
     "What an element and a sample lose per revolution",
+    finding=figure_findings.increments,
     charts=(charts.INCREMENTS,),
     inputs={**of_study("lost_volumes", "mean_ratios"), **PUBLISHED},
     **OF_PAIRS,
@@ -151,6 +154,7 @@ def tester_increments(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume after 56 hours by particle scale",
+    finding=figure_findings.reduction_by_scale,
     charts=(charts.BENCHMARK,),
     inputs={**of_study("predictions"), **PUBLISHED, **PUBLISHED_FITS},
     **OF_PAIRS,
@@ -171,6 +175,7 @@ def tester_benchmark(job: Job) -> Any:
 @figure(
     "Volume",
     "Until the pattern is gone",
+    finding=figure_findings.worn_off,
     charts=(charts.WORN_OUT,),
     inputs={**of_study("lost_volumes", "rates"), **WEAR},
     told=ALL_RUNS,

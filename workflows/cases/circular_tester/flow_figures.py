@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bulkwear.workflows.cases.circular_tester import charts
+from bulkwear.workflows.cases.circular_tester import charts, figure_findings
 from bulkwear.workflows.cases.circular_tester.figures import OF_PAIRS, PAIRS, PUBLISHED, WEAR, of_study, read, runs_of
 from bulkwear.workflows.cases.circular_tester.runs import SURFACE, shown_pair
 from bulkwear.workflows.report.products import Job, figure
@@ -17,6 +17,7 @@ SHOWN_REVOLUTION = 5.0  # of Fig 6.19 and 6.20
 @figure(
     "Flow",
     "Steadiness",
+    finding=figure_findings.variations,
     charts=(charts.STEADINESS,),
     caption="""
     Counterpart of Fig 6.7 (Yan 2022): standard deviation over mean (Eq 6.1) of each revolution since the trough began
@@ -40,6 +41,7 @@ def tester_steadiness(job: Job) -> Any:
 @figure(
     "Flow",
     "Spin of the lowest layer",
+    finding=figure_findings.spin,
     charts=(charts.SPIN,),
     caption="""
     Counterpart of Fig 6.17 (Yan 2022): magnitude of the averaged angular velocity of particles whose centres are within
@@ -58,6 +60,7 @@ def tester_spin(job: Job) -> Any:
 @figure(
     "Flow",
     "Velocity of the lowest layer",
+    finding=figure_findings.velocity,
     charts=(charts.VELOCITY,),
     caption="""
     Counterpart of Fig 6.18 (Yan 2022): velocity along the travel of the same particles, mean over packings with its
@@ -75,6 +78,7 @@ def tester_velocity(job: Job) -> Any:
 @figure(
     "Flow",
     "Normal force by revolution",
+    finding=figure_findings.force,
     charts=(charts.FORCE,),
     caption="""
     Counterpart of Fig 6.21 (Yan 2022): sum of the normal forces on the faces that wear, by revolution of wear;
@@ -103,6 +107,7 @@ def _by_revolution(job: Job, measure: str, *beside: str) -> Any:
 @figure(
     "Flow",
     "Map of spin",
+    finding=figure_findings.turning,
     caption="""
     Counterpart of Fig 6.19 (Yan 2022): the particles of the lowest layer at the end of the wear cycle nearest to
     revolution 5, coloured by their angular speed over the plain sample's mean; of the first packing.
@@ -117,6 +122,7 @@ def tester_spin_map(job: Job) -> Any:
 @figure(
     "Flow",
     "Map of velocity",
+    finding=figure_findings.passing,
     caption="Counterpart of Fig 6.20 (Yan 2022): the same particles by their speed, with arrows of their velocity.",
     **OF_PARTICLES,
 )

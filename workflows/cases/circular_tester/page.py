@@ -43,6 +43,13 @@ def told(study: Study) -> dict[str, Any]:
     return {"paired": has_pairs(study)}
 
 
+def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return in sentences what a study that is done answers, whatever tables an earlier choice of rows has left."""
+    from bulkwear.workflows.cases.circular_tester.answers import all_answers  # every job reads this page
+
+    return all_answers(folder, study["figures"]) if study["told"]["paired"] else [UNPAIRED]
+
+
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a study's page: the answer beside the experiment first, then how the runs come to it.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from bulkwear.workflows.cases.circular_tester import figure_findings
 from bulkwear.workflows.cases.circular_tester.figures import (
     ALL_RUNS,
     DIGITS,
@@ -33,6 +34,7 @@ OF_PLACES = {"inputs": {**WEAR, **PUBLISHED}, "told": PAIRS, **OF_PAIRS}
 @figure(
     "Distribution",
     "Wear by column",
+    finding=figure_findings.wear_by_column,
     caption="""
     Counterpart of Fig 6.13 (Yan 2022): volume of base and pattern by column of the sample, after the last revolution
     that all runs have. Bars: 95 % interval of the column over packings. Column 1 meets the bed first. In a straight
@@ -59,6 +61,7 @@ def tester_columns(job: Job) -> Any:
 @figure(
     "Distribution",
     "Wear of every shape of the pattern",
+    finding=figure_findings.most_worn,
     caption="""
     Counterpart of Fig 6.14 (Yan 2022), mean over packings with its 95 % interval. C15 is the fifth one from the inner
     side in the first column. Grey: the range that the thesis gives for odd and even columns after its last revolution.
@@ -85,6 +88,7 @@ def tester_bumps(job: Job) -> Any:
 @figure(
     "Distribution",
     "Contours by revolution",
+    finding=figure_findings.lowered_crests,
     inputs=WEAR,
     told=PAIRS,
     **OF_PAIRS,
@@ -108,6 +112,7 @@ def tester_contours(job: Job) -> Any:
 @figure(
     "Distribution",
     "Normal force by column",
+    finding=figure_findings.force_by_column,
     caption="""
     Counterpart of Fig 6.22 (Yan 2022): mean normal force on base and pattern, from all contacts of all steps. Bars:
     95 % interval of the column over packings.
@@ -141,6 +146,7 @@ def tester_force_columns(job: Job) -> Any:
 @figure(
     "Elements",
     "Volume by mesh size",
+    finding=figure_findings.change_by_mesh,
     inputs={**of_study("lost_volumes"), **PUBLISHED},
     when=has_series(MESH),
     digits=DIGITS,
@@ -164,6 +170,7 @@ def tester_mesh(job: Job) -> Any:
 @figure(
     "Elements",
     "Contours by mesh size",
+    finding=figure_findings.crests_by_mesh,
     inputs={**of_study("lost_volumes"), **WEAR},
     told=ALL_RUNS,
     when=has_series(MESH),
@@ -185,6 +192,7 @@ def tester_mesh_contours(job: Job) -> Any:
 @figure(
     "Machine",
     "Channel and ring",
+    finding=figure_findings.by_machine,
     inputs=of_study("lost_volumes", "ratios"),
     when=has_series(RING),
     digits=DIGITS,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from bulkwear.workflows.cases.circular_tester import figure_findings
 from bulkwear.workflows.cases.circular_tester.figures import ALL_RUNS, CLAIMS, DIGITS, PUBLISHED, WEAR, read, runs_of
 from bulkwear.workflows.cases.circular_tester.runs import VARIED, has_series
 from bulkwear.workflows.cases.circular_tester.sensitivity import changes_of, settings_of_pairs
@@ -17,6 +18,7 @@ SETTINGS_SAID = "tester/sensitivity.txt"  # sentences of the page
 @figure(
     "Experiment and model",
     "What each setting reaches of the published numbers",
+    finding=figure_findings.reached,
     inputs={**PUBLISHED, **CLAIMS, **WEAR},
     told={**ALL_RUNS, "settings": settings_of_pairs},
     tables={"sensitivity": SENSITIVITY, "effects": EFFECTS, "said": SETTINGS_SAID},

@@ -15,6 +15,7 @@ from bulkwear.postproc.tables.summary import THROUGH
 from bulkwear.workflows.cases.equipment.comparison import FIRST, LIFE, UNSAID
 from bulkwear.workflows.cases.equipment.life import AS_BUILT, EXTRAPOLATED, FOLLOWED, PARTLY, WHOLE_PART
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
+from bulkwear.workflows.report.sentences import spoken
 
 Tables = Mapping[str, pd.DataFrame]
 DIGITS = 2  # significant ones of an answer, whose interval is wide
@@ -46,11 +47,6 @@ def rounded(value: float, digits: int = DIGITS) -> str:
 def span(low: float, high: float, unit: str = "", digits: int = DIGITS) -> str:
     """Return the ends of an interval, 4,100 to 6,700 h."""
     return f"{rounded(low, digits)} to {rounded(high, digits)}{f' {unit}' if unit else ''}"
-
-
-def spoken(name: str) -> str:
-    """Return the name of a part as people say it."""
-    return name.replace("_", " ")
 
 
 # ---------------------------------------------------------------- life

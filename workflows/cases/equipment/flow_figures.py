@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.equipment import charts
+from bulkwear.workflows.cases.equipment import charts, figure_findings
 from bulkwear.workflows.cases.equipment.map_figures import (
     BESIDE,
     DIGITS,
@@ -55,6 +55,7 @@ def remarks_on_panels(job: Job) -> list[str]:
 @figure(
     "Flow",
     "Flow over time",
+    finding=figure_findings.held_and_power,
     charts=(charts.FLOW,),
     inputs={"wear": every_run(BESIDE)},
     told={"runs": values_of_runs},
@@ -81,6 +82,7 @@ def flow_over_time(job: Job) -> Any:
 @figure(
     "Flow",
     "The flow from the side",
+    finding=figure_findings.speeds("speed_m_per_s", "Mean speed of the particles shown"),
     inputs=SURFACES,
     told=TOLD,
     digits=DIGITS,
@@ -102,6 +104,7 @@ def flow_pictures(job: Job) -> Any:
 @figure(
     "Flow",
     "Mean paths",
+    finding=figure_findings.speeds("speed_m_per_s", "Mean velocity over the cells"),
     inputs=SURFACES,
     told=TOLD,
     digits=DIGITS,
@@ -122,6 +125,7 @@ def velocity_fields(job: Job) -> Any:
 @figure(
     "Flow",
     "Shoulder and toe of the charge",
+    finding=figure_findings.charge,
     inputs=SURFACES,
     told=TOLD,
     when=is_mill,

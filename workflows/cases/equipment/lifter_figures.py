@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.equipment import charts
+from bulkwear.workflows.cases.equipment import charts, figure_findings
 from bulkwear.workflows.cases.equipment.figures import LIFTERS
 from bulkwear.workflows.cases.equipment.flow_figures import is_mill
 from bulkwear.workflows.cases.equipment.map_figures import BESIDE, DIGITS, deforms, folder_of
@@ -39,6 +39,7 @@ def lifters(job: Job) -> dict[str, pd.DataFrame]:
 @figure(
     "Wear",
     "Lifters against hours of operation",
+    finding=figure_findings.lifters,
     charts=(charts.LIFTERS,),
     inputs={name: f"results/{{study}}/{path}" for name, path in LIFTERS.items()},
     when=wears_mills,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.workflows.cases.equipment import charts
+from bulkwear.workflows.cases.equipment import charts, figure_findings
 from bulkwear.workflows.cases.equipment.figures import TABLES
 from bulkwear.workflows.cases.equipment.tables import values_of_runs
 from bulkwear.workflows.report.products import Job, every_run, figure
@@ -64,6 +64,7 @@ PACKINGS = "means over blocks and packings, told by area patches"
 @figure(
     "Life",
     "Life of the parts",
+    finding=figure_findings.shortest_life,
     charts=(charts.LIFE,),
     inputs=of_study("life"),
     told={"runs": values_of_runs},
@@ -87,6 +88,7 @@ def life_bars(job: Job) -> Any:
 @figure(
     "Life",
     "Depth of the deciding place against hours of operation",
+    finding=figure_findings.depth_reached,
     charts=(charts.RECESSION,),
     inputs={**of_study("life", "worst_places"), "wear": every_run(BESIDE)},
     told={"runs": values_of_runs},
@@ -115,6 +117,7 @@ def recession_against_time(job: Job) -> Any:
 @figure(
     "Wear",
     "Where it wears",
+    finding=figure_findings.fastest_place,
     inputs={**of_study("rates", "worst_places"), **SURFACES},
     told=TOLD,
     digits=DIGITS,
@@ -149,6 +152,7 @@ def wear_map(job: Job) -> Any:
 @figure(
     "Wear",
     "Remaining thickness",
+    finding=figure_findings.thinnest_place,
     inputs=SURFACES,
     told=TOLD,
     digits=DIGITS,
@@ -180,6 +184,7 @@ def remaining_thickness(job: Job) -> Any:
 @figure(
     "Loads",
     "Impact and sliding",
+    finding=figure_findings.impact_share,
     inputs={**of_study("rates"), **SURFACES},
     told=TOLD,
     digits=DIGITS,
@@ -205,6 +210,7 @@ def impact_and_sliding(job: Job) -> Any:
 @figure(
     "Wear",
     "Sections through the worst places",
+    finding=figure_findings.deepest_section,
     inputs={**of_study("worst_places"), **SURFACES},
     told=TOLD,
     when=deforms,

@@ -6,8 +6,9 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from bulkwear.workflows.cases.pin_on_disc import charts
+from bulkwear.workflows.cases.pin_on_disc import charts, figure_findings
 from bulkwear.workflows.cases.pin_on_disc.case import MESHES
+from bulkwear.workflows.cases.pin_on_disc.findings import trend
 from bulkwear.workflows.cases.pin_on_disc.volume_figures import (
     CONTOURS,
     DESIGN,
@@ -88,6 +89,7 @@ def contour_extraction(job: Job) -> Any:
     "Contours",
     "Depth and width by mesh",
     charts=(charts.MESHES,),
+    finding=trend,
     inputs={"design": DESIGN, "published": PUBLISHED, "statistics": "results/{study}/figures/run_in.csv"},
     tables={"stability": "figures/mesh_stability.csv"},
     when=has_series(MESHES),
@@ -116,6 +118,7 @@ def mesh_series(job: Job) -> Any:
 @figure(
     "Contours",
     "Contours by mesh",
+    finding=figure_findings.depth_by_mesh,
     inputs={**WORN_DISCS, "series": "results/{study}/figures/mesh_series.csv"},
     when=has_series(MESHES),
     digits=6,
@@ -141,6 +144,7 @@ def mesh_contours(job: Job) -> Any:
 @figure(
     "Forces",
     "Force of the pin",
+    finding=figure_findings.forces,
     inputs={"design": DESIGN, "published": PUBLISHED, "wear": every_run("wear.csv")},
     caption="""
     Counterpart of Fig 5.9 (Yan 2022). Two boxes per revolution, of means over windows of a fraction of a degree: the
@@ -177,6 +181,7 @@ def normal_force(job: Job) -> Any:
 @figure(
     "Contours",
     "Distribution of depth and width",
+    finding=figure_findings.normality,
     inputs=OF_CONTOURS,
     caption="""
     Counterpart of Fig 5.10 and 5.11 (Yan 2022): depth and opening of the 360 contours round the disc, and their
@@ -212,6 +217,7 @@ def contour_distribution(job: Job) -> Any:
 @figure(
     "Contours",
     "Run-in",
+    finding=figure_findings.ended,
     charts=(charts.RUN_IN,),
     inputs={**OF_CONTOURS, "normality": NORMALITY, "volumes": VOLUMES},
     tables={"change_points": "figures/run_in_change_points.csv"},
@@ -259,6 +265,7 @@ def run_in(job: Job) -> Any:
 @figure(
     "Contours",
     "Examples of contours",
+    finding=figure_findings.deepest_contours,
     inputs=OF_CONTOURS,
     digits=6,
     caption="""
@@ -287,6 +294,7 @@ def contour_examples(job: Job) -> Any:
 @figure(
     "Contours",
     "Worn disc",
+    finding=figure_findings.deepest_places,
     inputs=WORN_DISCS,
     digits=4,
     caption="""
@@ -308,6 +316,7 @@ def worn_disc(job: Job) -> Any:
 @figure(
     "Contours",
     "Unrolled track",
+    finding=figure_findings.deepest_places,
     inputs=WORN_DISCS,
     digits=4,
     caption="""
@@ -342,6 +351,7 @@ def _reference_discs(job: Job) -> tuple[dict[str, Any], float, list[str]]:
 @figure(
     "Laboratory",
     "Contours beside the laboratory's",
+    finding=figure_findings.contours_by_case,
     inputs={**WORN_DISCS, "cases": "results/{study}/figures/pin_comparison.csv"},
     digits=6,
     caption="""

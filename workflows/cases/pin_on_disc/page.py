@@ -64,6 +64,15 @@ def told(study: Study) -> dict[str, Any]:
     return {}
 
 
+def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
+    """Return in sentences what a study that is done answers, whatever tables an earlier choice of rows has left."""
+    from bulkwear.workflows.cases.pin_on_disc.answers import (
+        all_answers,
+    )  # slow to import, and every job reads this page
+
+    return all_answers(folder, study["figures"])
+
+
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a study's page: its key numbers, then those of which the study has the figures."""
     found = [Section("Key numbers", key_numbers(read_summary(folder / "summary.csv")))]

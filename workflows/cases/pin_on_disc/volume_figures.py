@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bulkwear.workflows.cases.pin_on_disc import charts
+from bulkwear.workflows.cases.pin_on_disc import charts, figure_findings
 from bulkwear.workflows.cases.pin_on_disc.page import update_remark
 from bulkwear.workflows.report.products import Job, OfStudy, every_run, figure
 
@@ -23,6 +23,7 @@ def has_series(name: str) -> OfStudy:
 @figure(
     "Laboratory",
     "Thesis, laboratory and ours",
+    finding=figure_findings.compared,
     charts=(charts.COMPARISON,),
     inputs={"design": DESIGN, "published": PUBLISHED, "contours": CONTOURS, "volumes": VOLUMES},
     caption="""
@@ -48,6 +49,7 @@ def pin_comparison(job: Job) -> Any:
 @figure(
     "Volume",
     "What exceeds Archard's volume",
+    finding=figure_findings.excess,
     inputs={"published": PUBLISHED, "factors": "results/{study}/figures/force_rise.csv"},
     told={"update_remark": update_remark},
     caption="""
@@ -86,6 +88,7 @@ def excess_volume(job: Job) -> Any:
 @figure(
     "Volume",
     "Volume against revolutions",
+    finding=figure_findings.over_law,
     charts=(charts.WEAR_VOLUME,),
     inputs={"design": DESIGN, "fits": FITS, "volumes": VOLUMES},
     tables={"trends": "figures/wear_volume_trends.csv"},
@@ -116,6 +119,7 @@ def wear_volume(job: Job) -> Any:
 @figure(
     "Forces",
     "Rise of the summed normal force",
+    finding=figure_findings.force_over_load,
     charts=(charts.FORCE_RISE,),
     inputs={"fits": FITS, "volumes": "results/{study}/figures/wear_volume.csv"},
     caption="""
@@ -138,6 +142,7 @@ def force_rise(job: Job) -> Any:
 @figure(
     "Laboratory",
     "Calibration of the wear coefficient",
+    finding=figure_findings.coefficients,
     charts=(charts.CALIBRATION,),
     inputs={
         "design": DESIGN,
@@ -191,6 +196,7 @@ def calibration(job: Job) -> Any:
 @figure(
     "Volume",
     "Size invariance of Archard's law",
+    finding=figure_findings.sizes,
     charts=(charts.SIZE_INVARIANCE,),
     inputs={"design": DESIGN, "published": PUBLISHED, "volumes": VOLUMES},
     when=has_series("size"),

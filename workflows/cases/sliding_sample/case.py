@@ -68,7 +68,10 @@ class SlidingSample(SampleCase):
     bed_template = "settled_bed"
     more_templates = ("packed_container", "bed_contacts", "collision")
     seed_setting = "bed.seed"
-    figure_modules = ("particle_size.figures", "screening.figures", "screening.regression_figures", "figures")
+    figure_modules = (
+        *("particle_size.figures", "particle_size.packing_figures"),
+        *("screening.figures", "screening.regression_figures", "figures"),
+    )
     shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "worn_film", "volume_by_law")
     solver_rules = (*SampleCase.solver_rules, "packing_profiles")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))

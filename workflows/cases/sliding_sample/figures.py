@@ -103,6 +103,7 @@ def depth_distribution(job: Job) -> Any:
 @figure(
     "Bed",
     "Bed over the sample",
+    finding=figure_findings.particle_speeds,
     inputs={"summary": SUMMARY, "surfaces": SURFACES},
     digits=6,
     caption="""
@@ -128,6 +129,7 @@ def bed(job: Job) -> Any:
 
 
 VIEWS = {
+    "finding": figure_findings.particle_spins,
     "inputs": {
         "summary": SUMMARY,
         "surfaces": SURFACES,
@@ -213,6 +215,7 @@ def forces(job: Job) -> Any:
 @figure(
     "Wear laws",
     "The study's law and the solver's Finnie model",
+    finding=figure_findings.finnie_over_law,
     charts=(charts.LAWS,),
     inputs={"summary": SUMMARY},
     caption="""

@@ -9,12 +9,13 @@ from typing import Any
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN, Estimate, estimates
+from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, estimates
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.packings import BY, over_packings
 from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.engine.job import duration_text
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
+from bulkwear.workflows.report.sentences import INTERVAL, less_or_more, side
 from bulkwear.workflows.report.text import number
 
 ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
@@ -22,7 +23,6 @@ DIGITS = 2  # significant ones of a ratio in words
 PERCENT = 100.0
 SECONDS_PER_HOUR, MICROMETRES_PER_MM = 3600.0, 1000.0
 PER_METRE = "worn_volume_per_metre_m3_per_m"
-INTERVAL = f"{PERCENT * CONFIDENCE:g} % interval"
 
 
 def depths_of(folder: Path) -> pd.DataFrame:
@@ -67,33 +67,16 @@ def answers(summary: pd.DataFrame) -> list[str]:
     if not found:
         return []
     (setting, surface), best = next(iter(found.items()))
-    said = (
-        f"The {surface} sample of {setting} wears {best.text(DIGITS)} of the plain sample's volume{_reduction(best)}."
-    )
+    change = less_or_more(best.value, *best.interval())
+    said = f"The {surface} sample of {setting} wears {best.text(DIGITS)} of the plain sample's volume{change}."
     if len(found) == 1:
         return [said]
-    less, more = (sum(each.known and _side(each) == side for each in found.values()) for side in (-1, 1))
+    less, more = (sum(side(*each.interval()) == where for each in found.values()) for where in (-1, 1))
     open_ = len(found) - less - more
     counts = (
         f"{less} of {len(found)} patterns wear less than their plain twin, {more} more; of {open_} it cannot be said."
     )
     return [counts, f"Lowest: {said[0].lower()}{said[1:]}"]
-
-
-def _side(found: Estimate) -> int:
-    """Return -1 or 1 where the interval of a ratio lies below or above 1, 0 where it does neither."""
-    low, high = found.interval()
-    return int(low > 1.0) - int(high < 1.0)
-
-
-def _reduction(found: Estimate) -> str:
-    if not found.known:
-        return ""
-    if not (side := _side(found)):
-        return ": neither less nor more can be said"
-    low, high = sorted(PERCENT * abs(end - 1.0) for end in found.interval())
-    change = f"{PERCENT * abs(found.value - 1.0):.0f} % {'less' if side < 0 else 'more'}"
-    return f": {change} ({low:.0f} to {high:.0f} %)"
 
 
 def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float) -> list[str]:
@@ -111,8 +94,8 @@ def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float) -> l
             for name in ("largest_depth_um", "depth_of_99_percent_um")
         )
         said.append(
-            f"The deepest place of the {surface} sample of {settings[0]} wears {deepest:.2g} mm per hour, a hundredth"
-            f" of its area at least {hundredth:.2g} mm."
+            f"The deepest place of the {surface} sample of {settings[0]} wears {number(deepest, DIGITS)} mm per hour, a"
+            f" hundredth of its area at least {number(hundredth, DIGITS)} mm."
         )
     time, hours = float(shown["time_s"].mean()), float(shown["hours"].mean())
     return [

@@ -23,6 +23,7 @@ from bulkwear.workflows.report.products import (
     write_product,
 )
 from bulkwear.workflows.report.sections import Pictures, Points, Table
+from bulkwear.workflows.report.verdict import verdict
 from tests import REPOSITORY
 from tests.support.calibration_study import study
 
@@ -119,6 +120,14 @@ def test_the_page_is_that_of_every_study(folder):
     assert "Wear law" not in page and "Balance of volumes" not in page and 'href="#cost"' not in page
 
 
+def test_the_verdict_answers_without_wear(folder):
+    """Pairs, intervals and what decides, with lights of a calibration and the assumption that matters most."""
+    points, lights, weightiest = verdict(page_parameters(study()), folder).blocks
+    assert points.items[0].startswith("The recommended pair (sliding friction 0.") and len(points.items) == 6
+    assert [each.what for each in lights.lights] == ["Reproduced", "Enough simulations", "Replicated", "Scale"]
+    assert "discrepancy of the model" in weightiest.text
+
+
 def test_the_page_in_docs_has_the_same_sections(folder, tmp_path):
     """It names date, version and scale, and its pictures lie beside it."""
     path = markdown.write_results(folder, tmp_path, study())
@@ -126,5 +135,5 @@ def test_the_page_in_docs_has_the_same_sections(folder, tmp_path):
     told = " ".join(page.split())
     assert "LIGGGHTS-PUBLIC 3.8.0" in told and "particles at scale 5" in told
     assert "no response measured here is made to tell it. A wall shear test is" in told
-    assert [line[3:] for line in page.splitlines() if line.startswith("## ")] == list(sections(folder))
+    assert [line[3:] for line in page.splitlines() if line.startswith("## ")] == ["Verdict", *sections(folder)]
     assert {found.name for found in tmp_path.glob("*.png")} == {f"calibration_quick_{name}.png" for name in FIGURES}

@@ -271,6 +271,7 @@ def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
     """It shows every figure and says what was found, without a section for a pattern that no row wears off."""
     figures = finished.folder / "figures"
     shutil.copy(figures / f"{drawn[0]}.png", figures / "worn_surface.png")
+    write_table(figures / "worn_surface.csv", [{"run": run, "depth_um": 1.0, "area_mm2": 1.0} for run in ROWS])
     text = write_results(finished.folder, tmp_path, finished.study).read_text(encoding="utf-8")
     words = (
         "| 56 | plain volume | mm3 | 145.2 | 147.3 |",

@@ -51,6 +51,7 @@ def test_figures_of_a_chute_are_readable(chute, make, tmp_path):
     figure, table = make(scenes.job_of_study(*chute))
     assert scenes.faults_of(figure, tmp_path / "figure.png") == []
     assert len(table) > 0 and set(table["setting"]) == {"plain", "convex"}
+    assert make.product.finding(table).endswith(".")
 
 
 @pytest.mark.parametrize("make", FIGURES, ids=lambda make: make.product.name)
@@ -59,6 +60,7 @@ def test_figures_of_a_mill_are_readable(mill, make, tmp_path):
     figure, table = make(scenes.job_of_study(*mill))
     assert scenes.faults_of(figure, tmp_path / "figure.png") == []
     assert len(table) > 0
+    assert make.product.finding(table).endswith(".")
 
 
 # ---------------------------------------------------------------- over time

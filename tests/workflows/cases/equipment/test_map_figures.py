@@ -30,11 +30,14 @@ def study(request, tmp_path_factory):
 
 @pytest.mark.parametrize("make", FIGURES, ids=lambda make: make.product.name)
 def test_every_figure_is_readable(study, make, tmp_path):
-    """Drawn of the files that runs leave; no text is small, cut off or over other text; a table stands beside it."""
+    """Drawn of the files that runs leave; no text is small, cut off or over other text; a table stands beside it, and a
+    sentence says what it shows.
+    """
     folder, runs, _ = study
     figure, table = make(scenes.job_of_study(folder, runs))
     assert scenes.faults_of(figure, tmp_path / "figure.png") == []
     assert len(table) > 0 and {"setting", "part"} <= set(table)
+    assert make.product.finding(table).endswith(".")
 
 
 def test_maps_hold_the_rates_of_the_table(study):

@@ -1,4 +1,4 @@
-"""Figures and tables of studies of particle size: wear against scale, flow by layer, packings, single collisions."""
+"""Figures and tables of studies of particle size: wear against scale, flow by layer, all of it beside the source."""
 
 from __future__ import annotations
 
@@ -9,21 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample import charts
+from bulkwear.workflows.cases.sliding_sample.particle_size import figure_findings
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import (
-    bed_floors,
-    below,
     bumps_and_particles,
-    of_template,
-    plain_parameters,
-    settled_beds,
 )
-from bulkwear.workflows.cases.sliding_sample.study import flow_runs, plain_runs, varies_scale
-from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.cases.sliding_sample.study import flow_runs, varies_scale
+from bulkwear.workflows.report.figure_findings import deepest_run
 from bulkwear.workflows.report.page_parameters import is_deformed
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
 if TYPE_CHECKING:
-    from bulkwear.workflows.config.design import Study
+    pass
 
 SUMMARY, PROFILES = "results/{study}/summary.csv", "results/{study}/flow/profiles.csv"
 PUBLISHED_LINES = "config/published/particle_size_lines.csv"
@@ -40,6 +36,7 @@ size_figure = partial(figure, "Particle size", when=varies_scale)
 
 @size_figure(
     "Wear against particle scale",
+    finding=figure_findings.ratios_by_scale,
     inputs={"summary": SUMMARY, "published": PUBLISHED_LINES},
     tables=WEAR_TABLES | {"published_lines": "particle_size/published_lines.csv"},
     charts=(charts.WEAR_AGAINST_SCALE,),
@@ -73,6 +70,7 @@ def wear_against_scale(job: Job) -> Any:
 
 @size_figure(
     "Wear against ratios of size",
+    finding=figure_findings.ratios_by_size,
     inputs={"wear": "results/{study}/figures/wear_against_scale.csv", "published": PUBLISHED_LINES},
     told={"rows": bumps_and_particles},
     when=lambda study: varies_scale(study) and bool(bumps_and_particles(study)),
@@ -108,6 +106,7 @@ def wear_against_size_ratios(job: Job) -> Any:
 
 @size_figure(
     "Relative velocity and wear rate by particle scale",
+    finding=figure_findings.steady_ends,
     charts=(charts.STEADY_BY_SCALE,),
     inputs={"summary": SUMMARY, "steady": "results/{study}/flow/steady.csv", "published": PUBLISHED_SIZES},
     caption="""
@@ -132,6 +131,7 @@ def steady_by_scale(job: Job) -> Any:
 
 @size_figure(
     "Wear of the smallest and the largest particles",
+    finding=deepest_run,
     inputs={"summary": SUMMARY, "surfaces": every_run("worn_surface.vtu")},
     told={"deformed": is_deformed},
     digits=6,
@@ -162,6 +162,7 @@ def wear_maps(job: Job) -> Any:
 
 @size_figure(
     "Velocity by layer and particle scale",
+    finding=figure_findings.velocity,
     inputs={"summary": SUMMARY, "profiles": PROFILES, "published": PUBLISHED_SIZES},
     caption="""
     Mean velocity of the particles over the sample in the direction in which it moves, seen from the bed at rest, as
@@ -177,6 +178,7 @@ def velocity_by_layer(job: Job) -> Any:
 
 @size_figure(
     "Upward velocity by layer and particle scale",
+    finding=figure_findings.upward,
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
     Mean upward velocity of the particles over the sample as the radius; the height of the layer goes clockwise round
@@ -192,6 +194,7 @@ def upward_velocity_by_layer(job: Job) -> Any:
 
 @size_figure(
     "Sideways velocity by layer and particle scale",
+    finding=figure_findings.sideways,
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
     Mean velocity of the particles over the sample across the travel as the radius, to +x outside the grey circle; the
@@ -222,6 +225,7 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
 
 @size_figure(
     "Angular speed along the sample",
+    finding=figure_findings.spin_along,
     # what the snapshots of the bed were reduced to lies beside the tables of wear
     inputs={"summary": SUMMARY, "profiles": PROFILES, "wear": every_run("wear.csv")},
     told={"runs": flow_runs},
@@ -247,106 +251,6 @@ def angular_velocity_along_sample(job: Job) -> Any:
     table = in_display_units(summary.merge(spin_profiles(folders, runs, starts.to_dict()), on="run"))
     labels = ("averaged angular velocity of the lowest layer (°/s)", "distance behind the front edge (mm)")
     return spider_charts(table, "averaged_angular_velocity_deg_per_s", "along_mm", labels, job.remarks), table
-
-
-# ---------------------------------------------------------------- packings and single collisions
-
-
-def _shaken(study: Study) -> dict[str, Any]:
-    """Return what the figure of the containers says of them."""
-    packing = to_si(study.settings)["packing"]
-    return {key: packing[key] for key in ("width_diameters", "axis", "shaking_s")}
-
-
-@size_figure(
-    "Packing of a container",
-    inputs={"profiles": "results/{study}/packings/profiles.csv", "published": PUBLISHED_PACKING},
-    told={"packing": _shaken},
-    caption="""
-    Contacts of a particle with others and porosity by slabs, each four median diameters high, of a container that is
-    filled (loose) and shaken by A sin(w t), and the difference. Porosity cuts particles at the slabs' edges; dotted,
-    by the source's rule, a particle counts whole where its centre is. Grey: what the source's text gives for its
-    scales 1 to 8. The counterpart of Yan 2022, Fig 4.3 and 4.4, in a narrower container.
-    """,
-)
-def packing_profiles(job: Job) -> Any:
-    """Draw how the particles of a container per particle scale are packed."""
-    import pandas as pd
-
-    from bulkwear.postproc.flow.packing import slabs_remark
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
-
-    table, packing = pd.read_csv(job.files.profiles), job.told.packing
-    published = pd.read_csv(job.files.published).query("case == 'container'")
-    sides = f"container of {packing['width_diameters']:g} median diameters to a side"
-    remarks = [sides, f"shaken along {packing['axis']} for {packing['shaking_s']:g} s", slabs_remark(table)]
-    return contacts.packing_profiles(table, published, remarks), table
-
-
-@size_figure(
-    "Packing of the bed",
-    inputs={
-        "wear": lambda study: [f"results/{study.name}/{run}/wear.csv" for run in plain_runs(study)],
-        "beds": settled_beds,
-        "published": PUBLISHED_PACKING,
-    },
-    told={
-        "runs": plain_parameters,
-        "floors": bed_floors,
-        "folder": below("beds"),
-        "template": of_template("bed_contacts"),
-    },
-    caption="""
-    Contacts per particle and porosity in the lower three quarters of the bed, settled before the plain sample and at
-    rest behind it: packings small, their means with 95 % intervals large. Porosity cuts particles at the slab's edges;
-    dotted, they count whole at their centre. Triangles: the source's. The counterpart of Yan 2022, Fig 4.9 and 4.10.
-    """,
-)
-def bed_packing(job: Job) -> Any:
-    """Count contacts in the beds of plain runs before and after the sample passed; draw them by particle scale."""
-    import pandas as pd
-
-    from bulkwear.workflows.cases.sliding_sample.particle_size.packings import bed_packing_table
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
-
-    told = job.told
-    folders = {run: Path(path).parent for run, path in zip(told.runs, job.files.wear, strict=True)}
-    beds = dict(zip(told.runs, zip(map(Path, job.files.beds), told.floors, strict=True), strict=True))
-    table = bed_packing_table(told.runs, folders, beds, Path(told.folder))
-    published = pd.read_csv(job.files.published).query("case == 'bed'")
-    return contacts.bed_packing(table, published, job.remarks), table
-
-
-def _collision_tests(study: Study) -> list[dict[str, Any]]:
-    from bulkwear.workflows.cases.sliding_sample.particle_size.collision import collision_tests
-
-    return collision_tests({run.name: run.parameters for run in study.runs})
-
-
-@size_figure(
-    "Single collisions",
-    inputs={},
-    told={"tests": _collision_tests, "folder": below("collisions"), "template": of_template("collision")},
-    tables={"measures": "particle_size/collisions.csv"},
-    digits={"table": 6},
-    caption="""
-    Two spheres, and a sphere and the sample, that collide head-on at 1 m/s, and two that collide obliquely with spin,
-    without gravity, at every particle scale: in units of radius, modulus and density. Marks of all scales lie on one
-    curve, which is what coarse graining asks of a contact (Yan 2022, Eq 4.1 to 4.7); head-on it is that of Hertz with
-    viscoelastic damping. Gravity at a given velocity does not scale: a bed's own weight is in balance with the same
-    relative overlap, a falling particle is not.
-    """,
-)
-def collisions(job: Job) -> Any:
-    """Simulate single collisions at every particle scale; draw them in units of their size."""
-    from bulkwear.workflows.cases.sliding_sample.particle_size import collision
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots import contacts
-
-    histories, measures = collision.collision_tables(job.told.tests, Path(job.told.folder))
-    largest = collision.spread_over_scales(measures)["spread"].max()
-    closed = collision.closed_forms(job.told.tests[0])
-    remarks = [f"largest difference between scales {100.0 * largest:.1g} %"]
-    return contacts.collisions(histories, closed, remarks), histories, {"measures": measures}
 
 
 # ---------------------------------------------------------------- beside the source

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.figures import DESIGN, SUMMARY, WEAR
+from bulkwear.workflows.cases.sliding_sample.screening import figure_findings
 from bulkwear.workflows.cases.sliding_sample.study import (
     compares_rows,
     equivalent_size_ratios,
@@ -36,6 +37,7 @@ PUBLISHED_RESULTS = "config/published/screening_results.csv"
 @figure(
     "Wear",
     "Wear of patterned over plain samples",
+    finding=figure_findings.pattern_over_plain,
     inputs={
         "summary": SUMMARY,
         "published": PUBLISHED_RESULTS,
@@ -75,6 +77,7 @@ def relative_wear(job: Job) -> Any:
 @figure(
     "Bed",
     "Relative velocity of the particles",
+    finding=figure_findings.relative_velocity,
     # the snapshots of the bed lie beside the tables of wear
     inputs={"design": DESIGN, "wear": WEAR, "costs": every_run("cost.csv"), "published": published_flow},
     told={"runs": flow_runs, "run_in": run_in},
@@ -118,6 +121,7 @@ def relative_velocity(job: Job) -> Any:
 @figure(
     "Wear",
     "Relative wear gradient",
+    finding=figure_findings.wear_gradient,
     # the stretches of travel within cycles lie beside the tables of wear
     inputs={"design": DESIGN, "wear": WEAR, "regimes": REGIMES, "along": ALONG, "published": published_flow},
     told={"run_in": run_in},
@@ -188,6 +192,7 @@ OF_PROFILES = {
 @figure(
     "Bed",
     "Velocity profiles",
+    finding=figure_findings.bottom_velocities,
     **OF_PROFILES,
     caption="""
     Mean velocity of the particles with the sample by layer, seen from the bed at rest, and its sideways and upward
@@ -209,6 +214,7 @@ def velocity_profiles(job: Job) -> Any:
 @figure(
     "Bed",
     "Profiles of the angular velocity",
+    finding=figure_findings.bottom_spins,
     **OF_PROFILES,
     caption="""
     Magnitude of the averaged angular velocity by layer, over the sample and beside it, in the same windows and layers
@@ -254,6 +260,7 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
     "Wear",
     "Relative wear by flow regime",
     charts=(charts.WEAR_BY_REGIME,),
+    finding=figure_findings.least_by_regime,
     inputs={"summary": SUMMARY, "regimes": REGIMES},
     told={"beds": passing_beds},
     when=finds_regimes,
@@ -283,6 +290,7 @@ def wear_by_regime(job: Job) -> Any:
     "Bed",
     "Normal force by flow regime",
     charts=(charts.FORCE_BY_REGIME,),
+    finding=figure_findings.forces_by_regime,
     inputs={"summary": SUMMARY, "regimes": REGIMES},
     when=finds_regimes,
     caption="""

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample.figures import SUMMARY
+from bulkwear.workflows.cases.sliding_sample.screening import figure_findings
 from bulkwear.workflows.cases.sliding_sample.screening.figures import REGIMES
 from bulkwear.workflows.cases.sliding_sample.study import CONDITIONS, PATTERN, factor_labels
 from bulkwear.workflows.report.products import Job, figure, tables
@@ -24,6 +25,7 @@ FIDELITY = {"fidelity": lambda study: study.fidelity}
 @figure(
     "Regression",
     "Best designs, predicted and simulated",
+    finding=figure_findings.confirmed,
     inputs={
         "summary": SUMMARY,
         "regimes": REGIMES,
@@ -95,6 +97,7 @@ def regression(job: Job) -> dict[str, pd.DataFrame]:
 @figure(
     "Regression",
     "Coefficients of the regression",
+    finding=figure_findings.strongest_terms,
     inputs={
         "summary": SUMMARY,
         "table": "results/{study}/regression/coefficients.csv",
@@ -129,6 +132,7 @@ def regression_coefficients(job: Job) -> Any:
 @figure(
     "Regression",
     "Residuals of the regression",
+    finding=figure_findings.largest_residual,
     inputs={"summary": SUMMARY, "table": "results/{study}/regression/residuals.csv"},
     **OF_REGRESSION,
     caption="""
@@ -149,6 +153,7 @@ def regression_residuals(job: Job) -> Any:
 @figure(
     "Regression",
     "Half-normal plot of effects",
+    finding=figure_findings.largest_contrast,
     inputs={"summary": SUMMARY, "table": "results/{study}/regression/effects.csv"},
     **OF_REGRESSION,
     caption="""
@@ -170,6 +175,7 @@ def regression_half_normal(job: Job) -> Any:
 @figure(
     "Regression",
     "Contours of the predicted wear",
+    finding=figure_findings.least_predicted,
     inputs={"summary": SUMMARY, "table": "results/{study}/regression/surface.csv"},
     told={**OF_REGRESSION["told"], "labels": factor_labels},
     when=OF_REGRESSION["when"],

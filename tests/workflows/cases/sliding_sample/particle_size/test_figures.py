@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.sliding_sample.particle_size import figures
+from bulkwear.workflows.cases.sliding_sample.particle_size import figures, packing_figures
 from bulkwear.workflows.cases.sliding_sample.particle_size import study as study_of_size
 from bulkwear.workflows.cases.sliding_sample.study import published_flow
 from bulkwear.workflows.config.design import load_study
@@ -20,7 +20,12 @@ from bulkwear.workflows.report.products import (
 )
 from tests import REPOSITORY
 
-OWN = {each.product.name for each in vars(figures).values() if hasattr(each, "product")}
+OWN = {
+    each.product.name
+    for module in (figures, packing_figures)
+    for each in vars(module).values()
+    if hasattr(each, "product")
+}
 SIMULATING = {"collisions": "collision", "bed_packing": "bed_contacts"}  # figure -> template of its deck
 
 

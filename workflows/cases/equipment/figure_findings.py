@@ -1,0 +1,157 @@
+"""What the figures of equipment show, in one sentence each, from the tables beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from bulkwear.workflows.cases.equipment.findings import answers_on_lifters, interval_words, rounded, spoken
+from bulkwear.workflows.cases.equipment.phases import PRISTINE
+from bulkwear.workflows.report.sentences import PERCENT, capital, listed
+
+RATE, AREA = "pristine_mm_per_1000h", "area_mm2"
+SHARE_AT_END = 0.25  # -, of the time that the flow is shown for: means over it tell what it came to
+
+
+def who(table: pd.DataFrame, row: pd.Series) -> str:
+    """Return the part of a row, with its design where a table has several."""
+    several = table["setting"].nunique() > 1
+    return f"the {spoken(str(row['part']))}{f' of {row.setting}' if several else ''}"
+
+
+def _after(hours: float) -> str:
+    return f"after {rounded(hours)} h" if hours > 0.0 else "as built"
+
+
+# ---------------------------------------------------------------- life and wear
+
+
+def shortest_life(lives: pd.DataFrame) -> str:
+    """Return which part is changed first and which last; lives: as from `life_tables.life_table`."""
+    known = lives[np.isfinite(lives["life_h"])].sort_values("life_h", kind="stable")
+    if known.empty:
+        return ""
+    first, last = known.iloc[0], known.iloc[-1]
+    said = f"First {who(lives, first)} is changed, after {rounded(first['life_h'])} h ({interval_words(first)})"
+    return f"{said}." if len(known) == 1 else f"{said}; last {who(lives, last)}, after {rounded(last['life_h'])} h."
+
+
+def depth_reached(depths: pd.DataFrame) -> str:
+    """Return how deep the deciding place of each part is worn in the end of what was simulated.
+
+    depths: as from `histories.deciding_depths`, in which packing 0 is the mean
+    """
+    means = depths[(depths["packing"] == 0) & depths["simulated"].astype(bool)]
+    last = means.loc[means.groupby(["setting", "part"], sort=False)["operation_h"].idxmax()]
+    said = [
+        f"{who(depths, row)} has lost {rounded(row['depth_mm'])} mm {_after(row['operation_h'])}"
+        for _, row in last.iterrows()
+    ]
+    return f"At the deciding place {listed(said)}." if said else ""
+
+
+def fastest_place(rates: pd.DataFrame) -> str:
+    """Return where the recession as built is fastest, and how much faster than the part's mean.
+
+    rates: patches with their area, place and rate, as from `tables.rates_table`
+    """
+    known = rates[rates[RATE] > 0.0]
+    if known.empty:
+        return "Nothing wears as built."
+    worst = known.loc[known[RATE].idxmax()]
+    own = rates[(rates["setting"] == worst["setting"]) & (rates["part"] == worst["part"])].dropna(subset=RATE)
+    mean = float(np.average(own[RATE], weights=own[AREA]))
+    place = ", ".join(rounded(worst[f"{axis}_mm"], 3) for axis in "xyz")
+    return (
+        f"{capital(who(rates, worst))} wears fastest as built, by {rounded(worst[RATE])} mm per 1,000 h at ({place}) mm"
+        f" of its drawing, {rounded(worst[RATE] / mean)} times the mean over its area."
+    )
+
+
+def thinnest_place(rows: pd.DataFrame) -> str:
+    """Return what is left at the thinnest place at the last hours shown; rows: as from `remaining.remaining_rows`."""
+    last = rows[rows["operation_h"] == rows["operation_h"].max()]
+    least = last.loc[last["least_remaining_mm"].idxmin()]
+    how = "" if least["how"] == "simulated" else f" ({least['how']})"
+    left, when = rounded(least["least_remaining_mm"]), _after(least["operation_h"])
+    return f"The thinnest place has {left} mm left {when}{how}; it is on {who(rows, least)}."
+
+
+def impact_share(rows: pd.DataFrame) -> str:
+    """Return the share of impacts in the power on each part as built, and where the pressure is highest.
+
+    rows: patches with their area and loads
+    """
+    said = []
+    for _, own in rows.groupby(["setting", "part"], sort=False):
+        powers = [float((own[f"{name}_power_W_per_m2"] * own[AREA]).sum()) for name in ("impact", "sliding")]
+        if sum(powers) > 0.0:
+            said.append(f"{PERCENT * powers[0] / sum(powers):.0f} % on {who(rows, own.iloc[0])}")
+    most = rows["pressure_Pa"].max()
+    start = f"Of the power of impacts and sliding, impacts have {listed(said)}; t" if said else "T"
+    return f"{start}he highest mean pressure on a patch is {rounded(most)} Pa."
+
+
+def deepest_section(lines: pd.DataFrame) -> str:
+    """Return how much is removed at most in the section of each part; lines: as from `sections.worst_sections`."""
+    depth = lines[["depth_1_mm", "depth_2_mm"]].max(axis=1)
+    last = lines.assign(depth=depth)[lines["operation_h"] == lines.groupby("section")["operation_h"].transform("max")]
+    said = [
+        f"up to {rounded(own['depth'].max())} mm from {who(lines, own.iloc[0])} {_after(own['operation_h'].iloc[0])}"
+        for _, own in last.groupby("section", sort=False)
+    ]
+    return f"In the sections wear has removed {listed(said)}."
+
+
+def lifters(table: pd.DataFrame) -> str:
+    """Return how far the lifters of the first mill lean and stand out, as built and in the end."""
+    return next(iter(answers_on_lifters(table)), "")
+
+
+# ---------------------------------------------------------------- flow
+
+
+def held_and_power(series: pd.DataFrame) -> str:
+    """Return mass held, what goes out and the power of moving parts in the end, mean over packings.
+
+    series: as from `histories.flow_series`
+    """
+    ends = series.groupby("run")["time_s"].transform("max")
+    last = series[series["time_s"] >= (1.0 - SHARE_AT_END) * ends]
+    said, several = [], series["setting"].nunique() > 1
+    for setting, own in last.groupby("setting", sort=False):
+        means = own.groupby("run").mean(numeric_only=True).mean()
+        parts = [f"{rounded(means['held_kg'], 3)} kg are held"]
+        if means["out_t_per_h"] > 0.0:
+            parts.append(f"{rounded(means['out_t_per_h'], 3)} t/h go out")
+        parts += [
+            f"the {spoken(name.removeprefix('power_').removesuffix('_kW'))} gives {rounded(means[name], 3)} kW"
+            for name in means.index
+            if name.startswith("power_") and abs(means[name]) > 0.0
+        ]
+        said.append(f"{f'of {setting} ' if several else ''}{listed(parts)}")
+    return f"In the last quarter of the time {'; '.join(said)}."
+
+
+def speeds(column: str, words: str):
+    """Return the finding of panels of the flow: mean and largest of a speed (m/s) by phase."""
+
+    def finding(panels: pd.DataFrame) -> str:
+        said, several = [], panels["setting"].nunique() > 1
+        for (setting, phase), own in panels.groupby(["setting", "phase"], sort=False):
+            named = f"{setting}, {phase}" if several else str(phase)
+            mean, most = (rounded(value) for value in (own[column].mean(), own[column].max()))
+            said.append(f"{named} {mean} m/s, at most {most} m/s")
+        return f"{words}: {'; '.join(said)}."
+
+    return finding
+
+
+def charge(rows: pd.DataFrame) -> str:
+    """Return shoulder and toe by design and phase, mean over packings; rows: as from `flow_panels.charge_rows`."""
+    said, several = [], rows["setting"].nunique() > 1
+    for (setting, phase), own in rows.groupby(["setting", "phase"], sort=False):
+        shape = "as built" if phase == PRISTINE else "as worn"
+        named = f"{setting}, {shape}" if several else shape
+        said.append(f"{named} {rounded(own['shoulder_deg'].mean(), 3)} and {rounded(own['toe_deg'].mean(), 3)} degrees")
+    return f"Shoulder and toe lie at: {'; '.join(said)}."
