@@ -81,3 +81,24 @@ RUN_IN = Chart(
     sift="run",
     colours=COLOURS,
 )
+MESHES = Chart(
+    tuple(
+        Panel(
+            Axis("Size of the elements", "mm"),
+            axis,
+            (
+                Layer(
+                    LINES,
+                    "mean_mm",
+                    "element_size_mm",
+                    spread="deviation_mm",
+                    group=("scheme",),
+                    only={"size": size},
+                    factor=FACTORS[size] / MILLIMETRES,
+                ),
+            ),
+        )
+        for size, axis in SIZES.items()
+    ),
+    colours=COLOURS,
+)

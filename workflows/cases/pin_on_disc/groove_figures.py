@@ -88,6 +88,7 @@ def contour_extraction(job: Job) -> Any:
 @figure(
     "Contours",
     "Depth and width by mesh",
+    charts=(charts.MESHES,),
     finding=trend,
     inputs={"design": DESIGN, "published": PUBLISHED, "statistics": "results/{study}/figures/run_in.csv"},
     tables={"stability": "figures/mesh_stability.csv"},

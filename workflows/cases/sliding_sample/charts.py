@@ -23,6 +23,7 @@ WEAR_AGAINST_TRAVEL = one_panel(
     **SIFTED,
 )
 BOTH = "both, with interval"
+PARTS = {"base": "BASE_COLOUR", "pattern": "PATTERN_COLOUR", BOTH: "OTHER_COLOUR"}
 WEAR_SPLIT = one_panel(
     SETTINGS,
     OVER_PLAIN,
@@ -30,7 +31,7 @@ WEAR_SPLIT = one_panel(
     Layer(BARS, "pattern_over_plain", SETTING, name="pattern", said="Pattern"),
     Layer(POINTS, "wear_over_plain", SETTING, **INTERVAL, name=BOTH, said="Both"),
     levels=PLAIN_SAMPLE,
-    colours={"base": "BASE_COLOUR", "pattern": "PATTERN_COLOUR", BOTH: "OTHER_COLOUR"},
+    colours=PARTS,
     stacked=True,
 )
 RELATIVE_WEAR = one_panel(
@@ -86,6 +87,23 @@ WEAR_GRADIENT = one_panel(
     Layer(LINES, "relative_gradient", **BY_ROW),
     split="regime",
     sift="row",
+)
+BY_REGIME = {"split": "regime"}
+WEAR_BY_REGIME = one_panel(
+    SETTINGS,
+    Axis("Wear per length over the largest of the regime", "-"),
+    Layer(BARS, "base_relative_wear", SETTING, name="base", said="Base"),
+    Layer(BARS, "bump_relative_wear", SETTING, name="pattern", said="Pattern"),
+    Layer(POINTS, "relative_wear", SETTING, **INTERVAL, name=BOTH, said="Both"),
+    colours=PARTS,
+    stacked=True,
+    **BY_REGIME,
+)
+FORCE_BY_REGIME = one_panel(
+    SETTINGS,
+    Axis("Normal force on the sample", "N"),
+    Layer(POINTS, "mean_normal_force_N", "setting", **INTERVAL, group=("surface",)),
+    **BY_REGIME,
 )
 BY_SCALE = {"x": "particle_scale", "group": ("curve",)}
 WEAR_AGAINST_SCALE = one_panel(

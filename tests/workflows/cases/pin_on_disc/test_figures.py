@@ -72,6 +72,9 @@ def test_charts_show_the_tables_beside_published_values(figures, pins):
     depth = tables["run_in"].query("size == 'depth'")
     drawn = [value for scheme in names(sizes) for curve in values(sizes, scheme) for value in curve]
     assert sorted(drawn) == pytest.approx(sorted(1e6 * depth["mean_m"]), rel=1e-5)
+    meshes, mesh = drawn_chart(products["mesh_series"], tables["mesh_series"]), tables["mesh_series"]
+    widths = [value for scheme in names(meshes) for curve in values(meshes, scheme, 1) for value in curve]
+    assert sorted(widths) == pytest.approx(sorted(mesh.query("size == 'opening width'")["mean_mm"]), rel=1e-5)
     bound = drawn_chart(
         products["size_invariance"],
         tables["size_invariance"],

@@ -259,6 +259,7 @@ def _profiles_in_detail(job: Job) -> tuple[pd.DataFrame, pd.DataFrame]:
 @figure(
     "Wear",
     "Relative wear by flow regime",
+    charts=(charts.WEAR_BY_REGIME,),
     finding=figure_findings.least_by_regime,
     inputs={"summary": SUMMARY, "regimes": REGIMES},
     told={"beds": passing_beds},
@@ -288,6 +289,7 @@ def wear_by_regime(job: Job) -> Any:
 @figure(
     "Bed",
     "Normal force by flow regime",
+    charts=(charts.FORCE_BY_REGIME,),
     finding=figure_findings.forces_by_regime,
     inputs={"summary": SUMMARY, "regimes": REGIMES},
     when=finds_regimes,

@@ -77,7 +77,9 @@ def test_relative_wear_is_per_length_within_the_group(regimes, summary):
     flow: 1e-9 m3 worn while 2 kg/s pass are 0.5 mm3 s/kg (Eq 3.11).
     """
     beds = dict.fromkeys(summary["run"], BED)
-    table = wear_by_group(summary, regimes, beds).set_index(["setting", "surface"])
+    table = wear_by_group(summary, regimes, beds)
+    assert charts.WEAR_BY_REGIME.columns() <= set(table)
+    table = table.set_index(["setting", "surface"])
     expected = [0.25, 0.5, 0.5, 1.0, 0.5, 1.0]
     assert table.index.get_level_values("setting").tolist() == ["R1", "R1", "R3", "R3", "R2", "R2"]
     np.testing.assert_allclose(table["relative_wear"], expected, rtol=ROUNDING)
@@ -101,6 +103,7 @@ def test_intervals_are_scaled_with_the_wear(regimes, summary):
     ends = 0.25 * np.exp([-reach, reach])
     assert found[["interval_low", "interval_high"]].tolist() == pytest.approx(ends, rel=1e-9)
     force = force_by_group(both, twice)
+    assert charts.FORCE_BY_REGIME.columns() <= set(force)
     assert force["packings"].unique().tolist() == [2]
     assert force[["mean_normal_force_N", "interval_low", "interval_high"]].to_numpy() == pytest.approx(5.0)
 
