@@ -341,13 +341,27 @@ def input_of(source):
 
 
 def in_report(product, paths):
-    """The outputs of a product, its figure marked for Snakemake's own report; the caption lies beside the rule."""
+    """The outputs of a product, marked for Snakemake's own report; the captions lie beside the rule."""
     if not product.is_figure:
-        return paths
-    flagged = report(
-        paths["figure"], caption="caption.rst", category=product.category, labels={"figure": product.title}
-    )
-    return {**paths, "figure": flagged}
+        return {key: table_in_report(path) for key, path in paths.items()}
+    titles = {"figure": product.title}
+    if product.suffix == "gif":  # that report shows no film, it saves one
+        titles["still"] = f"{product.title}: its last picture"
+    flagged = {
+        key: report(paths[key], caption="caption.rst", category=product.category, labels={"figure": title})
+        for key, title in titles.items()
+        if key in paths
+    }
+    return {**paths, **flagged}
+
+
+def table_in_report(path, captions=""):
+    """A path, marked for Snakemake's own report where it is that of a table beside the page: others may be large."""
+    folder, _, name = path.rpartition("/")
+    if folder != "results/{study}" or not name.endswith(".csv"):
+        return path
+    shown = name.removesuffix(".csv").replace("_", " ")
+    return report(path, caption=f"{captions}table.rst", category="Tables", labels={"table": shown})
 
 
 def told_of(product):

@@ -1,6 +1,8 @@
 """Projects outside the package: run by --directory and as a module, side by side; told in a sentence what is wrong."""
 
+import json
 import multiprocessing
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -11,6 +13,7 @@ import pytest
 from bulkwear.__main__ import main
 from bulkwear.workflows.config.targets import Naming, naming, requested_studies
 from bulkwear.workflows.engine.project import PACKAGE, Project
+from bulkwear.workflows.report.printed import PDF, browser
 from tests.support.loaded_project import load_project
 from tests.support.own_project import STUDY, TEMPLATE, WORD, own_project
 from tests.workflows.test_snakemake import finish, planned_jobs, snakemake
@@ -71,6 +74,26 @@ def test_a_project_runs_to_its_page(finished):
     wear = pd.read_csv(folder / "A_plain/wear.csv")
     archard = 6.3e-13 * wear["sliding_work_J"].sum()
     assert wear["worn_volume_m3"].sum() == pytest.approx(archard / 3.0, rel=ROUNDING)
+
+
+@pytest.mark.solver
+def test_a_finished_study_has_further_reports(finished):
+    """Its page as PDF, where there is a browser; and Snakemake's own report with a description, its tables by name and
+    each figure by its title."""
+    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(finished["mine"]), "--cores", "1")
+    folder = finished["mine"] / "results" / STUDY
+    if browser():
+        finish(snakemake(finished["mine"], *outside, f"results/{STUDY}/report.pdf"))
+        assert (folder / "report.pdf").read_bytes().startswith(PDF)
+    finish(snakemake(finished["mine"], *outside, STUDY, "--report", str(folder / "snakemake_report.html")))
+    text = (folder / "snakemake_report.html").read_text(encoding="utf-8")
+    assert "Wear of surfaces by bulk solids" in text
+    shown = json.loads(re.search(r"var categories = (.*);", text)[1])
+    tables = {Path(path).name for path in shown.pop("Tables")["Other"]}
+    assert {"design.csv", "summary.csv", "forecast.csv"} <= tables
+    figures = {path for category in shown.values() for paths in category.values() for path in paths}
+    assert {Path(path).stem for path in figures} == {path.stem for path in (folder / "figures").glob("*.*")}
+    assert '"labels": {"figure": "Wear against travel"}' in text
 
 
 @pytest.mark.solver

@@ -17,11 +17,11 @@ rule forecast_table:
     input:
         rates=used_rates,
     output:
-        "results/{study}/forecast.csv",
+        table_in_report("results/{study}/forecast.csv", captions="../report/"),
     log:
         "results/{study}/logs/forecast_table.log",
-    localrule: True  # at once, not with the tables: `status` tells the time left by it
     priority: 2
+    localrule: True  # at once, not with the tables: `status` tells the time left by it
     params:
         work=lambda wildcards: solver_work(wildcards.study)(wildcards),
         fidelity=lambda wildcards: study_of(wildcards).fidelity,

@@ -159,7 +159,10 @@ def _cycle(job: JobState, expected: int) -> str:
 
 
 def _volume(job: JobState) -> str:
-    return "" if job.worn_m3 is None else f"{number_text(job.worn_m3 * CUBIC_MILLIMETRES)} mm³"
+    if job.worn_m3 is None:
+        return ""
+    volume = job.worn_m3 * CUBIC_MILLIMETRES
+    return f"{number_text(volume) if volume >= 1.0 else f'{volume:.3g}'} mm³"
 
 
 def _time(job: JobState, left: float) -> str:

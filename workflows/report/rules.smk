@@ -3,6 +3,10 @@
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters, page_templates
 from bulkwear.workflows.report.products import outputs_of, product_files, rules_of
 
+
+report: "description.rst"
+
+
 for RULE_OF_PRODUCT, (NAMES, PRODUCT) in rules_of(STUDIES.values()).items():
 
     rule:
@@ -37,7 +41,7 @@ rule design_table:
     input:
         last_round,
     output:
-        "results/{study}/design.csv",
+        table_in_report("results/{study}/design.csv"),
     log:
         "results/{study}/logs/design_table.log",
     benchmark:
@@ -61,7 +65,7 @@ rule summary:
         pristine=of_every_run("results/{study}/{run}/surface.vtu"),
         worn=of_every_run("results/{study}/{run}/worn_surface.vtu"),
     output:
-        "results/{study}/summary.csv",
+        table_in_report("results/{study}/summary.csv"),
     log:
         "results/{study}/logs/summary.log",
     benchmark:
