@@ -17,7 +17,6 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from bulkwear.postproc.plots.page import plotly_script, within_a_page
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
@@ -103,7 +102,7 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         "sections": sections,
         "figures": figures,
-        "plotly": plotly_script() if any(each["page"] or each["chart"] for each in figures.values()) else "",
+        "plotly": _plotly() if any(each["page"] or each["chart"] for each in figures.values()) else "",
         "run_columns": run_columns(study, summary),
         "runs_note": page.RUNS_NOTE,
         "thumbnails": thumbnails(folder / "figures" / "worn_surface.csv"),
@@ -162,7 +161,7 @@ def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path)
         "title": told["title"],
         "finding": finding_of(product, folder),
         "caption": told["caption"],
-        "page": within_a_page(file.read_text(encoding="utf-8")) if interactive else None,
+        "page": _within(file.read_text(encoding="utf-8")) if interactive else None,
         "chart": chart_text(product, told["beside"], folder),
         "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
         "still": data_uri((figures / still).read_bytes(), "image/png") if still else None,
@@ -363,3 +362,15 @@ def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:
     for folder in folders:
         for path in cycle_files(folder, "state.json"):
             yield from read_record(path).get("solver_warnings", {}).items()
+
+
+def _plotly() -> str:
+    from bulkwear.postproc.plots.page import plotly_script  # slow to import
+
+    return plotly_script()
+
+
+def _within(page: str) -> str:
+    from bulkwear.postproc.plots.page import within_a_page  # slow to import
+
+    return within_a_page(page)
