@@ -118,8 +118,8 @@ def table(name: str) -> str:
 
 def wear_laws() -> str:
     """Return the section about the wear laws and their parameters."""
-    laws = [f"* `{name}`: {_words(law)} Source: {law.source}." for name, law in LAWS.items()]
-    rows = [_parameter_row(name, parameter) for name, law in LAWS.items() for parameter in law.parameters]
+    laws = [f"* `{name}`: {_words(law)} Source: {law.source}." for name, law in sorted(LAWS.items())]
+    rows = [_parameter_row(name, parameter) for name, law in sorted(LAWS.items()) for parameter in law.parameters]
     return LAWS_HEAD + "\n".join(laws) + (LAW_TABLE + "\n".join(rows) if rows else "") + "\n"
 
 

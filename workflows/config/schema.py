@@ -63,7 +63,7 @@ def load_schema(name: str) -> dict[str, Any]:
     schema = reduce(joined, parts, {}) or {"type": "object", "additionalProperties": False, "properties": {}}
     for path, inner in leaves(schema):
         if path[-1] == LAW and inner.get("enum") == []:
-            inner["enum"] = list(LAWS)
+            inner["enum"] = sorted(LAWS)
     if name == "study":
         schema["properties"]["case"]["enum"] = case_names()
     Validator.check_schema(schema)

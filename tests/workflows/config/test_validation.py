@@ -267,7 +267,7 @@ BAD_VALUES = [
         SETTINGS,
         "law: archard",
         "law: archad",
-        f"config/default.yaml, line 4: wear.law is 'archad', allowed is one of {', '.join(LAWS)}.",
+        f"config/default.yaml, line 4: wear.law is 'archad', allowed is one of {', '.join(sorted(LAWS))}.",
     ),
     (
         SETTINGS,
