@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from benchmarks.chaos_files import Outcome
-from benchmarks.chaos_runs import LONGEST_S
+from benchmarks.chaos_runs import finished
 
 ROOT = Path(__file__).parents[1]
 STUDY = "tiny"
@@ -65,20 +65,10 @@ def words(folder: Path) -> Path:
     return folder.with_suffix(".txt")
 
 
-def ends(process: subprocess.Popen) -> bool:
-    """Wait for Snakemake; whether all was made. One that hangs is killed."""
-    try:
-        return process.wait(LONGEST_S) == 0
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
-        return False
-
-
 def finished_study(folder: Path) -> float:
     """Run a study undisturbed; return the seconds that it took. Raises RuntimeError where it fails."""
     started = time.monotonic()
-    if not ends(start(new_study(folder))):
+    if not finished(start(new_study(folder))):
         raise RuntimeError(words(folder).read_text("utf-8", "replace")[-2000:])
     return time.monotonic() - started
 
@@ -107,7 +97,7 @@ def killed(expected: Path, folder: Path, kills: int, chance: random.Random, long
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-    judge(outcome, here, expected, ends(start(here)))
+    judge(outcome, here, expected, finished(start(here)))
     return outcome
 
 
@@ -118,9 +108,9 @@ def twice(expected: Path, folder: Path, count: int, chance: random.Random, longe
         here = new_study(folder / f"twice_{number}")
         first = start(here)
         time.sleep(chance.uniform(0.0, longest_s))
-        second = ends(start(here))  # refused, or there was nothing left to do
+        second = finished(start(here))  # refused, or there was nothing left to do
         told = second or AT_WORK in words(here).read_text("utf-8", "replace")
-        judge(outcome, here, expected, ends(first) and told and ends(start(here)))
+        judge(outcome, here, expected, finished(first) and told and finished(start(here)))
     return outcome
 
 
@@ -139,7 +129,7 @@ def clock_steps(expected: Path, folder: Path, steps: int, chance: random.Random,
             if path.is_file():
                 moment = time.time() + chance.uniform(-YEARS, YEARS)
                 os.utime(path, (moment, moment))
-    judge(outcome, here, expected, ends(start(here)))
+    judge(outcome, here, expected, finished(start(here)))
     return outcome
 
 
@@ -147,7 +137,7 @@ def without_network(expected: Path, folder: Path) -> Outcome:
     """Run a study where no network is, not even the machine's own."""
     outcome = Outcome("studies without a network")
     here = new_study(folder / "offline")
-    judge(outcome, here, expected, ends(start(here, WITHOUT_NETWORK)))
+    judge(outcome, here, expected, finished(start(here, WITHOUT_NETWORK)))
     return outcome
 
 
@@ -166,7 +156,7 @@ def as_nobody(expected: Path, folder: Path) -> Outcome:
     for path in (here, *here.rglob("*")):
         os.chown(path, NOBODY_ID, NOBODY_ID)
     cache = ("env", f"XDG_CACHE_HOME={here / 'cache'}")
-    judge(outcome, here, expected, ends(start(here, (*NOBODY, *cache))))
+    judge(outcome, here, expected, finished(start(here, (*NOBODY, *cache))))
     return outcome
 
 
@@ -182,11 +172,11 @@ def unwritable(expected: Path, folder: Path) -> Outcome:
     subprocess.run(["mount", "--bind", results, results], check=True)
     try:
         subprocess.run(["mount", "-o", "remount,ro,bind", results], check=True)
-        refused = not ends(start(here))
+        refused = not finished(start(here))
         said = words(here).read_text("utf-8", "replace")
     finally:
         subprocess.run(["umount", results], check=True)
-    judge(outcome, here, expected, ends(start(here)) and refused and any(each in said for each in READ_ONLY))
+    judge(outcome, here, expected, finished(start(here)) and refused and any(each in said for each in READ_ONLY))
     return outcome
 
 
