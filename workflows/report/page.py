@@ -46,6 +46,8 @@ from bulkwear.workflows.report.verdict import with_verdict
 LARGEST_EMBEDDED_BYTES = {"csv": 3_000_000, "svg": 150_000, "pdf": 150_000}  # a larger file stays on disk, linked
 MEDIA_TYPES = {"csv": "text/csv", "svg": "image/svg+xml", "pdf": "application/pdf"}
 PERCENT = 100.0
+LARGE_VOLUME = 1e5  # mm3, of the most worn run, from which on cm3 are read more easily
+CUBIC_CENTIMETRE = 1e3  # mm3
 LONGEST_NAME = 40  # characters of a cell that is not broken into lines
 FORECAST = "forecast.csv"
 PACKAGES = (
@@ -209,9 +211,11 @@ def run_rows(study: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, 
 
 def results_of_runs(summary: pd.DataFrame) -> dict[str, dict[str, float]]:
     """Return of each run what its wear was, as far as the summary tells it."""
+    volumes = summary["worn_volume_m3"] * CUBIC_MILLIMETRES
+    large = volumes.max() >= LARGE_VOLUME
     told = {
         "wear_over_plain": summary.get("wear_over_plain"),
-        "worn_volume_mm3": summary["worn_volume_m3"] * CUBIC_MILLIMETRES,
+        "worn_volume_cm3" if large else "worn_volume_mm3": volumes / CUBIC_CENTIMETRE if large else volumes,
         "carried_share_percent": PERCENT * summary["carried_volume_m3"] / summary["worn_volume_m3"],
     }
     columns = pd.DataFrame({"run": summary["run"], **{name: each for name, each in told.items() if each is not None}})
@@ -233,8 +237,13 @@ def thumbnails(table: Path) -> dict[str, str]:
 
 def run_columns(study: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, str]]:
     """Return key, name and unit of the columns of the table of runs."""
-    pairs = ((key, *name_and_unit(key)) for key in run_rows(study, summary)[0])
+    pairs = ((key, *name_and_unit(_last_words(key))) for key in run_rows(study, summary)[0])
     return [{"key": key, "name": name, "unit": unit} for key, name, unit in pairs]
+
+
+def _last_words(key: str) -> str:
+    """Return the last two words of a dotted key, parts.liner.file: liner file."""
+    return " ".join(key.split(".")[-2:])
 
 
 # ---------------------------------------------------------------- cost and provenance

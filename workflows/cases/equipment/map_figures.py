@@ -72,7 +72,7 @@ PACKINGS = "means over blocks and packings, told by area patches"
     caption="""
     Hours of operation until a part has to be changed, by the rule at its name, at the place that decides. Bars of
     error: 95 % interval from the scatter of packings and from the wear coefficient as given; without one the scatter is
-    unknown. The upper axis is in megatonnes of feed.
+    unknown. An upper axis is in megatonnes of feed, where all designs have one feed.
     """,
 )
 def life_bars(job: Job) -> Any:
@@ -157,7 +157,7 @@ def wear_map(job: Job) -> Any:
     told=TOLD,
     digits=DIGITS,
     caption="""
-    Thickness left now, after the last simulated hour, and at the hours that the study wants told, of the first packing
+    Thickness left as built, after the last simulated hour, and at the hours that the study wants told, of the first packing
     of each design. Between updates, and from the last one on, each face loses as much as its area patch, after the last
     one at the mean rate of the last shape. Red: as thin as the part is changed at, or thinner. Grey: no back lies
     behind, so no thickness is known. Views as in the map of wear.
