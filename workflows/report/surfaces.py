@@ -44,8 +44,9 @@ def worn_surface(job: Job) -> Any:
     meshes = read_worn_surfaces(runs["run"], job.files.surfaces)
     depths = depth_table(meshes, deformed)
     remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(runs)]
-    shown = first_packings(runs)
-    return pictures.worn_surface(meshes, shown, deformed, depths, depth_quantity(deformed), remarks), depths
+    shown, quantity = first_packings(runs), depth_quantity(deformed)
+    drawn = pictures.worn_surface(meshes, shown, deformed, depths, quantity, remarks)
+    return drawn, depths.merge(runs[["run", "setting", "packing"]], on="run")
 
 
 @figure(
