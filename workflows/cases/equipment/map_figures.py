@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
 DIGITS = 6
-MOST_MAPS, MOST_STATES = 6, 3  # designs on a figure of maps; where each has several maps of a part
+MOST_MAPS, MOST_STATES = 8, 3  # designs on a figure of maps; where each has several maps of a part
 WORN = every_run("worn_surface.vtu")
 SURFACES = {"surfaces": every_run("surface.vtu"), "worn": WORN, "wear": every_run("wear.csv")}
 BESIDE = "wear.csv"  # of every run, with the folders of its cycles beside it
