@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
 
 from bulkwear.postproc.mesh import PLAIN
@@ -42,6 +43,7 @@ CURVE_POINTS = 101
 NOTE_CHARACTERS = 105  # of a line over a printed table
 SCALE_STYLES = {1: "-", 2: "--", 3: "-.", 4: ":"}
 LABORATORY_COLOUR = "#CC79A7"
+GIVEN = 1e-6  # -, of the measured volume: as near is the sample that sets the scale of time
 BARS = 0.8  # of the space of a case
 MACHINE_STYLES = {"channel": "-", "ring": "--"}
 SHIFT = 0.05  # revolutions that two machines stand apart
@@ -164,6 +166,7 @@ def benchmark(
     hours = published_value(published, "short_test", "laboratory")
     theirs_at = published_value(published, "revolutions_of_short_test", "simulation")
     chosen = predicted[np.isclose(predicted["hours"], hours)]
+    plain_volume = published_value(published, f"{PLAIN}_volume_56_h", "laboratory")
     scales = sorted({*chosen["particle_scale"], *published_fits["particle_scale"]})
     figure = new_figure(remarks, 4.4)
     axes = figure.subplots()
@@ -181,15 +184,26 @@ def benchmark(
         places = np.arange(1, len(scales) + 1) + BARS * ((index + 0.5) / len(kinds) - 0.5)
         look = {"color": colour(surface), "hatch": "///" if source == THESIS else None, "edgecolor": "white"}
         bars = {"yerr": reach, "capsize": 2.5} if reach is not None and np.isfinite(reach).any() else {}
-        axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look, **bars)
+        drawn = axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look, **bars)
+        if source == OURS and surface == PLAIN:
+            _mark_given(drawn, np.isclose(values, plain_volume, rtol=GIVEN))
     for place, surface in zip((-0.2, 0.2), (PLAIN, CONVEX), strict=True):
         value = published_value(published, f"{surface}_volume_56_h", "laboratory")
         axes.bar(place, value, 0.35, color=colour(surface), alpha=0.5)
         axes.axhline(value, color=colour(surface), linewidth=0.8, linestyle=":")
     axes.set_xticks(range(len(scales) + 1), [LABORATORY, *(f"particle scale {scale:g}" for scale in scales)])
     axes.set_ylabel(f"Volume after {hours:g} h (mm³)")
-    figure.legend(loc="outside upper center", ncols=4)
+    figure.legend(loc="outside upper center", ncols=2)
     return figure
+
+
+def _mark_given(bars: BarContainer, given: np.ndarray) -> None:
+    """Draw hollow which bars (k,) are no result, as they set the scale of time, and say so in the legend."""
+    for bar, is_given in zip(bars, given, strict=True):
+        if is_given:
+            bar.set(facecolor="white", edgecolor=colour(PLAIN), hatch="..")
+    if given.any():
+        bars.set_label(f"{bars.get_label()}: dotted sets the scale of time")
 
 
 def volume_by_hours(
