@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -28,7 +27,7 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW, errorbars
-from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
+from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS
 from bulkwear.workflows.cases.circular_tester.volume import (
     CONVEX,
     TERMS,
@@ -40,7 +39,6 @@ from bulkwear.workflows.cases.circular_tester.volume import (
 )
 
 CURVE_POINTS = 101
-NOTE_CHARACTERS = 105  # of a line over a printed table
 SCALE_STYLES = {1: "-", 2: "--", 3: "-.", 4: ":"}
 LABORATORY_COLOUR = "#CC79A7"
 GIVEN = 1e-6  # -, of the measured volume: as near is the sample that sets the scale of time
@@ -209,16 +207,15 @@ def _mark_given(bars: BarContainer, given: np.ndarray) -> None:
 def volume_by_hours(
     curves: pd.DataFrame,
     hours_per_revolution: float,
-    table: pd.DataFrame,
     published: pd.DataFrame,
     remarks: Sequence[str],
 ) -> Figure:
-    """Draw lost volume (mm3) against hours: measured points and rates, our runs, and the table below (Fig 6.4).
+    """Draw lost volume (mm3) against hours: measured points and rates, and our runs (Fig 6.4).
 
-    curves: as from `volume.mean_volumes`; table: as from `tables.comparison_table`.
+    curves: as from `volume.mean_volumes`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
-    axes, printed = figure.subplots(2, 1, height_ratios=(3, 2))
+    axes = figure.subplots()
     longest = published_value(published, "long_test", "laboratory")
     hours = np.linspace(0.0, longest, CURVE_POINTS)
     interval = published_value(published, "interval", "laboratory")
@@ -254,28 +251,7 @@ def volume_by_hours(
     )
     axes.set(xlabel="Hours of the test", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
     figure.legend(*named_once([axes]), loc="outside upper center", ncols=3)
-    _numbers(printed, table)
     return figure
-
-
-def _numbers(axes: Axes, table: pd.DataFrame) -> None:
-    """Print the volumes compared; numbers in brackets lead to the notes in its title."""
-    columns = [LABORATORY, THESIS, THESIS_ALIKE, OURS]
-    shown = table[table["unit"] != "mm"]
-    notes = list(dict.fromkeys(note for words in shown["note"] if words for note in words.split("; ")))
-    cells = []
-    for _, row in shown.iterrows():
-        marks = ", ".join(str(notes.index(note) + 1) for note in row["note"].split("; ") if note)
-        words = f"{row['quantity']} ({row['unit'].replace('mm3', 'mm³')}){f' [{marks}]' if marks else ''}"
-        values = ["" if np.isnan(row[name]) else f"{row[name]:.4g}" for name in columns]
-        if np.isfinite(row[LOW]):
-            values[-1] += f" ({row[LOW]:.4g} to {row[HIGH]:.4g})"
-        cells.append([f"{row['hours']:g} h", words, *values])
-    said = "\n".join(
-        textwrap.wrap("; ".join(f"[{k}] {note}" for k, note in enumerate(notes, start=1)), NOTE_CHARACTERS)
-    )
-    axes.set_title(said, loc="left", fontsize=SMALLEST_FONT)
-    printed_table(axes, ["", "", *columns], cells)
 
 
 def channel_and_ring(
