@@ -15,6 +15,7 @@ from bulkwear.postproc.readers.contacts import read_contact_batches
 from bulkwear.postproc.readers.load_ledger import LoadLedger, read_load_ledger
 from bulkwear.postproc.wear.ledger import LedgerBuilder, columns_of_solver
 from tests import REPOSITORY
+from tests.support.patience import LONGEST_S
 
 BUILT = REPOSITORY / "solver" / "build" / "liggghts-ledger"  # by `make -C solver`
 SOLVER = Path(os.environ.get("LIGGGHTS_LEDGER", BUILT))
@@ -176,7 +177,7 @@ def said_when_refused(folder, solver=None, ledger=LEDGER_LINE, without=()):
     assert len(kept) == len(lines) - len(without)
     (folder / FRAME.name).write_text("".join(kept))
     words = command() if solver is None else command(solver=solver)
-    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, timeout=120)
+    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, timeout=LONGEST_S)
     said = (done.stdout + done.stderr).decode("utf-8", "replace")
     assert done.returncode != 0, said
     assert not (folder / "load_ledger.bin").exists()
