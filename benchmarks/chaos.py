@@ -41,11 +41,11 @@ TABLE, PAGE = ROOT / "docs" / "chaos.csv", ROOT / "docs" / "chaos.md"
 SEED = 27
 WHOLE = {
     **{"kills": 50, "levels": 20, "hangs": 5, "stutters": 5, "flips": 500, "configurations": 10_000, "readers": 20_000},
-    **{"cad": 60, "snakemakes": 20, "twins": 10, "clocks": 10},
+    **{"meshes": 10_000, "cad": 60, "snakemakes": 20, "twins": 10, "clocks": 10},
 }
 QUICK = {
     **{"kills": 2, "levels": 1, "hangs": 1, "stutters": 1, "flips": 60, "configurations": 40, "readers": 200},
-    **{"cad": 1, "snakemakes": 2, "twins": 1, "clocks": 1},
+    **{"meshes": 200, "cad": 1, "snakemakes": 2, "twins": 1, "clocks": 1},
 }
 PARTS = ("files", "runs", "studies")
 SAMPLES = ROOT / "tests" / "data"
@@ -62,15 +62,18 @@ HEADS = {
 def of_files(chain: Chain, folder: Path, counts: dict[str, int], chance: random.Random) -> Iterator[Outcome]:
     """Yield what came of flipped bits, mutated files and mutated configurations."""
     yield chaos_files.flipped_bits(chain.folder, inputs_digest(chain), counts["flips"], chance)
-    samples = folder / "samples"
-    samples_of_run(chain, samples)
-    samples_of_users(samples)
-    here = folder / "reading"
-    shutil.copytree(samples, here)
-    cad = [samples / name for name in chaos_files.CAD_MACHINES]
-    others = sorted(set(samples.iterdir()) - {*cad, samples / chaos_files.SPINS})
-    yield chaos_files.mutated_files(others, here, counts["readers"], chance, "mutated files, read")
-    yield chaos_files.mutated_files(cad, here, counts["cad"], chance, "mutated CAD files, read")
+    of_runs, of_users, here = folder / "of_runs", folder / "of_users", folder / "reading"
+    samples_of_run(chain, of_runs)
+    samples_of_users(of_users)
+    for samples in (of_runs, of_users):
+        shutil.copytree(samples, here, dirs_exist_ok=True)
+    cad = [of_users / name for name in chaos_files.CAD_MACHINES]
+    for what, samples, count in (
+        ("mutated files of runs, read", sorted(set(of_runs.iterdir()) - {of_runs / chaos_files.SPINS}), "readers"),
+        ("mutated meshes and scans, read", sorted(set(of_users.iterdir()) - set(cad)), "meshes"),
+        ("mutated CAD files, read", cad, "cad"),
+    ):
+        yield chaos_files.mutated_files(samples, here, counts[count], chance, what)
     project = spoilt_project(folder / "project")
     studies = chaos_files.files_of_studies(project)
     yield chaos_files.mutated_configurations(project, studies, counts["configurations"], chance)
@@ -88,6 +91,7 @@ def samples_of_run(chain: Chain, folder: Path) -> None:
 
 def samples_of_users(folder: Path) -> None:
     """Write a small file of each kind that users bring: the parts of a machine, and scans of a worn one."""
+    folder.mkdir(exist_ok=True)
     for name in (*chaos_files.MACHINES, *chaos_files.CAD_MACHINES):
         write_bodies(folder / name)
     points, triangles, _ = all_facets()
