@@ -124,7 +124,7 @@ def test_the_sections_tell_what_the_tables_do(folder, page):
 def test_the_answer_is_the_critical_scale(folder):
     """Then what the pattern does where it wears least; scales are not counted as patterns."""
     by_scale, critical, best = answers_of_study("sliding_sample", folder)
-    assert by_scale.startswith("By the intervals") and critical.startswith("Critical scale ")
+    assert by_scale.startswith("By the intervals") and critical.startswith("Critical scale")
     assert best.startswith("Lowest: the convex sample of S4")
 
 
