@@ -6,12 +6,14 @@ not what YAML 1.1 makes of them. Every key keeps its line, so that a message can
 
 from __future__ import annotations
 
+import copy
 import csv
 import io
 import math
 import re
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -145,7 +147,13 @@ def read_yaml(path: Path, root: Path) -> Layer:
     Raises ConfigError if the file is missing, is no YAML, is no mapping, names a key twice, or exceeds the bounds.
     """
     source = display_name(path, root)
-    text = read_text(path, source, LARGEST_YAML)
+    values, lines = _read(read_text(path, source, LARGEST_YAML), source)
+    return Layer(source, copy.deepcopy(values), dict(lines))
+
+
+@lru_cache(maxsize=64)  # studies share most of their files, and to parse one takes longer than all else
+def _read(text: str, source: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
+    """Return what a text of YAML says, and the line of each key."""
     loader = _Loader(text)
     try:
         check_yaml(yaml.parse(text, _Loader))
@@ -164,7 +172,7 @@ def read_yaml(path: Path, root: Path) -> Layer:
     if not isinstance(values, dict):
         found = "a list" if isinstance(values, list) else "one value"
         raise ConfigError(f"{source}: found {found}, allowed is a mapping of keys to values.")
-    return Layer(source, values, lines)
+    return values, lines
 
 
 def _collect_lines(node: yaml.Node | None, path: KeyPath, lines: dict[KeyPath, int], source: str) -> None:
