@@ -160,6 +160,8 @@ def function_lengths(source: str) -> dict[str, int]:
 
 def uses_name(source: str, name: str) -> bool:
     """True if the source imports a module or uses a variable of that name."""
+    if name not in source:
+        return False
     used = {node.id for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Name)}
     return name in used | roots(imported(source))
 
