@@ -101,7 +101,10 @@ def plain_liner_mm3():
     return (chute.WIDTH - 2.0 * chute.GAP) * section
 
 
-@pytest.mark.parametrize(("pattern", "rows", "bumps"), [("r5", 13, 26), ("r9", 13, 78)])
+@pytest.mark.parametrize(
+    ("pattern", "rows", "bumps"),
+    [("r5", 13, 26), pytest.param("r9", 13, 78, marks=pytest.mark.verify)],  # three times the bumps to mesh
+)
 def test_patterns_add_half_ellipsoids(drawn, pattern, rows, bumps):
     """As many as there are places, each 2/3 pi a b h above the plate; meshed coarsely they keep most of that."""
     places = np.array(chute.bump_places(pattern))
