@@ -43,6 +43,7 @@ class PinOnDisc(SampleCase):
 
     name = "pin_on_disc"
     material_keys = (("pin", "material", "pins"), ("disc", "material", "walls"))
+    worn_pair = (("disc", "material"), ("pin", "material"))
     checks = PIN_CHECKS
     run_templates = ("pin_set_down", "pin_on_disc")
     figure_modules = ("volume_figures", "groove_figures")
