@@ -19,7 +19,7 @@ from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, 
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import Stage
-from bulkwear.workflows.engine.worn_pair import WornPair
+from bulkwear.workflows.engine.worn_pair import LAW_FIGURES, WornPair
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,7 +54,7 @@ class Equipment(Case):
     counts_on = True
     forces_table = "parts.csv"
     by_part = True
-    shared_figures = ("worn_surface_3d",)
+    shared_figures = ("worn_surface_3d", *LAW_FIGURES)
 
     def named_materials(self, settings: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
         """Return the path of each setting that names a material, and its kind."""

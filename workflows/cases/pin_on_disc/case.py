@@ -20,6 +20,7 @@ from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import Stage
+from bulkwear.workflows.engine.worn_pair import LAW_FIGURES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,6 +48,7 @@ class PinOnDisc(SampleCase):
     checks = PIN_CHECKS
     run_templates = ("pin_set_down", "pin_on_disc")
     figure_modules = ("volume_figures", "groove_figures")
+    shared_figures = LAW_FIGURES
     consumed = ("wear", "remeshing", "sliding", "pin", "disc")
     run_rules = ("surface_mesh", "worn_run", "track_tables")
     geometry = ("disc",)
