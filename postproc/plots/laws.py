@@ -28,6 +28,7 @@ from bulkwear.postproc.tables.law_volumes import LawMap
 
 PANELS = {
     "over_archard": "Volume over\nArchard's (-)",
+    "over_first": "Volume over that\nof the first (-)",
     "overlap": "Wear where\nArchard's lies (-)",
     "front_share": "Share on fronts\nof bumps (-)",
 }

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +11,11 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, read_surface, unit_normals, worn_faces
 from bulkwear.postproc.readers.cycle_folders import cycle_folders
+from bulkwear.postproc.statistics.intervals import Estimate, difference, estimate
 from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.history import runs_of
 from bulkwear.postproc.tables.packings import over_packings
+from bulkwear.postproc.wear.coefficient import PER_PA
 from bulkwear.postproc.wear.laws import LAWS, NEUTRAL_LAW, worn_volume
 
 SURFACE, LEDGER, WEAR = "surface.vtu", "ledger.parquet", "wear.csv"
@@ -27,21 +29,31 @@ class WornBy:
     """What wears by one law in a run.
 
     law, parameters: SI, the coefficient included; part: name and label: of its faces, "" and None of all that wear
+    others: {law: its parameters} of other parts, whose kernels the ledgers have summed too
     """
 
     law: str
     parameters: Mapping[str, float]
     part: str = ""
     label: int | None = None
+    others: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    def beside(self) -> dict[str, Mapping[str, float]]:
+        """Return {law: its parameters} that the ledgers of such a run serve, the own law first; all with the own
+        coefficient.
+        """
+        found = dict.fromkeys(laws_beside(self.law, self.others), self.parameters)
+        coefficient = {PER_PA: self.parameters[PER_PA]} if PER_PA in self.parameters else {}
+        return found | {law: {**given, **coefficient} for law, given in self.others.items() if law != self.law}
 
 
-def laws_beside(law: str) -> list[str]:
-    """Return the laws that the ledgers of a run worn by `law` serve: that one first, and all that take no parameters
-    and no contact kernels but its own.
+def laws_beside(law: str, others: Iterable[str] = ()) -> list[str]:
+    """Return the laws that the ledgers of a run worn by `law` serve: that one first, those of `others`, by which other
+    parts of it wear, and all that take no parameters and no contact kernels but theirs.
     """
-    summed = set(LAWS[law].kernels)
-    served = (name for name, each in LAWS.items() if not each.parameters and summed.issuperset(each.kernels))
-    return [law, *(name for name in served if name != law)]
+    summed = {kernel for each in (law, *others) for kernel in LAWS[each].kernels}
+    served = [name for name, each in LAWS.items() if not each.parameters and summed.issuperset(each.kernels)]
+    return list(dict.fromkeys((law, *others, *served)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +101,7 @@ def _maps(surface: SurfaceMesh, ledger: pd.DataFrame, worn: WornBy, flow: Sequen
     labels = surface.cell_data.get("part", np.zeros(len(faces), dtype=int))
     faces = faces if worn.label is None else faces & (labels == worn.label)
     columns = {name: ledger[name].to_numpy()[faces] for name in ledger}
-    volumes = {law: _volume(law, columns, worn.parameters) for law in laws_beside(worn.law)}
+    volumes = {law: _volume(law, columns, given) for law, given in worn.beside().items()}
     front, bumps = None, labels[faces] > 0
     if flow is not None and bumps.any():
         normals = unit_normals(surface.points, surface.triangles)[faces]
@@ -158,8 +170,8 @@ def law_volumes(
     laws: Mapping[str, Sequence[WornBy]],
     flow: Sequence[float] | None = None,
 ) -> pd.DataFrame:
-    """Return RUN, part, law, over_study_law (-) and what `law_measures` tells, a line per run, part and law, the
-    study's own law first; no part where no part has a name.
+    """Return RUN, part, law, cycles, over_study_law (-) and what `law_measures` tells, a line per run, part and law,
+    the study's own law first; no part where no part has a name.
 
     folders: of the runs, in the order of the design
     laws: {run: what wears in it}; the coefficient is that of all laws of a part
@@ -168,18 +180,21 @@ def law_volumes(
     rows = []
     for run, folder in zip(runs_of(design).to_dict("records"), folders, strict=True):
         for worn in laws[run["run"]]:
-            measures = law_measures(maps_of_cycles(folder, worn, flow))
+            maps = maps_of_cycles(folder, worn, flow)
+            measures = law_measures(maps)
             for law, found in measures.items():
                 own = _ratio(found["worn_volume_m3"], measures[worn.law]["worn_volume_m3"])
                 part = {"part": worn.part} if worn.part else {}
-                rows.append({**run, **part, "law": law, "over_study_law": own, **found})
+                rows.append({**run, **part, "law": law, "cycles": len(maps), "over_study_law": own, **found})
     return pd.DataFrame(rows)
 
 
 def laws_of_settings(volumes: pd.DataFrame) -> pd.DataFrame:
-    """Return setting, surface, part where there are any, law, packings, and each of MEASURES with its interval over
-    packings (`_low`, `_high`), a line per setting, surface, part and law.
+    """Return setting, surface, part where there are any, law, packings, and each of MEASURES and over_first with its
+    interval over packings (`_low`, `_high`), a line per setting, surface, part and law.
 
+    over_first: volume over that of the first setting and surface with the same part and law, of machines per block;
+        needs no coefficient, and is NaN of the first one itself
     volumes: as from `law_volumes`; words that are not there are ""
     """
     by = [name for name in ("setting", "surface", "part", "law") if name in volumes]
@@ -192,7 +207,23 @@ def laws_of_settings(volumes: pd.DataFrame) -> pd.DataFrame:
             continue
         found = found.join(table[[name, f"{name}_low", f"{name}_high"]])
     counts = volumes.fillna({"surface": ""}).groupby(by, sort=False)["packing"].nunique()
-    return found.assign(packings=counts.to_numpy())
+    return found.assign(packings=counts.to_numpy(), **_over_first(volumes, by))
+
+
+def _over_first(volumes: pd.DataFrame, by: Sequence[str]) -> dict[str, list[float]]:
+    """Return the columns of `over_first`, a value per group in their order."""
+    of_cycles = volumes["cycles"] if "part" in volumes else 1.0  # blocks of a machine are equal, their number is not
+    table = volumes.fillna({"surface": ""}).assign(rate=volumes["worn_volume_m3"] / of_cycles)
+    first: dict[tuple, Estimate] = {}
+    columns: dict[str, list[float]] = {name: [] for name in ("over_first", "over_first_low", "over_first_high")}
+    for names, rows in table.groupby(list(by), sort=False):
+        key = tuple(name for name, column in zip(names, by, strict=True) if column in ("part", "law"))
+        found, is_first = estimate(rows["rate"], log=True), key not in first
+        ratio = difference(found, first.setdefault(key, found))
+        ends = (np.nan, np.nan) if is_first else ratio.interval()
+        for column, value in zip(columns, (np.nan if is_first else ratio.value, *ends), strict=True):
+            columns[column].append(value)
+    return columns
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ import pytest
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.mesh import HOLDER_PART, SurfaceMesh, read_surface, write_surface
 from bulkwear.postproc.tables.law_volumes import WornBy, law_maps, law_volumes, laws_beside, laws_of_settings, map_table
+from bulkwear.postproc.wear.coefficient import PER_PA
 from bulkwear.postproc.wear.laws import LAWS
 
 FRICTION, ALPHA, CYCLES = 0.4, 1e-12, 3  # -, 1/Pa, -
@@ -100,6 +101,14 @@ def test_parts_have_laws_and_coefficients_of_their_own(tmp_path):
     assert volumes["none"].tolist() == [0.0, 0.0]
 
 
+def test_laws_of_other_parts_serve_all(tmp_path):
+    """A part worn by Archard beside one worn by Finnie has Finnie's volume too, with its own coefficient."""
+    worn = WornBy("archard", {PER_PA: ALPHA}, "liner", 1, {"archard": {PER_PA: ALPHA}, "finnie": {PER_PA: 1.0}})
+    table = table_of(tmp_path, laws=[worn]).set_index("law")
+    assert table.index.tolist() == ["archard", "finnie", "tangential_work"]
+    assert table.loc["finnie", "over_study_law"] == pytest.approx(0.1, rel=ROUNDING)
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_no_other_law_needs_what_the_ledger_lacks(law):
     """Beside the study's law stand laws without parameters whose kernels it has summed."""
@@ -119,10 +128,13 @@ def test_settings_have_intervals_over_packings():
     rows = [("A", 1, 0.2, 0.5), ("A", 2, 0.8, 0.7), ("B", 1, 0.3, 0.9)]
     names = ["setting", "packing", "over_archard", "overlap"]
     volumes = pd.DataFrame(rows, columns=names).assign(law="tangential_work", surface=None, run="", row="")
-    found = laws_of_settings(volumes.assign(correlation=1.0, front_share=np.nan)).set_index("setting")
+    found = laws_of_settings(
+        volumes.assign(correlation=1.0, front_share=np.nan, worn_volume_m3=[1.0, 4.0, 3.0])
+    ).set_index("setting")
     assert found["over_archard"].tolist() == pytest.approx([0.4, 0.3], rel=ROUNDING)  # geometric mean
     assert found["overlap"].tolist() == pytest.approx([0.6, 0.9], rel=ROUNDING)
     assert found["packings"].tolist() == [2, 1]
+    assert np.isnan(found.loc["A", "over_first"]) and found.loc["B", "over_first"] == pytest.approx(1.5, rel=ROUNDING)
     assert found.loc["A", "overlap_low"] < 0.6 < found.loc["A", "overlap_high"] and np.isnan(
         found.loc["B", "overlap_low"]
     )

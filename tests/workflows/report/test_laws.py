@@ -31,6 +31,7 @@ def volumes(place: str, front: bool) -> pd.DataFrame:
         }
         | {"over_archard": np.nan if law == "finnie" else 1.0 if law == "archard" else 0.3 + 0.01 * packing}
         | {"overlap": {"archard": 1.0, "tangential_work": 0.9, "finnie": 0.2}[law] - 0.1 * (setting == "B")}
+        | {"worn_volume_m3": 2.0 if setting == "B" and law == "finnie" else 1.0, "cycles": 4 if setting == "A" else 2}
         | {"correlation": 1.0, "front_share": 0.6 if front else np.nan, place: "liner"}
         for setting in "AB"
         for packing in PACKINGS
@@ -43,16 +44,17 @@ def test_bars_are_the_means_with_intervals_over_packings():
     """A panel per measure that there is; Finnie's volume is not shown, where it lies is."""
     table = laws_of_settings(volumes("part", front=False))
     figure = law_bars(table, ["said"])
-    upper, lower = figure.axes
+    upper, middle, lower = figure.axes
     heights = [bar.get_height() for bar in upper.patches]
     assert heights == pytest.approx([1.0, 1.0, *[np.prod([0.31, 0.32, 0.33]) ** (1 / 3)] * 2])
+    assert [bar.get_height() for bar in middle.patches] == pytest.approx([2.0, 2.0, 4.0])  # of B, per block
     assert len(lower.patches) == 6
     assert [text.get_text() for text in lower.get_xticklabels()] == ["A liner", "B liner"]
     assert remarks_of(figure) == "said"
     assert laws_apart(table).startswith("By finnie 10 % of the wear lies where Archard's does, at B liner")
 
 
-PLACES = [("part", False, 2), ("surface", True, 3), ("surface", False, 2)]
+PLACES = [("part", False, 3), ("surface", True, 4), ("surface", False, 3)]
 
 
 @pytest.mark.parametrize(("place", "front", "panels"), PLACES)
@@ -62,7 +64,7 @@ def test_the_chart_has_what_the_table_tells(place, front, panels):
     found = drawn_chart(wear_by_law.product, table)
     assert names(found) == ["archard", "tangential work", "finnie"]
     assert len(found["panels"]) == panels
-    assert values(found, "tangential work", 1)[0] == pytest.approx([0.9, 0.8])
+    assert values(found, "tangential work", 2)[0] == pytest.approx([0.9, 0.8])
 
 
 def test_laws_whose_coefficients_are_no_volume_over_sliding_work_are_named():
@@ -90,11 +92,11 @@ def test_every_part_that_wears_is_told_with_its_law(tmp_path):
     with machine_study(tmp_path) as study:
         found = what_wears(study)[study.runs[0].name]
         assert flow_of(study) is None and "wear_by_law" in products_of_study(study)
-    assert [(law, part, label) for law, _, part, label in found] == [
+    assert [(law, part, label) for law, _, part, label, _ in found] == [
         ("archard", "liner", 0),
         ("finnie", "plate", 1),
         ("archard", "paddle", 2),
     ]
     sample = tiny_study()
-    law, _, part, label = what_wears(sample)[sample.runs[0].name][0]
+    law, _, part, label, _ = what_wears(sample)[sample.runs[0].name][0]
     assert (law, part, label, flow_of(sample)) == ("archard", "", None, (0.0, 1.0, 0.0))
