@@ -11,7 +11,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -242,6 +242,21 @@ def merge(lower: dict[str, Any], upper: dict[str, Any]) -> dict[str, Any]:
         both = isinstance(value, dict) and isinstance(merged.get(key), dict)
         merged[key] = merge(merged[key] if both else {}, value) if isinstance(value, dict) else value
     return merged
+
+
+def overridden(lower: dict[str, Any], layer: Layer, alternatives: Iterable[Sequence[KeyPath]] = ()) -> dict[str, Any]:
+    """Return `lower` overridden by a layer as `merge` does, without the alternatives of what the layer gives.
+
+    alternatives: groups of paths, of which one stands for all others
+    """
+    kept = merge(lower, {})
+    for group in alternatives:
+        for *block, key in group if any(layer.holds(path) for path in group) else ():
+            inner: Any = kept
+            for name in block:
+                inner = inner.get(name, {})
+            inner.pop(key, None)
+    return merge(kept, layer.values)
 
 
 def dotted(path: KeyPath) -> str:
