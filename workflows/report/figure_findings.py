@@ -5,16 +5,22 @@ from __future__ import annotations
 import pandas as pd
 
 from bulkwear.postproc.tables.depths import area_quantile, depth_summary
+from bulkwear.postproc.tables.packings import PACKING, SETTING, first_packings
 from bulkwear.postproc.wear.laws import NEUTRAL_LAW
-from bulkwear.workflows.report.sentences import PERCENT, listed, measured, spoken
+from bulkwear.workflows.report.sentences import PERCENT, capital, listed, measured, spoken
 from bulkwear.workflows.report.text import range_text
 
 HALF, MOST_WORN = 0.5, 0.99  # -, of an area
+MOST_NAMED = 4  # samples of which a sentence tells
+UNIT = "µm"
 
 
 def deepest_run(depths: pd.DataFrame) -> str:
-    """Return which run wears deepest, and how deep the most worn hundredth of each run's area is."""
-    found = depth_summary(depths).sort_values("depth_of_99_percent_um", ascending=False, kind="stable")
+    """Return which run that is drawn wears deepest, and how deep the most worn hundredth of each run's area is.
+
+    depths: as from `tables.depths.depth_table`; with the packing of each run the first ones alone are drawn
+    """
+    found = depth_summary(_first(depths)).sort_values("depth_of_99_percent_um", ascending=False, kind="stable")
     first, last = found.iloc[0], found.iloc[-1]
     said = f"{first['run']} wears deepest: a hundredth of its area by {measured(first['depth_of_99_percent_um'], 'µm')}"
     if len(found) == 1:
@@ -22,15 +28,27 @@ def deepest_run(depths: pd.DataFrame) -> str:
     return f"{said} or more, of {last['run']} by {measured(last['depth_of_99_percent_um'], 'µm')}."
 
 
+def _first(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of what figures draw of several packings: the first ones."""
+    return first_packings(table) if {SETTING, PACKING} <= set(table) else table
+
+
 def depth_of_half(shares: pd.DataFrame) -> str:
-    """Return up to which depth half of each sample's area is worn. shares: run, depth_um, area_share_percent."""
-    said = []
-    for run, curve in shares.groupby("run", sort=False):
-        deeper = curve[curve["area_share_percent"] >= PERCENT * HALF]["depth_um"]
-        depth = f"deeper than {measured(deeper.max(), 'µm')}" if len(deeper) else "hardly or not at all"
-        said.append((run, depth))
-    shown = "; ".join(f"half of {run} is worn {depth}" for run, depth in said[:4])
-    return f"{shown[0].upper()}{shown[1:]}."
+    """Return up to which depth half of the area of each sample that is drawn is worn, of many the least and the most.
+
+    shares: run, depth_um, area_share_percent; with setting and packing of each run the first ones alone are drawn
+    """
+    deeper = _first(shares)
+    runs = list(dict.fromkeys(deeper["run"]))
+    deeper = deeper[deeper["area_share_percent"] >= PERCENT * HALF].groupby("run")["depth_um"].max()
+    deeper = deeper.reindex(runs)
+    few = len(deeper) <= MOST_NAMED
+    shown = deeper if few else deeper.sort_values(kind="stable", na_position="first").iloc[[0, -1]]
+    said = [
+        f"half of {run} is worn {'hardly or not at all' if pd.isna(depth) else f'deeper than {measured(depth, UNIT)}'}"
+        for run, depth in shown.items()
+    ]
+    return f"{capital('; '.join(said))}." if few else f"Least deep, {'; most, '.join(said)}."
 
 
 def total_wear(history: pd.DataFrame) -> str:

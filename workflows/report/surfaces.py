@@ -39,8 +39,9 @@ def worn_surface(job: Job) -> Any:
     meshes = read_worn_surfaces(runs["run"], job.files.surfaces)
     depths = depth_table(meshes, deformed)
     remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(runs)]
-    shown = first_packings(runs)
-    return pictures.worn_surface(meshes, shown, deformed, depths, depth_quantity(deformed), remarks), depths
+    shown, quantity = first_packings(runs), depth_quantity(deformed)
+    drawn = pictures.worn_surface(meshes, shown, deformed, depths, quantity, remarks)
+    return drawn, depths.merge(runs[["run", "setting", "packing"]], on="run")
 
 
 @figure(
@@ -82,16 +83,18 @@ def worn_surface_3d(job: Job) -> Any:
     shown = shown_surfaces({run: Path(files[run]).parent for run in first}, wear)
     meshes = read_worn_surfaces(first, [files[run] for run in first])
     left_out = len(first) - len({each.run for each in shown})
-    remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(design)]
+    remarks = [*job.remarks, *shown_remark(design)]
     remarks += [f"{left_out} runs are left out, so that the page stays small"] if left_out else []
     depths = depth_table(meshes, deformed)
 
     def write(path: str) -> None:
         if Path(path).suffix == ".html":
-            surfaces_page(path, shown, deformed, job.told.parts, remarks)
+            told = [*remarks, carried_remark(meshes, deformed, hatched=False)]
+            surfaces_page(path, shown, deformed, job.told.parts, told)
         else:
             last = {each.run: each.mesh for each in shown}
-            save(surface_views(last, deformed, depths, depth_quantity(deformed), remarks), path)
+            told = [*remarks, carried_remark(meshes, deformed)]
+            save(surface_views(last, deformed, depths, depth_quantity(deformed), told), path)
 
     return write, depths
 

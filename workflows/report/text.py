@@ -23,6 +23,7 @@ UNITS = (
     ("_per_pa", "1/Pa"),
     ("_mm3_per_m", "mm³/m"),
     ("_mm3", "mm³"),
+    ("_cm3", "cm³"),
     ("_mm2", "mm²"),
     ("_N", "N"),
     ("_kg_per_m3", "kg/m³"),
