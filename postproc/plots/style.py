@@ -29,6 +29,7 @@ REMARK_LINE = 0.16  # inches, height of a line of remarks
 LABEL_LINE = 0.2  # inches, height of a label of the whole figure
 REMARK_CHARACTERS = 108  # of a line of remarks across the figure
 SMALLEST_PLAIN, LARGEST_PLAIN = 0.01, 1e4  # numbers on an axis without a power of ten
+COARSER, THOUSAND = {"µm": "mm"}, 3  # unit of a thousand of another one; its power of ten
 TOP_ROOM = 0.04  # inches above the topmost text
 MOST_FACET_COLUMNS = 5
 OTHER_COLOUR = "#595959"
@@ -125,15 +126,17 @@ def label_all(figure: Figure, several: bool, x: str, y: str) -> None:
 
 
 def scaled(unit: str, largest: float) -> tuple[str, FuncFormatter]:
-    """Return a unit with a power of ten where numbers would be hard to read, and what writes ticks in it.
+    """Return a unit with a power of ten where numbers would be hard to read, or the coarser one that people know, and
+    what writes ticks in it.
 
     largest: the largest value on the axis, in the unit itself. What is drawn stays in the unit.
     """
     exponent = 3 * math.floor(math.log10(largest) / 3.0 + 1e-9) if largest > 0.0 else 0
-    if SMALLEST_PLAIN <= largest < LARGEST_PLAIN or largest <= 0.0:
+    coarser = COARSER.get(unit) if exponent == THOUSAND else None
+    if not coarser and (SMALLEST_PLAIN <= largest < LARGEST_PLAIN or largest <= 0.0):
         exponent = 0
     formatter = FuncFormatter(lambda value, _: f"{value / 10.0**exponent:.4g}")
-    return (f"$10^{{{exponent}}}$ {unit}" if exponent else unit), formatter
+    return coarser or (f"$10^{{{exponent}}}$ {unit}" if exponent else unit), formatter
 
 
 def save(figure: Figure, path: str | Path) -> None:

@@ -76,15 +76,15 @@ def held_back_faces(mesh: SurfaceMesh) -> np.ndarray:
     return worn_faces(mesh) & (depth > 0.0) & (depth - applied >= HELD_BACK_SHARE * depth)
 
 
-def carried_remark(meshes: Mapping[str, SurfaceMesh], deformed: bool) -> str:
-    """Return what a map of depth must say about the volume that is not in the shape."""
+def carried_remark(meshes: Mapping[str, SurfaceMesh], deformed: bool, hatched: bool = True) -> str:
+    """Return what a map of depth must say about the volume that is not in the shape; hatched: whether it is hatched."""
     if not deformed:
         return "rigid sample: depth is worn volume over area, not applied"
     share = max(carried_share(mesh) for mesh in meshes.values())
     if abs(share) < ROUNDED_SHARE:
         return "all worn volume is applied, nothing is carried"
     held = f"caps on a step hold back up to {100.0 * share:.3g} % of a run's wear: in the colours, not yet in the shape"
-    if any(held_back_faces(mesh).any() for mesh in meshes.values()):
+    if hatched and any(held_back_faces(mesh).any() for mesh in meshes.values()):
         return f"{held} (hatched: {100.0 * HELD_BACK_SHARE:.0f} % or more of the depth there)"
     return held
 

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import pandas as pd
 
-from bulkwear.postproc.tables.depths import depth_summary
-from bulkwear.workflows.report.sentences import PERCENT, listed, measured
+from bulkwear.postproc.tables.depths import area_quantile, depth_summary
+from bulkwear.postproc.tables.packings import PACKING, SETTING, first_packings
+from bulkwear.postproc.wear.laws import NEUTRAL_LAW
+from bulkwear.workflows.report.sentences import PERCENT, capital, listed, measured, spoken
 from bulkwear.workflows.report.text import range_text
 
-HALF = 0.5  # -, of an area
+HALF, MOST_WORN = 0.5, 0.99  # -, of an area
+MOST_NAMED = 4  # samples of which a sentence tells
+UNIT = "µm"
 
 
 def deepest_run(depths: pd.DataFrame) -> str:
-    """Return which run wears deepest, and how deep the most worn hundredth of each run's area is."""
-    found = depth_summary(depths).sort_values("depth_of_99_percent_um", ascending=False, kind="stable")
+    """Return which run that is drawn wears deepest, and how deep the most worn hundredth of each run's area is.
+
+    depths: as from `tables.depths.depth_table`; with the packing of each run the first ones alone are drawn
+    """
+    found = depth_summary(_first(depths)).sort_values("depth_of_99_percent_um", ascending=False, kind="stable")
     first, last = found.iloc[0], found.iloc[-1]
     said = f"{first['run']} wears deepest: a hundredth of its area by {measured(first['depth_of_99_percent_um'], 'µm')}"
     if len(found) == 1:
@@ -21,15 +28,27 @@ def deepest_run(depths: pd.DataFrame) -> str:
     return f"{said} or more, of {last['run']} by {measured(last['depth_of_99_percent_um'], 'µm')}."
 
 
+def _first(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of what figures draw of several packings: the first ones."""
+    return first_packings(table) if {SETTING, PACKING} <= set(table) else table
+
+
 def depth_of_half(shares: pd.DataFrame) -> str:
-    """Return up to which depth half of each sample's area is worn. shares: run, depth_um, area_share_percent."""
-    said = []
-    for run, curve in shares.groupby("run", sort=False):
-        deeper = curve[curve["area_share_percent"] >= PERCENT * HALF]["depth_um"]
-        depth = f"deeper than {measured(deeper.max(), 'µm')}" if len(deeper) else "hardly or not at all"
-        said.append((run, depth))
-    shown = "; ".join(f"half of {run} is worn {depth}" for run, depth in said[:4])
-    return f"{shown[0].upper()}{shown[1:]}."
+    """Return up to which depth half of the area of each sample that is drawn is worn, of many the least and the most.
+
+    shares: run, depth_um, area_share_percent; with setting and packing of each run the first ones alone are drawn
+    """
+    deeper = _first(shares)
+    runs = list(dict.fromkeys(deeper["run"]))
+    deeper = deeper[deeper["area_share_percent"] >= PERCENT * HALF].groupby("run")["depth_um"].max()
+    deeper = deeper.reindex(runs)
+    few = len(deeper) <= MOST_NAMED
+    shown = deeper if few else deeper.sort_values(kind="stable", na_position="first").iloc[[0, -1]]
+    said = [
+        f"half of {run} is worn {'hardly or not at all' if pd.isna(depth) else f'deeper than {measured(depth, UNIT)}'}"
+        for run, depth in shown.items()
+    ]
+    return f"{capital('; '.join(said))}." if few else f"Least deep, {'; most, '.join(said)}."
 
 
 def total_wear(history: pd.DataFrame) -> str:
@@ -49,6 +68,27 @@ def largest_step(updates: pd.DataFrame) -> str:
         return "No update reaches a cap on its step: all wear is applied at once."
     share = PERCENT * len(capped) / len(updates)
     return f"In {share:.0f} % of the updates a cap on a step is reached, and wear is carried on to the next."
+
+
+def laws_apart(laws: pd.DataFrame) -> str:
+    """Return where which law differs most from Archard's in place. laws: as from `laws_of_settings`."""
+    others = laws[(laws["law"] != NEUTRAL_LAW) & laws["overlap"].notna()]
+    if others.empty:
+        return ""
+    least = others.loc[others["overlap"].idxmin()]
+    at = " ".join(str(least[name]) for name in ("setting", "surface", "part") if least.get(name))
+    share = f"{PERCENT * least['overlap']:.0f} %"
+    return f"By {spoken(least['law'])} {share} of the wear lies where Archard's does, at {at}, the least of all."
+
+
+def steepest_map(maps: pd.DataFrame) -> str:
+    """Return by which law wear is most uneven. maps: law, relative_depth, area_mm2 of every face."""
+    tops = {
+        law: area_quantile(faces["relative_depth"].to_numpy(), faces["area_mm2"].to_numpy(), MOST_WORN)
+        for law, faces in maps.groupby("law", sort=False)
+    }
+    said = listed([f"{top:.2g} by {spoken(law)}" for law, top in tops.items()])
+    return f"The most worn hundredth of the area is worn by this many times the mean or more: {said}."
 
 
 def pattern_in_film(frames: pd.DataFrame) -> str:

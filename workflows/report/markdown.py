@@ -118,7 +118,7 @@ def written(block: Block, name: str, captions: Mapping[str, Caption] = MappingPr
     if isinstance(block, Text):
         return prose(block.text) + "\n"
     if isinstance(block, Points):
-        return "\n".join(map(bullet, block.items)) + "\n"
+        return "\n".join(map(bullet, [*block.items, *block.folded])) + "\n"
     if isinstance(block, Cards):
         return "\n".join(bullet(f"**{value}** {label}") for value, label in block.cards) + "\n"
     if isinstance(block, Lights):

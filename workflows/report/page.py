@@ -43,9 +43,12 @@ from bulkwear.workflows.report.simulated import said_of, versions_of, warnings_o
 from bulkwear.workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 from bulkwear.workflows.report.verdict import with_verdict
 
-LARGEST_EMBEDDED_BYTES = {"csv": 3_000_000, "svg": 150_000, "pdf": 150_000}  # a larger file stays on disk, linked
+LARGEST_EMBEDDED_BYTES = {"csv": 100_000, "svg": 80_000, "pdf": 80_000}  # a larger file stays on disk, linked
 MEDIA_TYPES = {"csv": "text/csv", "svg": "image/svg+xml", "pdf": "application/pdf"}
 PERCENT = 100.0
+PERCENT_DECIMALS = 6  # of a share: below is what sums leave of zero
+LARGE_VOLUME = 1e5  # mm3, of the most worn run, from which on cm3 are read more easily
+CUBIC_CENTIMETRE = 1e3  # mm3
 LONGEST_NAME = 40  # characters of a cell that is not broken into lines
 FORECAST = "forecast.csv"
 PACKAGES = (
@@ -163,8 +166,8 @@ def figure(study: Mapping[str, Any], product: Product, index: int, folder: Path)
         "caption": told["caption"],
         "page": _within(file.read_text(encoding="utf-8")) if interactive else None,
         "chart": chart_text(product, told["beside"], folder),
-        "picture": None if interactive else data_uri(file.read_bytes(), f"image/{file.suffix[1:]}"),
-        "still": data_uri((figures / still).read_bytes(), "image/png") if still else None,
+        "picture": None if interactive else _picture(file),
+        "still": _picture(figures / still) if still else None,
         "files": [linked(study, figures / name) for name in (table.name, *product.vectors.values())],
     }
 
@@ -209,10 +212,14 @@ def run_rows(study: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, 
 
 def results_of_runs(summary: pd.DataFrame) -> dict[str, dict[str, float]]:
     """Return of each run what its wear was, as far as the summary tells it."""
+    volumes = summary["worn_volume_m3"] * CUBIC_MILLIMETRES
+    large = volumes.max() >= LARGE_VOLUME
     told = {
         "wear_over_plain": summary.get("wear_over_plain"),
-        "worn_volume_mm3": summary["worn_volume_m3"] * CUBIC_MILLIMETRES,
-        "carried_share_percent": PERCENT * summary["carried_volume_m3"] / summary["worn_volume_m3"],
+        "worn_volume_cm3" if large else "worn_volume_mm3": volumes / CUBIC_CENTIMETRE if large else volumes,
+        "carried_share_percent": (PERCENT * summary["carried_volume_m3"] / summary["worn_volume_m3"]).round(
+            PERCENT_DECIMALS
+        ),
     }
     columns = pd.DataFrame({"run": summary["run"], **{name: each for name, each in told.items() if each is not None}})
     return columns.set_index("run").to_dict("index")
@@ -233,8 +240,13 @@ def thumbnails(table: Path) -> dict[str, str]:
 
 def run_columns(study: Mapping[str, Any], summary: pd.DataFrame) -> list[dict[str, str]]:
     """Return key, name and unit of the columns of the table of runs."""
-    pairs = ((key, *name_and_unit(key)) for key in run_rows(study, summary)[0])
+    pairs = ((key, *name_and_unit(_last_words(key))) for key in run_rows(study, summary)[0])
     return [{"key": key, "name": name, "unit": unit} for key, name, unit in pairs]
+
+
+def _last_words(key: str) -> str:
+    """Return the last two words of a dotted key, parts.liner.file: liner file."""
+    return " ".join(key.split(".")[-2:])
 
 
 # ---------------------------------------------------------------- cost and provenance
@@ -362,6 +374,12 @@ def _warnings_of(folders: Iterable[Path]) -> Iterable[tuple[str, int]]:
     for folder in folders:
         for path in cycle_files(folder, "state.json"):
             yield from read_record(path).get("solver_warnings", {}).items()
+
+
+def _picture(file: Path) -> str:
+    from bulkwear.postproc.plots.small import small_picture  # slow to import
+
+    return data_uri(*small_picture(file))
 
 
 def _plotly() -> str:

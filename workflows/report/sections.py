@@ -21,9 +21,10 @@ class Text:
 
 @dataclass(frozen=True)
 class Points:
-    """A list of sentences."""
+    """A list of sentences; folded: further ones, which a reader opens."""
 
     items: Sequence[str]
+    folded: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed, part_names
-from bulkwear.workflows.report.products import Job, every_run, figure, tables
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.report.products import Job, every_run, figure
 
 DESIGN, SUMMARY = "results/{study}/design.csv", "results/{study}/summary.csv"
 SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
@@ -44,8 +39,9 @@ def worn_surface(job: Job) -> Any:
     meshes = read_worn_surfaces(runs["run"], job.files.surfaces)
     depths = depth_table(meshes, deformed)
     remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(runs)]
-    shown = first_packings(runs)
-    return pictures.worn_surface(meshes, shown, deformed, depths, depth_quantity(deformed), remarks), depths
+    shown, quantity = first_packings(runs), depth_quantity(deformed)
+    drawn = pictures.worn_surface(meshes, shown, deformed, depths, quantity, remarks)
+    return drawn, depths.merge(runs[["run", "setting", "packing"]], on="run")
 
 
 @figure(
@@ -87,16 +83,18 @@ def worn_surface_3d(job: Job) -> Any:
     shown = shown_surfaces({run: Path(files[run]).parent for run in first}, wear)
     meshes = read_worn_surfaces(first, [files[run] for run in first])
     left_out = len(first) - len({each.run for each in shown})
-    remarks = [*job.remarks, carried_remark(meshes, deformed), *shown_remark(design)]
+    remarks = [*job.remarks, *shown_remark(design)]
     remarks += [f"{left_out} runs are left out, so that the page stays small"] if left_out else []
     depths = depth_table(meshes, deformed)
 
     def write(path: str) -> None:
         if Path(path).suffix == ".html":
-            surfaces_page(path, shown, deformed, job.told.parts, remarks)
+            told = [*remarks, carried_remark(meshes, deformed, hatched=False)]
+            surfaces_page(path, shown, deformed, job.told.parts, told)
         else:
             last = {each.run: each.mesh for each in shown}
-            save(surface_views(last, deformed, depths, depth_quantity(deformed), remarks), path)
+            told = [*remarks, carried_remark(meshes, deformed)]
+            save(surface_views(last, deformed, depths, depth_quantity(deformed), told), path)
 
     return write, depths
 
@@ -173,22 +171,3 @@ def worn_film(job: Job) -> Any:
         (save_film if Path(path).suffix == ".gif" else save_still)(pictures, path)
 
     return write, table.assign(run=run)
-
-
-def laws_of_runs(study: Study) -> dict[str, tuple[str, dict[str, float]]]:
-    """Return {run: (wear law, its parameters)} of a study whose runs have one law each."""
-    return {run.name: study.case.laws(run.parameters)[0] for run in study.runs}
-
-
-@tables(
-    inputs={"design": DESIGN, "wear": WEAR},
-    told={"laws": laws_of_runs},
-    tables={"volume_by_law": "volume_by_law.csv"},
-    digits=6,
-)
-def volume_by_law(job: Job) -> dict[str, pd.DataFrame]:
-    """Tell each run's worn volume by all laws that its ledgers suffice for, with the coefficient of the study's own."""
-    from bulkwear.postproc.tables.law_volumes import law_volumes
-
-    folders = [Path(path).parent for path in job.files.wear]
-    return {"volume_by_law": law_volumes(job.files.design, folders, job.told.laws)}

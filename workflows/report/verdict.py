@@ -22,6 +22,7 @@ LEAST_CARRIED, MUCH_CARRIED = 0.01, 0.1  # -, of the worn volume: less changes n
 ENOUGH_PACKINGS = 3  # from which on an interval tells something
 UNEVEN = 0.01  # -, of a distance between cycles: more is no series for `steady_window`
 PERCENT = 100.0
+MOST_SAID, FEWEST_FOLDED = 8, 3  # sentences that stand open: more hide the answer; fewer are not worth folding
 MOST_NAMED = 5  # settings of the design that were not run
 
 
@@ -47,8 +48,14 @@ def verdict(study: Mapping[str, Any], folder: Path) -> Section:
     said = [*answers_of_study(study["case"], folder), *facts, *left_out_words(study["left_out"])]
     lights = lights_of_wear(study, folder, summary) if study["wears"] else page.lights(study, folder)
     shown = Lights([*lights, scale_light(study)])
-    blocks: list[Block] = [*([Points(said)] if said else []), shown, *weightiest(study, summary)]
+    blocks: list[Block] = [*([leading(said)] if said else []), shown, *weightiest(study, summary)]
     return Section(TITLE, blocks)
+
+
+def leading(said: Sequence[str]) -> Points:
+    """Return sentences as points, all but the first few folded."""
+    open_ = MOST_SAID if len(said) >= MOST_SAID + FEWEST_FOLDED else len(said)
+    return Points(said[:open_], said[open_:])
 
 
 def lights_of_wear(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame) -> list[Light]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
@@ -10,7 +12,16 @@ from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.report.sentences import PERCENT, capital, listed
 
 RATE, AREA = "pristine_mm_per_1000h", "area_mm2"
+MOST_SAID = 4  # designs and parts that a sentence enumerates
 SHARE_AT_END = 0.25  # -, of the time that the flow is shown for: means over it tell what it came to
+
+
+def shortened(said: Sequence[str], sizes: Sequence[float]) -> str:
+    """Return sayings as an enumeration; of more than MOST_SAID those with the largest size and the smallest alone."""
+    if len(said) <= MOST_SAID:
+        return listed(said)
+    order = np.argsort(-np.asarray(sizes, dtype=float), kind="stable")
+    return f"{said[order[0]]} (the most of {len(said)}) and {said[order[-1]]} (the least)"
 
 
 def who(table: pd.DataFrame, row: pd.Series) -> str:
@@ -47,7 +58,7 @@ def depth_reached(depths: pd.DataFrame) -> str:
         f"{who(depths, row)} has lost {rounded(row['depth_mm'])} mm {_after(row['operation_h'])}"
         for _, row in last.iterrows()
     ]
-    return f"At the deciding place {listed(said)}." if said else ""
+    return f"At the deciding place {shortened(said, last['depth_mm'].tolist())}." if said else ""
 
 
 def fastest_place(rates: pd.DataFrame) -> str:
@@ -82,13 +93,14 @@ def impact_share(rows: pd.DataFrame) -> str:
 
     rows: patches with their area and loads
     """
-    said = []
+    said, shares = [], []
     for _, own in rows.groupby(["setting", "part"], sort=False):
         powers = [float((own[f"{name}_power_W_per_m2"] * own[AREA]).sum()) for name in ("impact", "sliding")]
         if sum(powers) > 0.0:
-            said.append(f"{PERCENT * powers[0] / sum(powers):.0f} % on {who(rows, own.iloc[0])}")
+            shares.append(powers[0] / sum(powers))
+            said.append(f"{PERCENT * shares[-1]:.0f} % on {who(rows, own.iloc[0])}")
     most = rows["pressure_Pa"].max()
-    start = f"Of the power of impacts and sliding, impacts have {listed(said)}; t" if said else "T"
+    start = f"Of the power of impacts and sliding, impacts have {shortened(said, shares)}; t" if said else "T"
     return f"{start}he highest mean pressure on a patch is {rounded(most)} Pa."
 
 
@@ -100,7 +112,8 @@ def deepest_section(lines: pd.DataFrame) -> str:
         f"up to {rounded(own['depth'].max())} mm from {who(lines, own.iloc[0])} {_after(own['operation_h'].iloc[0])}"
         for _, own in last.groupby("section", sort=False)
     ]
-    return f"In the sections wear has removed {listed(said)}."
+    most = last.groupby("section", sort=False)["depth"].max()
+    return f"In the sections wear has removed {shortened(said, most.tolist())}."
 
 
 def lifters(table: pd.DataFrame) -> str:
@@ -137,12 +150,13 @@ def speeds(column: str, words: str):
     """Return the finding of panels of the flow: mean and largest of a speed (m/s) by phase."""
 
     def finding(panels: pd.DataFrame) -> str:
-        said, several = [], panels["setting"].nunique() > 1
+        said, means, several = [], [], panels["setting"].nunique() > 1
         for (setting, phase), own in panels.groupby(["setting", "phase"], sort=False):
             named = f"{setting}, {phase}" if several else str(phase)
             mean, most = (rounded(value) for value in (own[column].mean(), own[column].max()))
             said.append(f"{named} {mean} m/s, at most {most} m/s")
-        return f"{words}: {'; '.join(said)}."
+            means.append(own[column].mean())
+        return f"{words}: {'; '.join(said) if len(said) <= MOST_SAID else shortened(said, means)}."
 
     return finding
 

@@ -23,6 +23,7 @@ SMALLEST_CHANGE = 0.1  # %, below which a change is called none
 STEADINESS = {STEADY: "steady", DRIFTING: "not steady", NOT_SAID: "not known to be steady"}
 FROM_ONE = 1.0  # number of packings of which the scatter is unknown
 PER_CENT = f"{100.0 * CONFIDENCE:.0f} %"
+CANNOT_BE_SAID = "which is better cannot be said"
 RATIOS = {  # quantity of the table of designs: what a part does in its ratio
     LIFE: "lasts {ratio} times as long",
     "steel_lost": "loses {ratio} times as much steel per hour",
@@ -61,6 +62,20 @@ def answers_on_life(life: pd.DataFrame) -> list[str]:
     return [
         *(life_sentence(row, several) for _, row in life.iterrows()),
         *(f"The surface of the {spoken(part)} runs, and is worn where it stands: {RUNNING}." for part in running),
+    ]
+
+
+def answers_on_first_change(life: pd.DataFrame) -> list[str]:
+    """Return of each setting which part is changed first, and when; nothing where each has one part alone."""
+    known = life[np.isfinite(life["life_h"])]
+    if not known.duplicated("setting").any():
+        return []
+    rows = known.loc[known.groupby("setting", sort=False)["life_h"].idxmin()]
+    several = life["setting"].nunique() > 1
+    return [
+        f"{f'Design {row.setting}: the' if several else 'The'} {spoken(row.part)} is changed first, after "
+        f"{rounded(row.life_h)} h ({interval_words(row)})."
+        for _, row in rows.iterrows()
     ]
 
 
@@ -157,7 +172,7 @@ def ratio_words(row: pd.Series) -> str:
 def verdict_words(row: pd.Series) -> str:
     """Return what the interval of a ratio says."""
     if row.verdict in (UNSAID, UNKNOWN):
-        return "which is better cannot be said"
+        return CANNOT_BE_SAID
     return f"that is {row.verdict}, and the interval says so"
 
 
@@ -257,11 +272,15 @@ def answers_on_holes(summary: pd.DataFrame) -> list[str]:
 
 
 def all_answers(tables: Tables, summary: pd.DataFrame) -> list[str]:
-    """Return the answers of a study in the order in which its page gives them."""
+    """Return the answers of a study in the order in which its page gives them: what decides, then all in detail."""
+    ratios = answers_on_designs(tables["designs"])
+    open_ = [said for said in ratios if CANNOT_BE_SAID in said]
     return [
-        *answers_on_life(tables["life"]),
+        *answers_on_first_change(tables["life"]),
+        *(said for said in ratios if said not in open_),
         *answers_on_holes(summary),
-        *answers_on_designs(tables["designs"]),
+        *answers_on_life(tables["life"]),
+        *open_,
         *answers_on_worn_shape(tables["loads"]),
         *(answers_on_lifters(tables["lifters"]) if "lifters" in tables else []),
         *answers_on_flow(tables["flow"]),

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
 DIGITS = 6
-MOST_MAPS, MOST_STATES = 6, 3  # designs on a figure of maps; where each has several maps of a part
+MOST_MAPS, MOST_STATES = 8, 3  # designs on a figure of maps; where each has several maps of a part
 WORN = every_run("worn_surface.vtu")
 SURFACES = {"surfaces": every_run("surface.vtu"), "worn": WORN, "wear": every_run("wear.csv")}
 BESIDE = "wear.csv"  # of every run, with the folders of its cycles beside it
@@ -72,7 +72,7 @@ PACKINGS = "means over blocks and packings, told by area patches"
     caption="""
     Hours of operation until a part has to be changed, by the rule at its name, at the place that decides. Bars of
     error: 95 % interval from the scatter of packings and from the wear coefficient as given; without one the scatter is
-    unknown. The upper axis is in megatonnes of feed.
+    unknown. An upper axis is in megatonnes of feed, where all designs have one feed.
     """,
 )
 def life_bars(job: Job) -> Any:
@@ -157,10 +157,10 @@ def wear_map(job: Job) -> Any:
     told=TOLD,
     digits=DIGITS,
     caption="""
-    Thickness left now, after the last simulated hour, and at the hours that the study wants told, of the first packing
-    of each design. Between updates, and from the last one on, each face loses as much as its area patch, after the last
-    one at the mean rate of the last shape. Red: as thin as the part is changed at, or thinner. Grey: no back lies
-    behind, so no thickness is known. Views as in the map of wear.
+    Thickness left as built, after the last simulated hour, and at the hours that the study wants told, of the first
+    packing of each design. Between updates, and from the last one on, each face loses as much as its area patch,
+    after the last one at the mean rate of the last shape. Red: as thin as the part is changed at, or thinner. Grey:
+    no back lies behind, so no thickness is known. Views as in the map of wear.
     """,
 )
 def remaining_thickness(job: Job) -> Any:

@@ -113,7 +113,7 @@ def most_designs(runs: Sequence[Run], most: int) -> int:
 def words(state: State) -> str:
     """Return what a state is called."""
     if not state.hours:
-        return "now"
+        return "as built"
     return f"after {few_digits(state.hours, 4)} h" + (f", {BEYOND}" if state.how == BEYOND else "")
 
 

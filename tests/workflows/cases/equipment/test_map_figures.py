@@ -62,12 +62,12 @@ def test_what_is_left_is_what_was_there_less_what_was_lost(study):
     maps = remaining.remaining_maps(runs, folder)
     first, several = pictures.first_runs(runs)[0], len(pictures.first_runs(runs)) > 1
     hours = scenes.UPDATE_HOURS * scenes.PHASES.count("wearing")
-    states = ["now", f"after {few_digits(hours, 4)} h"]
+    states = ["as built", f"after {few_digits(hours, 4)} h"]
     named = [f"{first['setting']}, {state}" if several else state for state in states]
     assert list(dict.fromkeys(each.setting for each in maps))[:2] == named
-    now = next(each for each in maps if each.setting.endswith("now"))
+    now = next(each for each in maps if each.setting.endswith("as built"))
     np.testing.assert_allclose(now.values[pictures.REMAINING], 1e3 * scenes.THICKNESS, rtol=ROUNDED)
-    late = next(each for each in maps if each.part == now.part and not each.setting.endswith("now"))
+    late = next(each for each in maps if each.part == now.part and not each.setting.endswith("as built"))
     worn = read_surface(folder / first["run"] / "worn_surface.vtu")
     mesh, _ = pictures.part_mesh(worn, pictures.labels_of(first)[late.part])
     lost = mesh.point_data["removed_thickness_m"][mesh.triangles].mean(axis=1)
@@ -96,7 +96,7 @@ def test_wanted_hours_lie_between_and_beyond_those_of_the_surfaces(study):
     assert [state.hours for state in states] == pytest.approx([0.0, early, end, later, latest])
     assert [state.how for state in states] == [SIMULATED] * 3 + [BEYOND] * 2
     named = [f"after {few_digits(hours)} h" for hours in (early, end, later, latest)]
-    said = ["now", *named[:2], *(f"{name}, {BEYOND}" for name in named[2:])]
+    said = ["as built", *named[:2], *(f"{name}, {BEYOND}" for name in named[2:])]
     assert [remaining.words(state) for state in states] == said
     left = remaining.remaining_rows([run], folder).pivot(
         index=["part", "patch"], columns="operation_h", values="mean_remaining_mm"

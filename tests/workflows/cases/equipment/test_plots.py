@@ -263,7 +263,7 @@ def test_edges_do_not_set_the_scale_of_thickness(tmp_path):
     """The rim of a plate is as thick as the plate is long."""
     mesh = scenes.box((1.0, 0.6, 0.05), 0.1)
     top = facing(mesh, (0.0, 0.0, 1.0))
-    shown = PartMap("now", "plate", mesh, {REMAINING: np.where(np.abs(top) > 0.0, 50.0, 1000.0)}, top)
+    shown = PartMap("as built", "plate", mesh, {REMAINING: np.where(np.abs(top) > 0.0, 50.0, 1000.0)}, top)
     figure = maps.remaining_thickness([shown], {"plate": 10.0}, REMARKS)
     bar = next(axes for axes in figure.axes if axes.get_ylabel().startswith("Remaining"))
     assert bar.get_ylim() == (0.0, 50.0)

@@ -39,7 +39,7 @@ def test_a_design_without_a_series_has_no_figures_of_it(left_out):
 def test_the_comparison_comes_first():
     """What answers the question of a study stands before the source's other figures, all of which it has."""
     names = [each.name for each in figures_of(load_study("pin_on_disc", overrides={"fidelity": "standard"}))]
-    assert names[:3] == ["pin_comparison", "excess_volume", "wear_volume"] and len(names) == 17
+    assert names[:3] == ["pin_comparison", "excess_volume", "wear_volume"] and len(names) == 19
 
 
 def test_every_figure_is_drawn_and_leaves_its_table(figures, pins):

@@ -44,6 +44,7 @@ def profile_sections(sections: pd.DataFrame, windows: pd.DataFrame, remarks: Seq
         _outlines(grid[0, column], lines, hours, window)
         if flat:
             _depths(grid[1, column], lines, hours, bool(window.turns))
+    _as_high(grid[0])
     deepest = max(float(sections[list(DEPTHS)].max().max()), LEAST_DEPTH)
     for axes in grid[1] if flat else ():
         axes.set_ylim(1.06 * deepest, -0.04 * deepest)
@@ -97,6 +98,14 @@ def _outlines(axes: Axes, lines: pd.DataFrame, hours: Sequence[float], window: t
     room = 0.06 * max(high - low, 0.2 * reach)
     axes.set(xlim=(-reach, reach), ylim=(low - room, high + room), aspect="equal")
     axes.set_title(window.name, loc="left", fontsize=SMALLEST_FONT)
+
+
+def _as_high(panels: Sequence[Axes]) -> None:
+    """Give outlines, as high over their width as the highest of them, so that equal windows have one scale."""
+    reaches = np.array([axes.get_xlim()[1] for axes in panels])
+    ends = np.array([axes.get_ylim() for axes in panels]) / reaches[:, None]
+    for axes, reach in zip(panels, reaches, strict=True):
+        axes.set_ylim(*(reach * np.array([ends[:, 0].min(), ends[:, 1].max()])))
 
 
 def _depths(axes: Axes, lines: pd.DataFrame, hours: Sequence[float], turns: bool) -> None:

@@ -165,15 +165,15 @@ def wear_maps(job: Job) -> Any:
     finding=figure_findings.velocity,
     inputs={"summary": SUMMARY, "profiles": PROFILES, "published": PUBLISHED_SIZES},
     caption="""
-    Mean velocity of the particles over the sample in the direction in which it moves, seen from the bed at rest, as
-    the radius; the height of the layer goes clockwise round the circle. Layers are 5 mm high times the particle
-    scale. Dotted: what the source's text gives, an upper bound over the plain sample in every layer, a lower one over
-    the convex sample in the lowest layer, both for all its scales. The counterpart of Yan 2022, Fig 4.18.
+    Mean velocity of the particles over the sample in the direction in which it moves, seen from the bed at rest,
+    against the height of the layer. Layers are 5 mm high times the particle scale. Dotted: what the source's text
+    gives, an upper bound over the plain sample in every layer, a lower one over the convex sample in the lowest
+    layer, both for all its scales. The counterpart of Yan 2022, Fig 4.18.
     """,
 )
 def velocity_by_layer(job: Job) -> Any:
-    """Draw the velocity with the sample round a circle of layers, a curve per particle scale."""
-    return _by_layer(job, "velocity_m_per_s", "velocity with the sample")
+    """Draw the velocity with the sample by the height of layers, a curve per particle scale."""
+    return _by_layer(job, "velocity_m_per_s", "Velocity with the sample")
 
 
 @size_figure(
@@ -181,15 +181,14 @@ def velocity_by_layer(job: Job) -> Any:
     finding=figure_findings.upward,
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
-    Mean upward velocity of the particles over the sample as the radius; the height of the layer goes clockwise round
-    the circle. Inside the grey circle particles go down. The source's text: much smaller over the plain sample than
-    over the convex one, over which it rises to a maximum above the lowest layer and falls to the top. The counterpart
-    of Yan 2022, Fig 4.19.
+    Mean upward velocity of the particles over the sample against the height of the layer; below zero they go down.
+    The source's text: much smaller over the plain sample than over the convex one, over which it rises to a maximum
+    above the lowest layer and falls to the top. The counterpart of Yan 2022, Fig 4.19.
     """,
 )
 def upward_velocity_by_layer(job: Job) -> Any:
-    """Draw the upward velocity round a circle of layers, a curve per particle scale."""
-    return _by_layer(job, "upward_m_per_s", "velocity upwards")
+    """Draw the upward velocity by the height of layers, a curve per particle scale."""
+    return _by_layer(job, "upward_m_per_s", "Velocity upwards")
 
 
 @size_figure(
@@ -197,14 +196,13 @@ def upward_velocity_by_layer(job: Job) -> Any:
     finding=figure_findings.sideways,
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
-    Mean velocity of the particles over the sample across the travel as the radius, to +x outside the grey circle; the
-    height of the layer goes clockwise round the circle. The source's text: no tendency sideways at any scale. The
-    counterpart of Yan 2022, Fig 4.20.
+    Mean velocity of the particles over the sample across the travel, to +x above zero, against the height of the
+    layer. The source's text: no tendency sideways at any scale. The counterpart of Yan 2022, Fig 4.20.
     """,
 )
 def sideways_velocity_by_layer(job: Job) -> Any:
-    """Draw the velocity across the travel round a circle of layers, a curve per particle scale."""
-    return _by_layer(job, "sideways_m_per_s", "velocity sideways")
+    """Draw the velocity across the travel by the height of layers, a curve per particle scale."""
+    return _by_layer(job, "sideways_m_per_s", "Velocity sideways")
 
 
 def _by_layer(job: Job, component: str, name: str) -> Any:
@@ -212,15 +210,15 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
     import pandas as pd
 
     from bulkwear.postproc.tables.summary import read_summary
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import curves_by_scale
     from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import over_the_sample, velocity_bounds
 
     scales = read_summary(job.files.summary).set_index("run")["particle_scale"]
     table = over_the_sample(read_summary(job.files.profiles), scales)
     published = getattr(job.files, "published", None)
     bounds = velocity_bounds(pd.read_csv(published), table) if published else None
-    labels = (f"{name} (m/s)", "height of the layer (mm)")
-    return spider_charts(table, component, "height_mm", labels, job.remarks, bounds), table
+    labels = (f"{name} (m/s)", "Height of the layer (mm)")
+    return curves_by_scale(table, component, "height_mm", labels, job.remarks, bounds), table
 
 
 @size_figure(
@@ -231,26 +229,26 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
     told={"runs": flow_runs},
     caption="""
     Magnitude of the averaged angular velocity of the lowest layer over the sample, from its front edge, which the bed
-    meets first and which is at the top of the circle, clockwise to its rear edge. Pieces are as long as the layer is
+    meets first, to its rear edge. Pieces are as long as the layer is
     high, 5 mm times the particle scale, as nearly as whole ones fill the sample; means over the steady window of the
     relative velocity, or over all travel where there is none. The source: it falls with the scale, is much higher over
     the convex sample, and there higher at the front than at the back. The counterpart of Yan 2022, Fig 4.22.
     """,
 )
 def angular_velocity_along_sample(job: Job) -> Any:
-    """Draw the averaged angular velocity of the lowest layer along the samples round a circle, a curve per scale."""
+    """Draw the averaged angular velocity of the lowest layer along the samples, a curve per scale."""
     from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.flow_history import RunFlow, spin_profiles
-    from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import spider_charts
+    from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import curves_by_scale
 
     summary = read_summary(job.files.summary)[["run", "row", "surface", "particle_scale"]]
     starts = read_summary(job.files.profiles).groupby("run")["window_start_mm"].first() / MILLIMETRES
     runs = {run: RunFlow(**values) for run, values in job.told.runs.items()}
     folders = dict(zip(summary["run"], [Path(path).parent for path in job.files.wear], strict=True))
     table = in_display_units(summary.merge(spin_profiles(folders, runs, starts.to_dict()), on="run"))
-    labels = ("averaged angular velocity of the lowest layer (°/s)", "distance behind the front edge (mm)")
-    return spider_charts(table, "averaged_angular_velocity_deg_per_s", "along_mm", labels, job.remarks), table
+    labels = ("Averaged angular velocity of\nthe lowest layer (°/s)", "Distance behind the front edge (mm)")
+    return curves_by_scale(table, "averaged_angular_velocity_deg_per_s", "along_mm", labels, job.remarks), table
 
 
 # ---------------------------------------------------------------- beside the source

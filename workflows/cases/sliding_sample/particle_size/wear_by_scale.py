@@ -150,7 +150,7 @@ def over_the_sample(profiles: pd.DataFrame, scales: Mapping[str, float]) -> pd.D
 
 
 def velocity_bounds(published: pd.DataFrame, table: pd.DataFrame) -> pd.DataFrame:
-    """Return what is published of the velocity (m/s) in every layer and in the lowest one, for `spider_charts`.
+    """Return what is published of the velocity (m/s) in every layer and in the lowest one, for `curves_by_scale`.
 
     published: as in config/published/particle_size_results.csv; table: as from `over_the_sample`
     """

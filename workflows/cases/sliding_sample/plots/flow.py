@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, colour, marker, new_figure
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
 
 LAYER = 5.0  # mm, of the published profiles, whose particles have their real size
 PANELS = {  # column of a profile -> its quantity in the published table and the label of the axis
@@ -28,6 +29,8 @@ PUBLISHED_MARKS = {"about": "D", "below": "<", "above": ">"}
 STRONG, FAINT = 1.4, 0.8  # pt, curves of patterned and of plain samples
 END_ROOM = 0.1  # -, of the travel, for the names at the ends of curves
 HEIGHT_ROOM = 0.1  # -, of a profile's height, above its highest mark
+SMOOTHED_SHARE = 0.1  # -, of the travel, over which curves that scatter are averaged
+LIGHTEST = 0.85  # -, of the map, of a curve on white
 FEW_VALUES = 6  # up to which a curve shows each of its values as a mark
 LEADER = 0.02  # -, of the axis, from the end of a curve to its name
 LEAST_STEP = 0.045  # -, of the axis, between two names
@@ -40,14 +43,19 @@ def along_travel(
     window: tuple[float, float] | None,
     remarks: Sequence[str],
     published: pd.DataFrame | None = None,
+    smoothed: bool = False,
 ) -> Figure:
-    """Draw a measure of every run against travel (mm), a panel per regime; patterned runs strong, plain ones faint.
+    """Draw a measure of every run against travel (mm), a panel per regime; patterned runs strong, each row in a colour,
+    plain ones faint.
 
     table: run, row, surface, regime, travel_mm and the column; label: of the measure's axis, with its unit
     window: steady window of the source (mm), shaded as far as the travel reaches; None to leave it out
     published: `of` (the regime), value and source of what is published of the measure, drawn as lines; None without
+    smoothed: draw means over a SMOOTHED_SHARE of the travel, which tell curves apart that scatter
     """
     regimes = list(dict.fromkeys(table["regime"]))
+    table = _smooth(table, column) if smoothed else table
+    colours = _row_colours(table)
     figure = new_figure(remarks, LARGEST_HEIGHT)
     panels = figure.subplots(1, len(regimes), sharex=True, sharey=True, squeeze=False)[0]
     end = float(table["travel_mm"].max())
@@ -55,7 +63,8 @@ def along_travel(
         shown = table[table["regime"] == regime]
         for run, curve in shown.groupby("run", sort=False):
             surface = curve["surface"].iloc[0]
-            drawn = {"color": colour(surface), "linewidth": FAINT if surface == PLAIN else STRONG, "label": run}
+            shade = colours.get(curve["row"].iloc[0], OTHER_COLOUR) if surface != PLAIN else colour(surface)
+            drawn = {"color": shade, "linewidth": FAINT if surface == PLAIN else STRONG, "label": run}
             drawn |= {"marker": marker(surface), "markersize": 3.0} if len(curve) <= FEW_VALUES else {}
             axes.plot(curve["travel_mm"], curve[column], "--" if surface == PLAIN else "-", **drawn)
         for value in [] if published is None else published.loc[published["of"] == regime, "value"]:
@@ -70,13 +79,34 @@ def along_travel(
     for axes, regime in zip(panels, regimes, strict=True):
         _name_ends(axes, table[(table["regime"] == regime) & (table["surface"] != PLAIN)], column)
     surfaces = list(dict.fromkeys(table["surface"]))
+    several = len(colours) > 1
     handles = [
-        Line2D([], [], color=colour(name), linestyle="--" if name == PLAIN else "-", label=name) for name in surfaces
+        Line2D([], [], color=colour(name), linestyle="--", label=name)
+        if name == PLAIN
+        else Line2D([], [], color=OTHER_COLOUR if several else colour(name), label=name)
+        for name in surfaces
     ]
     if published is not None and published["of"].isin(regimes).any():
         handles.append(Line2D([], [], color="black", linestyle=":", label=published["source"].iloc[0]))
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
     return figure
+
+
+def _row_colours(table: pd.DataFrame) -> dict[str, object]:
+    """Return the colour of the patterned run of each row: that of its surface where there is one row."""
+    patterned = table[table["surface"] != PLAIN]
+    rows = list(dict.fromkeys(patterned["row"]))
+    if len(rows) == 1:
+        return {rows[0]: colour(patterned["surface"].iloc[0])}
+    return dict(zip(rows, colormaps[MAP](np.linspace(0.0, LIGHTEST, len(rows))), strict=True))
+
+
+def _smooth(table: pd.DataFrame, column: str) -> pd.DataFrame:
+    """Return a table with means of a column over a SMOOTHED_SHARE of each run's rows."""
+    means = table.groupby("run", sort=False)[column].transform(
+        lambda values: values.rolling(max(round(SMOOTHED_SHARE * len(values)), 1), center=True, min_periods=1).mean()
+    )
+    return table.assign(**{column: means})
 
 
 def _name_ends(axes: Axes, table: pd.DataFrame, column: str) -> None:

@@ -130,10 +130,10 @@ def relative_velocity(job: Job) -> Any:
     when=finds_regimes,
     caption="""
     Wear volume per length of travel over stretches of some 10 mm (of whole cycles, where contacts are sampled), over
-    the largest of all runs and stretches (Yan 2022, Eq 3.8 and 3.9). Rows stand in the panel of their patterned
-    run's flow regime, plain twins with them; curves are means over the packings. Grey: the source's steady window,
-    where the travel gets there. The counterpart of Yan 2022, Fig 3.12, which gives no numbers in its text: the gradient
-    is significantly higher where the flow is continuous.
+    the largest of all runs and stretches (Yan 2022, Eq 3.8 and 3.9). Rows stand in the panel of their patterned run's
+    flow regime, plain twins with them; curves are means over the packings and over a tenth of the travel. Grey: the
+    source's steady window, where the travel gets there. The counterpart of Yan 2022, Fig 3.12, which gives no numbers
+    in its text: the gradient is significantly higher where the flow is continuous.
     """,
 )
 def wear_gradient(job: Job) -> Any:
@@ -154,7 +154,8 @@ def wear_gradient(job: Job) -> Any:
     steady = steady_table(read_summary(job.files.along), table, window)
     label, remarks = "Wear gradient over the largest of all runs (-)", [*job.remarks, *regime_remarks(regimes)]
     means = mean_along(table.merge(runs_of(job.files.design)[RUN]), "travel_mm", "relative_gradient")
-    return along_travel(means, "relative_gradient", label, window, remarks), table, {"steady": steady}
+    drawn = along_travel(means, "relative_gradient", label, window, remarks, smoothed=True)
+    return drawn, table, {"steady": steady}
 
 
 @tables(

@@ -1,4 +1,4 @@
-"""Wear against particle scale and against ratios of size, and spider charts of motion (Yan 2022, section 4.5)."""
+"""Wear against particle scale and against ratios of size, and profiles of motion (Yan 2022, section 4.5)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.plots.style import BLUE, LARGEST_HEIGHT, OTHER_COLOUR, SMALLEST_FONT, colour, marker, new_figure
+from bulkwear.postproc.plots.style import (
+    BLUE,
+    LARGEST_HEIGHT,
+    OTHER_COLOUR,
+    PUBLISHED,
+    SMALLEST_FONT,
+    colour,
+    marker,
+    named_once,
+    new_figure,
+)
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import (
     ASIDE,
@@ -35,7 +45,8 @@ MEASURE_NAMES = {
 }
 POINTS = 50  # of a drawn line
 ROOM = 0.08  # -, of the scales, beside them
-MOST_TICKS = 8  # round a spider chart
+MOST_BESIDE = 4  # entries of a legend
+HEIGHT = "height_mm"  # places that stand upright
 
 
 def wear_against_scale(
@@ -157,7 +168,7 @@ def _with_deviation(axes: Axes, one: pd.DataFrame, surface: str) -> None:
     packings_by_scale(axes, one, "mean_percent", (shade, marker(surface)), surface, hollow, aside)
 
 
-def spider_charts(
+def curves_by_scale(
     table: pd.DataFrame,
     value: str,
     place: str,
@@ -165,59 +176,36 @@ def spider_charts(
     remarks: Sequence[str],
     bounds: pd.DataFrame | None = None,
 ) -> Figure:
-    """Draw a quantity round a circle of places, a chart per surface, a curve per particle scale.
+    """Draw a quantity against places, a panel per surface on the same axes, a curve per particle scale.
 
-    table: surface, particle_scale, `value` (the radius) and `place`, which begins at the top and runs clockwise; the
-    places of all scales share one circle, which ends short of its beginning; packings are averaged. Negative values lie
-    inside the zero circle
+    table: surface, particle_scale, `value` and `place`; a height is upright, other places lie level; packings are
+    averaged
     labels: of value and place, with their units
     bounds: published ones of the value: surface, relation, value and place_to, as far as it holds; dotted
     """
     surfaces, scales = list(dict.fromkeys(table["surface"])), sorted(set(table["particle_scale"]))
-    colours = scale_colours(scales)
-    figure = new_figure(remarks, LARGEST_HEIGHT)
-    panels = figure.subplots(1, len(surfaces), subplot_kw={"projection": "polar"}, squeeze=False)[0]
-    whole = _circle(table, place, scales)
+    colours, upright = scale_colours(scales), place == HEIGHT
+    figure = new_figure(remarks)
+    panels = figure.subplots(1, len(surfaces), sharex=True, sharey=True, squeeze=False)[0]
     bounds = pd.DataFrame(columns=["surface", "relation", "value", "place_to"]) if bounds is None else bounds
-    lowest, largest = min(table[value].min(), 0.0), max([table[value].max(), *bounds["value"]])
     for axes, surface in zip(panels, surfaces, strict=True):
-        axes.set_theta_zero_location("N")
-        axes.set_theta_direction(-1)
+        (axes.axvline if upright else axes.axhline)(0.0, color=OTHER_COLOUR, linewidth=0.8)
         for k, scale in enumerate(scales):
             packings = table[(table["surface"] == surface) & (table["particle_scale"] == scale)]
             one = packings.groupby(place, as_index=False)[value].mean()
-            angle = 2.0 * np.pi * one[place] / whole
-            drawn = {"color": colours[scale], "marker": MARKERS[k % len(MARKERS)], "markersize": 3, "linewidth": 1.0}
-            axes.plot(angle, one[value], label=f"scale {scale:g}", **drawn)
+            drawn = {"color": colours[scale], "marker": MARKERS[k % len(MARKERS)], "markersize": 4, "linewidth": 1.2}
+            axes.plot(*_placed(one[value], one[place], upright), label=f"scale {scale:g}", **drawn)
         for each in bounds[bounds["surface"] == surface].itertuples():
-            arc = np.linspace(0.0, min(each.place_to / whole, 1.0), POINTS) * 2.0 * np.pi
-            drawn = {"color": "black", "linestyle": ":", "linewidth": 1.2}
-            axes.plot(arc, np.full(POINTS, each.value), label=f"Yan 2022: {each.relation} {each.value:g}", **drawn)
-        if lowest < 0.0:
-            axes.plot(np.linspace(0.0, 2.0 * np.pi, POINTS), np.zeros(POINTS), color=OTHER_COLOUR, linewidth=0.8)
-        ticks = _ticks(whole)
-        axes.set_xticks(2.0 * np.pi * ticks / whole, [f"{tick:g}" for tick in ticks])
-        axes.set_rlim(1.05 * lowest, 1.05 * largest if largest > 0.0 else 0.0)
-        axes.set_rlabel_position(-0.5 * 360.0 * (1.0 - ticks[-1] / whole))
+            drawn = {"label": f"Yan 2022: {each.relation} {each.value:g}", **PUBLISHED, "linestyle": ":"}
+            axes.plot(*_placed([each.value] * 2, [0.0, each.place_to], upright), **drawn)
         axes.set_title(f"{surface} sample", loc="left", fontsize=SMALLEST_FONT)
-        axes.set_xlabel(f"round: {labels[1]}")
-    named = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    handles = list(named.values())
-    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 6), title=f"radius: {labels[0]}")
+        axes.set_xlabel(labels[0] if upright else labels[1])
+        (axes.set_ylim if upright else axes.set_xlim)(0.0, None)
+    panels[0].set_ylabel(labels[1] if upright else labels[0])
+    handles, names = named_once(panels)
+    figure.legend(handles, names, loc="outside upper center", ncols=min(len(handles), MOST_BESIDE))
     return figure
 
 
-def _circle(table: pd.DataFrame, place: str, scales: Sequence[float]) -> float:
-    """Return the place that a whole circle stands for: the last one and the widest step between two of them."""
-    steps = [
-        np.diff(np.unique(table.loc[table["particle_scale"] == scale, place]), prepend=0.0).max() for scale in scales
-    ]
-    return float(table[place].max() + max(steps))
-
-
-def _ticks(whole: float) -> np.ndarray:
-    """Return round places for the circle's labels, fewer than eight or so."""
-    step = whole / MOST_TICKS
-    power = 10.0 ** np.floor(np.log10(step))
-    step = power * next(factor for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= step)
-    return np.arange(0.0, whole - 0.25 * step, step)
+def _placed(values: Sequence[float], places: Sequence[float], upright: bool) -> tuple[Sequence[float], Sequence[float]]:
+    return (values, places) if upright else (places, values)

@@ -10,7 +10,7 @@ from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.postproc.statistics.intervals import estimate
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import ASIDE, MEAN_SIZE
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import (
-    spider_charts,
+    curves_by_scale,
     steady_by_scale,
     wear_against_scale,
     wear_against_size_ratios,
@@ -81,44 +81,37 @@ def spins():
     return pd.concat(tables, ignore_index=True)
 
 
-def test_spider_charts_share_circle_and_radius():
-    """A chart per surface, a curve per scale; the same place has the same angle at every scale, and no curve closes."""
+def test_curves_by_scale_share_their_axes():
+    """A panel per surface, a curve per scale, its places level and its values in their unit; all on the same axes."""
     labels = ("angular speed (°/s)", "distance behind the front edge (mm)")
-    figure = spider_charts(spins(), "averaged_angular_velocity_deg_per_s", "along_mm", labels, ["a remark"])
-    assert len(figure.axes) == 2
-    assert [len(axes.lines) for axes in figure.axes] == [3, 3]
-    assert len({axes.get_rmax() for axes in figure.axes}) == 1
-    turn = {}
-    for line, scale in zip(figure.axes[0].lines, (1.0, 4.0, 8.0), strict=True):
-        angle = line.get_xdata()
-        assert (np.diff(angle) > 0.0).all() and angle[-1] < 2.0 * np.pi
-        along = spins().query("surface == 'convex' and particle_scale == @scale")["along_mm"].to_numpy()
-        turn[scale] = angle / along
-    assert np.ptp(np.concatenate(list(turn.values()))) < 1e-12
+    figure = curves_by_scale(spins(), "averaged_angular_velocity_deg_per_s", "along_mm", labels, ["a remark"])
+    assert len({(*axes.get_xlim(), *axes.get_ylim()) for axes in figure.axes}) == 1
+    for axes, (surface, level) in zip(figure.axes, (("convex", 300.0), ("plain", 120.0)), strict=True):
+        curves = [line for line in axes.lines if line.get_label().startswith("scale")]
+        for line, scale in zip(curves, (1.0, 4.0, 8.0), strict=True):
+            along = spins().query(f"surface == {surface!r} and particle_scale == {scale}")["along_mm"]
+            assert (
+                len(along)
+                and line.get_xdata() == pytest.approx(along)
+                and line.get_ydata() == pytest.approx(level / np.sqrt(scale))
+            )
 
 
-def test_negative_velocities_lie_inside_a_zero_circle():
-    """The radius begins below the lowest value, and zero is drawn in every chart."""
-    figure = spider_charts(profiles(), "sideways_m_per_s", "height_mm", ("sideways (m/s)", "height (mm)"), [])
-    for axes in figure.axes:
-        assert axes.get_rmin() < profiles()["sideways_m_per_s"].min() and axes.get_rmax() >= 0.0
-        assert any(np.all(line.get_ydata() == 0.0) for line in axes.lines)
-
-
-def test_published_bounds_are_arcs():
-    """Over the plain sample up to the highest layer, over the convex one up to the lowest; both in the legend."""
+def test_published_bounds_reach_up_to_their_layer():
+    """Heights are upright. Over the plain sample up to the highest layer, over the convex one up to the lowest."""
     table = profiles()
     labels = ("velocity (m/s)", "height (mm)")
-    figure = spider_charts(table, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, table))
+    figure = curves_by_scale(table, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, table))
     ends = {}
     for axes, surface in zip(figure.axes, dict.fromkeys(table["surface"]), strict=True):
-        arc = next(line for line in axes.lines if line.get_label().startswith("Yan 2022"))
-        ends[surface] = (arc.get_ydata()[0], arc.get_xdata()[-1])
+        bound = next(line for line in axes.lines if line.get_label().startswith("Yan 2022"))
+        ends[surface] = (bound.get_xdata()[0], bound.get_ydata()[-1])
+        assert axes.get_ylabel() in ("height (mm)", "") and axes.get_xlabel() == "velocity (m/s)"
     assert ends["plain"][0] == 0.35 and ends["convex"][0] == 0.9
-    slow = table.assign(velocity_m_per_s=0.1 * table["velocity_m_per_s"])
-    figure = spider_charts(slow, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, slow))
-    assert all(axes.get_rmax() > 0.9 for axes in figure.axes)  # also a bound that ours stay far below is seen
     assert ends["plain"][1] == pytest.approx(3.0 * ends["convex"][1])  # 30 mm over 10 mm
+    slow = table.assign(velocity_m_per_s=0.1 * table["velocity_m_per_s"])
+    figure = curves_by_scale(slow, "velocity_m_per_s", "height_mm", labels, [], velocity_bounds(RESULTS, slow))
+    assert all(axes.get_xlim()[1] > 0.9 for axes in figure.axes)  # also a bound that ours stay far below is seen
     told = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"Yan 2022: below 0.35", "Yan 2022: above 0.9"} <= set(told)
 
