@@ -46,7 +46,7 @@ FIGURES_OF_ALL = {  # of every study, by section
         "wear_updates",
     ),
     "Bed and forces": ("bed", "flow_views", "forces"),
-    "Wear laws": ("wear_law_comparison",),
+    "Wear laws": ("wear_law_comparison", "wear_by_law", "maps_by_law"),
 }
 REDUCED = (
     ("bed", "width_mm", "bed width"),
