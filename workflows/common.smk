@@ -128,12 +128,16 @@ onstart:
 
 
 onsuccess:
+    from bulkwear.workflows.report.verdict import leading  # slow to import, and every start reads this file
+
     for job in workflow.dag.jobs:
         if NAMING.ours(job.rule.name) == "report":
             study, page = STUDIES[job.wildcards.study], Path(job.output[0])
-            for sentence in answers_of(study.case.name, page.parent):
+            said = leading(answers_of(study.case.name, page.parent))
+            for sentence in said.items:
                 logger.info(f"{study.name}: {sentence}")
-            logger.info(f"{study.name}: its page is {page}")
+            more = f", with {len(said.folded)} more answers" if said.folded else ""
+            logger.info(f"{study.name}: its page is {page}{more}")
 
 
 def prepared(folder):

@@ -190,7 +190,7 @@ def bed(
 
     cuts: particles by run, as from `flow.bed.behind_cut`; meshes: worn surfaces by run.
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
+    figure = new_figure(remarks, LARGEST_HEIGHT, compressed=True)
     limits = (0.0, max(float(cut["speed_m_per_s"].quantile(0.98)) for cut in cuts.values()))
     grid = figure.subplots(len(cuts), 1, squeeze=False)[:, 0]
     bounds = bed_bounds(cuts.values(), meshes.values())

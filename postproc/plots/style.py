@@ -58,14 +58,15 @@ LOOK = {
 }
 
 
-def new_figure(remarks: Sequence[str], height: float = 4.0) -> Figure:
+def new_figure(remarks: Sequence[str], height: float = 4.0, compressed: bool = False) -> Figure:
     """Return an empty figure of full width with the study's remarks in small type below the drawing.
 
-    height: inches, at most `LARGEST_HEIGHT`; remarks: phrases, all are printed.
+    height: inches, at most `LARGEST_HEIGHT`; remarks: phrases, all are printed; compressed: axes whose scales are equal
+    stand close together, in the middle
     """
     mpl.rcParams.update(LOOK)
     height = min(height, LARGEST_HEIGHT)
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = Figure(figsize=(WIDTH, height), layout="compressed" if compressed else "constrained")
     lines = textwrap.wrap("; ".join(remarks), REMARK_CHARACTERS)
     if lines:
         text = "\n".join(lines)

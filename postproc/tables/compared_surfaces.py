@@ -22,7 +22,7 @@ from bulkwear.postproc.tables.film import without_skirt
 from bulkwear.postproc.wear.fields import CARRIED_VOLUME, REMOVED_THICKNESS
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS
 
-MOST_NODES = 400_000  # of all surfaces together: the page then has some four megabytes of numbers
+MOST_NODES = 300_000  # of all surfaces together: the page then has some three megabytes of numbers
 MOST_CYCLES = 10  # of a run
 TOP_SHARE = 0.99  # -, of the area of the surface with the largest values: the colours end there
 KILOPASCAL = 1e-3  # kPa per Pa

@@ -43,7 +43,7 @@ from bulkwear.workflows.report.simulated import said_of, versions_of, warnings_o
 from bulkwear.workflows.report.text import data_uri, decks_of, name_and_unit, number, setting_rows, simplifications
 from bulkwear.workflows.report.verdict import with_verdict
 
-LARGEST_EMBEDDED_BYTES = {"csv": 100_000, "svg": 80_000, "pdf": 80_000}  # a larger file stays on disk, linked
+LARGEST_EMBEDDED_BYTES = {"csv": 60_000, "svg": 20_000, "pdf": 20_000}  # a larger file stays on disk, linked
 MEDIA_TYPES = {"csv": "text/csv", "svg": "image/svg+xml", "pdf": "application/pdf"}
 PERCENT = 100.0
 PERCENT_DECIMALS = 6  # of a share: below is what sums leave of zero

@@ -53,7 +53,7 @@ def test_runs_sort_and_the_page_fits_a_phone(config, tmp_path):
 ROWS = 13  # each convex and plain
 LARGEST_PAGE = 8_000_000  # bytes
 PICTURES = 2_500_000  # bytes of a real page that are none here: its figures
-SIDE = 86  # cells: unworn and worn surfaces of 26 runs have as many nodes as a page takes
+SIDE = 74  # cells: unworn and worn surfaces of 26 runs have as many nodes as a page takes
 SIFTED = """<script>addEventListener("load", async () => {
   const frame = document.querySelector("figure.interactive iframe"), words = document.querySelector(".sift input");
   frame.loading = "eager";

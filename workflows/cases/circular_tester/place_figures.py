@@ -64,7 +64,8 @@ def tester_columns(job: Job) -> Any:
     finding=figure_findings.most_worn,
     caption="""
     Counterpart of Fig 6.14 (Yan 2022), mean over packings with its 95 % interval. C15 is the fifth one from the inner
-    side in the first column. Grey: the range that the thesis gives for odd and even columns after its last revolution.
+    side in the first column. Volumes are over the revolutions that they took. Grey: the range that the thesis gives for
+    odd and even columns after its last revolution.
     """,
     **OF_PLACES,
 )
@@ -81,8 +82,7 @@ def tester_bumps(job: Job) -> Any:
     bumps = over_packings(bumps, ["bump", "row"], "volume_mm3")
     (published,) = read(job, "published")
     theirs = published_value(published, "last_revolution", "simulation")
-    said = f"ours after {last:.3g} revolutions, Yan 2022 after {theirs:g}"
-    return by_bump(bumps, published, said, job.remarks), bumps
+    return by_bump(bumps, published, (last, theirs), job.remarks), bumps
 
 
 @figure(

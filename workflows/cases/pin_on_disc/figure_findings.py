@@ -25,6 +25,28 @@ def by_scheme(table: pd.DataFrame, values: pd.Series, unit: str = "") -> str:
     return listed(said)
 
 
+# ---------------------------------------------------------------- set-up
+
+
+def setup(runs: pd.DataFrame) -> str:
+    """Return size and load of the pin and the radius of its track. runs: the run that is drawn."""
+    run = runs.iloc[0]
+    radius, track = (measured(run[f"{name}_radius_mm"], "mm") for name in ("pin", "track"))
+    return f"A pin with a radius of {radius} goes round a track of {track} under {measured(run['load_n'], 'N')}."
+
+
+def groove(section: pd.DataFrame) -> str:
+    """Return how deep the groove of a section is, and where. section: as from `contours.section_table`."""
+    deepest = section.loc[section["depth_um"].idxmax()]
+    place = f"at {deepest['angle_deg']:.0f} degrees"
+    if not deepest["depth_um"] > 0.0:
+        return f"The disc has no groove {place}."
+    across = round(deepest["across_mm"], 2)
+    return (
+        f"The groove is {measured(deepest['depth_um'], 'µm')} deep {place}, {across:g} mm from the middle of the track."
+    )
+
+
 # ---------------------------------------------------------------- volume
 
 

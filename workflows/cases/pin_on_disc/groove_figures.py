@@ -32,6 +32,7 @@ def folder_of(files: SimpleNamespace) -> Path:
 @figure(
     "Set-up",
     "The pin on its disc",
+    finding=figure_findings.setup,
     inputs={"design": DESIGN, "published": PUBLISHED, "surfaces": every_run("surface.vtu")},
     caption="""
     What is simulated (Yan 2022, Fig 5.5): a ring of the disc about the track, seen from above with the size of its
@@ -56,6 +57,7 @@ def disc_setup(job: Job) -> Any:
 @figure(
     "Contours",
     "How contours are taken",
+    finding=figure_findings.groove,
     inputs=WORN_DISCS,
     caption="""
     Counterpart of Fig 5.6 (Yan 2022). The worn disc is cut by 360 half-planes about its axis, 1 degree apart (the

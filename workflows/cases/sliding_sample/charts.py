@@ -127,3 +127,27 @@ STEADY_BY_SCALE = one_panel(
         "relative_wear_rate": Axis("Wear rate over the largest of all runs", "%"),
     },
 )
+
+
+def _of_motion(column: str, title: str) -> Chart:
+    """Return a component of the velocity against the height of the layer, a curve per run."""
+    scales = {"group": ("particle_scale",), "curve": ("run",)}
+    layer = Layer(LINES, "height_mm", column, **scales)
+    return one_panel(Axis(title, "m/s"), Axis("Height of the layer", "mm"), layer, split="surface")
+
+
+VELOCITY = _of_motion("velocity_m_per_s", "Velocity with the sample")
+UPWARDS = _of_motion("upward_m_per_s", "Velocity upwards")
+SIDEWAYS = _of_motion("sideways_m_per_s", "Velocity sideways")
+SPIN_ALONG = one_panel(
+    Axis("Distance behind the front edge", "mm"),
+    Axis("Averaged angular velocity of the lowest layer", "°/s"),
+    Layer(
+        LINES,
+        "averaged_angular_velocity_deg_per_s",
+        "along_mm",
+        group=("particle_scale",),
+        curve=("run",),
+    ),
+    split="surface",
+)

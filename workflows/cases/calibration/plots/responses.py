@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -24,11 +25,14 @@ from bulkwear.postproc.plots.style import (
     OTHER_COLOUR,
     SMALLEST_FONT,
     facets,
+    label_all,
     new_figure,
 )
 from bulkwear.workflows.cases.calibration.responses import BAND, RECOMMENDED, parameter_name, response_name
 
 OURS, OTHERS = BLUE, ORANGE
+MAPS_BESIDE = 2  # maps in a line: of more their numbers are too small to read
+LABEL_FONT = 8.0  # pt, of numbers within maps
 BAND_COLOUR = "#000000"
 FAMILY_COLOURS = ListedColormap(["#0072B2", "#9ecbe6"])
 
@@ -51,13 +55,19 @@ def response_maps(
     """
     responses = [name for name in grid.columns if f"{name}_doubt" in grid]
     figure = new_figure(remarks, 4.6 if len(responses) == 1 else LARGEST_HEIGHT)
-    for name, axes in facets(figure, responses).items():
+    columns = min(len(responses), MAPS_BESIDE)
+    grid_of_axes = figure.subplots(
+        math.ceil(len(responses) / columns), columns, sharex=True, sharey=True, squeeze=False
+    ).ravel()
+    for spare in grid_of_axes[len(responses) :]:
+        spare.remove()
+    for name, axes in zip(responses, grid_of_axes, strict=False):
         _draw_map(figure, axes, grid, simulations, published, name, list(names[:2]))
         if name in measured:
             _draw_band(axes, grid, name, measured[name], list(names[:2]))
-        axes.set(xlabel=parameter_name(names[0]), ylabel=parameter_name(names[1]))
         axes.set_title(response_name(name), loc="left", fontsize=SMALLEST_FONT)
         axes.grid(False)
+    label_all(figure, len(responses) > 1, parameter_name(names[0]), parameter_name(names[1]))
     handles = [
         Line2D([], [], linestyle="", marker="o", color="white", markeredgecolor="black", label="simulated here"),
         Line2D([], [], linestyle="", marker="D", color="white", markeredgecolor=OTHERS, label="simulated in Yan 2022"),
@@ -88,7 +98,7 @@ def _draw_map(
     x, y, z = _as_grid(grid, pair, name)
     filled = axes.contourf(x, y, z, levels=levels, cmap=MAP)
     lines = axes.contour(x, y, z, levels=levels[1:-1:2], colors="white", linewidths=0.5)
-    axes.clabel(lines, fmt="%.3g", fontsize=7)
+    axes.clabel(lines, fmt="%.3g", fontsize=LABEL_FONT)
     for marker, table in points.items():
         axes.scatter(
             *(table[column] for column in pair),
@@ -111,7 +121,7 @@ def _draw_map(
             (-4 if right else 4, 4),
             textcoords="offset points",
             ha="right" if right else "left",
-            fontsize=6,
+            fontsize=LABEL_FONT,
             color=OTHERS,
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6},
         )

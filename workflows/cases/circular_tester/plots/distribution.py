@@ -53,17 +53,23 @@ def by_column(table: pd.DataFrame, unit: str, quantity: str, pattern_words: str,
     return figure
 
 
-def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, remarks: Sequence[str]) -> Figure:
-    """Draw the worn volume (mm3) of every shape of a pattern, columns apart, on the published ranges (Fig 6.14).
+def by_bump(
+    table: pd.DataFrame, published: pd.DataFrame, revolutions: tuple[float, float], remarks: Sequence[str]
+) -> Figure:
+    """Draw what every shape of a pattern loses per revolution (mm3), columns apart, on the published ranges (Fig 6.14).
 
-    table: bump, row, volume_mm3, and the interval over packings; scale_remark: to which revolution both belong.
+    table: bump, row, volume_mm3, and the interval over packings; revolutions: of ours and of the published volumes.
     """
+    ours, theirs = revolutions
     figure = new_figure(remarks)
     axes = figure.subplots()
     places = np.arange(len(table))
     for row, of_row in table.groupby("row"):
         kind = "odd" if row % 2 else "even"
-        ends = [published_value(published, f"{end}_bump_volume_{kind}", "simulation") for end in ("least", "largest")]
+        ends = [
+            published_value(published, f"{end}_bump_volume_{kind}", "simulation") / theirs
+            for end in ("least", "largest")
+        ]
         there = places[(table["row"] == row).to_numpy()]
         axes.fill_between(
             [there[0] - 0.5, there[-1] + 0.5],
@@ -72,12 +78,13 @@ def by_bump(table: pd.DataFrame, published: pd.DataFrame, scale_remark: str, rem
             zorder=0,
             label="range of the column's bumps, Yan 2022",
         )
-        reach = errorbars(of_row, "volume_mm3")
+        reach = errorbars(of_row, "volume_mm3") / ours
         bars = {"yerr": reach, "capsize": 2.0} if np.isfinite(reach).any() else {}
-        axes.bar(there, of_row["volume_mm3"], color=PATTERN_COLOUR, **bars)
+        axes.bar(there, of_row["volume_mm3"] / ours, color=PATTERN_COLOUR, **bars)
     axes.set_xticks(places, table["bump"], rotation=90)
-    axes.set_title(scale_remark, loc="left", fontsize=SMALLEST_FONT)
-    axes.set_ylabel("Worn volume of a shape of the pattern (mm³)")
+    said = f"means over {ours:.3g} revolutions, Yan 2022 over {theirs:g}"
+    axes.set_title(said, loc="left", fontsize=SMALLEST_FONT)
+    axes.set_ylabel("Worn volume of a shape\nper revolution (mm³)")
     figure.legend(*named_once([axes]), loc="outside upper center")
     return figure
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
 
 from bulkwear.postproc.mesh import PLAIN
@@ -27,7 +27,7 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester.comparison import WORN_OUT_SHARE
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW, errorbars
-from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
+from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS
 from bulkwear.workflows.cases.circular_tester.volume import (
     CONVEX,
     TERMS,
@@ -39,9 +39,9 @@ from bulkwear.workflows.cases.circular_tester.volume import (
 )
 
 CURVE_POINTS = 101
-NOTE_CHARACTERS = 105  # of a line over a printed table
 SCALE_STYLES = {1: "-", 2: "--", 3: "-.", 4: ":"}
 LABORATORY_COLOUR = "#CC79A7"
+GIVEN = 1e-6  # -, of the measured volume: as near is the sample that sets the scale of time
 BARS = 0.8  # of the space of a case
 MACHINE_STYLES = {"channel": "-", "ring": "--"}
 SHIFT = 0.05  # revolutions that two machines stand apart
@@ -164,6 +164,7 @@ def benchmark(
     hours = published_value(published, "short_test", "laboratory")
     theirs_at = published_value(published, "revolutions_of_short_test", "simulation")
     chosen = predicted[np.isclose(predicted["hours"], hours)]
+    plain_volume = published_value(published, f"{PLAIN}_volume_56_h", "laboratory")
     scales = sorted({*chosen["particle_scale"], *published_fits["particle_scale"]})
     figure = new_figure(remarks, 4.4)
     axes = figure.subplots()
@@ -181,30 +182,40 @@ def benchmark(
         places = np.arange(1, len(scales) + 1) + BARS * ((index + 0.5) / len(kinds) - 0.5)
         look = {"color": colour(surface), "hatch": "///" if source == THESIS else None, "edgecolor": "white"}
         bars = {"yerr": reach, "capsize": 2.5} if reach is not None and np.isfinite(reach).any() else {}
-        axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look, **bars)
+        drawn = axes.bar(places, values, BARS / len(kinds), label=f"{surface}, {source}", **look, **bars)
+        if source == OURS and surface == PLAIN:
+            _mark_given(drawn, np.isclose(values, plain_volume, rtol=GIVEN))
     for place, surface in zip((-0.2, 0.2), (PLAIN, CONVEX), strict=True):
         value = published_value(published, f"{surface}_volume_56_h", "laboratory")
         axes.bar(place, value, 0.35, color=colour(surface), alpha=0.5)
         axes.axhline(value, color=colour(surface), linewidth=0.8, linestyle=":")
     axes.set_xticks(range(len(scales) + 1), [LABORATORY, *(f"particle scale {scale:g}" for scale in scales)])
     axes.set_ylabel(f"Volume after {hours:g} h (mm³)")
-    figure.legend(loc="outside upper center", ncols=4)
+    figure.legend(loc="outside upper center", ncols=2)
     return figure
+
+
+def _mark_given(bars: BarContainer, given: np.ndarray) -> None:
+    """Draw hollow which bars (k,) are no result, as they set the scale of time, and say so in the legend."""
+    for bar, is_given in zip(bars, given, strict=True):
+        if is_given:
+            bar.set(facecolor="white", edgecolor=colour(PLAIN), hatch="..")
+    if given.any():
+        bars.set_label(f"{bars.get_label()}: dotted sets the scale of time")
 
 
 def volume_by_hours(
     curves: pd.DataFrame,
     hours_per_revolution: float,
-    table: pd.DataFrame,
     published: pd.DataFrame,
     remarks: Sequence[str],
 ) -> Figure:
-    """Draw lost volume (mm3) against hours: measured points and rates, our runs, and the table below (Fig 6.4).
+    """Draw lost volume (mm3) against hours: measured points and rates, and our runs (Fig 6.4).
 
-    curves: as from `volume.mean_volumes`; table: as from `tables.comparison_table`.
+    curves: as from `volume.mean_volumes`.
     """
     figure = new_figure(remarks, LARGEST_HEIGHT)
-    axes, printed = figure.subplots(2, 1, height_ratios=(3, 2))
+    axes = figure.subplots()
     longest = published_value(published, "long_test", "laboratory")
     hours = np.linspace(0.0, longest, CURVE_POINTS)
     interval = published_value(published, "interval", "laboratory")
@@ -240,28 +251,7 @@ def volume_by_hours(
     )
     axes.set(xlabel="Hours of the test", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
     figure.legend(*named_once([axes]), loc="outside upper center", ncols=3)
-    _numbers(printed, table)
     return figure
-
-
-def _numbers(axes: Axes, table: pd.DataFrame) -> None:
-    """Print the volumes compared; numbers in brackets lead to the notes in its title."""
-    columns = [LABORATORY, THESIS, THESIS_ALIKE, OURS]
-    shown = table[table["unit"] != "mm"]
-    notes = list(dict.fromkeys(note for words in shown["note"] if words for note in words.split("; ")))
-    cells = []
-    for _, row in shown.iterrows():
-        marks = ", ".join(str(notes.index(note) + 1) for note in row["note"].split("; ") if note)
-        words = f"{row['quantity']} ({row['unit'].replace('mm3', 'mm³')}){f' [{marks}]' if marks else ''}"
-        values = ["" if np.isnan(row[name]) else f"{row[name]:.4g}" for name in columns]
-        if np.isfinite(row[LOW]):
-            values[-1] += f" ({row[LOW]:.4g} to {row[HIGH]:.4g})"
-        cells.append([f"{row['hours']:g} h", words, *values])
-    said = "\n".join(
-        textwrap.wrap("; ".join(f"[{k}] {note}" for k, note in enumerate(notes, start=1)), NOTE_CHARACTERS)
-    )
-    axes.set_title(said, loc="left", fontsize=SMALLEST_FONT)
-    printed_table(axes, ["", "", *columns], cells)
 
 
 def channel_and_ring(

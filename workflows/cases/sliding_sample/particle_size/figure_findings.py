@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pandas as pd
 
-from bulkwear.workflows.report.sentences import listed, measured, spoken, with_interval
+from bulkwear.workflows.report.sentences import PERCENT, listed, measured, spoken, with_interval
 from bulkwear.workflows.report.text import number, range_text
 
 SPIN = "averaged_angular_velocity_deg_per_s"
+PEAKS = ["overlap", "normal_force", "tangential_force", "spin"]
+EXACT = 1e-5  # -, below which a difference is that of the digits that are kept
 STATES = {"loose": "filled", "dense": "shaken", "before": "before the sample", "after": "behind it"}
 
 
@@ -102,3 +104,14 @@ def packing(table: pd.DataFrame) -> str:
         contacts, pores = (range_text(means[name].dropna().tolist() or [float("nan")], 3) for name in means)
         said.append(f"{STATES[str(state)]} {contacts} contacts and a porosity of {pores}")
     return f"Over the particle scales particles have {'; '.join(said)}." if said else ""
+
+
+def collisions(histories: pd.DataFrame) -> str:
+    """Return how far the peaks of single collisions differ between scales. histories: of every collision and scale."""
+    kinds = ["collision", "rolling_friction", "particle_scale"]
+    peaks = histories.assign(**histories[PEAKS].abs()).groupby(kinds, sort=False)[PEAKS].max()
+    of_kind = peaks.groupby(level=kinds[:2], sort=False)
+    spread = ((of_kind.max() - of_kind.min()) / of_kind.max().where(of_kind.max() > 0.0)).max().max()
+    scales = range_text(sorted(set(histories["particle_scale"])))
+    differ = f"{PERCENT * spread:.1g} % at most" if spread > EXACT else f"less than {PERCENT * EXACT:g} %"
+    return f"Largest overlap, forces and spin at scale {scales} differ by {differ}."

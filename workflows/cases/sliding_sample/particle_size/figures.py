@@ -163,6 +163,7 @@ def wear_maps(job: Job) -> Any:
 @size_figure(
     "Velocity by layer and particle scale",
     finding=figure_findings.velocity,
+    charts=(charts.VELOCITY,),
     inputs={"summary": SUMMARY, "profiles": PROFILES, "published": PUBLISHED_SIZES},
     caption="""
     Mean velocity of the particles over the sample in the direction in which it moves, seen from the bed at rest,
@@ -179,6 +180,7 @@ def velocity_by_layer(job: Job) -> Any:
 @size_figure(
     "Upward velocity by layer and particle scale",
     finding=figure_findings.upward,
+    charts=(charts.UPWARDS,),
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
     Mean upward velocity of the particles over the sample against the height of the layer; below zero they go down.
@@ -194,6 +196,7 @@ def upward_velocity_by_layer(job: Job) -> Any:
 @size_figure(
     "Sideways velocity by layer and particle scale",
     finding=figure_findings.sideways,
+    charts=(charts.SIDEWAYS,),
     inputs={"summary": SUMMARY, "profiles": PROFILES},
     caption="""
     Mean velocity of the particles over the sample across the travel, to +x above zero, against the height of the
@@ -224,6 +227,7 @@ def _by_layer(job: Job, component: str, name: str) -> Any:
 @size_figure(
     "Angular speed along the sample",
     finding=figure_findings.spin_along,
+    charts=(charts.SPIN_ALONG,),
     # what the snapshots of the bed were reduced to lies beside the tables of wear
     inputs={"summary": SUMMARY, "profiles": PROFILES, "wear": every_run("wear.csv")},
     told={"runs": flow_runs},

@@ -97,6 +97,7 @@ def _collision_tests(study: Study) -> list[dict[str, Any]]:
 
 @size_figure(
     "Single collisions",
+    finding=figure_findings.collisions,
     inputs={},
     told={"tests": _collision_tests, "folder": below("collisions"), "template": of_template("collision")},
     tables={"measures": "particle_size/collisions.csv"},

@@ -87,7 +87,7 @@ def flow_views(
     views: by run, as from `seen_particles`; lines: by run, as from `sample_lines`. The bed moves to the
     right past the sample, so the sample goes to the left through it.
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
+    figure = new_figure(remarks, LARGEST_HEIGHT, compressed=True)
     tables = {run: in_display_units(table) for run, table in views.items()}
     top = max(float(table["angular_speed_deg_per_s"].quantile(TOP_SHARE)) for table in tables.values())
     norm = Normalize(0.0, top if top > 0.0 else 1.0)

@@ -24,8 +24,11 @@ def grid():
 
 
 def texts(figure):
-    """All labels and titles of a figure's axes."""
-    return [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel(), axes.get_title(loc="left"))]
+    """All labels and titles of a figure and its axes."""
+    whole = [figure.get_supxlabel(), figure.get_supylabel()]
+    return whole + [
+        text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel(), axes.get_title(loc="left"))
+    ]
 
 
 def test_response_maps_name_axes_and_units():

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pandas as pd
+import pytest
 from matplotlib.container import ErrorbarContainer
+from matplotlib.patches import Rectangle
 
 from bulkwear.workflows.cases.circular_tester.plots import distribution as tester
 from tests.support import tester_study as study
@@ -40,8 +42,10 @@ def test_by_bump(tmp_path):
     names = [f"C{row}{number}" for row in range(1, 6) for number in range(1, 6 - (row + 1) % 2)]
     rows = [int(name[1]) for name in names]
     table = pd.DataFrame({"bump": names, "row": rows, "volume_mm3": np.linspace(7.0, 30.0, len(names))})
-    figure = tester.by_bump(intervals(table, "volume_mm3", 2.0), study.PUBLISHED, "after 17 revolutions", REMARKS)
-    assert missing_words(figure, tmp_path / "a.png", ["after 17"]) == [] and error_bars(figure) == len(names)
+    figure = tester.by_bump(intervals(table, "volume_mm3", 2.0), study.PUBLISHED, (4.0, 17.0), REMARKS)
+    assert missing_words(figure, tmp_path / "a.png", ["over 17"]) == [] and error_bars(figure) == len(names)
+    heights = [bar.get_height() for bar in figure.axes[0].patches if isinstance(bar, Rectangle)]
+    assert heights == pytest.approx((table["volume_mm3"] / 4.0).tolist())
 
 
 def test_mesh_size(tmp_path):

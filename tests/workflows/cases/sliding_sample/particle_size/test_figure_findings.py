@@ -70,3 +70,13 @@ def test_packings_without_their_first_and_last_slab():
         "before the sample 4 contacts and a porosity of 0.45; behind it 5 contacts and a porosity of 0.45."
     )
     assert findings.packing(table.assign(state="difference")) == ""
+
+
+def test_collisions_by_scale():
+    """The widest difference of a peak between scales, over the larger one; that of rounding is called less than it."""
+    one = {"collision": "pair", "rolling_friction": "cdt", "overlap": [0.5, -1.0], "normal_force": [0.0, 2.0]}
+    one |= {"tangential_force": 0.0, "spin": 0.0}
+    both = [pd.DataFrame(one).assign(particle_scale=scale) for scale in (1.0, 4.0)]
+    told = "Largest overlap, forces and spin at scale 1 to 4 differ by"
+    assert findings.collisions(pd.concat(both)) == f"{told} less than 0.001 %."
+    assert findings.collisions(pd.concat([both[0], both[1].assign(normal_force=[0.0, 1.9])])) == f"{told} 5 % at most."
