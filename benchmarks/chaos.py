@@ -23,29 +23,31 @@ from dataclasses import asdict
 from datetime import date
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from benchmarks import chaos_files, chaos_runs, chaos_studies
 from benchmarks.chaos_files import Outcome
 from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.accounting import LEDGER
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.project import PACKAGE, Project
 from bulkwear.workflows.report.markdown import markdown
+from tests.support.own_solids import all_facets, write_binary, write_bodies
 
 ROOT = Path(__file__).parents[1]
 TABLE, PAGE = ROOT / "docs" / "chaos.csv", ROOT / "docs" / "chaos.md"
 SEED = 27
 WHOLE = {
     **{"kills": 50, "levels": 20, "hangs": 5, "stutters": 5, "flips": 500, "configurations": 10_000, "readers": 20_000},
-    **{"snakemakes": 20, "twins": 10, "clocks": 10},
+    **{"meshes": 10_000, "cad": 60, "snakemakes": 20, "twins": 10, "clocks": 10},
 }
 QUICK = {
     **{"kills": 2, "levels": 1, "hangs": 1, "stutters": 1, "flips": 60, "configurations": 40, "readers": 200},
-    **{"snakemakes": 2, "twins": 1, "clocks": 1},
+    **{"meshes": 200, "cad": 1, "snakemakes": 2, "twins": 1, "clocks": 1},
 }
 PARTS = ("files", "runs", "studies")
-CONFIGURATION = ("config/studies/demo.yaml", "config/designs/demo.csv", "config/default.yaml", "config/materials.yaml")
 SAMPLES = ROOT / "tests" / "data"
 BAD = ("lost", "wrong", "tracebacks", "hangs")
 HEADS = {
@@ -59,24 +61,45 @@ HEADS = {
 
 def of_files(chain: Chain, folder: Path, counts: dict[str, int], chance: random.Random) -> Iterator[Outcome]:
     """Yield what came of flipped bits, mutated files and mutated configurations."""
-    samples = samples_of(chain, folder / "samples")
-    here = folder / "reading"
-    shutil.copytree(folder / "samples", here)
     yield chaos_files.flipped_bits(chain.folder, inputs_digest(chain), counts["flips"], chance)
-    yield chaos_files.mutated_files(samples, here, counts["readers"], chance)
+    of_runs, of_users, here = folder / "of_runs", folder / "of_users", folder / "reading"
+    samples_of_run(chain, of_runs)
+    samples_of_users(of_users)
+    for samples in (of_runs, of_users):
+        shutil.copytree(samples, here, dirs_exist_ok=True)
+    cad = [of_users / name for name in chaos_files.CAD_MACHINES]
+    for what, samples, count in (
+        ("mutated files of runs, read", sorted(set(of_runs.iterdir()) - {of_runs / chaos_files.SPINS}), "readers"),
+        ("mutated meshes and scans, read", sorted(set(of_users.iterdir()) - set(cad)), "meshes"),
+        ("mutated CAD files, read", cad, "cad"),
+    ):
+        yield chaos_files.mutated_files(samples, here, counts[count], chance, what)
     project = spoilt_project(folder / "project")
-    yield chaos_files.mutated_configurations(project, "demo", CONFIGURATION, counts["configurations"], chance)
+    studies = chaos_files.files_of_studies(project)
+    yield chaos_files.mutated_configurations(project, studies, counts["configurations"], chance)
 
 
-def samples_of(chain: Chain, folder: Path) -> list[Path]:
-    """Copy a small file of each kind that readers know, of a finished run and of the tests' data."""
+def samples_of_run(chain: Chain, folder: Path) -> None:
+    """Copy a small file of each kind that a run writes, of a finished one and of the tests' data."""
     folder.mkdir()
     cycle = state.cycle_folder(chain.folder, 1)
-    sources = {name: cycle / name for name in ("run.restart", "surface.vtu", state.STATE, "log.liggghts")}
+    sources = {name: cycle / name for name in ("run.restart", "surface.vtu", state.STATE, "log.liggghts", LEDGER)}
     sources |= {"loads.vtk": SAMPLES / "bed_loads.vtk", "contacts.dump": SAMPLES / "slide_contacts.dump"}
-    for name, source in (sources | {"spins.dump": SAMPLES / "slide_spins.dump"}).items():
+    for name, source in (sources | {chaos_files.SPINS: SAMPLES / "slide_spins.dump"}).items():
         shutil.copy(source, folder / name)
-    return [folder / name for name in sources]
+
+
+def samples_of_users(folder: Path) -> None:
+    """Write a small file of each kind that users bring: the parts of a machine, and scans of a worn one."""
+    folder.mkdir(exist_ok=True)
+    for name in (*chaos_files.MACHINES, *chaos_files.CAD_MACHINES):
+        write_bodies(folder / name)
+    points, triangles, _ = all_facets()
+    write_binary(folder / "points.stl", points, triangles)
+    np.savetxt(folder / "points.xyz", points)
+    cloud = [f"{x} {y} {z}" for x, y, z in points]
+    head = ["ply", "format ascii 1.0", f"element vertex {len(cloud)}", *(f"property double {axis}" for axis in "xyz")]
+    (folder / "points.ply").write_text("\n".join([*head, "end_header", *cloud, ""]))
 
 
 def spoilt_project(folder: Path) -> Project:

@@ -6,13 +6,15 @@ import random
 import re
 import signal
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
+from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.postproc.mesh import read_surface
 from bulkwear.postproc.readers.contacts import read_contacts
-from bulkwear.postproc.readers.load_ledger import read_load_ledger
+from bulkwear.postproc.readers.load_ledger import read_ledger, read_load_ledger
 from bulkwear.postproc.readers.mesh_loads import read_mesh_loads
 from bulkwear.postproc.readers.point_cloud import point_blocks
 from bulkwear.postproc.readers.restart_file import read_restart
@@ -20,12 +22,16 @@ from bulkwear.postproc.readers.solver_log import last_step, thermo_table
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.accounting import LEDGER
 from bulkwear.workflows.engine.project import Project, ProjectError
 from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.row_check import RowCheck
 from bulkwear.workflows.engine.templates import DeckError
 
-LONGEST_S = 60.0  # that one file or configuration may take
+SPINS = "spins.dump"  # is read with contacts
+MACHINES = tuple(f"parts.{kind}" for kind in ("stl", "obj", "ply", "vtk", "vtu", "msh"))  # files of a machine's parts
+CAD_MACHINES = ("parts.step", "parts.brep")
+LONGEST_S = 240.0  # that one file or configuration may take, on a busy machine
 NONSENSE = (
     *("0", "-1", "1e-320", "1e300", "1e999", ".nan", "9" * 5000, "yes", "null", "''", "[]", "{}", "[20, 20, 20]"),
     *("!!python/name:os.system", "*missing", "/etc/passwd", "..", '"a\\nb"', "'" + "x" * 300 + "'", "4096", "0.01"),
@@ -119,15 +125,19 @@ def flipped_bits(run_folder: Path, inputs: str, count: int, chance: random.Rando
 # ---------------------------------------------------------------- readers
 
 
+UNIT, EDGE_M = "mm", 0.02  # of the machine's parts, whose formats follow
 READERS: dict[str, Callable[[Path], object]] = {
     "run.restart": read_restart,
     "surface.vtu": read_surface,
     state.STATE: read_record,
     "log.liggghts": lambda path: (thermo_table(path), last_step(path)),
     "load_ledger.bin": read_load_ledger,
+    LEDGER: read_ledger,
     "loads.vtk": read_mesh_loads,
-    "contacts.dump": lambda path: list(read_contacts(path, path.with_name("spins.dump"))),
-    "points.ply": lambda path: list(point_blocks(path)),
+    "contacts.dump": lambda path: list(read_contacts(path, path.with_name(SPINS))),
+    **dict.fromkeys(("points.ply", "points.stl", "points.xyz"), lambda path: list(point_blocks(path))),
+    **dict.fromkeys(MACHINES, lambda path: own_mesh(path, UNIT)),
+    **dict.fromkeys(CAD_MACHINES, lambda path: own_mesh(path, UNIT, EDGE_M)),
 }
 
 
@@ -146,14 +156,14 @@ def mutated(content: bytes, chance: random.Random) -> bytes:
     )[kind]
 
 
-def mutated_files(samples: Sequence[Path], folder: Path, count: int, chance: random.Random) -> Outcome:
+def mutated_files(samples: Sequence[Path], folder: Path, count: int, chance: random.Random, what: str) -> Outcome:
     """Let readers read mutated samples, which are named as in `READERS`."""
-    outcome = Outcome("mutated files, read")
+    outcome = Outcome(what)
     for _ in range(count):
         sample = chance.choice(samples)
         path = folder / sample.name
         path.write_bytes(mutated(sample.read_bytes(), chance))
-        attempt(outcome, lambda path=path: READERS[path.name](path), path.name, lambda fault: str(folder) in str(fault))
+        attempt(outcome, partial(READERS[path.name], path), path.name, lambda fault: str(folder) in str(fault))
         path.write_bytes(sample.read_bytes())
     return outcome
 
@@ -181,17 +191,30 @@ def is_of_configuration(fault: Exception) -> bool:
     return isinstance(fault, ConfigError | DeckError | ProjectError)
 
 
+def files_of_studies(project: Project) -> dict[str, list[str]]:
+    """Return {study: files of its settings, and the tables that they name}, as paths from a project's folder."""
+    folder, found = project.folder, {}
+    for path in sorted((folder / "config" / "studies").glob("*.yaml")):
+        case = load_study(path.stem, project=project).case.name
+        settings = [f"config/studies/{path.name}", f"config/cases/{case}.yaml", "config/default.yaml"]
+        named = "".join((folder / name).read_text(encoding="utf-8") for name in settings)
+        tables = [table for table in sorted((folder / "config").rglob("*.csv")) if table.name in named]
+        found[path.stem] = [*settings, "config/materials.yaml", *(str(table.relative_to(folder)) for table in tables)]
+    return found
+
+
 def mutated_configurations(
-    project: Project, study: str, files: Sequence[str], count: int, chance: random.Random
+    project: Project, studies: Mapping[str, Sequence[str]], count: int, chance: random.Random
 ) -> Outcome:
-    """Load a study whose files, one or two at a time, are mutated."""
+    """Load studies in turn whose files, {study: files}, one or two at a time, are mutated."""
     outcome = Outcome("configurations")
-    texts = {name: (project.folder / name).read_text(encoding="utf-8") for name in files}
-    for _ in range(count):
+    texts = {name: (project.folder / name).read_text(encoding="utf-8") for files in studies.values() for name in files}
+    for number in range(count):
+        study, files = list(studies.items())[number % len(studies)]
         spoiled = chance.sample(list(files), chance.choice((1, 1, 2)) if len(files) > 1 else 1)
         for name in spoiled:
             (project.folder / name).write_text(mutated_text(texts[name], chance), encoding="utf-8")
-        attempt(outcome, lambda: load_study(study, project=project), f"{spoiled}", is_of_configuration)
+        attempt(outcome, partial(load_study, study, project=project), f"{spoiled}", is_of_configuration)
         for name in spoiled:
             (project.folder / name).write_text(texts[name], encoding="utf-8")
     return outcome

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -86,7 +87,8 @@ def imported(source: str) -> set[str]:
     return {name.removeprefix(f"{PACKAGE}.") for name in spelled_imports(source)} - {PACKAGE}
 
 
-def spelled_imports(source: str) -> set[str]:
+@cache  # most of the rules ask for those of all modules
+def spelled_imports(source: str) -> frozenset[str]:
     """Dotted names a module imports anywhere, as they are spelled."""
     names = set()
     for node in ast.walk(ast.parse(source)):
@@ -95,7 +97,7 @@ def spelled_imports(source: str) -> set[str]:
         elif isinstance(node, ast.ImportFrom):
             base = "." * node.level + (node.module or "")
             names |= {base} | {f"{base}.{alias.name}" for alias in node.names}
-    return names
+    return frozenset(names)
 
 
 def roots(names: set[str]) -> set[str]:
@@ -158,6 +160,8 @@ def function_lengths(source: str) -> dict[str, int]:
 
 def uses_name(source: str, name: str) -> bool:
     """True if the source imports a module or uses a variable of that name."""
+    if name not in source:
+        return False
     used = {node.id for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Name)}
     return name in used | roots(imported(source))
 

@@ -44,7 +44,7 @@ def read_ply_solids(path: Path) -> Solids:
         body = body[body.index(b"\n") + 1 :]
         rows = dict(_text_rows(body, elements) if not order else _binary_rows(body, elements, order))
         return _solids(rows, path.stem)
-    except (ValueError, KeyError, IndexError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, OverflowError) as error:
         raise ValueError(f"{path}: not a readable .ply file ({error})") from error
 
 
@@ -61,6 +61,8 @@ def _header(text: str) -> tuple[str, list[Element]]:
             elements[-1].properties.append((rest[-1], TYPES[rest[-2]], length))
     if order is None:
         raise ValueError("the header has no format")
+    if bare := next((element.name for element in elements if element.count and not element.properties), None):
+        raise ValueError(f"element {bare} has no property")
     return order, elements
 
 
@@ -145,8 +147,6 @@ def _solids(rows: dict, stem: str) -> Solids:
             -1, 3
         )
         each = np.array([len(p) - 2 for p in polygons], dtype=np.int64)
-    if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(vertices):
-        raise ValueError(f"a face names vertex {triangles.max()}, there are {len(vertices)}")
     labels = np.zeros(len(each)) if label is None else np.array([row[label] for row in faces])
     values, part = np.unique(np.repeat(labels, each), return_inverse=True)
     named = [stem] if label is None else [f"{label}_{value:g}" for value in values]

@@ -19,6 +19,7 @@ from bulkwear.meshes.own.stl import read_stl_solids
 from bulkwear.postproc.mesh import areas
 
 FLAT_CELLS = {"triangle": 3, "quad": 4}  # cells that are a surface, and their corners
+LONGEST_SENTENCE = 600  # letters
 SIGNATURES = {  # how a file begins: the formats that do
     b"ISO-10303-21": (".step", ".stp"),
     b"ply": (".ply",),
@@ -53,11 +54,14 @@ def read_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None
     and what is allowed.
     """
     suffix = path.suffix.lower()
-    if suffix in CAD_FORMATS:
-        solids, scale = read_cad_solids(path, unit, edges)
-    else:
-        solids, scale = READERS[suffix](path), metres_per(unit)
-    _check_numbers(path, solids)
+    try:
+        if suffix in CAD_FORMATS:
+            solids, scale = read_cad_solids(path, unit, edges)
+        else:
+            solids, scale = READERS[suffix](path), metres_per(unit)
+        _check_numbers(path, solids)
+    except ValueError as error:  # it may quote a part of a damaged file
+        raise ValueError("".join(filter(str.isprintable, str(error)))[:LONGEST_SENTENCE]) from error
     return replace(solids, source=str(path)), scale
 
 
@@ -85,9 +89,14 @@ def _check_signature(path: Path, suffix: str) -> None:
 
 
 def _check_numbers(path: Path, solids: Solids) -> None:
-    """Raise ValueError where there is no triangle, or a coordinate that is not finite."""
+    """Raise ValueError where there is no triangle, a node that is not there, or a coordinate that is not finite."""
     if not len(solids.triangles):
         raise ValueError(f"{path}: no triangle found, allowed is a surface of one or more")
+    low, high = solids.triangles.min(), solids.triangles.max()
+    if low < 0 or high >= len(solids.points):
+        raise ValueError(
+            f"{path}: a face names node {low if low < 0 else high}, allowed are 0 to {len(solids.points) - 1}"
+        )
     faulty = np.flatnonzero(~np.isfinite(solids.points[solids.triangles]).all(axis=(1, 2)))
     if faulty.size:
         name = solids.names[solids.part[faulty[0]]]

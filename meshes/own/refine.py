@@ -92,9 +92,14 @@ def refined(
     return solids
 
 
+def triangle_counts(area: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """Return how many equilateral triangles with target edges (parts,) m make areas (parts,) m2."""
+    return area / (EQUILATERAL * targets**2)
+
+
 def check_count(source: str, names: Sequence[str], area: np.ndarray, targets: np.ndarray) -> None:
     """Raise ValueError where areas (parts,) m2 in equilateral triangles with target edges (parts,) m are too many."""
-    counts = area / (EQUILATERAL * targets**2)
+    counts = triangle_counts(area, targets)
     if counts.sum() > MOST_TRIANGLES:
         most = int(np.argmax(counts))
         least = np.sqrt(area[np.isfinite(targets)].sum() / (EQUILATERAL * MOST_TRIANGLES))

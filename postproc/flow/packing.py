@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from scipy.spatial import cKDTree
 
 LAYER_DIAMETERS = 4.0  # -, height of a layer over the median diameter (Yan 2022, section 4.3.1)
 FULL = 0.99  # -, of the particles lie wholly below the surface
@@ -46,6 +45,8 @@ def contacts_of(places: np.ndarray, radius: np.ndarray, period: Sequence[float] 
     period: m, along each axis, 0 where it is not periodic. Contacts are overlaps of micrometres: places that were
     printed with six digits do not tell them, and the solver's own count is to be taken.
     """
+    from scipy.spatial import cKDTree  # slow to import, and every start of Snakemake reads this module
+
     period = np.asarray(period)
     wrapped = np.where(period > 0.0, np.mod(places, np.where(period > 0.0, period, 1.0)), places)
     pairs = cKDTree(wrapped, boxsize=period).query_pairs(2.0 * radius.max(), output_type="ndarray")

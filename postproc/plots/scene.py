@@ -137,11 +137,20 @@ def worn_side(meshes: Iterable[SurfaceMesh], deformed: bool) -> Direction:
 
     What hides behind other faces counts as seen.
     """
+    return _best_side([(mesh, np.nan_to_num(face_depth(mesh, deformed))) for mesh in meshes])
+
+
+def facing_side(mesh: SurfaceMesh, depth: np.ndarray) -> Direction:
+    """Return the direction of `worn_side` for any depth (m,) of the triangles of a surface."""
+    return _best_side([(mesh, depth)])
+
+
+def _best_side(worn: Iterable[tuple[SurfaceMesh, np.ndarray]]) -> Direction:
     seen = dict.fromkeys((OBLIQUE, *OTHER_OBLIQUE), 0.0)
-    for mesh in meshes:
-        worn = np.nan_to_num(face_depth(mesh, deformed))[:, None] * area_vectors(mesh.points, mesh.triangles)
+    for mesh, depth in worn:
+        lost = depth[:, None] * area_vectors(mesh.points, mesh.triangles)
         for direction in seen:
-            seen[direction] += float(np.maximum(worn @ np.array(direction), 0.0).sum())
+            seen[direction] += float(np.maximum(lost @ np.array(direction), 0.0).sum())
     best = max(seen, key=seen.__getitem__)
     return best if seen[best] > SEEN_BETTER * seen[OBLIQUE] else OBLIQUE
 

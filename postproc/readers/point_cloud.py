@@ -30,6 +30,7 @@ PLY_TYPES = {
 PLY_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}
 STL_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 STL_HEAD = 84  # bytes before the facets of a binary STL, the last four their number
+QUOTED = 40  # letters of a line that is wrong
 LONGEST_HEADER = 100_000  # bytes of a PLY header; more is no header
 SEPARATORS = re.compile(r"[,;]")
 
@@ -91,6 +92,11 @@ def random_points(blocks: Iterable[np.ndarray], count: int, seed: int = 0) -> tu
 
 LOOSE_BYTES = 2  # that may follow the last point: a line end
 LARGEST_COORDINATE = 1e9  # of a point, in any unit of length: no scan reaches so far
+
+
+def _quoted(line: str) -> str:
+    """Return the beginning of a line that may be of a damaged file, fit for a sentence."""
+    return "".join(filter(str.isprintable, line.strip()))[:QUOTED]
 
 
 def _ply_header(path: Path) -> tuple[str, list[tuple[str, int, list[list[str]]]], int]:
@@ -218,7 +224,7 @@ def _stl_text_blocks(path: Path) -> Iterator[np.ndarray]:
     with open(path, encoding="latin-1") as file:
         yield from _rows(path, vertices(file), 0, 3, [0, 1, 2], what="vertex")
     if not last.startswith("endsolid"):
-        raise ValueError(f"{path}: a text STL ends with 'endsolid', found '{last[:40]}': the file is cut short")
+        raise ValueError(f"{path}: a text STL ends with 'endsolid', found '{_quoted(last)}': the file is cut short")
 
 
 def _text_blocks(path: Path) -> Iterator[np.ndarray]:
@@ -230,7 +236,7 @@ def _text_blocks(path: Path) -> Iterator[np.ndarray]:
                 break
             skipped += 1
             if words and not words[0].startswith(("#", "//")) and skipped > 2:
-                raise ValueError(f"{path}: line {skipped}: '{line.strip()[:40]}', allowed are x, y and z as numbers")
+                raise ValueError(f"{path}: line {skipped}: '{_quoted(line)}', allowed are x, y and z as numbers")
         else:
             return
         file.seek(0)
@@ -272,6 +278,6 @@ def _one_by_one(path: Path, lines: list[str], before: int, columns: list[int], w
             continue
         chosen = [words[column] for column in columns if column < len(words)]
         if len(chosen) < 3 or not _are_numbers(chosen):
-            raise ValueError(f"{path}: {what} {number}: '{line.strip()[:40]}', allowed are x, y and z as numbers")
+            raise ValueError(f"{path}: {what} {number}: '{_quoted(line)}', allowed are x, y and z as numbers")
         rows.append([float(word) for word in chosen])
     return rows

@@ -18,8 +18,9 @@ ROWS_PER_RUN = 400  # forces drawn per run; more would not show in a figure
 
 
 def runs_of(design: str | Path) -> pd.DataFrame:
-    """Return RUN of every run of a design table, names as text."""
-    return pd.read_csv(design, dtype=dict.fromkeys(RUN, str) | {"packing": int})[RUN]
+    """Return RUN of every run of a design table, names as text; the surface is "" where the case knows none."""
+    table = pd.read_csv(design, dtype=dict.fromkeys(RUN, str) | {"packing": int})
+    return (table if "surface" in table else table.assign(surface=""))[RUN]
 
 
 def wear_history(design: str | Path, wear_files: Sequence[str | Path]) -> pd.DataFrame:

@@ -1,8 +1,32 @@
-"""Wear coefficients from worn volumes."""
+"""Wear coefficients: by the hardness of what wears, and from worn volumes."""
 
 from __future__ import annotations
 
 import numpy as np
+
+PER_PA, DIMENSIONLESS = "wear_coefficient_per_pa", "wear_coefficient_k"  # the same number, without and with hardness
+
+
+def coefficient_per_pa(dimensionless: float, hardness: float) -> float:
+    """Return alpha = k / H in 1/Pa from k (-), at least 0, and the Vickers hardness H (Pa), above 0.
+
+    Source: J. F. Archard, J. Appl. Phys. 24 (1953) 981; Yan 2022, Eq 3.4-3.6. Raises ValueError beyond these ranges.
+    """
+    return _checked(dimensionless, hardness, PER_PA) / hardness
+
+
+def dimensionless_coefficient(per_pa: float, hardness: float) -> float:
+    """Return k = alpha H (-), the inverse of `coefficient_per_pa`. Raises ValueError as that does."""
+    return _checked(per_pa, hardness, DIMENSIONLESS) * hardness
+
+
+def _checked(coefficient: float, hardness: float, wanted: str) -> float:
+    if not (np.isfinite([coefficient, hardness]).all() and coefficient >= 0.0 and hardness > 0.0):
+        raise ValueError(
+            f"{wanted} of the coefficient {coefficient} and the hardness {hardness} Pa, allowed are finite numbers, at"
+            " least 0 and above 0"
+        )
+    return coefficient
 
 
 def laboratory_coefficient(volume: float, volume_error: float, load: float, distance: float) -> tuple[float, float]:

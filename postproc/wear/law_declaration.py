@@ -42,6 +42,8 @@ class Law:
     kernels: names of the contact kernels whose sums the ledger must have
     parameters: what it takes besides the wear coefficient; a kernel takes its own parameters from these
     is_solver_measure: whether LIGGGHTS' own `wear finnie` counts the same
+    comparable: whether its coefficient is volume over work of sliding contacts, as Archard's, so that volumes by the
+        same coefficient may be set side by side
     """
 
     volume: Callable[[Mapping[str, np.ndarray], Mapping[str, float]], np.ndarray]
@@ -50,6 +52,7 @@ class Law:
     kernels: tuple[str, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     is_solver_measure: bool = False
+    comparable: bool = False
 
 
 def check_declaration(name: str, law: Law) -> None:

@@ -164,12 +164,14 @@ LAWS: dict[str, Law] = {
         "volume = coefficient times normal force times sliding path, coefficient {wear_coefficient_per_pa} 1/Pa, the "
         "same for all particles and places. Rolling and impact are recorded but take no volume.",
         "J. F. Archard, J. Appl. Phys. 24 (1953) 981",
+        comparable=True,
     ),
     "tangential_work": Law(
         tangential_work,
         "volume = coefficient times the work of the contacts' tangential force, coefficient "
         "{wear_coefficient_per_pa} 1/Pa, the same for all particles and places. Contacts that stick take no volume.",
         "S. Fouvry, P. Kapsa, L. Vincent, Wear 200 (1996) 186",
+        comparable=True,
     ),
     "combined": Law(
         combined,
@@ -181,6 +183,7 @@ LAWS: dict[str, Law] = {
             Parameter("rolling_ratio", "coefficient of rolling over that of sliding", 0.0, 1e6, 0.0, unit="-"),
             Parameter("impact_ratio", "coefficient of impact energy over that of sliding", 0.0, 1e6, 0.0, unit="-"),
         ),
+        comparable=True,
     ),
     "finnie": Law(
         finnie,

@@ -7,8 +7,8 @@ import shutil
 import pytest
 
 from benchmarks import chaos_files
-from benchmarks.chaos import BAD, CONFIGURATION, SAMPLES, SEED, page, spoilt_project, table_of, with_part
-from benchmarks.chaos_files import Outcome
+from benchmarks.chaos import BAD, SAMPLES, SEED, page, samples_of_users, spoilt_project, table_of, with_part
+from benchmarks.chaos_files import CAD_MACHINES, READERS, SPINS, Outcome, files_of_studies
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.wear_step import TOTALS
 
@@ -48,16 +48,20 @@ def test_mutated_files_are_read_or_refused(tmp_path, chance):
     """A reader returns, or says in one sentence which file is wrong."""
     for name, source in SOURCES.items():
         shutil.copy(SAMPLES / source, tmp_path / name)
+    samples_of_users(tmp_path)
+    samples = sorted({*tmp_path.iterdir()} - {tmp_path / name for name in (SPINS, *CAD_MACHINES)})
     here = tmp_path / "reading"
     shutil.copytree(tmp_path, here)
-    samples = [tmp_path / name for name in SOURCES if name in chaos_files.READERS]
-    assert nothing_bad(chaos_files.mutated_files(samples, here, READS, chance))
+    assert {path.name for path in samples} <= set(READERS)
+    assert nothing_bad(chaos_files.mutated_files(samples, here, READS, chance, "files"))
 
 
 def test_mutated_configurations_are_loaded_or_refused(tmp_path, chance):
-    """A study loads, or one sentence says what is wrong with it."""
+    """Each study in turn loads, or one sentence says what is wrong with it."""
     project = spoilt_project(tmp_path / "project")
-    outcome = chaos_files.mutated_configurations(project, "demo", CONFIGURATION, CONFIGURATIONS, chance)
+    studies = files_of_studies(project)
+    assert len(studies) >= 11 and all(len(files) == len(set(files)) >= 5 for files in studies.values())
+    outcome = chaos_files.mutated_configurations(project, studies, CONFIGURATIONS, chance)
     assert nothing_bad(outcome) and outcome.refused
 
 

@@ -12,9 +12,14 @@ from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.mill import draw as mill
 from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.meshes.screw import draw as screw
+from bulkwear.meshes.which_law import draw as which_law
+from bulkwear.postproc.mesh import area_vectors
 
-SCRIPTS = {"chute": chute, "mill": mill, "screw": screw}
-BODIES = ("chute/walls", "chute/impact_plate", "chute/liner_plain", "screw/screw", "screw/trough")
+SCRIPTS = {"chute": chute, "mill": mill, "screw": screw, "which_law": which_law}
+BODIES = (
+    *("chute/walls", "chute/impact_plate", "chute/liner_plain", "screw/screw", "screw/trough"),
+    *("which_law/plate_15", "which_law/slide"),
+)
 LONGEST_S = 10.0  # s of the processor, of a script: each takes about one
 LARGEST_BYTES = 1_000_000  # of a drawing
 OF_CURVED = 1e-3  # -, of a volume with curved faces: OpenCASCADE's quadrature, and a loft in place of a helix
@@ -101,7 +106,10 @@ def plain_liner_mm3():
     return (chute.WIDTH - 2.0 * chute.GAP) * section
 
 
-@pytest.mark.parametrize(("pattern", "rows", "bumps"), [("r5", 13, 26), ("r9", 13, 78)])
+@pytest.mark.parametrize(
+    ("pattern", "rows", "bumps"),
+    [("r5", 13, 26), pytest.param("r9", 13, 78, marks=pytest.mark.verify)],  # three times the bumps to mesh
+)
 def test_patterns_add_half_ellipsoids(drawn, pattern, rows, bumps):
     """As many as there are places, each 2/3 pi a b h above the plate; meshed coarsely they keep most of that."""
     places = np.array(chute.bump_places(pattern))
@@ -226,3 +234,14 @@ def test_bodies_of_one_file_keep_their_names(tmp_path):
         write_step(gmsh, tmp_path / "two.step", {large: "large", small: "small"})
     parts = own_mesh(tmp_path / "two.step", "mm", 0.01).parts
     assert {part.name: part.volume_m3 for part in parts} == pytest.approx({"small": 100e-9, "large": 1600e-9}, rel=1e-9)
+
+
+@pytest.mark.parametrize("angle", which_law.ANGLES)
+def test_plates_of_which_law_stand_at_their_angles_to_the_stream(drawn, angle):
+    """The face that a stream along x hits is at that angle to it, upright, and as large as the plate."""
+    surface = found(drawn, f"which_law/plate_{angle}").surface
+    vectors = area_vectors(surface.points, surface.triangles)
+    areas = np.linalg.norm(vectors, axis=1)
+    expected = np.array([-math.sin(math.radians(angle)), math.cos(math.radians(angle)), 0.0])
+    front = (vectors @ expected) > (1.0 - OF_PLANE) * areas
+    assert areas[front].sum() == pytest.approx(1e-6 * which_law.PLATE_LENGTH * which_law.PLATE_HEIGHT, rel=OF_PLANE)

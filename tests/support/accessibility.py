@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from bulkwear.workflows.report.printed import browser
+from tests.support.patience import LONGEST_S
 
 NEEDS_BROWSER = pytest.mark.skipif(browser() is None, reason="needs Chromium")
 WIDTHS = (1440, 390)  # pixels: a desk and a phone
@@ -54,6 +55,6 @@ def _asked(folder: Path, scheme: str) -> list[dict]:
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--window-size={max(WIDTHS) + 60},2000", "--dump-dom"]
     options += [f"--blink-settings=preferredColorScheme={SCHEMES[scheme]}", f"--user-data-dir={folder / scheme}"]
     command = [browser(), *options, "--virtual-time-budget=60000", (folder / "frames.html").as_uri()]
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True).stdout
+    shown = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_S, check=True).stdout
     found = json.loads(html.unescape(re.search(r"<title>FOUND(.*)END</title>", shown).group(1)))
     return [each | {"faults": [fault for fault in each["faults"] if fault["impact"] in GRAVE]} for each in found]

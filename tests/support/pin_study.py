@@ -136,7 +136,8 @@ def drawn(folder: Path) -> dict[str, Any]:
         runs=[SimpleNamespace(name=run) for run in design["run"]],
     )
     (folder / "figures").mkdir(exist_ok=True)
-    waiting, figures = list(products_of_study(study).values()), {}
+    shared, figures = study.case.shared_figures, {}  # they are made of ledgers, which these runs have none of
+    waiting = [product for name, product in products_of_study(study).items() if name not in shared]
     while waiting:
         product = next(each for each in waiting if all(map(Path.exists, _inputs(each, study, folder))))
         waiting.remove(product)

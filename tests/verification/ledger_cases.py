@@ -14,7 +14,9 @@ from bulkwear.postproc.mesh import SurfaceMesh, stl_corners, write_stl
 from bulkwear.postproc.readers.contacts import read_contact_batches
 from bulkwear.postproc.readers.load_ledger import LoadLedger, read_load_ledger
 from bulkwear.postproc.wear.ledger import LedgerBuilder, columns_of_solver
+from bulkwear.workflows.engine.solver import solver_environment
 from tests import REPOSITORY
+from tests.support.patience import LONGEST_S
 
 BUILT = REPOSITORY / "solver" / "build" / "liggghts-ledger"  # by `make -C solver`
 SOLVER = Path(os.environ.get("LIGGGHTS_LEDGER", BUILT))
@@ -112,16 +114,10 @@ def command(ranks: int = 1, solver: Path | str = SOLVER, **variables) -> list[st
     return [*launcher, str(solver), "-in", "deck.in", "-log", "log.liggghts", *overriding]
 
 
-def environment() -> dict[str, str]:
-    """Environment of a run: mpirun refuses to start as root without being told."""
-    allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"} if os.geteuid() == 0 else {}
-    return {**os.environ, **allowed, "OMP_NUM_THREADS": "1"}
-
-
 def run(folder: Path, ranks: int = 1, solver: Path | str = SOLVER, **variables) -> str:
     """Run the deck in a folder and return what it said; a failed run raises with the end of that."""
     words = command(ranks, solver, **variables)
-    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True)
+    done = subprocess.run(words, cwd=folder, env=solver_environment(), capture_output=True)
     said = (done.stdout + done.stderr).decode("utf-8", "replace")  # the solver's messages can hold stray bytes
     if done.returncode:
         raise RuntimeError(f"{folder}/deck.in ended with {done.returncode}:\n{said[-2000:]}")
@@ -176,7 +172,7 @@ def said_when_refused(folder, solver=None, ledger=LEDGER_LINE, without=()):
     assert len(kept) == len(lines) - len(without)
     (folder / FRAME.name).write_text("".join(kept))
     words = command() if solver is None else command(solver=solver)
-    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, timeout=120)
+    done = subprocess.run(words, cwd=folder, env=solver_environment(), capture_output=True, timeout=LONGEST_S)
     said = (done.stdout + done.stderr).decode("utf-8", "replace")
     assert done.returncode != 0, said
     assert not (folder / "load_ledger.bin").exists()

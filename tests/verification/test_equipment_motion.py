@@ -34,7 +34,7 @@ BAR_RATE = 1.0  # t/h
 STL_ROUNDING = 1e-9  # m; %.9g of coordinates below 1 m
 
 
-def study(parts, bodies, inlet, outlet, block_s, **changes) -> Machine:
+def study(parts, bodies, inlet, outlet, block_s, blocks=BLOCKS, **changes) -> Machine:
     """A machine of parts with one inlet that material falls through and one outlet below."""
     settings = {
         "title": "A part that moves",
@@ -51,7 +51,7 @@ def study(parts, bodies, inlet, outlet, block_s, **changes) -> Machine:
         "inlet": {"normal": [0, 0, -1], **inlet},
         "outlets": {"below": {"normal": [0, 0, -1], **outlet}},
         "start_up": {"most_s": 0.6},
-        "sampling": {"block_s": block_s, "fewest_blocks": BLOCKS, "most_blocks": BLOCKS, "patch_mm": 100},
+        "sampling": {"block_s": block_s, "fewest_blocks": blocks, "most_blocks": blocks, "patch_mm": 100},
         "updates": {"most": 0},
         "operation": {"duration_h": 1000, "change_out_remaining_mm": 0},
         "solver": {"rayleigh_fraction": 0.3},
@@ -81,8 +81,9 @@ def belt(tmp_path_factory):
             **{"rate_t_per_h": BELT_RATE, "centre_mm": [0, 0, 30], "size_mm": [60, 60]},
             "velocity_m_per_s": [FED, 0, -0.5],
         },
-        {"centre_mm": [500, 0, -100], "size_mm": [1600, 500]},
+        {"centre_mm": [450, 0, -100], "size_mm": [1400, 400]},
         0.2,
+        domain={"low_mm": [-330, -310, -380], "high_mm": [1250, 310, 240]},  # the solver's lists cost by their room
     )
     folder = tmp_path_factory.mktemp("belt")
     with machine_study(folder, machine=machine) as project:
@@ -129,8 +130,11 @@ def bar(tmp_path_factory):
             **{"rate_t_per_h": BAR_RATE, "centre_mm": [0.6 * ARM, 0, 220], "size_mm": [60, 60]},
             "velocity_m_per_s": [0, 0, -3.0],
         },
-        {"centre_mm": [0.6 * ARM, 0, -200], "size_mm": [1600, 1200]},
+        {"centre_mm": [0.6 * ARM, 0, -200], "size_mm": [1600, 800]},
         0.3,  # s: blocks begin with the bar at other angles
+        2,  # blocks before the update, which wears by the last of them
+        domain={"low_mm": [-1100, -450, -400], "high_mm": [1300, 450, 660]},
+        start_up={"most_s": 0.3},
         **{"updates": {"most": 1, "worn_blocks": 1}, "operation": {"duration_h": 2000, "change_out_remaining_mm": 0}},
     )
     folder = tmp_path_factory.mktemp("bar")

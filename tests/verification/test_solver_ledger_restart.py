@@ -9,6 +9,7 @@ import pytest
 
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.readers.load_ledger import announcement, read_load_ledger
+from bulkwear.workflows.engine.solver import solver_environment
 from tests.verification.ledger_cases import (
     LEDGER_LINE,
     LOAD,
@@ -16,7 +17,6 @@ from tests.verification.ledger_cases import (
     PIN_MOTION,
     RADIUS,
     command,
-    environment,
     hertz_overlap,
     pin,
     resume,
@@ -77,7 +77,7 @@ def kill_in_the_middle(folder, by=signal.SIGKILL):
 
     SIGKILL may cut a file off while it is written; that is why there are two.
     """
-    running = subprocess.Popen(command(), cwd=folder, env=environment(), stdout=subprocess.DEVNULL)
+    running = subprocess.Popen(command(), cwd=folder, env=solver_environment(), stdout=subprocess.DEVNULL)
     deadline = time.monotonic() + PATIENCE
     while not (folder / "b.restart").exists() and running.poll() is None and time.monotonic() < deadline:
         time.sleep(0.005)

@@ -12,7 +12,8 @@ from bulkwear.meshes.plate import closed_box, flat_plate
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.workflows.engine.own_machine import write_update
-from tests.verification.ledger_cases import SOLVER, command, environment, write_case
+from bulkwear.workflows.engine.solver import solver_environment
+from tests.verification.ledger_cases import SOLVER, command, write_case
 from tests.verification.machines.four import MACHINES
 from tests.verification.test_solver_ledger_beds import BOX, LOOSE, POURED
 
@@ -20,8 +21,8 @@ pytestmark = pytest.mark.solver
 
 SEARCHES = ("ours", "stock")
 PLATE = flat_plate(0.026, 0.026, 1e-3)
-STEPS, DRAGGED = 1500, 0.05  # -, m/s
-FALLEN = {**BOX, "domain": "-0.04 0.04 -0.03 0.03 -0.02 0.03", "settling": 4000, "steps": STEPS}
+STEPS, DRAGGED = 1000, 0.05  # -, m/s
+FALLEN = {**BOX, "domain": "-0.04 0.04 -0.03 0.03 -0.02 0.03", "settling": 2500, "steps": STEPS}
 SWING = "fix swing all move/mesh mesh sample wiggle amplitude 0.001 0.0005 0.0005 period 0.007"
 TURN = "fix turn all move/mesh mesh sample rotate origin 0. 0. 0. axis 0. 0.2 1. period 0.5"
 DRAG = f"fix drag all move/mesh mesh sample linear -{DRAGGED} 0. 0."
@@ -46,7 +47,7 @@ RESUMED = FALLEN["settling"] + 2 * STEPS  # steps
 def searched(folder: Path, search: str, ranks: int = 1, **variables) -> str:
     """Run the deck of a folder by a search; what it said."""
     words = [*command(ranks, **variables), "-search", search]
-    done = subprocess.run(words, cwd=folder, env=environment(), capture_output=True, text=True)
+    done = subprocess.run(words, cwd=folder, env=solver_environment(), capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     assert f"Wall search of wall: {search}, " in done.stdout
     return done.stdout
@@ -137,13 +138,13 @@ def searched_machine(folder: Path, search: str, time_step: float) -> None:
     """Run the first update of a machine by a search."""
     variables = {"update": 0, "before": "none", "time_step": time_step}
     done = subprocess.run(
-        [*command(**variables), "-search", search], cwd=folder, env=environment(), capture_output=True, text=True
+        [*command(**variables), "-search", search], cwd=folder, env=solver_environment(), capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
 
 
 def test_another_word_is_refused():
     """One sentence, before a deck is read."""
-    done = subprocess.run([SOLVER, "-search", "fast"], env=environment(), capture_output=True, text=True)
+    done = subprocess.run([SOLVER, "-search", "fast"], env=solver_environment(), capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stderr == "-search: found fast, allowed are ours and stock.\n"

@@ -5,10 +5,11 @@ A column of the second kind is the path of a setting that is one number or word,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, display_name, merge, read_csv_rows
+from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, display_name, merge, overridden, read_csv_rows
 from bulkwear.workflows.config.schema import case_schema, leaves, subschema
 from bulkwear.workflows.config.until import UNTIL
 from bulkwear.workflows.config.validation import check_alternatives, unknown_key
@@ -40,17 +41,16 @@ def as_settings(row: Layer, columns: dict[str, str]) -> Layer:
     return Layer(row.source, values, {(): row.line(())}, row.block)
 
 
-def with_row(settings: dict[str, Any], row: Layer, alternatives: tuple[KeyPath, ...]) -> dict[str, Any]:
+def with_row(settings: dict[str, Any], row: Layer, alternatives: Sequence[Sequence[KeyPath]]) -> dict[str, Any]:
     """Return the settings of one design row; row: as from `as_settings`.
 
-    Of alternatives the row's stands for all others. Raises ConfigError for a row with two of them.
+    alternatives: groups of settings; of each the row's stands for all others
+
+    Raises ConfigError for a row with two of them.
     """
-    check_alternatives(row, alternatives, required=False)
-    settings = merge(settings, {})
-    if any(row.holds(path) for path in alternatives):
-        for section, key in alternatives:
-            settings.get(section, {}).pop(key, None)
-    return merge(settings, row.values)
+    for each in alternatives:
+        check_alternatives(row, each, required=False)
+    return overridden(settings, row, alternatives)
 
 
 def opened(schema: dict[str, Any], path: Path, project: Project, case: str) -> dict[str, Any]:

@@ -17,6 +17,12 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.workflows.config.chosen import ROWS, chosen_rows, is_wanted, runs_of_rows
+from bulkwear.workflows.config.coefficients import (
+    alternatives_of,
+    check_hardness,
+    coefficient_columns,
+    with_coefficients,
+)
 from bulkwear.workflows.config.columns import as_settings, opened, row_overrides, setting_columns, with_row
 from bulkwear.workflows.config.law_settings import check_law, check_volume
 from bulkwear.workflows.config.layers import (
@@ -152,11 +158,14 @@ class Study:
         """
         factors = {str(row["row"]): {k: v for k, v in row.items() if k != "row"} for row in self.design_rows}
         columns = dict.fromkeys(name for row in factors.values() for name in row)
+        told = {run.name: coefficient_columns(run.parameters) for run in self.runs}
+        coefficients = dict.fromkeys((name for row in told.values() for name in row), "")
         return [
             {"run": run.name, "row": run.row, "setting": self.setting_of[run.row], "packing": self.packing_of[run.row]}
             | ({"surface": run.surface} if run.surface else {})
             | {name: factors[run.row].get(name, "") for name in columns}
             | self.case.table_columns(run.parameters)
+            | (coefficients | told[run.name])
             for run in self.runs
         ]
 
@@ -212,20 +221,21 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     rows = list(designed.rows) if confirms else chosen_rows(layers, settings, designed)
     runs_of = runs_of_rows(designed.added_last(), rows, partial(_checked_runs, sources, layers, settings, materials))
     factors = {} if confirms else _factors(sources, designed, wanted)
+    paper = sources.stack("paper")[:-1]
     study = Study(
         name=name,
         case=sources.case,
         title=f"{head['title']}: the best designs simulated" if confirms else head["title"],
         question="Do runs of each best design wear what was predicted?" if confirms else head["question"],
         fidelity=fidelity,
-        settings=settings,
+        settings=_told(sources, layers, settings, materials),
         runs=tuple(run for row in rows for run in runs_of[row.values["row"]]),
         all_runs=tuple(run for runs in runs_of.values() for run in runs),
         design_rows=tuple(row.values for row in rows),
         setting_of=designed.setting_of,
         packing_of=designed.packing_of,
         factors=factors if _can_tell(factors, designed, rows) else {},
-        paper_settings=sources.merged(sources.stack("paper")[:-1]),
+        paper_settings=_told(sources, paper, sources.merged(paper), materials),
         materials=materials,
         head=head,
         first_packings=designed.first(settings),
@@ -233,6 +243,13 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     )
     _check_own_code(study, layers)
     return study
+
+
+def _told(
+    sources: Sources, layers: tuple[Layer, ...], settings: dict[str, Any], materials: dict[str, Any]
+) -> dict[str, Any]:
+    """Return settings as pages tell them, with the wear coefficients that follow from materials."""
+    return with_coefficients(sources.case, settings, materials, sources.names_coefficient(layers))
 
 
 def _check_own_code(study: Study, layers: tuple[Layer, ...]) -> None:
@@ -363,12 +380,14 @@ def _checked_run(
     case = sources.case
     columns = row_overrides(row, load_schema(f"cases/{sources.case.name}/design"))
     own = as_settings(row, columns)
-    of_row = with_row(settings, own, case.alternatives)
+    of_row = with_row(settings, own, alternatives_of(case, own.values))
     schema, stack = case_schema(sources.case.name, "settings"), (*layers, own)
     check_given((own, *layers), of_row, schema)
     named = case.named_materials(of_row)
     check_material_names(stack, of_row, materials, named)
     check_calibrated_for(stack, of_row, materials, named)
+    of_row = with_coefficients(case, of_row, materials, sources.names_coefficient(stack))
+    check_hardness(stack, case, of_row)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
     check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks, *LAST_CHECKS))

@@ -6,12 +6,14 @@ not what YAML 1.1 makes of them. Every key keeps its line, so that a message can
 
 from __future__ import annotations
 
+import copy
 import csv
 import io
 import math
 import re
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -85,20 +87,6 @@ class Layer:
         return Layer(self.source, values or {}, lines, block)
 
 
-class _Loader(yaml.SafeLoader):
-    """Safe loader with the scalars of YAML 1.2."""
-
-
-_Loader.yaml_implicit_resolvers = {}
-for _tag, _pattern, _first in (
-    ("tag:yaml.org,2002:bool", re.compile(r"(true|True|TRUE|false|False|FALSE)\Z"), "tTfF"),
-    ("tag:yaml.org,2002:int", INTEGER, "-+0123456789"),
-    ("tag:yaml.org,2002:float", NUMBER, "-+.0123456789"),
-    ("tag:yaml.org,2002:null", re.compile(r"(~|null|Null|NULL|)\Z"), ["~", "n", "N", ""]),
-):
-    _Loader.add_implicit_resolver(_tag, _pattern, list(_first))
-
-
 def _number(make: Callable[[str], float]) -> Callable[[yaml.Loader, yaml.ScalarNode], float]:
     def construct(loader: yaml.Loader, node: yaml.ScalarNode) -> float:
         text = loader.construct_scalar(node)
@@ -110,8 +98,23 @@ def _number(make: Callable[[str], float]) -> Callable[[yaml.Loader, yaml.ScalarN
     return construct
 
 
-_Loader.add_constructor("tag:yaml.org,2002:int", _number(int))
-_Loader.add_constructor("tag:yaml.org,2002:float", _number(float))
+def _of_yaml_1_2(base: type) -> type:
+    """Return a safe loader with the scalars of YAML 1.2."""
+    loader = type(f"_{base.__name__}", (base,), {"yaml_implicit_resolvers": {}})
+    for tag, pattern, first in (
+        ("tag:yaml.org,2002:bool", re.compile(r"(true|True|TRUE|false|False|FALSE)\Z"), "tTfF"),
+        ("tag:yaml.org,2002:int", INTEGER, "-+0123456789"),
+        ("tag:yaml.org,2002:float", NUMBER, "-+.0123456789"),
+        ("tag:yaml.org,2002:null", re.compile(r"(~|null|Null|NULL|)\Z"), ["~", "n", "N", ""]),
+    ):
+        loader.add_implicit_resolver(tag, pattern, list(first))
+    loader.add_constructor("tag:yaml.org,2002:int", _number(int))
+    loader.add_constructor("tag:yaml.org,2002:float", _number(float))
+    return loader
+
+
+# PyYAML's parser in C takes a tenth of the time, where it was built; its own says better what is wrong with a text.
+_QUICK, _EXACT = (_of_yaml_1_2(base) for base in (getattr(yaml, "CSafeLoader", yaml.SafeLoader), yaml.SafeLoader))
 
 
 def display_name(path: Path, root: Path) -> str:
@@ -145,10 +148,24 @@ def read_yaml(path: Path, root: Path) -> Layer:
     Raises ConfigError if the file is missing, is no YAML, is no mapping, names a key twice, or exceeds the bounds.
     """
     source = display_name(path, root)
-    text = read_text(path, source, LARGEST_YAML)
-    loader = _Loader(text)
+    values, lines = _read(read_text(path, source, LARGEST_YAML), source)
+    return Layer(source, copy.deepcopy(values), dict(lines))
+
+
+@lru_cache(maxsize=64)  # studies share most of their files, and to parse one takes longer than all else
+def _read(text: str, source: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
+    """Return what a text of YAML says, and the line of each key."""
     try:
-        check_yaml(yaml.parse(text, _Loader))
+        return _parsed(text, source, _QUICK)
+    except (yaml.YAMLError, ConfigError):
+        return _parsed(text, source, _EXACT)
+
+
+def _parsed(text: str, source: str, kind: type) -> tuple[dict[str, Any], dict[KeyPath, int]]:
+    """Return the same as a loader of a kind reads it. Raises ConfigError."""
+    loader = kind(text)
+    try:
+        check_yaml(yaml.parse(text, kind))
         node = loader.get_single_node()
         lines: dict[KeyPath, int] = {}
         _collect_lines(node, (), lines, source)
@@ -164,7 +181,7 @@ def read_yaml(path: Path, root: Path) -> Layer:
     if not isinstance(values, dict):
         found = "a list" if isinstance(values, list) else "one value"
         raise ConfigError(f"{source}: found {found}, allowed is a mapping of keys to values.")
-    return Layer(source, values, lines)
+    return values, lines
 
 
 def _collect_lines(node: yaml.Node | None, path: KeyPath, lines: dict[KeyPath, int], source: str) -> None:
@@ -225,6 +242,21 @@ def merge(lower: dict[str, Any], upper: dict[str, Any]) -> dict[str, Any]:
         both = isinstance(value, dict) and isinstance(merged.get(key), dict)
         merged[key] = merge(merged[key] if both else {}, value) if isinstance(value, dict) else value
     return merged
+
+
+def overridden(lower: dict[str, Any], layer: Layer, alternatives: Iterable[Sequence[KeyPath]] = ()) -> dict[str, Any]:
+    """Return `lower` overridden by a layer as `merge` does, without the alternatives of what the layer gives.
+
+    alternatives: groups of paths, of which one stands for all others
+    """
+    kept = merge(lower, {})
+    for group in alternatives:
+        for *block, key in group if any(layer.holds(path) for path in group) else ():
+            inner: Any = kept
+            for name in block:
+                inner = inner.get(name, {})
+            inner.pop(key, None)
+    return merge(kept, layer.values)
 
 
 def dotted(path: KeyPath) -> str:

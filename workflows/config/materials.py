@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from functools import reduce
 from typing import Any
 
+from bulkwear.workflows.config.coefficients import check_pairs
 from bulkwear.workflows.config.layers import ConfigError, Layer, dotted
 from bulkwear.workflows.config.schema import coerce_numbers, load_schema
 from bulkwear.workflows.config.validation import check_layer, locate, show, unknown_name
@@ -29,6 +30,7 @@ def check_materials(layers: Sequence[Layer]) -> dict[str, Any]:
         _check_distributions(layer)
     kinds = dict.fromkeys(kind for layer in layers for kind in layer.values)
     together = {kind: {k: v for each in layers for k, v in each.values.get(kind, {}).items()} for kind in kinds}
+    check_pairs(layers, together)
     return coerce_numbers(together, schema)
 
 

@@ -5,12 +5,22 @@ Each file is checked by itself, so that a fault is reported where it stands.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
+from bulkwear.workflows.config.coefficients import COEFFICIENTS, WEAR, alternatives_of
 from bulkwear.workflows.config.law_settings import law_settings
-from bulkwear.workflows.config.layers import ConfigError, Layer, command_line_layer, display_name, merge, read_yaml
+from bulkwear.workflows.config.layers import (
+    ConfigError,
+    Layer,
+    command_line_layer,
+    display_name,
+    merge,
+    overridden,
+    read_yaml,
+)
 from bulkwear.workflows.config.schema import case_schema, coerce_numbers, joined, load_schema, without_required
 from bulkwear.workflows.config.validation import check_alternatives, check_layer, unknown_name
 from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
@@ -36,13 +46,18 @@ def own_studies(project: Project) -> list[str]:
 class Sources:
     """Where settings come from; `study` also holds the keys that are the study's own.
 
-    defaults: of all cases, and of this one, the package's before the project's
+    shared, of_case: defaults of all cases, and of this one, the package's before the project's
     """
 
     case: Case
-    defaults: tuple[Layer, ...]
+    shared: tuple[Layer, ...]
+    of_case: tuple[Layer, ...]
     study: Layer
     command: Layer
+
+    @property
+    def defaults(self) -> tuple[Layer, ...]:
+        return (*self.shared, *self.of_case)
 
     @property
     def head(self) -> dict[str, Any]:
@@ -77,15 +92,16 @@ class Sources:
             *(block.part(set(block.values) - {DESIGN}), self.command),
         )
 
+    def names_coefficient(self, layers: Sequence[Layer]) -> bool:
+        """Return whether the section `wear` of these layers gives a coefficient above what all cases share."""
+        above = [layer for layer in layers if layer not in self.shared]
+        return any(layer.holds((WEAR, key)) for layer in above for key in COEFFICIENTS)
+
     def merged(self, layers: tuple[Layer, ...]) -> dict[str, Any]:
         """Return the settings of the layers, the last one strongest."""
         settings: dict[str, Any] = {}
-        alternatives = self.case.alternatives
         for layer in layers:
-            if any(layer.holds(path) for path in alternatives):
-                for section, key in alternatives:
-                    settings.get(section, {}).pop(key, None)
-            settings = merge(settings, layer.values)
+            settings = overridden(settings, layer, alternatives_of(self.case, layer.values))
         settings["wear"].pop("parameters", None)
         of_law = {"wear": {"parameters": found}} if (found := law_settings(layers)) else {}
         return coerce_numbers(merge(settings, of_law), case_schema(self.case.name, "settings"))
@@ -103,7 +119,7 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
     default = _read_defaults(["config/default.yaml"], project, shared)
     files = [f"config/cases/{folder.name}.yaml" for folder in reversed(case_folders(case))]
     of_case = _read_defaults(files, project, joined(without_required(shared), own))
-    sources = Sources(case, (*default, *of_case), study, command_line_layer(overrides))
+    sources = Sources(case, default, of_case, study, command_line_layer(overrides))
     of_study = case_schema(case.name, "study")
     partial = without_required(joined(shared, own))
     check_layer(sources.study, {**of_study, "properties": of_study["properties"] | partial["properties"]})
@@ -113,8 +129,9 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
         check_layer(sources.block(fidelity), within_block)
     check_layer(sources.command, partial)
     check_alternatives(of_case[0], case.alternatives, required=True)
-    for layer in (*of_case[1:], *sources.partial_layers):
-        check_alternatives(layer, case.alternatives, required=False)
+    for layer in (*sources.defaults, *sources.partial_layers):
+        for alternatives in alternatives_of(case, layer.values):
+            check_alternatives(layer, alternatives, required=False)
     return sources
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -73,7 +73,7 @@ def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
         raise ConfigError(f"{layer.where(path)}: {said()}.")
 
 
-def check_alternatives(layer: Layer, alternatives: tuple[KeyPath, ...], required: bool) -> None:
+def check_alternatives(layer: Layer, alternatives: Sequence[KeyPath], required: bool) -> None:
     """Raise ConfigError for a layer with both of two alternatives, or with neither where one is `required`."""
     given = [path for path in alternatives if layer.holds(path)]
     both, neither = len(given) > 1, required and alternatives and not given

@@ -21,6 +21,7 @@ from bulkwear.postproc.wear.laws import kernels_of_laws
 from bulkwear.workflows.engine.derived import law_parameters, law_volume
 from bulkwear.workflows.engine.schedule import Span, first_span, next_span
 from bulkwear.workflows.engine.work import Stage, Work
+from bulkwear.workflows.engine.worn_pair import ONLY_TOLD, WornPair, pair_of_section
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -82,6 +83,7 @@ class Case:
     checks: of a run, see run_checks.py
     run_templates: names of the templates of a run's decks; bed_template: of the deck of a bed; more_templates: of
         simulations beside the runs
+    worn_pair: paths of the settings that name the wall that wears and what wears it; none where several parts do
     alternatives: two settings of which exactly one is given; the stronger layer's replaces the other
     geometry: sections of a run's parameters that its pristine surface depends on
     consumed: sections of a run's parameters that the driver reads besides decks, surface and bed, see inputs.py
@@ -111,11 +113,12 @@ class Case:
     run_templates: tuple[str, ...] = ()
     bed_template = ""
     more_templates: tuple[str, ...] = ()
+    worn_pair: tuple[tuple[str, ...], ...] = ()
     alternatives: tuple[tuple[str, str], ...] = ()
     geometry: tuple[str, ...] = ()
     consumed: tuple[str, ...] = ("wear", "remeshing", "sliding")
     length: tuple[tuple[str, str], ...] = ()
-    only_told: tuple[str, ...] = ()
+    only_told: tuple[str, ...] = ONLY_TOLD
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)
     kept: tuple[str, ...] = ()
@@ -140,6 +143,10 @@ class Case:
     def named_materials(self, settings: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
         """Return the path of each setting that names a material, and its kind."""
         return self.material_keys
+
+    def worn_pairs(self, settings: Mapping[str, Any]) -> list[WornPair]:
+        """Return what wears in a run of these settings; what they do not give yet is left out."""
+        return [pair_of_section(settings, *self.worn_pair)] if self.worn_pair else []
 
     def needed_columns(self, surface: str) -> Sequence[str]:
         """Return the columns that a design needs for such a surface, besides those that its schema requires."""

@@ -14,6 +14,7 @@ HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that 
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
 SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
+OF_WEAR = ("hardness_pa", "wear")  # keys of a wall: no bed is filled again for them
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1
 FULL, REDUCED = "full", "reduced"  # values of solver.rolling_radius
 RADIUS_BETWEEN = {FULL: 1.0, REDUCED: 0.5}  # -, over the radius of equal spheres that touch
@@ -190,5 +191,5 @@ def particle_section(name: str, materials: Mapping[str, Any], scale: float) -> d
 
 
 def wall_section(name: str, materials: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a wall's material and its contact."""
-    return {"name": name, **materials["walls"][name]}
+    """Return a wall's material and its contact, without what concerns wear alone."""
+    return {"name": name, **{key: value for key, value in materials["walls"][name].items() if key not in OF_WEAR}}

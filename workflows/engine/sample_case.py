@@ -15,6 +15,7 @@ class SampleCase(Case):
     Its tables count wear over the travel.
     """
 
+    worn_pair = (("sample", "material"), ("bed", "material"))
     rim_direction = (0.0, 0.0, -1.0)
 
     def travel_columns(self, parameters: Parameters, time_s: np.ndarray | float) -> dict[str, np.ndarray | float]:

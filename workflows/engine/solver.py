@@ -61,12 +61,14 @@ def missing_program(executable: str) -> str | None:
 
 
 def executable_of(parameters: Mapping[str, Any], wears: bool = False) -> str:
-    """Return the program that runs a deck: ours if its rolling model is ours or a ledger is summed, else the plain one.
+    """Return the program that runs a deck: ours where it has to, or is there, because it finds contacts with meshes in
+    less time; else the plain one. Both simulate the same. A run whose ledger is sampled (`dumps`) has the plain one.
 
-    parameters: with `solver`, and where the deck is one of a wear cycle (wears) with `ledger`
+    parameters: with `solver`, and where the deck is one of a run's cycles (wears) with `ledger`
     """
-    ours = parameters["solver"]["rolling_friction"] in OWN_ROLLING_MODELS
-    return LEDGER_EXECUTABLE if ours or (wears and parameters["ledger"] == "solver") else EXECUTABLE
+    needed = parameters["solver"]["rolling_friction"] in OWN_ROLLING_MODELS
+    ours = needed or (parameters["ledger"] == "solver" if wears else missing_program(LEDGER_EXECUTABLE) is None)
+    return LEDGER_EXECUTABLE if ours else EXECUTABLE
 
 
 def missing_rolling_model(executable: str, model: str) -> str | None:
@@ -140,12 +142,16 @@ def ranks_here(tasks: int, threads: int) -> int:
 def solver_environment(by_slurm: bool = False) -> dict[str, str]:
     """Return the environment of the solver; Open MPI refuses to run as root unless told twice.
 
+    A rank that no launcher starts is alone: told so, Open MPI starts no daemon beside it, which takes longer than the
+    solver's own start.
+
     by_slurm: Slurm itself starts the ranks (srun). Otherwise they must not know of it: Open MPI would look for an
     allocation that jobs of Snakemake do not hand on, or for a Slurm that speaks its protocol.
     """
     allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     kept = {key: value for key, value in os.environ.items() if by_slurm or not key.startswith(OF_SLURM)}
-    return {**kept, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
+    alone = {"OMPI_MCA_ess_singleton_isolated": "1"}
+    return {**alone, **kept, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
 
 
 def processor_seconds() -> float:

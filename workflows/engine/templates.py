@@ -8,7 +8,8 @@ words.
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Mapping, Sequence
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
@@ -109,9 +110,18 @@ def _uses(template: str, words: Mapping[str, Any]) -> Uses:
     `!=` and `in ("word", "other")`; all others count as taken.
     """
     environment = _environment(template_folders())
-    files = sorted(path for root in environment.loader.searchpath for path in Path(root).glob("**/*.in.j2"))
-    stamp = tuple(path.stat().st_mtime_ns for path in files)
+    stamp = tuple(sorted(_written(environment.loader.searchpath)))
     return _kept_uses(environment, template, _choices(words), _choices(words.get(SOLVER, {})), stamp)
+
+
+def _written(folders: Iterable[str]) -> Iterator[tuple[str, int]]:
+    """Yield (path, time in ns) of every template; asked for at each use, where pathlib would take most of the time."""
+    for folder in folders:
+        for place, _, names in os.walk(folder):
+            for name in names:
+                if name.endswith(".in.j2"):
+                    path = os.path.join(place, name)
+                    yield path, os.stat(path).st_mtime_ns
 
 
 def _choices(words: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
@@ -121,7 +131,7 @@ def _choices(words: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
 
 @lru_cache(maxsize=256)  # a study asks for the same few templates once per run; `stamp` tells edited files
 def _kept_uses(
-    environment: jinja2.Environment, template: str, chosen: tuple, of_solver: tuple, stamp: tuple[int, ...]
+    environment: jinja2.Environment, template: str, chosen: tuple, of_solver: tuple, stamp: tuple[tuple[str, int], ...]
 ) -> Uses:
     trees = _pruned_trees(environment, template, {**dict(chosen), SOLVER: dict(of_solver)})
     settings: dict[str, str] = {}

@@ -67,7 +67,8 @@ def _row(job: Work, rates: Rates) -> dict[str, float | str]:
     """Return a row of `forecast_table`."""
     meshed = job.surface_triangles
     around = {"jobs": 2 if meshed else 1, "meshed_triangles": meshed}  # the job itself, and that of its mesh
-    terms = pd.DataFrame([*(stage.terms() for stage in job.stages), around], columns=list(TERMS)).fillna(0.0)
+    amounts = [*(stage.terms() for stage in job.stages), around]
+    terms = pd.DataFrame([[float(each.get(term, 0.0)) for term in TERMS] for each in amounts], columns=list(TERMS))
     solver, outside = (float(seconds(terms, rates, of).sum()) for of in (SOLVER_TERMS, OUTSIDE_TERMS))
     return {
         "job": job.name,

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pandas as pd
 
-from bulkwear.postproc.tables.depths import depth_summary
+from bulkwear.postproc.tables.depths import area_quantile, depth_summary
 from bulkwear.postproc.tables.packings import PACKING, SETTING, first_packings
-from bulkwear.workflows.report.sentences import PERCENT, capital, listed, measured
+from bulkwear.postproc.wear.laws import NEUTRAL_LAW
+from bulkwear.workflows.report.sentences import PERCENT, capital, listed, measured, spoken
 from bulkwear.workflows.report.text import range_text
 
-HALF = 0.5  # -, of an area
+HALF, MOST_WORN = 0.5, 0.99  # -, of an area
 MOST_NAMED = 4  # samples of which a sentence tells
 UNIT = "µm"
 
@@ -67,6 +68,27 @@ def largest_step(updates: pd.DataFrame) -> str:
         return "No update reaches a cap on its step: all wear is applied at once."
     share = PERCENT * len(capped) / len(updates)
     return f"In {share:.0f} % of the updates a cap on a step is reached, and wear is carried on to the next."
+
+
+def laws_apart(laws: pd.DataFrame) -> str:
+    """Return where which law differs most from Archard's in place. laws: as from `laws_of_settings`."""
+    others = laws[(laws["law"] != NEUTRAL_LAW) & laws["overlap"].notna()]
+    if others.empty:
+        return ""
+    least = others.loc[others["overlap"].idxmin()]
+    at = " ".join(str(least[name]) for name in ("setting", "surface", "part") if least.get(name))
+    share = f"{PERCENT * least['overlap']:.0f} %"
+    return f"By {spoken(least['law'])} {share} of the wear lies where Archard's does, at {at}, the least of all."
+
+
+def steepest_map(maps: pd.DataFrame) -> str:
+    """Return by which law wear is most uneven. maps: law, relative_depth, area_mm2 of every face."""
+    tops = {
+        law: area_quantile(faces["relative_depth"].to_numpy(), faces["area_mm2"].to_numpy(), MOST_WORN)
+        for law, faces in maps.groupby("law", sort=False)
+    }
+    said = listed([f"{top:.2g} by {spoken(law)}" for law, top in tops.items()])
+    return f"The most worn hundredth of the area is worn by this many times the mean or more: {said}."
 
 
 def pattern_in_film(frames: pd.DataFrame) -> str:

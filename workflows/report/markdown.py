@@ -2,7 +2,7 @@
 
 python -m bulkwear.workflows.report.markdown results/screening [docs] [--fidelity quick]
 
-Its sections are those of the HTML page.
+Its sections are those of the HTML page; long tables are files beside it.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from bulkwear.workflows.config.design import Study, load_study
 from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.engine.state import STATE
+from bulkwear.workflows.report.beside_page import short_sections
 from bulkwear.workflows.report.page import cost_totals, finding_of, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
 from bulkwear.workflows.report.products import figures_of
@@ -147,17 +148,16 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
     kept = [found for section in with_verdict(told, folder) if (found := shown(section, figures))]
     pictures = pictures_of(kept, folder)
     name, captions = f"{study.name}_{study.fidelity}", captions_of(study, folder, pictures)
+    path, listed = docs / f"{study.name}_results_{study.fidelity}.md", (docs / FILE).is_file()
     parts = [HEAD.format(title=study.title, fidelity=study.fidelity, folder=study.name), provenance(folder, study)]
-    for section in kept:
+    costs = [Section("Durations", durations(folder, told))] if study.case.wears else []
+    for section in short_sections([*kept, *costs], docs, name, path.name if listed else ""):
         parts.append(f"## {section.title}\n\n" + "\n".join(written(block, name, captions) for block in section.blocks))
-    if study.case.wears:
-        parts.append(f"## Durations\n\n{durations(folder, told)}")
-    path = docs / f"{study.name}_results_{study.fidelity}.md"
     older = warnings_of(versions_in_folder(folder, study), simulating_code(study.case), package_cases(study.case))
     path.write_text(with_banner("\n".join(parts), older), encoding="utf-8")
     for picture in pictures:
         save_small(picture, docs / picture_file(name, picture.stem))
-    if (docs / FILE).is_file():
+    if listed:
         keep_origin(docs, origin_of(path.name, folder, study))
         write_published_numbers(docs, path.name, kept)
     return path
@@ -229,8 +229,8 @@ def origin_of(page: str, folder: Path, study: Study) -> Origin:
     )
 
 
-def durations(folder: Path, page: Mapping[str, Any]) -> str:
-    """Return what the solver's jobs took beside their forecast, and the totals of the study."""
+def durations(folder: Path, page: Mapping[str, Any]) -> list[Block]:
+    """Return the totals of a study, and what the solver's jobs took beside their forecast."""
     jobs = jobs_of(page, folder)
     totals = cost_totals(jobs)
     solving = jobs[jobs["solver_s"] > 0.0]
@@ -246,7 +246,7 @@ def durations(folder: Path, page: Mapping[str, Any]) -> str:
         f"{totals['outside_percent']:.1f} % of it outside the solver; the solver's processor time is "
         f"{totals['measured_over_forecast']:.2f} of its forecast. What else the machine did lengthens wall times."
     )
-    return f"{prose(told)}\n\n{markdown(table)}"
+    return [Text(told), Table(table, "durations")]
 
 
 def main() -> None:

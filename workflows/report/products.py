@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from bulkwear.postproc.plots.chart import Chart
     from bulkwear.workflows.config.design import Study
 
-SHARED = ("bulkwear.workflows.report.beds", "bulkwear.workflows.report.surfaces")  # any case may show what is there
+# any case may show what is there
+SHARED = tuple(f"bulkwear.workflows.report.{name}" for name in ("beds", "surfaces", "laws"))
 VECTORS = ("svg", "pdf")
 OfStudy = Callable[["Study"], Any]
 Source = str | OfStudy  # a path, in which {study} stands for its name, or what gives one path or several

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed, part_names
-from bulkwear.workflows.report.products import Job, every_run, figure, tables
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.report.products import Job, every_run, figure
 
 DESIGN, SUMMARY = "results/{study}/design.csv", "results/{study}/summary.csv"
 SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
@@ -176,22 +171,3 @@ def worn_film(job: Job) -> Any:
         (save_film if Path(path).suffix == ".gif" else save_still)(pictures, path)
 
     return write, table.assign(run=run)
-
-
-def laws_of_runs(study: Study) -> dict[str, tuple[str, dict[str, float]]]:
-    """Return {run: (wear law, its parameters)} of a study whose runs have one law each."""
-    return {run.name: study.case.laws(run.parameters)[0] for run in study.runs}
-
-
-@tables(
-    inputs={"design": DESIGN, "wear": WEAR},
-    told={"laws": laws_of_runs},
-    tables={"volume_by_law": "volume_by_law.csv"},
-    digits=6,
-)
-def volume_by_law(job: Job) -> dict[str, pd.DataFrame]:
-    """Tell each run's worn volume by all laws that its ledgers suffice for, with the coefficient of the study's own."""
-    from bulkwear.postproc.tables.law_volumes import law_volumes
-
-    folders = [Path(path).parent for path in job.files.wear]
-    return {"volume_by_law": law_volumes(job.files.design, folders, job.told.laws)}

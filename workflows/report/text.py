@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -51,6 +51,7 @@ NAMED_ELSEWHERE = f" Where figures and columns name {NEUTRAL_LAW.capitalize()}'s
 SPOKEN = {"_fraction", "_steps"}  # suffixes that belong to the name as well
 EXTRA_UNITS = {
     "particle_scale": NO_UNIT,
+    "wear_coefficient_k": NO_UNIT,
     "acceleration": NO_UNIT,
     "cycles": NO_UNIT,
     "ranks": NO_UNIT,
@@ -166,7 +167,8 @@ def _wear_simplifications(study: Mapping[str, Any], summary: pd.DataFrame, furth
     """Return what concerns wear: law, acceleration, rigid sample or caps and what they hold back."""
     wear = study["settings"]["wear"]
     coefficients = [run["wear"]["wear_coefficient_per_pa"] for run in study["parameters"].values()]
-    law = ("Wear law", law_words(wear, range_text(coefficients, 3)))
+    scaled = [run["wear"] for run in study["parameters"].values() if "wall_hardness_pa" in run["wear"]]
+    law = ("Wear law", f"{law_words(wear, range_text(coefficients, 3))}{hardness_words(scaled)}")
     factor = wear["acceleration"]
     accelerated = (
         f"The coefficient is multiplied by {factor:g}: one second of simulation stands for {factor:g} s of test. "
@@ -208,6 +210,17 @@ def law_words(wear: Mapping[str, Any], coefficient: str) -> str:
     words = LAWS[wear["law"]].words.format(wear_coefficient_per_pa=coefficient, **given)
     named = "" if wear["law"] == NEUTRAL_LAW else NAMED_ELSEWHERE
     return f"{wear['law'].replace('_', ' ').capitalize()}: {words}{named}"
+
+
+def hardness_words(scaled: Sequence[Mapping[str, float]]) -> str:
+    """Return what a coefficient is over the hardness of the wall, nothing where no hardness is known.
+
+    scaled: sections `wear` of the runs whose hardness is known
+    """
+    if not scaled:
+        return ""
+    k, hardness = (range_text([wear[key] for wear in scaled], 3) for key in ("wear_coefficient_k", "wall_hardness_pa"))
+    return f" That is k over the Vickers hardness of the wall: k {k}, hardness {hardness} Pa."
 
 
 def range_text(values: list[float], digits: int = 2) -> str:

@@ -1,9 +1,13 @@
 """Every format gives the same surface; units, names and parts are the file's; what cannot be read is one sentence."""
 
+import re
+
+import meshio
 import numpy as np
 import pytest
 
 from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.own import cad
 from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.meshes.own.read import part_areas
 from tests.support.own_solids import (
@@ -253,6 +257,39 @@ def test_a_truncated_file_is_one_sentence(folder, tmp_path, name):
     with pytest.raises(ValueError, match=name.replace(".", r"\.")) as said:
         own_mesh(tmp_path / name, "mm", EDGE)
     assert "Traceback" not in str(said.value)
+
+
+def test_a_cad_file_that_crashes_its_reader_is_one_sentence(folder, tmp_path):
+    """OpenCASCADE runs beyond the end of a BREP that announces more shapes than it has."""
+    text = (folder / "bodies.brep").read_text()
+    (tmp_path / "a.brep").write_text(re.sub(r"TShapes \d+", "TShapes 999", text))
+    with pytest.raises(ValueError, match=r"a\.brep: not a readable \.brep file \(OpenCASCADE ended with signal 11\)$"):
+        part_areas(tmp_path / "a.brep", "mm")
+
+
+def test_a_reader_that_comes_to_no_end_is_ended(folder, monkeypatch):
+    """By the system, when its processor time is used up: as where a BREP is cut short."""
+    monkeypatch.setattr(cad, "PROGRAM", "tests.support.endless")
+    with pytest.raises(ValueError, match=r"bodies\.step: not a readable .* came to no end within its processor time"):
+        part_areas(folder / "bodies.step", "mm")
+
+
+def test_a_step_file_that_is_not_whole_is_refused(folder, tmp_path):
+    """OpenCASCADE skips what it cannot read, and says so on the terminal alone."""
+    text = (folder / "bodies.step").read_text()
+    (tmp_path / "a.step").write_text(text.replace("ENDSEC;\nEND-ISO", "(", 1))
+    with pytest.raises(ValueError, match=r"a\.step: not a whole \.step file \("):
+        part_areas(tmp_path / "a.step", "mm")
+
+
+@pytest.mark.parametrize(("node", "name"), [(-1, "a.vtk"), (16, "a.vtu"), (16, "a.ply")])
+def test_a_face_of_a_node_that_is_not_there_is_refused(tmp_path, node, name):
+    """Before the first and after the last one."""
+    points, triangles, _ = all_facets()
+    triangles[5, 1] = node
+    meshio.write(tmp_path / name, meshio.Mesh(points, [("triangle", triangles)]))
+    with pytest.raises(ValueError, match=rf"{name}: a face names node {node}, allowed are 0 to 15$"):
+        own_mesh(tmp_path / name, "mm")
 
 
 @pytest.mark.parametrize("name", FORMATS)

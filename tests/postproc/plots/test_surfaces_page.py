@@ -11,6 +11,7 @@ import pytest
 from bulkwear.postproc.plots.page import surfaces_page
 from bulkwear.postproc.tables.compared_surfaces import Shown
 from tests.support.accessibility import NEEDS_BROWSER, axe_findings
+from tests.support.patience import LONGEST_S
 from tests.support.shapes import worn_plate
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -73,7 +74,7 @@ def test_views_differences_and_sections_say_what_they_show(page, tmp_path):
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-3d-apis", "--dump-dom"]
     folder = f"--user-data-dir={tmp_path / 'browser'}"
     command = [BROWSER, *options, folder, "--virtual-time-budget=20000", path.as_uri()]
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True).stdout
+    shown = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_S, check=True).stdout
     found = json.loads(html.unescape(re.search(r"FOUND(.*)END", shown).group(1)))
     assert found["legends"] == ["Wear depth, carried included (µm)05"]
     assert found["differences"][1:] == ["Difference from the first view (µm)3 less3 more"]

@@ -15,6 +15,7 @@ from bulkwear.postproc.readers.contacts import (
 from bulkwear.postproc.readers.dump_text import read_frames
 from bulkwear.postproc.wear.ledger import LedgerBuilder
 from tests import DATA
+from tests.support.patience import LONGEST_S
 
 LAST_DIGIT = 2.3e-16  # one unit in the last place between this parser and Python's float
 SIX_DIGITS = 1e-5  # of a number: what the dump's format %g keeps, after a difference of two of them
@@ -330,7 +331,7 @@ def run_deck(folder, *options, ranks=1):
         (folder / name).write_bytes((DATA / name).read_bytes())
     command = ["stdbuf", "-oL", "liggghts", "-in", "sphere_on_plate.in", *options]
     with open(folder / "screen.txt", "w") as screen:
-        subprocess.run(command, cwd=folder, stdout=screen, stderr=subprocess.STDOUT, check=True, timeout=120)
+        subprocess.run(command, cwd=folder, stdout=screen, stderr=subprocess.STDOUT, check=True, timeout=LONGEST_S)
     return folder / "contacts.dump", folder / "spins.dump"
 
 

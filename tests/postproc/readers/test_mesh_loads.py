@@ -9,6 +9,7 @@ import pytest
 from bulkwear.postproc.readers.contacts import read_contacts
 from bulkwear.postproc.readers.mesh_loads import MeshLoadsError, read_mesh_loads
 from tests import DATA
+from tests.support.patience import LONGEST_S
 
 SIX_DIGITS = 1e-5  # of a number in a dump
 TRIANGLES, AREA = 24, 0.005 * 0.005 / 2  # m2, plate.stl
@@ -105,7 +106,7 @@ def run_bed(folder, ranks):
     root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"} if os.getuid() == 0 else {}
     with open(folder / "screen.txt", "w") as screen:
         command = [*mpirun, "liggghts", "-in", "bed_on_plate.in"]
-        subprocess.run(command, cwd=folder, env={**os.environ, **root}, stdout=screen, check=True, timeout=120)
+        subprocess.run(command, cwd=folder, env={**os.environ, **root}, stdout=screen, check=True, timeout=LONGEST_S)
     return list(read_contacts(folder / "contacts.dump", folder / "spins.dump")), folder / "loads_6000.vtk"
 
 

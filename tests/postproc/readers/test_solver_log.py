@@ -17,11 +17,13 @@ from bulkwear.postproc.readers.solver_log import (
     warnings,
 )
 from tests import DATA
+from tests.support.patience import LONGEST_S
 
 LOG, SCREEN = DATA / "bed_log.txt", DATA / "bed_screen.txt"
 MESSAGES = dict(
     re.findall(r"^=== (\w+)\n(.*?)(?=^===|\Z)", (DATA / "solver_failures.txt").read_text(), re.MULTILINE | re.DOTALL)
 )
+
 CAUSES = {
     "ledger_refused": "this deck runs with solver/build/liggghts-ledger",
     "unknown_command": "a command that this LIGGGHTS does not know",
@@ -180,7 +182,7 @@ def run_mesh(folder, facets):
     (folder / "deck.in").write_text(DECK)
     with open(folder / "screen.txt", "w") as screen:
         command = ["stdbuf", "-oL", "liggghts", "-in", "deck.in"]
-        done = subprocess.run(command, cwd=folder, stdout=screen, stderr=subprocess.STDOUT, timeout=60)
+        done = subprocess.run(command, cwd=folder, stdout=screen, stderr=subprocess.STDOUT, timeout=LONGEST_S)
     return done.returncode, folder / "screen.txt"
 
 

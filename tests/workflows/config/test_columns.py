@@ -108,6 +108,6 @@ def test_what_a_row_overrides():
     assert own.values == {"bulk": {"seed": 7}, "parts": {"a": {"edge_mm": 2.0}}}
     assert own.where(("parts", "a")) == "t.csv, line 3, row A"
     settings = {"bulk": {"seed": 1, "x": 2}, "parts": {"a": {"edge_mm": 1.0}, "b": {}}, "o": {"h": 1}}
-    found = with_row(settings, own, (("o", "h"), ("o", "mt")))
+    found = with_row(settings, own, [(("o", "h"), ("o", "mt"))])
     assert found == {"bulk": {"seed": 7, "x": 2}, "parts": {"a": {"edge_mm": 2.0}, "b": {}}, "o": {"h": 1}}
     assert settings["bulk"]["seed"] == 1

@@ -11,13 +11,14 @@ from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.cases.sliding_sample.decks import LEDGERS
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError, command_line_layer, dotted, merge, read_yaml
-from bulkwear.workflows.config.patterns import SURFACES
+from bulkwear.workflows.config.patterns import SURFACES, with_patterns
 from bulkwear.workflows.config.readme import readme
-from bulkwear.workflows.config.schema import SCHEMA_FOLDER, leaves, load_schema
+from bulkwear.workflows.config.schema import OF_PACKAGE, SCHEMA_FOLDER, Validator, leaves, load_schema
 from bulkwear.workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
 from bulkwear.workflows.engine.cases import case_names, find_case
 from bulkwear.workflows.engine.ledgers import PRODUCERS
 from bulkwear.workflows.report.page_parameters import page_of
+from tests import REPOSITORY
 
 SETTINGS = "default.yaml"
 OWN_SETTINGS = "cases/sliding_sample.yaml"
@@ -616,6 +617,14 @@ def test_merge_is_deep_and_changes_nothing():
     merged["a"]["b"] = merged["d"]["g"] = merged["e"]["f"] = 9
     assert merged == {"a": {"b": 9, "c": 4}, "d": {"g": 9}, "e": {"f": 9}}
     assert (lower, upper) == ({"a": {"b": 1, "c": 2}, "d": {"g": 3}}, {"a": {"c": 4}, "e": {"f": 5}})
+
+
+def test_schemas_of_the_package_are_json_schemas():
+    """Nobody looks at them again when they are read."""
+    files = sorted(OF_PACKAGE.rglob("*.schema.yaml"))
+    assert SCHEMA_FOLDER / "settings.schema.yaml" in files and any("cases" in path.parts for path in files)
+    for path in files:
+        Validator.check_schema(with_patterns(read_yaml(path, REPOSITORY).values))
 
 
 @pytest.mark.parametrize("name", SCHEMAS)

@@ -35,6 +35,7 @@ from bulkwear.workflows.engine.provenance import PROVENANCE, PROVENANCE_FILE, si
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import SolverError
 from tests import REPOSITORY
+from tests.support.patience import LONGEST_S
 from tests.support.stl import stl_facets
 from tests.support.tiny import tiny_chain, tiny_study
 
@@ -57,7 +58,6 @@ FINNIE_TOLERANCE = 1e-6  # of the largest triangle; the solver's file has six di
 PIECES_TOLERANCES = {"sliding_work_J": 1e-2, "normal_impulse_N_s": 1e-2, "contact_time_s": 1e-2, "finnie_wear": 0.2}
 LOOKS = {"wear_interval_mm": 2, "picture_interval_mm": 1}
 FASTEST, SLOWEST = 1e-8, 1e-3  # s of a processor per particle step; seen 1e-6, of few particles more
-KILL_TIMEOUT = 120.0  # s, for a chain that takes seconds
 DRIVER = """
 import pickle, sys
 from bulkwear.workflows.engine.cycles import run_chain
@@ -373,7 +373,7 @@ def start_driver(chain, folder: Path) -> subprocess.Popen:
 
 def kill_when(process: subprocess.Popen, moment) -> None:
     """SIGKILL the driver at a moment, and wait until its solver is gone too."""
-    deadline = time.monotonic() + KILL_TIMEOUT
+    deadline = time.monotonic() + LONGEST_S
     while not moment():
         assert process.poll() is None, "the driver ended before the moment to kill it"
         assert time.monotonic() < deadline, "the moment to kill the driver never came"
@@ -395,7 +395,7 @@ def solver_processes(folder: Path) -> list[int]:
 
 
 def wait_until_no_solver(folder: Path) -> None:
-    deadline = time.monotonic() + KILL_TIMEOUT
+    deadline = time.monotonic() + LONGEST_S
     while solver_processes(folder):
         assert time.monotonic() < deadline, "a solver outlived its driver"
         time.sleep(0.05)

@@ -230,7 +230,7 @@ def test_a_missing_program_is_one_sentence(tmp_path, monkeypatch):
 
 
 def test_a_run_without_its_program_fails_before_its_first_cycle(tmp_path, monkeypatch):
-    """The run-in needs the plain solver only, but nothing of it is simulated where the wear cycles cannot be."""
+    """Nothing is simulated where the wear cycles cannot be."""
     monkeypatch.setattr("bulkwear.workflows.engine.solver.LEDGER_EXECUTABLE", str(tmp_path / "liggghts-ledger"))
     chain = replace(chain_of(tmp_path, "solver"), folder=tmp_path / "run")
     for path in (chain.surface, chain.bed_restart):

@@ -266,12 +266,16 @@ def test_multispheres_are_refused(model, tmp_path):
         simulated(tmp_path, text)
 
 
-def test_which_program_has_them():
-    """Decks with these models run on our program, others where no ledger is summed on the plain one."""
+def test_which_program_has_them(monkeypatch):
+    """Decks with these models, and of runs whose ledger is summed, run on our program alone. So do others where it is
+    there, but for those of sampled contacts."""
     assert executable_of({"solver": {"rolling_friction": "own_spin"}}) == LEDGER_EXECUTABLE
-    assert executable_of({"solver": {"rolling_friction": "cdt"}, "ledger": "solver"}) == "liggghts"
+    assert executable_of({"solver": {"rolling_friction": "cdt"}}) == LEDGER_EXECUTABLE
     assert executable_of({"solver": {"rolling_friction": "cdt"}, "ledger": "solver"}, wears=True) == LEDGER_EXECUTABLE
     assert executable_of({"solver": {"rolling_friction": "cdt"}, "ledger": "dumps"}, wears=True) == "liggghts"
     assert all(missing_rolling_model(LEDGER_EXECUTABLE, model) is None for model in OWN_ROLLING_MODELS)
     assert missing_rolling_model("liggghts", "cdt") is None
     assert missing_rolling_model(sys.executable, "rvd").startswith(f"{sys.executable}: it has no rolling friction rvd,")
+    monkeypatch.setattr("bulkwear.workflows.engine.solver.LEDGER_EXECUTABLE", "/nowhere/liggghts-ledger")
+    assert executable_of({"solver": {"rolling_friction": "cdt"}}) == "liggghts"
+    assert executable_of({"solver": {"rolling_friction": "own_spin"}}) == "/nowhere/liggghts-ledger"

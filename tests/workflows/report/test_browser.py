@@ -13,6 +13,7 @@ from bulkwear.postproc.plots.page import surfaces_page
 from bulkwear.postproc.tables.compared_surfaces import MOST_NODES, Shown
 from bulkwear.workflows.config.design import load_study
 from tests.support.finished_samples import finished_page, page_of_results, write_results
+from tests.support.patience import LONGEST_S
 from tests.support.shapes import plate
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -40,7 +41,7 @@ def test_runs_sort_and_the_page_fits_a_phone(config, tmp_path):
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--window-size={NARROW},900", "--dump-dom"]
     folder = f"--user-data-dir={tmp_path / 'browser'}"
     command = [BROWSER, *options, folder, "--virtual-time-budget=3000", path.as_uri()]
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
+    shown = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_S, check=True).stdout
     _, first, rising, second, falling, width = html.unescape(re.search(r"FOUND\|[^<]*", shown).group()).split("|")
     volumes = [float(word) for word in rising.split()]
     assert (first, second) == ("ascending", "descending")

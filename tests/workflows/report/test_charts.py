@@ -15,6 +15,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.charts import tables_of_charts
 from bulkwear.workflows.report.products import Product
 from tests.support.finished_samples import page_of_results, write_results
+from tests.support.patience import LONGEST_S
 from tests.support.shapes import worn_plate
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -73,7 +74,7 @@ def test_a_chart_takes_the_place_of_its_picture_and_gives_it_back(config, tmp_pa
         "--virtual-time-budget=30000",
         path.as_uri(),
     ]
-    page = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True).stdout
+    page = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_S, check=True).stdout
     told = json.loads(html.unescape(re.search(r"FOUND(.*?)END", page).group(1)))
     assert told["faults"] == [] and told["requests"] == []
     assert told["before"] is True and told["reachable"] == 0

@@ -14,7 +14,7 @@ def test_durations_stand_beside_their_forecast(tmp_path):
     """Wall time is that of all starts, measured over forecast that of the processor."""
     study = load_study("screening", overrides={"rows": ["R5", "R9"], "packings": 1})
     leave_runs(study, tmp_path)
-    said = durations(tmp_path, page_parameters(study))
+    said = "\n".join(written(block, "screening_quick") for block in durations(tmp_path, page_parameters(study)))
     assert "| worn run R5 convex | 1 000 | 6 000 | 2.5 | 1 | 0.833 | 1.2 |" in said.replace("\u202f", " ")
     assert "took 10 minutes of wall time, 20.0 % of it outside the solver" in said
 

@@ -11,6 +11,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.printed import PrintError, browser, print_page
 from tests.support.accessibility import NEEDS_BROWSER, SCHEMES
 from tests.support.finished_samples import finished_page
+from tests.support.patience import LONGEST_S
 
 A4 = (595.3, 841.9)  # pt
 PIXEL = 0.75  # pt, to which the browser rounds a page
@@ -64,7 +65,7 @@ def test_paper_shows_what_it_can(page, tmp_path):
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--window-size={PAPER},900", "--dump-dom"]
     options += [f"--blink-settings=preferredColorScheme={SCHEMES['dark']}", f"--user-data-dir={tmp_path / 'b'}"]
     command = [browser(), *options, "--virtual-time-budget=3000", probed.as_uri()]
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
+    shown = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_S, check=True).stdout
     found = json.loads(html.unescape(re.search(r"FOUND(.*)END", shown).group(1)))
     assert found == {
         **dict.fromkeys(("frames", "diagnostics", "wide"), 0),

@@ -25,6 +25,7 @@ from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import Stage
+from bulkwear.workflows.engine.worn_pair import LAW_FIGURES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,7 +53,7 @@ class CircularTester(SampleCase):
     bed_template = "tester_bed"
     seed_setting = "bed.seed"
     figure_modules = ("figures", "place_figures", "flow_figures", "sensitivity_figures")
-    shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "volume_by_law")
+    shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", *LAW_FIGURES)
     geometry = ("sample", "pattern")
     consumed = ("wear", "remeshing", "sliding", "tester")
     length = (("sliding", "revolutions"), ("sliding", "cycles"), ("derived", "travel_steps"))

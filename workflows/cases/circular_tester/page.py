@@ -104,7 +104,8 @@ def remarks(study: Study) -> list[str]:
     size, whole = (settings["sample"]["element_size_mm"] for settings in (study.settings, study.paper_settings))
     if size != whole:
         said.append(f"elements of {size:g} mm instead of {whole:g} mm")
-    coefficient = study.settings["wear"]["wear_coefficient_per_pa"] * study.settings["wear"]["acceleration"]
+    wear = runs[0].parameters["wear"] | study.settings["wear"]
+    coefficient = wear["wear_coefficient_per_pa"] * wear["acceleration"]
     said.append(f"wear coefficient {coefficient:g} 1/Pa, far above the material's: a revolution stands for many hours")
     return said
 

@@ -19,6 +19,7 @@ from bulkwear.workflows.engine.case import Case, CycleError, Parameters, Piece, 
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import Stage
+from bulkwear.workflows.engine.worn_pair import LAW_FIGURES, WornPair
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 SECONDS_PER_HOUR = 3600.0
 BY_MASS = "change_out_worn_mass_fraction"  # key of the operation
-OF_WEAR = (*PART_DEFAULTS, "law_parameters")  # keys of a part
+OF_WEAR = (*PART_DEFAULTS, "law_parameters", *Case.only_told)  # keys of a part
 OF_DURATION = ("time_step_s", "run_in_steps", "travel_steps")  # in which parts move, and particles fly
 
 
@@ -45,7 +46,7 @@ class Equipment(Case):
     figure_modules = ("figures", "map_figures", "flow_figures", "lifter_figures")
     geometry = ("parts", "particle", "inlet", "filling", "outlets", "periodic", "domain")
     consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates")
-    only_told = ("wear_coefficient_error", "change_out_remaining_m", "change_out_by_mass")
+    only_told = (*Case.only_told, "wear_coefficient_error", "change_out_remaining_m", "change_out_by_mass")
     first_title = "start-up"
     leftovers = ()
     kept = ("patches.csv", "parts.csv", "flow.csv")
@@ -53,12 +54,21 @@ class Equipment(Case):
     counts_on = True
     forces_table = "parts.csv"
     by_part = True
-    shared_figures = ("worn_surface_3d",)
+    shared_figures = ("worn_surface_3d", *LAW_FIGURES)
 
     def named_materials(self, settings: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
         """Return the path of each setting that names a material, and its kind."""
         parts = settings.get("parts", {})
         return (*self.material_keys, *(("parts", name, "material", "walls") for name in parts))
+
+    def worn_pairs(self, settings: Mapping[str, Any]) -> list[WornPair]:
+        """Return the parts that wear, each with its wall and the bulk material."""
+        law, bulk = settings["wear"]["law"], settings["bulk"].get("material")
+        return [
+            WornPair(("parts", name), part["material"], bulk, part.get("law", law))
+            for name, part in settings.get("parts", {}).items()
+            if part.get("role") == "wears" and "material" in part
+        ]
 
     def run_parameters(
         self, settings: Mapping[str, Any], materials: Mapping[str, Any], factors: Mapping[str, Any], surface: str

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from bulkwear.postproc.wear.coefficient import DIMENSIONLESS, PER_PA
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.cases.equipment.motion_checks import MOTION_CHECKS
 from bulkwear.workflows.cases.equipment.parameters import REPORTS, SECONDS_PER_HOUR, most_blocks, start_up_blocks
@@ -26,7 +27,7 @@ MOST_FOR_PICTURES = 1.25  # -, time steps of a block, over those that it has wit
 LONGEST_OPERATION = 500_000.0  # h, as of operation.duration_h
 MOST_STEPS = 50_000_000  # of a run: with ten thousand particles they take a core about a week
 MOST_PARTICLES = 20_000_000  # in a machine: some 20 GB of memory
-HOW_IT_WEARS = ("wear_coefficient_per_pa", "wear_coefficient_error", "law")  # keys of a part
+HOW_IT_WEARS = (PER_PA, DIMENSIONLESS, "wear_coefficient_error", "law")  # keys of a part
 RULES = ("remaining_m", "remaining_fraction", "worn_mass_fraction")  # of a change-out
 
 

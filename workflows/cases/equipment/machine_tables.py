@@ -12,6 +12,7 @@ from typing import Any
 import pandas as pd
 
 from bulkwear.postproc.tables.display import DEGREES, MILLIMETRES
+from bulkwear.workflows.engine.worn_pair import ONLY_TOLD
 from bulkwear.workflows.report.text import number
 
 SECONDS_PER_HOUR, TONNES_PER_KG, KG_PER_MT = 3600.0, 1e-3, 1e9
@@ -30,6 +31,7 @@ def parts_table(runs: Mapping[str, Parameters]) -> pd.DataFrame:
     found = [{**row, "setting": ", ".join(row["setting"])} for row in rows.values()]
     table = pd.DataFrame(found)
     alike = len(runs) == 1 or set(table["setting"]) == {", ".join(runs)}
+    table = table.drop(columns=[key for key in ONLY_TOLD if table[key].isna().all()])
     return table.drop(columns="setting") if alike else table
 
 
@@ -44,6 +46,7 @@ def _part_row(part: Mapping[str, Any]) -> dict[str, Any]:
         "edge_mm": part["edge_m"] * MILLIMETRES,
         "law": part["law"] if wears else "",
         "wear_coefficient_per_pa": part["wear_coefficient_per_pa"] if wears else math.nan,
+        **{key: part.get(key, math.nan) for key in ONLY_TOLD},
         "coefficient_error_percent": 100.0 * part["wear_coefficient_error"] if wears else math.nan,
         "motion": motion_words(part["motion"]),
     }

@@ -33,7 +33,7 @@ WEIGHTIEST = "Wear coefficient"  # every life is in proportion to it
 # Figures of the sections, by name; a study has those that its modules of figures declare
 LIFE_FIGURES = ("life_bars", "recession_against_time")
 FLOW_FIGURES = ("flow_over_time", "flow_pictures", "velocity_fields", "charge_shape")
-WEAR_FIGURES = ("wear_map", "remaining_thickness", "worn_surface_3d")
+WEAR_FIGURES = ("wear_map", "remaining_thickness", "worn_surface_3d", "wear_by_law", "maps_by_law")
 LOAD_FIGURES = ("impact_and_sliding",)
 WORN_FIGURES = ("profile_sections",)
 LIFTER_FIGURES = ("lifter_profiles",)

@@ -8,17 +8,18 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bulkwear.meshes.own.mesh import OwnMesh, own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.wear.bodies import body, together
-from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of, turn_s
 from bulkwear.workflows.config.layers import ConfigError
+
+if TYPE_CHECKING:
+    from bulkwear.meshes.own.mesh import OwnMesh
 
 POSES = 64  # of a moving part in a run, and in a turn, of which the room that it needs is made
 ALIKE = 1e-6  # relative, areas of a part's two ends
@@ -39,14 +40,14 @@ def machine_surface(parts: Sequence[Part]) -> SurfaceMesh:
 
     A file with several parts of the same unit and edge is meshed once.
     """
+    from bulkwear.meshes.own.mesh import own_mesh  # slow to import, and few jobs make meshes
+
     meshed = cache(own_mesh)
     with tempfile.TemporaryDirectory() as folder:
         return together([part_surface(number, part, Path(folder), meshed) for number, part in enumerate(parts)])
 
 
-def part_surface(
-    number: int, part: Part, folder: Path, meshed: Callable[[Path, str, float], OwnMesh] = own_mesh
-) -> SurfaceMesh:
+def part_surface(number: int, part: Part, folder: Path, meshed: Callable[[Path, str, float], OwnMesh]) -> SurfaceMesh:
     """Return a part as the solver takes it; drawings that a script makes go into the folder. Raises ConfigError.
 
     meshed: `own_mesh`, or what remembers its meshes
@@ -78,6 +79,8 @@ def open_ends(surface: SurfaceMesh, run: Mapping[str, Any]) -> SurfaceMesh:
     """
     if not run["periodic"]:
         return surface
+    from bulkwear.postproc.wear.directions import ON_END  # slow to import, and few machines are slices
+
     along = surface.points[surface.triangles][:, :, "xyz".index(run["periodic"]["axis"])]
     at_ends = [np.abs(along - run["periodic"][end]).max(axis=1) < ON_END for end in ("low_m", "high_m")]
     size, kept = areas(surface.points, surface.triangles), np.ones(len(along), dtype=bool)

@@ -20,6 +20,7 @@ from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import Stage
+from bulkwear.workflows.engine.worn_pair import LAW_FIGURES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,9 +44,11 @@ class PinOnDisc(SampleCase):
 
     name = "pin_on_disc"
     material_keys = (("pin", "material", "pins"), ("disc", "material", "walls"))
+    worn_pair = (("disc", "material"), ("pin", "material"))
     checks = PIN_CHECKS
     run_templates = ("pin_set_down", "pin_on_disc")
     figure_modules = ("volume_figures", "groove_figures")
+    shared_figures = LAW_FIGURES
     consumed = ("wear", "remeshing", "sliding", "pin", "disc")
     run_rules = ("surface_mesh", "worn_run", "track_tables")
     geometry = ("disc",)

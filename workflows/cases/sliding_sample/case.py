@@ -46,6 +46,7 @@ from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.solver import LOG
 from bulkwear.workflows.engine.templates import render, used_sections
 from bulkwear.workflows.engine.work import Stage, Work
+from bulkwear.workflows.engine.worn_pair import LAW_FIGURES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,7 +73,7 @@ class SlidingSample(SampleCase):
         *("particle_size.figures", "particle_size.packing_figures"),
         *("screening.figures", "screening.regression_figures", "figures"),
     )
-    shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "worn_film", "volume_by_law")
+    shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "worn_film", *LAW_FIGURES)
     solver_rules = (*SampleCase.solver_rules, "packing_profiles")
     alternatives = (("sliding", "travel_mm"), ("sliding", "test_duration_h"))
     geometry = ("sample", "pattern")

@@ -98,8 +98,8 @@ def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float) -> l
             f" hundredth of its area at least {number(hundredth, DIGITS)} mm."
         )
     time, hours = float(shown["time_s"].mean()), float(shown["hours"].mean())
-    alike = f", which stand for {duration_text(SECONDS_PER_HOUR * hours)} of wear" if acceleration != 1.0 else ""
-    return [*said, f"Its runs slide for {time:.3g} s{alike}."]
+    stands = f", which stand for {duration_text(SECONDS_PER_HOUR * hours)} of wear" if acceleration != 1.0 else ""
+    return [*said, f"Its runs slide for {time:.3g} s{stands}."]
 
 
 def note(settings: Mapping[str, Any], packings: pd.Series) -> str:

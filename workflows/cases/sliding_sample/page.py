@@ -46,7 +46,7 @@ FIGURES_OF_ALL = {  # of every study, by section
         "wear_updates",
     ),
     "Bed and forces": ("bed", "flow_views", "forces"),
-    "Wear laws": ("wear_law_comparison",),
+    "Wear laws": ("wear_law_comparison", "wear_by_law", "maps_by_law"),
 }
 REDUCED = (
     ("bed", "width_mm", "bed width"),
@@ -72,7 +72,11 @@ def told(study: Study) -> dict[str, Any]:
 
 def answers(folder: Path) -> list[str]:
     """Return in sentences what the patterns of a study do to the wear."""
-    return key_numbers.answers(read_summary(folder / "summary.csv"))
+    from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size
+
+    said = key_numbers.answers(read_summary(folder / "summary.csv"))
+    by_scale = particle_size.answers(folder)
+    return [*by_scale, *said[-1:]] if by_scale else said
 
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:

@@ -348,11 +348,11 @@ def write_tables(folder, runs):
 # ---------------------------------------------------------------- what a figure must be
 
 
-def faults_of(figure, path):
+def faults_of(figure):
     """What a reader would stumble over: text too small, outside the picture or over other text, no remarks."""
-    from bulkwear.postproc.plots.style import SMALLEST_FONT, remarks_of, save
+    from bulkwear.postproc.plots.style import SMALLEST_FONT, remarks_of
 
-    save(figure, path)
+    figure.draw_without_rendering()  # places all text
     texts, canvas, found = seen_texts(figure), figure.bbox, []
     boxes = [(text, text.get_window_extent()) for text in texts]
     found = [f"small: {text.get_text()}" for text in texts if text.get_fontsize() < SMALLEST_FONT]

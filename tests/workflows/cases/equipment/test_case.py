@@ -33,6 +33,7 @@ from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, solver_command, 
 from bulkwear.workflows.engine.wear_step import wear
 from tests import REPOSITORY
 from tests.support.own_machine_project import CORNERS, SHAFT, SIZES, machine_chain, machine_study
+from tests.support.patience import LONGEST_S
 from tests.support.stl import stl_facets
 
 pytestmark = pytest.mark.solver
@@ -47,7 +48,6 @@ BATCHES = 2  # insertions of the feed by which its mass may be ahead or behind
 REPEATED = 0.05  # -, of places of the feed that two blocks have; seen 0.01 by chance, 0.6 where all draw alike
 SMALL_STEP = 1e-2  # relative; doubled steps of 0.02 of the allowed one, where nodes move along turning normals
 HOUR = 3600.0
-KILL_TIMEOUT = 300.0  # s, for a block that takes a second
 DRIVER = """
 import pickle, sys
 from pathlib import Path
@@ -367,7 +367,7 @@ def test_killed_and_started_again_is_the_undisturbed_run(finished, tmp_path, mom
     chain = copy_of(finished, tmp_path, begun)
     (tmp_path / "chain.pickle").write_bytes(pickle.dumps(chain))
     command = [sys.executable, "-c", DRIVER, str(tmp_path / "chain.pickle"), str(finished.folder.parents[2])]
-    process, deadline = subprocess.Popen(command, cwd=REPOSITORY), time.monotonic() + KILL_TIMEOUT
+    process, deadline = subprocess.Popen(command, cwd=REPOSITORY), time.monotonic() + LONGEST_S
     while not (chain.folder / f"cycle_{begun:03d}.part" / written).exists():
         assert process.poll() is None and time.monotonic() < deadline
         time.sleep(0.01)

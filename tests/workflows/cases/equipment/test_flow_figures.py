@@ -46,19 +46,19 @@ def mill(tmp_path_factory):
 
 
 @pytest.mark.parametrize("make", OF_ANY, ids=lambda make: make.product.name)
-def test_figures_of_a_chute_are_readable(chute, make, tmp_path):
+def test_figures_of_a_chute_are_readable(chute, make):
     """Two designs, as built and as worn; no text is small, cut off or over other text; a table stands beside it."""
     figure, table = make(scenes.job_of_study(*chute))
-    assert scenes.faults_of(figure, tmp_path / "figure.png") == []
+    assert scenes.faults_of(figure) == []
     assert len(table) > 0 and set(table["setting"]) == {"plain", "convex"}
     assert make.product.finding(table).endswith(".")
 
 
 @pytest.mark.parametrize("make", FIGURES, ids=lambda make: make.product.name)
-def test_figures_of_a_mill_are_readable(mill, make, tmp_path):
+def test_figures_of_a_mill_are_readable(mill, make):
     """No feed, a part with power, and a charge with toe and shoulder."""
     figure, table = make(scenes.job_of_study(*mill))
-    assert scenes.faults_of(figure, tmp_path / "figure.png") == []
+    assert scenes.faults_of(figure) == []
     assert len(table) > 0
     assert make.product.finding(table).endswith(".")
 

@@ -145,7 +145,7 @@ def test_figure_is_readable(table, tmp_path, found):
     path = tmp_path / "lifters.csv"
     table.to_csv(path, index=False)
     figure, drawn = lifter_figures.lifter_profiles(job_of({"lifters": str(path)}, {}, scenes.REMARKS))
-    assert scenes.faults_of(figure, tmp_path / "figure.png") == []
+    assert scenes.faults_of(figure) == []
     np.testing.assert_allclose(drawn["height_mm"].to_numpy(float), table["height_mm"].to_numpy(float))
     shown = [line.get_ydata() for axes in figure.axes for line in axes.lines[:1]]
     for line, name in zip(shown, ("height_mm", LEADING), strict=True) if found else ():

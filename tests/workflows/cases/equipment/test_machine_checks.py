@@ -7,6 +7,7 @@ import pytest
 
 from bulkwear.meshes.drawing import write_step
 from bulkwear.meshes.gmsh_model import gmsh_model
+from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.postproc.mesh import SurfaceMesh, enclosed_volume
 from bulkwear.postproc.wear.bodies import together
 from bulkwear.workflows.cases.equipment.machine_checks import (
@@ -251,7 +252,7 @@ def test_facets_of_a_closed_body_that_look_inward_are_turned_when_it_is_read(tmp
         volumes, said = [], []
         for each in (triangles, triangles[:, ::-1]):
             write_ascii(tmp_path / "meshes/liner.stl", {"liner": (points, each)})
-            found = part_surface(0, part, tmp_path)
+            found = part_surface(0, part, tmp_path, own_mesh)
             volumes.append(enclosed_volume(found.points, found.triangles))
             said.append(capsys.readouterr().err)
     assert said[0] == "" and said[1].startswith(

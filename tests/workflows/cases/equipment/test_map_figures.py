@@ -29,13 +29,13 @@ def study(request, tmp_path_factory):
 
 
 @pytest.mark.parametrize("make", FIGURES, ids=lambda make: make.product.name)
-def test_every_figure_is_readable(study, make, tmp_path):
+def test_every_figure_is_readable(study, make):
     """Drawn of the files that runs leave; no text is small, cut off or over other text; a table stands beside it, and a
     sentence says what it shows.
     """
     folder, runs, _ = study
     figure, table = make(scenes.job_of_study(folder, runs))
-    assert scenes.faults_of(figure, tmp_path / "figure.png") == []
+    assert scenes.faults_of(figure) == []
     assert len(table) > 0 and {"setting", "part"} <= set(table)
     assert make.product.finding(table).endswith(".")
 
@@ -108,14 +108,14 @@ def test_wanted_hours_lie_between_and_beyond_those_of_the_surfaces(study):
     assert left[latest].min() == 0.0
 
 
-def test_figure_of_many_wanted_hours_is_readable(study, tmp_path):
+def test_figure_of_many_wanted_hours_is_readable(study):
     """As many as are allowed: of the first design alone."""
     folder, runs, _ = study
     schema = case_schema("equipment", "settings")["properties"]["operation"]["properties"]["told_at_h"]
     hours = scenes.UPDATE_HOURS * (0.25 + np.arange(schema["maxItems"]))
     many = with_wanted_hours(runs, *hours)
     figure, table = map_figures.remaining_thickness(scenes.job_of_study(folder, many))
-    assert scenes.faults_of(figure, tmp_path / "figure.png") == []
+    assert scenes.faults_of(figure) == []
     own = table[table["setting"] == runs[0]["setting"]]
     assert set(hours) <= set(own["operation_h"])
 

@@ -28,14 +28,15 @@ def of_setting(setting, factors):
     return [SyntheticRun(f"{setting}-{k}", PARTS, setting, k, factor=factor, pristine=8) for k, factor in runs]
 
 
-@pytest.fixture
-def numbers(tmp_path):
+@pytest.fixture(scope="module")
+def numbers(tmp_path_factory):
     """The key numbers of a synthetic study of two designs and two packings by name and setting; its wheel turns."""
+    folder = tmp_path_factory.mktemp("study")
     runs = [*of_setting("plain", (0.99, 1.01)), *of_setting("R9", (0.495, 0.505))]
-    values = write_study(tmp_path, runs)
+    values = write_study(folder, runs)
     for each in values:
         each["parts"]["wheel"]["motion"] = TURNING
-    read = tables.read_runs(values, tmp_path)
+    read = tables.read_runs(values, folder)
     lives = life.part_lives(read, {})
     charge = pd.DataFrame({"setting": "plain", "packing": [1, 2], "phase": "worn", "toe_deg": [120.0, 130.0]})
     found = {

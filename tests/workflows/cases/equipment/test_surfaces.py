@@ -89,10 +89,10 @@ def two_bodies(tmp_path, monkeypatch):
 @pytest.mark.parametrize("solid", ["trough", "lip"])
 def test_solid_is_the_body_of_that_name(two_bodies, solid):
     """One body of the file, labelled as the part that it is; without a name all of them are one part."""
-    one = part_surface(3, part_of("both.stl", solid=solid), two_bodies)
+    one = part_surface(3, part_of("both.stl", solid=solid), two_bodies, own_mesh)
     assert enclosed_volume(one.points, one.triangles) == pytest.approx(math.prod(SOLID_SIZES[solid]) / 1e9, rel=VOLUME)
     assert set(one.cell_data["part"].tolist()) == {3}
-    both = part_surface(3, part_of("both.stl", wears=False), two_bodies)
+    both = part_surface(3, part_of("both.stl", wears=False), two_bodies, own_mesh)
     assert set(both.cell_data["part"].tolist()) == {-4}
     whole = sum(math.prod(size) for size in SOLID_SIZES.values()) / 1e9
     assert enclosed_volume(both.points, both.triangles) == pytest.approx(whole, rel=VOLUME)
@@ -106,9 +106,9 @@ def test_a_file_of_several_parts_is_meshed_once(two_bodies, monkeypatch):
         part_of("both.stl", name="c", solid="lip", edge_m=0.04),
         part_of("both.stl", name="d", solid="lip", unit="cm", edge_m=0.5),
     ]
-    alone = [part_surface(number, part, two_bodies) for number, part in enumerate(parts)]
+    alone = [part_surface(number, part, two_bodies, own_mesh) for number, part in enumerate(parts)]
     asked = []
-    monkeypatch.setattr(surfaces, "own_mesh", lambda *given: asked.append(given) or own_mesh(*given))
+    monkeypatch.setattr("bulkwear.meshes.own.mesh.own_mesh", lambda *given: asked.append(given) or own_mesh(*given))
     whole = machine_surface(parts)
     path = two_bodies / "both.stl"
     assert asked == [(path, "mm", 0.05), (path, "mm", 0.04), (path, "cm", 0.5)]
@@ -120,14 +120,14 @@ def test_a_file_of_several_parts_is_meshed_once(two_bodies, monkeypatch):
 def test_unknown_solid_is_one_sentence(two_bodies):
     """It names part and bodies."""
     with pytest.raises(ConfigError, match=r"^parts\.lining\.solid is 'spout', allowed is one of trough, lip\.$"):
-        part_surface(0, part_of("both.stl", solid="spout"), two_bodies)
+        part_surface(0, part_of("both.stl", solid="spout"), two_bodies, own_mesh)
 
 
 def test_file_that_is_no_mesh_is_one_sentence(two_bodies):
     """It names the part."""
     (two_bodies / "words.stl").write_text("a chute\n")
     with pytest.raises(ConfigError, match=r"^parts\.lining: .*words\.stl"):
-        part_surface(0, part_of("words.stl"), two_bodies)
+        part_surface(0, part_of("words.stl"), two_bodies, own_mesh)
 
 
 # ---------------------------------------------------------------- slices

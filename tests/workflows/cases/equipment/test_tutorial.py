@@ -9,7 +9,6 @@ import re
 import subprocess
 import sys
 import zipfile
-from functools import reduce
 
 import pandas as pd
 import pytest
@@ -137,20 +136,6 @@ def test_a_second_design_is_a_row(tmp_path):
     files = {run.name: {part["name"]: part["file"] for part in run.parameters["parts"]} for run in study.runs}
     assert list(files) == ["A", "B"]
     assert files["B"] == files["A"] | {"liner": "transfer_steep.step"}
-
-
-def test_told_defaults_are_those_of_the_case():
-    """The table of defaults of the reference."""
-    layers = [
-        yaml.safe_load((REPOSITORY / f"config/{name}.yaml").read_text()) for name in ("default", "cases/equipment")
-    ]
-    told = re.findall(
-        r"^\| `([\w.]+)` \| (\S+) \|$", REFERENCE.split("| key | default |")[1].split("\n\n")[0], re.MULTILINE
-    )
-    assert len(told) > 10
-    for path, value in told:
-        found = [reduce(lambda block, key: (block or {}).get(key), path.split("."), layer) for layer in layers]
-        assert float(value) == float([each for each in found if each is not None][-1]), path
 
 
 def test_named_keys_are_there():

@@ -81,6 +81,7 @@ def test_depths_are_told_per_hour_that_a_run_stands_for():
     assert "convex sample of A wears 0.01 mm per hour" in convex and "at least 0.005 mm" in convex
     assert "plain sample of A" in plain
     assert hours == "Its runs slide for 1 s, which stand for 2 h 0 min of wear."
+    assert facts(summary, depths, 1.0)[-1] == "Its runs slide for 1 s."
 
 
 def test_less_is_said_only_where_the_interval_leaves_out_one():

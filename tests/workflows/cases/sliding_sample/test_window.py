@@ -333,7 +333,7 @@ def test_a_run_in_pieces_exchanges_as_often(run, tmp_path):
         run_deck(
             folder,
             triangles=triangles,
-            executable=cycles.cycle_executable(chain, span),
+            executable=cycles.cycle_executable(chain),
             variables={**given, "stop": str(end)},
         )
         log += (folder / "log.liggghts").read_text()

@@ -28,12 +28,19 @@ if TYPE_CHECKING:
 
 WEAR, FORCE, RATE = "worn_volume_mm3", "mean_normal_force_N", "worn_volume_per_metre_mm3_per_m"
 PATTERN = "pattern_worn_volume_mm3"
+SENTENCES, OF_SCALES = "particle_size/sentences.csv", 2  # the first ones are those of the critical scale
 BRACKETS, UNITS = re.compile(r"(.*) \((.*)\)"), {"mm3/m": "mm³/m", "%": "%"}  # of columns whose unit is in brackets
 
 
 def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is: bumps and particles, and the costs of the packings."""
     return {"bumps": bumps_and_particles(study), "costs": {"packing_profiles": "packings/solver_cost.csv"}}
+
+
+def answers(folder: Path) -> list[str]:
+    """Return at which scales the pattern wears less, and its critical scale; nothing of a study of other things."""
+    path = folder / SENTENCES
+    return pd.read_csv(path)["sentence"].tolist()[:OF_SCALES] if path.is_file() else []
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
@@ -59,7 +66,7 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return what is told of the critical scale and of the beds, wear and sizes of every row, and the lines beside the
     source's.
     """
-    said = pd.read_csv(folder / "particle_size" / "sentences.csv")["sentence"]
+    said = pd.read_csv(folder / SENTENCES)["sentence"]
     summary = in_display_units(read_summary(folder / "summary.csv"))
     rows = wear_by_row(study, summary)
     return [

@@ -7,7 +7,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.page import sections,
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import durations, provenance, written
 from bulkwear.workflows.report.page import environment
-from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.page_parameters import answers_of_study, page_parameters
 from bulkwear.workflows.report.sections import Pictures, shown
 from tests.support.finished_runs import leave_runs
 from tests.workflows.cases.sliding_sample.particle_size.test_figures import OWN, make
@@ -43,6 +43,7 @@ def summary(study):
                 "base_worn_volume_m3": volume - bumps,
                 "pattern_worn_volume_m3": bumps,
                 "worn_volume_per_metre_m3_per_m": volume / 0.8,
+                "wear_over_plain": volume / 2e-9,
                 "mean_normal_force_N": PLAIN_FORCE[scale] * (FORCE[scale] if convex else 1.0),
             }
         )
@@ -118,6 +119,13 @@ def test_the_sections_tell_what_the_tables_do(folder, page):
     assert "| cdt | pair | restitution | 0 |" in said
     assert "major radius mm" in said and "largest scale" in said and "| 3.46 |" in said
     assert "| 4 | loose | 3 | 5.2 | 0.42 | 0.43 |" in said and "| S4 plain | 4 | before | 90 |" in said
+
+
+def test_the_answer_is_the_critical_scale(folder):
+    """Then what the pattern does where it wears least; scales are not counted as patterns."""
+    by_scale, critical, best = answers_of_study("sliding_sample", folder)
+    assert by_scale.startswith("By the intervals") and critical.startswith("Critical scale")
+    assert best.startswith("Lowest: the convex sample of S4")
 
 
 def test_the_page_counts_the_packings_among_its_costs(study, folder, page):

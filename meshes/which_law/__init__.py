@@ -1,0 +1,1 @@
+"""Transfer chute of the study `chute`: the script that draws it."""

@@ -1,0 +1,108 @@
+"""Figures of wear laws side by side: bars of how much and where, maps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from bulkwear.postproc.mesh import SurfaceMesh, areas
+from bulkwear.postproc.plots.scene import common_bounds, depth_oblique, facing_side, trimmed
+from bulkwear.postproc.plots.style import (
+    LARGEST_HEIGHT,
+    MAP,
+    SERIES_COLOURS,
+    SMALLEST_FONT,
+    named_once,
+    new_figure,
+    picture,
+)
+from bulkwear.postproc.tables.depths import area_quantile
+from bulkwear.postproc.tables.display import MICROMETRES
+from bulkwear.postproc.tables.law_volumes import LawMap
+
+PANELS = {
+    "over_archard": "Volume over\nArchard's (-)",
+    "over_first": "Volume over that\nof the first (-)",
+    "overlap": "Wear where\nArchard's lies (-)",
+    "front_share": "Share on fronts\nof bumps (-)",
+}
+GROUP = 0.8  # of the distance between settings that bars fill
+TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
+FEW_PLACES = 4  # along the axis whose names stand level
+
+
+def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw a panel per measure, in it a group of bars per setting, one per law, with 95 % intervals over packings.
+
+    table: as from `tables.law_volumes.laws_of_settings`; measures without a value have no panel
+    """
+    names = [name for name in PANELS if table[name].notna().any()]
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    grid = figure.subplots(max(len(names), 1), 1, sharex=True, squeeze=False)[:, 0]
+    words = [column for column in ("setting", "surface", "part") if column in table]
+    places = table[words].fillna("").astype(str).agg(lambda row: " ".join(filter(None, row)), axis=1)
+    places = places.str.replace("_", " ")
+    order, laws = list(dict.fromkeys(places)), list(dict.fromkeys(table["law"]))
+    width = GROUP / len(laws)
+    for axes, name in zip(grid, names, strict=False):
+        for number, law in enumerate(laws):
+            rows = table[(table["law"] == law) & table[name].notna()]
+            at = np.array([order.index(place) for place in places[rows.index]]) + (number + 0.5) * width - GROUP / 2.0
+            value = rows[name].to_numpy()
+            ends = np.abs(rows[[f"{name}_low", f"{name}_high"]].to_numpy(float).T - value)
+            known = {"yerr": ends} if np.isfinite(ends).any() else {}
+            look = {"color": SERIES_COLOURS[number % len(SERIES_COLOURS)], "label": law.replace("_", " ")}
+            axes.bar(at, value, width, error_kw={"elinewidth": 0.9, "capsize": 2}, **known, **look)
+        axes.set_ylabel(PANELS[name])
+        axes.set_ylim(bottom=0.0)
+    grid[-1].set_xticks(range(len(order)), order, rotation=0 if len(order) <= FEW_PLACES else 90)
+    figure.legend(*named_once(grid), loc="outside upper left", ncols=len(laws))
+    return figure
+
+
+def law_pictures(maps: Sequence[LawMap], remarks: Sequence[str]) -> Figure:
+    """Draw the map of each law, seen obliquely from where most wear is, all on one colour scale."""
+    figure = new_figure(remarks, LARGEST_HEIGHT)
+    if not maps:
+        figure.text(0.5, 0.5, "nothing wears", ha="center")
+        return figure
+    shown = [_worn_alone(each) for each in maps]
+    limits = (0.0, max(_top(mesh, depth) for mesh, depth in shown))
+    bounds = common_bounds([mesh for mesh, _ in shown])
+    direction = facing_side(*shown[0])
+    views = trimmed(
+        [
+            depth_oblique(mesh, depth / MICROMETRES, limits, bounds, size=(1000, 720), direction=direction)
+            for mesh, depth in shown
+        ]
+    )
+    columns = len(maps) if len(maps) <= 3 else math.ceil(len(maps) / 2)
+    grid = figure.subplots(math.ceil(len(maps) / columns), columns, squeeze=False)
+    for axes in grid.ravel():
+        axes.set_axis_off()
+    for axes, each, pixels in zip(grid.ravel(), maps, views, strict=False):
+        picture(axes, pixels)
+        axes.set_title(each.law.replace("_", " "), fontsize=SMALLEST_FONT)
+    bar = ScalarMappable(Normalize(*limits), MAP)
+    place = {"location": "bottom", "shrink": 0.6, "aspect": 40, "pad": 0.04, "extend": "max"}
+    figure.colorbar(bar, ax=grid, label="Depth over the mean depth of all that wears (-)", **place)
+    return figure
+
+
+def _worn_alone(shown: LawMap) -> tuple[SurfaceMesh, np.ndarray]:
+    """Return the faces that wear as a surface of their own, and their relative depth."""
+    worn = np.isfinite(shown.relative_depth)
+    mesh = SurfaceMesh(shown.surface.points, shown.surface.triangles[worn])
+    used, triangles = np.unique(mesh.triangles, return_inverse=True)
+    alone = SurfaceMesh(mesh.points[used], triangles.reshape(-1, 3))
+    return alone, shown.relative_depth[worn]
+
+
+def _top(mesh: SurfaceMesh, depth: np.ndarray) -> float:
+    return area_quantile(depth, areas(mesh.points, mesh.triangles), TOP_SHARE)

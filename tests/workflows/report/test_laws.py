@@ -1,0 +1,102 @@
+"""Figures of laws side by side: what they draw, say, and make interactive; which laws are compared in what."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bulkwear.meshes.plate import flat_plate
+from bulkwear.postproc.plots.laws import law_bars, law_pictures
+from bulkwear.postproc.plots.style import remarks_of
+from bulkwear.postproc.tables.law_volumes import LawMap, laws_of_settings, map_table
+from bulkwear.workflows.report.figure_findings import laws_apart, steepest_map
+from bulkwear.workflows.report.laws import coefficients_remark, flow_of, wear_by_law, what_wears
+from bulkwear.workflows.report.products import products_of_study
+from tests.support.charts import drawn_chart, names, values
+from tests.support.own_machine_project import machine_study
+from tests.support.tiny import tiny_study
+
+PACKINGS = (1, 2, 3)
+
+
+def volumes(place: str, front: bool) -> pd.DataFrame:
+    """volume_by_law.csv of two settings with some packings: shear work wears 0.3 of Archard's."""
+    rows = [
+        {
+            "run": f"{setting}-{packing}",
+            "row": setting,
+            "setting": setting,
+            "packing": packing,
+            "surface": "",
+            "law": law,
+        }
+        | {"over_archard": np.nan if law == "finnie" else 1.0 if law == "archard" else 0.3 + 0.01 * packing}
+        | {"overlap": {"archard": 1.0, "tangential_work": 0.9, "finnie": 0.2}[law] - 0.1 * (setting == "B")}
+        | {"worn_volume_m3": 2.0 if setting == "B" and law == "finnie" else 1.0, "cycles": 4 if setting == "A" else 2}
+        | {"correlation": 1.0, "front_share": 0.6 if front else np.nan, place: "liner"}
+        for setting in "AB"
+        for packing in PACKINGS
+        for law in ("archard", "tangential_work", "finnie")
+    ]
+    return pd.DataFrame(rows)
+
+
+def test_bars_are_the_means_with_intervals_over_packings():
+    """A panel per measure that there is; Finnie's volume is not shown, where it lies is."""
+    table = laws_of_settings(volumes("part", front=False))
+    figure = law_bars(table, ["said"])
+    upper, middle, lower = figure.axes
+    heights = [bar.get_height() for bar in upper.patches]
+    assert heights == pytest.approx([1.0, 1.0, *[np.prod([0.31, 0.32, 0.33]) ** (1 / 3)] * 2])
+    assert [bar.get_height() for bar in middle.patches] == pytest.approx([2.0, 2.0, 4.0])  # of B, per block
+    assert len(lower.patches) == 6
+    assert [text.get_text() for text in lower.get_xticklabels()] == ["A liner", "B liner"]
+    assert remarks_of(figure) == "said"
+    assert laws_apart(table).startswith("By finnie 10 % of the wear lies where Archard's does, at B liner")
+
+
+PLACES = [("part", False, 3), ("surface", True, 4), ("surface", False, 3)]
+
+
+@pytest.mark.parametrize(("place", "front", "panels"), PLACES)
+def test_the_chart_has_what_the_table_tells(place, front, panels):
+    """Of parts or surfaces, with intervals; a measure that no run has makes no panel of bars."""
+    table = laws_of_settings(volumes(place, front))
+    found = drawn_chart(wear_by_law.product, table)
+    assert names(found) == ["archard", "tangential work", "finnie"]
+    assert len(found["panels"]) == panels
+    assert values(found, "tangential work", 2)[0] == pytest.approx([0.9, 0.8])
+
+
+def test_laws_whose_coefficients_are_no_volume_over_sliding_work_are_named():
+    """Nothing is said where all are."""
+    assert coefficients_remark(["archard", "tangential_work", "combined"]) == []
+    (said,) = coefficients_remark(["archard", "impact_threshold", "oka"])
+    assert said == "the coefficient of impact threshold, oka is another quantity than Archard's: compare places alone"
+
+
+def test_maps_of_all_laws_have_one_scale():
+    """A picture per law, and one bar that ends at the most uneven of them; nothing worn is said."""
+    plate = flat_plate(1e-2, 1e-2, 5e-3)
+    count = len(plate.triangles)
+    even, uneven = np.ones(count), np.where(np.arange(count) == 0, count, 0.0)
+    maps = [LawMap("archard", plate, even, 3), LawMap("tangential_work", plate, uneven, 3)]
+    figure = law_pictures(maps, [])
+    assert [axes.get_title() for axes in figure.axes[:2]] == ["archard", "tangential work"]
+    assert figure.axes[-1].get_xlim()[1] == pytest.approx(count)
+    assert "1 by archard" in steepest_map(map_table("A", maps))
+    assert law_pictures([], []).axes == []
+
+
+def test_every_part_that_wears_is_told_with_its_law(tmp_path):
+    """By its name and the label of its faces; samples have one law for all faces, and a flow along the travel."""
+    with machine_study(tmp_path) as study:
+        found = what_wears(study)[study.runs[0].name]
+        assert flow_of(study) is None and "wear_by_law" in products_of_study(study)
+    assert [(law, part, label) for law, _, part, label, _ in found] == [
+        ("archard", "liner", 0),
+        ("finnie", "plate", 1),
+        ("archard", "paddle", 2),
+    ]
+    sample = tiny_study()
+    law, _, part, label, _ = what_wears(sample)[sample.runs[0].name][0]
+    assert (law, part, label, flow_of(sample)) == ("archard", "", None, (0.0, 1.0, 0.0))
