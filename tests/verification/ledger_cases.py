@@ -117,7 +117,7 @@ def command(ranks: int = 1, solver: Path | str = SOLVER, **variables) -> list[st
 def run(folder: Path, ranks: int = 1, solver: Path | str = SOLVER, **variables) -> str:
     """Run the deck in a folder and return what it said; a failed run raises with the end of that."""
     words = command(ranks, solver, **variables)
-    done = subprocess.run(words, cwd=folder, env=solver_environment(), capture_output=True)
+    done = subprocess.run(words, cwd=folder, env=solver_environment(ranks), capture_output=True)
     said = (done.stdout + done.stderr).decode("utf-8", "replace")  # the solver's messages can hold stray bytes
     if done.returncode:
         raise RuntimeError(f"{folder}/deck.in ended with {done.returncode}:\n{said[-2000:]}")

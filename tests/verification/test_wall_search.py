@@ -47,7 +47,7 @@ RESUMED = FALLEN["settling"] + 2 * STEPS  # steps
 def searched(folder: Path, search: str, ranks: int = 1, **variables) -> str:
     """Run the deck of a folder by a search; what it said."""
     words = [*command(ranks, **variables), "-search", search]
-    done = subprocess.run(words, cwd=folder, env=solver_environment(), capture_output=True, text=True)
+    done = subprocess.run(words, cwd=folder, env=solver_environment(ranks), capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
     assert f"Wall search of wall: {search}, " in done.stdout
     return done.stdout

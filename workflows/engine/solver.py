@@ -35,6 +35,14 @@ LEDGER_EXECUTABLE = str(BUILT) if BUILT.exists() else shutil.which(BUILT.name) o
 OWN_ROLLING_MODELS = ("own_spin", "rvd")  # those of solver/rolling, which only our program has
 SEARCHES = ("ours", "stock")  # for contacts with meshes, of our program; both find the same
 OF_SLURM = ("SLURM_", "PMI_", "PMIX_")  # environment variables of a job
+# A rank without others needs no daemon of Open MPI, which takes longer than all else of its start; and without one no
+# folder of Open MPI's, whose name would be the same for all such ranks of a machine.
+ALONE = {
+    "OMPI_MCA_ess_singleton_isolated": "1",
+    "OMPI_MCA_orte_create_session_dirs": "0",
+    "OMPI_MCA_pml": "ob1",
+    "OMPI_MCA_btl": "self",
+}
 POLL_SECONDS = 0.25  # between two looks at the log
 STOP_SECONDS = 10.0  # for which a solver may take to end when it is asked to
 ANSWER_SECONDS = 60.0  # for which it may take to say what it has
@@ -139,18 +147,15 @@ def ranks_here(tasks: int, threads: int) -> int:
     return tasks if "SLURM_JOB_ID" in os.environ else min(tasks, threads)
 
 
-def solver_environment(by_slurm: bool = False) -> dict[str, str]:
+def solver_environment(ranks: int = 1, by_slurm: bool = False) -> dict[str, str]:
     """Return the environment of the solver; Open MPI refuses to run as root unless told twice.
-
-    A rank that no launcher starts is alone: told so, Open MPI starts no daemon beside it, which takes longer than the
-    solver's own start.
 
     by_slurm: Slurm itself starts the ranks (srun). Otherwise they must not know of it: Open MPI would look for an
     allocation that jobs of Snakemake do not hand on, or for a Slurm that speaks its protocol.
     """
     allowed = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     kept = {key: value for key, value in os.environ.items() if by_slurm or not key.startswith(OF_SLURM)}
-    alone = {"OMPI_MCA_ess_singleton_isolated": "1"}
+    alone = ALONE if ranks == 1 else {}
     return {**alone, **kept, "OMP_NUM_THREADS": "1", **(allowed if os.geteuid() == 0 else {})}
 
 
@@ -191,7 +196,7 @@ def run_deck(
         process = subprocess.Popen(
             [*solver_command(ranks, executable, launcher, search), *given],
             cwd=folder,
-            env=solver_environment(by_slurm=ranks > 1 and shlex.split(launcher)[0] == "srun"),
+            env=solver_environment(ranks, by_slurm=ranks > 1 and shlex.split(launcher)[0] == "srun"),
             stdin=subprocess.DEVNULL,
             stdout=screen,
             stderr=subprocess.STDOUT,
