@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Mapping
 from contextlib import redirect_stderr, redirect_stdout
@@ -35,9 +36,9 @@ SIGNATURES = {  # how a file begins: the formats that do
 def check_file(path: Path) -> None:
     """Raise FileNotFoundError or ValueError for what is no file of a format that is read, before it is read."""
     formats = ", ".join([*READERS, *CAD_FORMATS])
-    if path.is_dir():
+    if os.path.isdir(path):
         raise ValueError(f"{path}: is a folder, allowed is a file of {formats}")
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise FileNotFoundError(f"{path}: no such file, allowed is a file of {formats}")
     suffix = path.suffix.lower()
     if suffix not in CAD_FORMATS and suffix not in READERS:

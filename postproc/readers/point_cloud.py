@@ -46,7 +46,7 @@ def point_blocks(path: str | os.PathLike, unit: str = "mm") -> Iterator[np.ndarr
     path = Path(path)
     if unit not in METRES:
         raise ValueError(f"{path}: unit of the scan is '{unit}', allowed are {', '.join(METRES)}")
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise FileNotFoundError(f"{path}: no such scan")
     readers = {".ply": _ply_blocks, ".stl": _stl_blocks, **dict.fromkeys(TEXT_KINDS, _text_blocks)}
     reader = readers.get(path.suffix.lower())

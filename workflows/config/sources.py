@@ -5,6 +5,7 @@ Each file is checked by itself, so that a fault is reported where it stands.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -182,5 +183,7 @@ def read_materials(settings: dict[str, Any], project: Project) -> list[Layer]:
     """
     name = settings.get("materials", MATERIALS)
     elsewhere = project.folder / name
-    files = project.every(f"config/{name}") or [elsewhere if elsewhere.is_file() else project.file(f"config/{name}")]
+    files = project.every(f"config/{name}") or [
+        elsewhere if os.path.isfile(elsewhere) else project.file(f"config/{name}")
+    ]
     return [read_yaml(path, project.folder) for path in reversed(files)]

@@ -7,6 +7,7 @@ A project is any folder with `config/`; it may hold `templates/`, `cases/`, `law
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 import traceback
 from dataclasses import dataclass
@@ -52,7 +53,7 @@ class Project:
 
     def every(self, name: str) -> list[Path]:
         """Return the files of that path below project and package, the one that counts first."""
-        return [folder / name for folder in self.folders if (folder / name).is_file()]
+        return [folder / name for folder in self.folders if os.path.isfile(folder / name)]  # of a name too long, too
 
     def file(self, name: str) -> Path:
         """Return the file of that path, the project's where it has one."""

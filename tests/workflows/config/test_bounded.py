@@ -92,7 +92,7 @@ def test_lines_may_end_as_on_other_systems(tmp_path):
     assert read_csv_rows(path, tmp_path) == (["row", "a"], [(2, {"row": "R1", "a": "2"})])
 
 
-@pytest.mark.parametrize("name", ["/etc/passwd", "..", "materials", "", "a\\0.yaml"])
+@pytest.mark.parametrize("name", ["/etc/passwd", "..", "materials", "", "a\\0.yaml", f"{300 * 'a'}.yaml"])
 def test_materials_are_a_yaml_file(config, name):
     """No other file of the machine is opened as materials."""
     config.edit("studies/small.yaml", "design: small.csv", f'design: small.csv\nmaterials: "{name}"')

@@ -23,9 +23,8 @@ def drawing_source(name: str) -> Path:
     """
     project = current_project()
     for candidate in (Path(MESHES, name), Path(MESHES, name).with_name(SCRIPT)):
-        found = next((folder / candidate for folder in project.folders if (folder / candidate).is_file()), None)
-        if found is not None:
-            return found
+        if found := project.every(candidate.as_posix()):
+            return found[0]
     raise ConfigError(
         f"{MESHES}/{name}: there is no such file, and no {SCRIPT} in its folder that draws it; allowed is a CAD or "
         f"mesh file in {MESHES} of the project or the package."

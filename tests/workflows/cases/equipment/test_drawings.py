@@ -57,6 +57,13 @@ def test_file_stands_before_the_script(project, tmp_path):
     assert drawing_source("feeder/lid.stl").name == "draw.py"
 
 
+@pytest.mark.parametrize("name", ["chutes/box.stl", f"feeder{300 * 'r'}/box.stl"])
+def test_a_part_that_is_nowhere_is_one_sentence(project, name):
+    """Also by a name that no file system takes."""
+    with pytest.raises(ConfigError, match=rf"^meshes/{name}: there is no such file, and no draw\.py in its folder"):
+        drawing_source(name)
+
+
 @pytest.mark.parametrize(
     ("script", "words"),
     [
