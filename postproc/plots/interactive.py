@@ -18,12 +18,13 @@ from bulkwear.postproc.plots.traces import Trace, traces_of
 Tables = Mapping[str, pd.DataFrame]
 FROM_ZERO = 0.5  # -, least over largest value, up to which an axis begins at zero
 LONGEST_LINE = 38  # characters at an axis: more do not fit on a phone
+RUN, SHARED_BY_RUNS = "run", ("row", "setting", "surface")  # columns
 BESIDE = 0.5  # of the unit of an axis: how far a level reaches beside a single place
 
 
 def plotted(chart: Chart, tables: Tables) -> dict[str, Any] | None:
     """Return {"panels": [{"title", "data", "layout"}], "entries": [as `Look`], "sift": [words]}, ready for JSON; `meta`
-    of a trace is its word of the sift.
+    of a trace is its word of the sift, `of` whose its values are.
 
     tables: by the keys of layers, "" the figure's own; layers of tables that are not there are left out. None where
     the figure's own table has not all columns of the chart, or no rows.
@@ -132,8 +133,16 @@ def _curves(
         values = dict(zip(keys, key, strict=True))
         look = legend.look(layer, {name: values[name] for name in group}, layer.said or axes[1].title)
         more = [legend.words(name, values[name]) for name in layer.curve if name not in group]
-        meta = {"meta": legend.words(sift, values[sift])} if sift in values else {}
-        yield from (trace | meta for trace in traces_of(layer, curve, axes, look, [look.name, *more], words))
+        told = {"meta": legend.words(sift, values[sift])} if sift in values else {}
+        told |= {} if layer.published else _whose(curve)
+        yield from (trace | told for trace in traces_of(layer, curve, axes, look, [look.name, *more], words))
+
+
+def _whose(curve: pd.DataFrame) -> dict[str, dict[str, list[str]]]:
+    """Return whose the values of a curve are: names of runs, else of what several have; of each value, or of all."""
+    names = [RUN] if RUN in curve else [name for name in SHARED_BY_RUNS if name in curve]
+    words = {name: curve[name].astype(str).tolist() for name in names}
+    return {"of": {name: each if len(set(each)) > 1 else each[:1] for name, each in words.items()}} if words else {}
 
 
 def _reach(data: Sequence[Trace], words: bool) -> list[Any]:

@@ -58,7 +58,10 @@ def page_parameters(study: Study) -> dict[str, Any]:
         "figures": {product.name: _figure_words(product, study) for product in figures_of(study)},
         "told": page_of(study.case.name).told(study),
         "jobs": job_names(study),
-        "runs": {run.name: {"row": run.row, "surface": run.surface} for run in study.runs},
+        "runs": {
+            run.name: {"row": run.row, "surface": run.surface, "setting": study.setting_of[run.row]}
+            for run in study.runs
+        },
         "parameters": {run.name: run.parameters for run in study.runs},
         "frictions": _frictions(study),
         "beds": list(study.beds),

@@ -1,6 +1,7 @@
 """Interactive figures: what plotly draws is what the table holds, in the look of the house."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -43,6 +44,20 @@ def test_curves_are_those_of_the_table():
     }
     assert found["panels"][0]["layout"]["yaxis"]["title"]["text"] == "Volume (mm³)"
     json.dumps(found, allow_nan=False)
+
+
+def test_values_know_whose_they_are():
+    """By the run where a curve has one, else by what runs share: once for a whole curve, or value by value."""
+    assert [trace["of"] for trace in traces(plotted(of_runs(), {"": runs()}))] == [
+        {"run": [name]} for name in ("R1_convex", "R2_convex", "R1_plain")
+    ]
+    ends = runs().query("travel_mm == 10").drop(columns="run")
+    layer = Layer(BARS, "volume_m3", "setting", group=("surface",))
+    convex, plain = traces(plotted(one_panel(PART, VOLUME, layer), {"": ends}))
+    assert convex["of"] == {"setting": ["R1", "R2"], "surface": ["convex"]}
+    assert plain["of"] == {"setting": ["R1"], "surface": ["plain"]}
+    theirs = one_panel(PART, VOLUME, replace(layer, published=True))
+    assert not any("of" in trace for trace in traces(plotted(theirs, {"": ends})))
 
 
 def test_the_pointer_tells_run_place_value_and_unit():

@@ -42,12 +42,21 @@ told.entries = entries.map((entry) => entry.textContent);
 entries[0].click();
 await until(() => plot.data[0].visible === false);
 told.switched = [entries[0].getAttribute("aria-pressed"), plot.data.map((trace) => trace.visible)];
-button.click();
-await until(() => !button.disabled);
-told.after = [seen(picture), seen(plot)];
+entries[0].click();
 const frame = document.querySelector("iframe");
 frame.loading = "eager";
 await until(() => frame.contentDocument?.documentElement.dataset.ready === "yes");
+const ticks = [...document.querySelectorAll("table.runs .tick")], full = () => plot.data.filter((trace) => trace.x.length).length;
+const views = () => [...frame.contentDocument.querySelectorAll("select[name=run]")].map((each) => each.value);
+told.every = [full(), views().length];
+ticks.find((each) => each.ariaLabel === "Show R5_plain below").click();
+await until(() => views().length === 1);
+told.ticked = [full(), views()];
+for (const each of ticks) if (each.checked) each.click();
+await until(() => full() === told.every[0]);
+button.click();
+await until(() => !button.disabled);
+told.after = [seen(picture), seen(plot)];
 told.requests = performance.getEntriesByType("resource").map((each) => each.name);
 document.title = `FOUND${JSON.stringify(told)}END`;
 </script>"""
@@ -55,12 +64,17 @@ document.title = `FOUND${JSON.stringify(told)}END`;
 
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 def test_a_chart_takes_the_place_of_its_picture_and_gives_it_back(config, tmp_path):
-    """At a button that keys reach. The pointer tells value, unit and run, the legend switches curves; nothing is asked
-    of a network and nothing goes wrong; the frame of compared surfaces takes its script from the page."""
+    """At a button that keys reach. The pointer tells value, unit and run, the legend switches curves, ticks of
+    runs choose what it and the compared surfaces show; nothing is asked of a network and nothing goes wrong; the frame
+    of compared surfaces takes its script from the page."""
     study = load_study("small", config.project)
     folder = tmp_path / "results" / study.name
     write_results(folder, study)
-    shown = [Shown("R1", cycle, 0.1 * cycle, f"cycle {cycle}", worn_plate(1e-6 * cycle)) for cycle in range(2)]
+    shown = [
+        Shown(f"R5_{surface}", cycle, 0.1 * cycle, f"cycle {cycle}", worn_plate(1e-6 * cycle))
+        for surface in ("convex", "plain")
+        for cycle in range(2)
+    ]
     surfaces_page(folder / "figures" / "worn_surface_3d.html", shown, True, {0: "base"}, [])
     text = page_of_results(folder, study)
     assert text.count(plotly_script()) == 1
@@ -87,6 +101,8 @@ def test_a_chart_takes_the_place_of_its_picture_and_gives_it_back(config, tmp_pa
     assert told["entries"][:4] == names
     pressed, visible = told["switched"]
     assert pressed == "false" and visible.count(False) == sum(each.surface == "convex" for each in study.runs)
+    curves, views = told["every"]
+    assert views == 2 and curves > told["ticked"][0] > 0 and told["ticked"][1] == ["R5_plain"]
     assert told["after"] == [True, False]
 
 
