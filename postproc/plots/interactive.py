@@ -138,10 +138,12 @@ def _curves(
         yield from (trace | told for trace in traces_of(layer, curve, axes, look, [look.name, *more], words))
 
 
-def _whose(curve: pd.DataFrame) -> dict[str, dict[str, list[str]]]:
-    """Return whose the values of a curve are: names of runs, else of what several have; of each value, or of all."""
+def _whose(curve: pd.DataFrame) -> dict[str, dict[str, list[str | None]]]:
+    """Return whose the values of a curve are: names of runs, else of what several have; of each value, or of all. None
+    where they are no run's.
+    """
     names = [RUN] if RUN in curve else [name for name in SHARED_BY_RUNS if name in curve]
-    words = {name: curve[name].astype(str).tolist() for name in names}
+    words = {name: [None if pd.isna(each) else str(each) for each in curve[name]] for name in names}
     return {"of": {name: each if len(set(each)) > 1 else each[:1] for name, each in words.items()}} if words else {}
 
 

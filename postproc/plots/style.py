@@ -20,7 +20,6 @@ from PIL import Image
 from bulkwear.postproc.mesh import PLAIN
 
 PUBLISHED = {"color": "black", "linestyle": "--", "linewidth": 1.2}
-TABLE_LINE = 0.5  # pt
 RESOLUTION = 200  # dots per inch
 PALETTE = 256  # colours
 WIDTH, LARGEST_HEIGHT = 8.0, 5.0  # inches: 1600 x 1000 pixels, which every report shows whole
@@ -165,19 +164,6 @@ def named_once(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
     """Handles and labels for one legend of several panels: each label once."""
     named = {text: handle for axes in panels for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)}
     return list(named.values()), list(named)
-
-
-def printed_table(axes: Axes, head: Sequence[str], cells: Sequence[Sequence[str]]) -> None:
-    """Print a table that fills axes of its own; lines of type in the head by its line breaks."""
-    axes.set_axis_off()
-    drawn = axes.table(cells, colLabels=head, bbox=(0.0, 0.0, 1.0, 1.0), cellLoc="center", edges="horizontal")
-    drawn.auto_set_font_size(False)
-    drawn.set_fontsize(SMALLEST_FONT)
-    drawn.auto_set_column_width(range(len(head)))
-    lines = 1.0 + max(text.count("\n") for text in head)
-    for (row, _), cell in drawn.get_celld().items():
-        cell.set_linewidth(TABLE_LINE)
-        cell.set_height(cell.get_height() * (lines if row == 0 else 1.0))
 
 
 def draw_circles(

@@ -56,6 +56,8 @@ def test_values_know_whose_they_are():
     convex, plain = traces(plotted(one_panel(PART, VOLUME, layer), {"": ends}))
     assert convex["of"] == {"setting": ["R1", "R2"], "surface": ["convex"]}
     assert plain["of"] == {"setting": ["R1"], "surface": ["plain"]}
+    measured = ends.assign(run=["R1_convex", None, "R1_plain"])
+    assert traces(plotted(one_panel(PART, VOLUME, layer), {"": measured}))[0]["of"] == {"run": ["R1_convex", None]}
     theirs = one_panel(PART, VOLUME, replace(layer, published=True))
     assert not any("of" in trace for trace in traces(plotted(theirs, {"": ends})))
 

@@ -108,13 +108,11 @@ def tester_hours(job: Job) -> Any:
     "Volume by revolution",
     finding=figure_findings.lost,
     charts=(charts.VOLUME,),
-    inputs={**of_study("lost_volumes", "rates"), **PUBLISHED_FITS},
+    inputs={**of_study("lost_volumes"), **PUBLISHED_FITS},
     **OF_PAIRS,
     caption="""
     Counterpart of Fig 6.11 and Eq 6.2 to 6.6 (Yan 2022). Marks: removed from the sample, mean over packings with its
-    95 % interval. Dashed: the thesis' fits, grey where we have no run of that particle scale. Below: what is lost per
-    revolution, and how that changes from the first to the last revolution of the run by a straight line through the
-    increments; the thesis' change is that of its fit over as many revolutions.
+    95 % interval. Dashed: the thesis' fits, grey where we have no run of that particle scale.
     """,
 )
 def tester_volume(job: Job) -> Any:
@@ -122,9 +120,9 @@ def tester_volume(job: Job) -> Any:
     from bulkwear.workflows.cases.circular_tester.plots.volume import volume_by_revolution
     from bulkwear.workflows.cases.circular_tester.volume import beside_fits, chosen, mean_volumes, whole_revolutions
 
-    lost, rates, published = read(job, "lost_volumes", "rates", "published_fits")
+    lost, published = read(job, "lost_volumes", "published_fits")
     means = mean_volumes(whole_revolutions(chosen(lost, VOLUME, SIZE)))
-    return volume_by_revolution(means, rates, published, job.remarks), beside_fits(means, published)
+    return volume_by_revolution(means, published, job.remarks), beside_fits(means, published)
 
 
 @figure(

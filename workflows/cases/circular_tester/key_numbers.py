@@ -16,7 +16,12 @@ from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
 from bulkwear.workflows.cases.circular_tester.flow import steady_revolutions
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW
 from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
-from bulkwear.workflows.cases.circular_tester.volume import TERMS
+from bulkwear.workflows.cases.circular_tester.volume import (
+    TERMS,
+    change_of_terms,
+    published_terms,
+    volume_of_terms,
+)
 from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
@@ -30,6 +35,10 @@ FIT_HEADS = {
 }
 INTERVAL_HEADS = {"": "", "_low": ", interval from", "_high": ", to"}
 RATE = {"rate_mm3_per_revolution": ("lost per revolution", "mm³"), "change_percent": ("its change over the run", "%")}
+FIT_RATE = {
+    "fit_mm3_per_revolution": ("Yan 2022 per revolution", "mm³"),
+    "fit_change_percent": ("Yan 2022, its change", "%"),
+}
 RATIO = {
     "ratio": ("patterned over plain", "-"),
     "reduction_percent": ("reduction", "%"),
@@ -159,11 +168,24 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
 def rates(folder: Path) -> list[Block]:
     """Return what each setting loses per revolution and how that changes, beside the fits of the source."""
     theirs = pd.read_csv(PUBLISHED_FITS)[["surface", "particle_scale", *TERMS, "r_squared", "source"]]
-    note = f"Change: from the first to the last revolution, by a straight line through the increments. {INTERVALS}"
+    note = (
+        "Change: from the first to the last revolution, by a straight line through the increments; the source's is that"
+        f" of its fit over as many revolutions. {INTERVALS}"
+    )
     return [
-        Table(of_study(folder, "rates"), "rates", note, heads=heads_of(RATE)),
+        Table(with_fits(of_study(folder, "rates"), theirs), "rates", note, heads=heads_of(RATE) | FIT_RATE),
         Table(theirs, digits=dict.fromkeys([*TERMS, "r_squared"], FIT_DIGITS), heads=FIT_HEADS),
     ]
+
+
+def with_fits(rates: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:
+    """Return the rates with what the source's fits lose per revolution, and how that changes, over as many of them."""
+    terms = [published_terms(fits, row.surface, row.particle_scale) for row in rates.itertuples()]
+    over = rates["revolutions"].tolist()
+    return rates.assign(
+        fit_mm3_per_revolution=[float(volume_of_terms(of, n)) / n for of, n in zip(terms, over, strict=True)],
+        fit_change_percent=[float(change_of_terms(of, n)) for of, n in zip(terms, over, strict=True)],
+    )
 
 
 def ratios(folder: Path) -> list[Block]:

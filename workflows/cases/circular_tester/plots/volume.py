@@ -21,7 +21,6 @@ from bulkwear.postproc.plots.style import (
     marker,
     named_once,
     new_figure,
-    printed_table,
 )
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.summary import patterned_name, published_value
@@ -31,7 +30,6 @@ from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, TH
 from bulkwear.workflows.cases.circular_tester.volume import (
     CONVEX,
     TERMS,
-    change_of_terms,
     of_surface,
     published_terms,
     settings_of,
@@ -51,16 +49,14 @@ def _case_name(surface: str, scale: float) -> str:
     return f"{surface}, particle scale {scale:g}"
 
 
-def volume_by_revolution(
-    volumes: pd.DataFrame, rates: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]
-) -> Figure:
-    """Draw lost volume (mm3) against revolutions, the published fits beside, rates and their changes below (Fig 6.11).
+def volume_by_revolution(volumes: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw lost volume (mm3) against revolutions, the published fits beside (Fig 6.11).
 
-    volumes, rates: as from `volume.mean_volumes` and `volume.rates`; published: Eq 6.2 to 6.6. Published cases that no
-    run has are drawn thin and grey.
+    volumes: as from `volume.mean_volumes`; published: Eq 6.2 to 6.6. Published cases that no run has are drawn thin and
+    grey.
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
-    axes, printed = figure.subplots(2, 1)
+    figure = new_figure(remarks, 4.6)
+    axes = figure.subplots()
     x = np.linspace(0.0, volumes["revolution"].max(), CURVE_POINTS)
     ours = set()
     for setting, rows in settings_of(volumes):
@@ -74,7 +70,6 @@ def volume_by_revolution(
         axes.plot(x, volume_of_terms(np.array([getattr(row, term) for term in TERMS]), x), label=name, **look)
     axes.set(xlabel="Revolutions", ylabel="Lost volume (mm³)", xlim=(0.0, None), ylim=(0.0, None))
     figure.legend(*named_once([axes]), loc="outside upper center", ncols=3)
-    _rate_table(printed, rates, published)
     return figure
 
 
@@ -89,21 +84,6 @@ def _with_intervals(axes: Axes, rows: pd.DataFrame, value: str, label: str, look
     axes.errorbar(
         rows["revolution"], rows[value], reach if np.isfinite(reach).any() else None, label=label, **look, **bars
     )
-
-
-def _rate_table(axes: Axes, rates: pd.DataFrame, published: pd.DataFrame) -> None:
-    """Print a line per setting: what it loses per revolution and how that changes, ours and published."""
-    head = ["", "per revolution (mm³)", "its change (%)", "over revolutions", "Yan 2022 (mm³)", "its change (%)"]
-    cells = []
-    for row in rates.itertuples():
-        theirs = published_terms(published, row.surface, row.particle_scale)
-        there = not np.isnan(theirs).any()
-        beside = [f"{volume_of_terms(theirs, row.revolutions) / row.revolutions:.3g}" if there else ""]
-        beside.append(f"{change_of_terms(theirs, row.revolutions):+.3g}" if there else "")
-        name = f"{row.surface}, scale {row.particle_scale:g}"
-        change = interval_text(row, "change_percent")
-        cells.append([name, interval_text(row, "rate_mm3_per_revolution"), change, f"{row.revolutions:g}", *beside])
-    printed_table(axes, head, cells)
 
 
 def interval_text(row: tuple, name: str) -> str:

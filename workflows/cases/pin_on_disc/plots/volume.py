@@ -18,7 +18,6 @@ from bulkwear.postproc.plots.style import (
     label_all,
     named_once,
     new_figure,
-    printed_table,
 )
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.wear.coefficient import scaling_factor
@@ -44,6 +43,7 @@ CANDIDATE_COLOURS = dict(zip(CANDIDATES, ("#56B4E9", "#999999", "#F0E442", "#E69
 UNEXPLAINED_LOOK = {"color": "white", "edgecolor": "black", "hatch": "////", "linewidth": 0.6}
 BAR = 0.13  # of the space of a run
 SHOWN_FORCES = (0.98, 1.05)  # -, of the load, at least
+ROW_HEIGHT, ROOM = 0.32, 0.22  # inches of a compared case; beside the longest bar for its words, over its length
 HEADROOM = 1.3  # -, of the highest bar
 VOLUME_LOOKS = {  # volume, line and what it is called
     "removed": ("-", "removed from the surface"),
@@ -132,8 +132,8 @@ def excess_volume(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
 
     factors : as from `volume.excess_factors`, the rows to show, in order.
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
-    axes, printed = figure.subplots(2, 1, height_ratios=(1, 1))
+    figure = new_figure(remarks, 4.6)
+    axes = figure.subplots()
     places = np.arange(len(factors))
     reached = np.cumprod(factors[[*CANDIDATES, "unexplained"]].fillna(1.0).to_numpy(), axis=1)
     steps = np.column_stack([np.ones(len(factors)), reached])
@@ -149,38 +149,14 @@ def excess_volume(factors: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     axes.set_ylim(top=HEADROOM * steps.max())
     axes.yaxis.set_major_formatter("{x:g}")
     axes.set_ylabel(r"Volume over $\alpha F L$ (-)")
-    axes.set_xticks(places, [str(place + 1) for place in places])
-    axes.set_xlabel("Row of the table below")
-    figure.legend(loc="outside upper center", ncols=3)
-    _factor_table(printed, factors)
+    axes.set_xticks(places, [_factor_name(row) for _, row in factors.iterrows()], fontsize=SMALLEST_FONT)
+    figure.legend(loc="outside upper center", ncols=2)
     return figure
 
 
-def _factor_table(axes: Axes, factors: pd.DataFrame) -> None:
-    columns = {
-        "force_rise": "force\nrise",
-        "slip": "slip",
-        "taken_up": "taken\nup",
-        "displacement_rule": "displace-\nment rule",
-        "summing_rule": "Eq 5.9,\ntouched",
-        "product": "product",
-        "published": "published",
-        "unexplained": "left",
-        "summing_over_all": "Eq 5.9,\nall",
-        "contacts": "contacts\nat once",
-    }
-    head = ["", "scheme", "$\\alpha$\n(1e-11/Pa)", "revo-\nlutions", *columns.values()]
-    cells = [
-        [
-            f"{place}",
-            row["scheme"].replace("_", " "),
-            f"{1e11 * row['wear_coefficient_per_pa']:.2g}",
-            f"{row['revolution']:.0f}",
-        ]
-        + [f"{row[name]:.3g}" for name in columns]
-        for place, (_, row) in enumerate(factors.iterrows(), start=1)
-    ]
-    printed_table(axes, head, cells)
+def _factor_name(row: pd.Series) -> str:
+    scheme = row["scheme"].replace("_", " ")
+    return f"{scheme}\n{row['wear_coefficient_per_pa']:.2g} 1/Pa\nrevolution {row['revolution']:.0f}"
 
 
 def calibration(
@@ -274,36 +250,22 @@ def _case_colour(case: str) -> str:
 
 
 def comparison(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw depth, width and volume of laboratory, thesis and our runs, and print them with their differences.
+    """Draw depth, width and volume of laboratory, thesis and our runs, each with its difference from the laboratory.
 
     table : as from `comparison.comparison`.
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
+    figure = new_figure(remarks, 1.6 + ROW_HEIGHT * len(table))
     units = {"depth": "mm", "width": "mm", "volume": "mm³"}
-    grid = figure.add_gridspec(2, 1, height_ratios=(5, 4))
-    drawn = grid[0].subgridspec(1, len(units)).subplots(sharey=True)
+    drawn = figure.subplots(1, len(units), sharey=True)
     places = -np.arange(len(table))
     colours = [_case_colour(case) for case in table["case"]]
     for axes, (quantity, unit) in zip(drawn, units.items(), strict=True):
-        axes.barh(places, table[f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"], 0.6, color=colours)
-        axes.axvline(
-            table[f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"].iloc[0],
-            color=LABORATORY_COLOUR,
-            linewidth=0.8,
-            linestyle="--",
-        )
+        values = table[f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"]
+        bars = axes.barh(places, values, 0.6, color=colours)
+        axes.axvline(values.iloc[0], color=LABORATORY_COLOUR, linewidth=0.8, linestyle="--")
+        off = [f"{each:+.0f} %" if each else "" for each in table[f"{quantity}_to_laboratory_percent"]]
+        axes.bar_label(bars, off, padding=2.0, fontsize=SMALLEST_FONT)
+        axes.margins(x=ROOM)
         axes.set_xlabel(f"{quantity.capitalize()} ({unit})")
     drawn[0].set_yticks(places, table["case"])
-    head = [
-        "",
-        *(f"{name}\n({unit})" for name, unit in units.items()),
-        *(f"{name} to\nlab. (%)" for name in units),
-        *(f"{name} to\nthesis (%)" for name in units),
-    ]
-    cells = [
-        [row["case"], *(f"{row[name]:.3g}" for name in ("depth_mm", "width_mm", "volume_mm3"))]
-        + [f"{row[f'{name}_to_{other}_percent']:+.0f}" for other in ("laboratory", "thesis") for name in units]
-        for _, row in table.iterrows()
-    ]
-    printed_table(figure.add_subplot(grid[1]), head, cells)
     return figure
