@@ -18,7 +18,7 @@ import pytest
 
 from bulkwear.postproc.mesh import areas, read_surface, stl_corners
 from bulkwear.postproc.readers.load_ledger import LoadLedgerError
-from bulkwear.postproc.tables.law_volumes import laws_beside, volumes_by_law
+from bulkwear.postproc.tables.law_volumes import WornBy, law_measures, maps_of_cycles
 from bulkwear.postproc.tables.summary import run_summary
 from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
@@ -314,7 +314,8 @@ def both_ledgers(finished, tmp_path_factory):
 def test_laws_side_by_side_find_the_volume_that_the_run_wore_by(finished):
     """The sum over ledgers and surfaces is that of wear.csv; where all slides, friction works by its coefficient."""
     ((own, given),) = finished.case.laws(finished.parameters)
-    volumes = volumes_by_law(finished.folder, laws_beside(own), given)
+    measures = law_measures(maps_of_cycles(finished.folder, WornBy(own, given)))
+    volumes = {law: each["worn_volume_m3"] for law, each in measures.items()}
     assert volumes[own] == pytest.approx(wear_table(finished)["worn_volume_m3"].sum(), rel=ROUND_OFF)
     friction = finished.parameters["sample_material"]["contact"]["sliding_friction"]
     assert volumes["tangential_work"] == pytest.approx(friction * volumes["archard"], rel=ALL_SLIDE)

@@ -58,7 +58,8 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     if not study["told"]["paired"]:
         runs = [Text(UNPAIRED), *key_numbers.every_run(folder), Pictures(("worn_surface", "worn_surface_3d"))]
         return [Section("Every run", runs), Section("Beds", blocks_of_beds(folder, NOTE))]
-    places = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
+    columns = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
+    places = (*columns, "wear_by_law", "maps_by_law")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
     parts = (
         (

@@ -30,6 +30,7 @@ SECTIONS = (  # title, its figures, the first of which a study must have, and wh
     ("What exceeds alpha F L", ("excess_volume", "force_rise", "normal_force"), findings.excess_blocks),
     ("Growth of the volume with the revolutions", ("wear_volume",), findings.fit_blocks),
     ("Wear coefficient", ("calibration",), findings.coefficient_blocks),
+    ("Wear by several laws", ("wear_by_law", "maps_by_law"), lambda folder: []),
     ("Run-in", ("run_in", "contour_distribution", "contour_examples"), findings.run_in_blocks),
     ("Dependence on the mesh", ("mesh_series", "mesh_contours"), findings.mesh_blocks),
     ("Size invariance", ("size_invariance",), findings.size_blocks),

@@ -37,7 +37,7 @@ pytestmark = pytest.mark.solver
 
 REVOLUTIONS = 2
 REMARKS = ["tiny, for tests"]
-DRAWN_ELSEWHERE = ["worn_surface", "worn_surface_3d", "wear_updates"]  # of every case
+DRAWN_ELSEWHERE = ["worn_surface", "worn_surface_3d", "wear_updates", "wear_by_law", "maps_by_law"]  # of every case
 ROUND_OFF = 1e-9
 # Mean normal force on a plain top over the weight of the bed above it, at rest. A plough's front is loaded more; 700
 # particles, three of them above one another, arch over 40 mm. Seen 0.63; the source's model has 15 to 18 N over 12.8.

@@ -116,7 +116,8 @@ def test_sections_and_answers(tmp_path, monkeypatch):
         points = next(block for block in verdict(page_parameters(study), folder).blocks if isinstance(block, Points))
         for setting in ("slow", "fast"):
             for part in ("liner", "plate", "paddle"):
-                assert any(f"Design {setting}: the {part} has to be changed after" in item for item in points.items)
+                words = f"Design {setting}: the {part} has to be changed after"
+                assert any(words in item for item in (*points.items, *points.folded))
         assert page.answers(folder) == list(points.items)
 
 

@@ -130,7 +130,7 @@ def test_the_answer_is_the_critical_scale(folder):
 
 def test_the_page_counts_the_packings_among_its_costs(study, folder, page):
     """Eighteen runs of 150 s each, packings 60 s, 54 of them of its processor, of 50 s forecast."""
-    text = " ".join(durations(folder, page).split())
+    text = " ".join("\n".join(written(block, "x") for block in durations(folder, page)).split())
     assert "took 46 minutes of wall time" in text
     assert "| packing profiles | 300 | 9 000 | 1 | 0.9 | 0.833 | 1.08 |" in text
     assert "18 runs of 3 rows" in " ".join(provenance(folder, study).split())
