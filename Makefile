@@ -63,7 +63,8 @@ report: setup ## Build results/<STUDY>/report.html, the same as report.pdf, and 
 	$(SNAKEMAKE) $(STUDY) --report results/$(STUDY)/snakemake_report.html
 	$(SNAKEMAKE) results/$(STUDY)/report.pdf
 
-results: setup ## Remake every page of results in docs from its runs, or say which are stale and what redoing costs (RUN=1: do it, PAGE=one)
+results: setup ## Remake every page of results in docs from its runs, or say which are stale and what redoing costs (RUN=1: do it, CHECK=1: redo a row, PAGE=one)
+	@$(if $(CHECK),.venv/bin/python -m benchmarks.spot_check $(if $(PAGE),--page $(PAGE)))
 	@.venv/bin/python -m bulkwear.workflows.results.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE))
 
 docs: setup ## Build the documentation as a site, docs/site/build/index.html

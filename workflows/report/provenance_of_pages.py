@@ -20,6 +20,7 @@ from bulkwear.workflows.engine.code_parts import OF_CASE, PARTS, SHARED_TEMPLATE
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.engine.provenance import git
 from bulkwear.workflows.report.simulated import UNRECORDED, Simulated, version_name, warnings_of
+from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, failed, passed
 
 FILE, CHANGES = "results.json", "results_changes.csv"  # in docs
 LINE = 118  # characters of a line of prose
@@ -130,15 +131,22 @@ def versions_in(origin: Origin) -> list[Simulated]:
     return [Simulated(version_name(v["found"]), tuple(v["runs"]), v["found"], tuple(v["dates"])) for v in found]
 
 
-def older(origin: Origin, changes: Iterable[Change], now: Mapping[str, Any]) -> list[str]:
+def older(
+    origin: Origin, changes: Iterable[Change], now: Mapping[str, Any], checks: Sequence[SpotCheck] = ()
+) -> list[str]:
     """Return what is newer than a page's simulations, a sentence each; none where nothing that matters is.
 
     now: the present code of the page's case, as from `provenance.code_of_cases`
+    checks: a version that passed them counts as the code that it was held against; known changes still count
     """
     known = _known_changes(origin, changes)
     if origin.versions:
-        found = warnings_of(versions_in(origin), now, [origin.case])
-        return [*found, *known] if found else []
+        versions = versions_in(origin)
+        if not warnings_of(versions, now, [origin.case]):
+            return []
+        checked = [as_new_as(each, passed(each, origin.study, checks)) for each in versions]
+        found = warnings_of(checked, now, [origin.case])
+        return [*found, *failed(versions, origin.study, checks), *known]
     return [_unrecorded(origin), *known, *_touched(origin)]
 
 

@@ -38,6 +38,7 @@ from bulkwear.workflows.report.provenance_of_pages import (
     recorded,
 )
 from bulkwear.workflows.report.simulated import Simulated, versions_of
+from bulkwear.workflows.report.spot_checks import read_checks
 from bulkwear.workflows.results.index import mark, redo
 
 PROFILE = "workflows/profiles/default"
@@ -171,7 +172,7 @@ def remake(docs: Path, page: str, run: bool, cores: int) -> None:
             print(f"{origin.page}: {fault}", file=sys.stderr)
             continue
         found = next(each for each in read_origins(docs) if each.page == origin.page)
-        stale = older(found, changes, code_of_cases((found.case,)))
+        stale = older(found, changes, code_of_cases((found.case,)), read_checks(docs))
         state = "older than the code" if stale else "as new as the code"
         again = f", whose runs no job does again; {anew(found, cores)}" if stale and WRITTEN in done else ""
         print(f"{origin.page}: {state}; {done}{again}", flush=True)

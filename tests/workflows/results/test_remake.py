@@ -221,5 +221,5 @@ def test_the_list_of_pages_names_what_moved_their_numbers():
     change = Change("2026-11-21 00:00", "feedfacecafe", "edges", "pin_on_disc", "more contacts")
     page = index_page([OLD, NEW], lambda origin: older(origin, [change], NOW), [change])
     old, new = page.splitlines()[-2:]
-    assert "| yes | edges |" in old and "0123456789ab, by the time" in old
-    assert "| no | none |" in new and Path(OLD.page).stem in new
+    assert "| yes |  | edges |" in old and "0123456789ab, by the time" in old
+    assert "| no |  | none |" in new and Path(OLD.page).stem in new

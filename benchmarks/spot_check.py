@@ -1,0 +1,117 @@
+"""Simulate one row of a study again by the code that simulated its page and by today's: are the numbers the same?
+
+    python -m benchmarks.spot_check                           # every page whose simulations are older than the code
+    python -m benchmarks.spot_check --page chute_results_quick
+
+Each version is cloned into a folder of its own (results/spot_checks/<commit>) and set up there; the first row of the
+study's design runs at quick fidelity, one packing of it. What comes of it goes to docs/results_checks.json, and
+`make results` no longer calls such a page older than the code. Exit code 1 where numbers differ.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterable, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from benchmarks.same_results import compare, tables
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.project import PACKAGE, work_here
+from bulkwear.workflows.engine.provenance import code_of_cases
+from bulkwear.workflows.report.provenance_of_pages import Origin, read_origins, versions_in
+from bulkwear.workflows.report.simulated import newer_parts
+from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, keep_check, passed, read_checks
+from bulkwear.workflows.results.remake import chosen
+
+FIDELITY = "quick"  # of what is simulated again, whatever the page's: standard takes hours
+FOLDER = Path("results/spot_checks")
+
+
+class VersionError(RuntimeError):
+    """A version of the code cannot simulate the row; the message says which and why."""
+
+
+def wanted(origin: Origin, docs: Path) -> list[str]:
+    """Return the commits that simulated a page and are older than today's code, those that passed a check not."""
+    if not origin.study:
+        return []
+    now, checks = code_of_cases((origin.case,)), read_checks(docs)
+    found = [as_new_as(each, passed(each, origin.study, checks)) for each in versions_in(origin)]
+    old = [each for each in found if newer_parts(each, now) and each.found]
+    return list(dict.fromkeys(str(each.found["commit"]) for each in old if each.found["commit"]))
+
+
+def first_row(study: str) -> str:
+    """Return the first row of a study's design, which most designs begin with what others are held against."""
+    return str(load_study(study, overrides={"fidelity": FIDELITY}).design_rows[0]["row"])
+
+
+def solved(commit: str, study: str, row: str, rules: Sequence[str], folder: Path) -> Path:
+    """Return the results of a row by a commit, in its clone; goes on where it was left. Raises VersionError."""
+    clone = (folder / commit).resolve()
+    if not clone.exists():
+        _call(["git", "clone", "--quiet", "--no-checkout", str(PACKAGE), str(clone)], Path())
+        _call(["git", "checkout", "--quiet", "--detach", commit], clone)
+    _call(["make", "--silent", "setup"], clone)
+    snakemake = [".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default", study, "--until", *rules]
+    _call([*snakemake, "--config", f"fidelity={FIDELITY}", f"rows={json.dumps([row])}"], clone)
+    return clone / "results" / study
+
+
+def _call(command: Sequence[str], where: Path) -> None:
+    program = Path(where, ".venv/bin").resolve()
+    environment = {**os.environ, "PATH": os.pathsep.join([str(program), os.environ["PATH"]])}
+    done = subprocess.run(command, cwd=where, stdout=sys.stderr, env=environment)
+    if done.returncode != 0:
+        raise VersionError(f"{where}: {' '.join(command)} ended with exit code {done.returncode}.")
+
+
+def spot_check(origin: Origin, before: str, folder: Path) -> SpotCheck:
+    """Return what came of simulating the first row by a commit and by today's. Raises VersionError."""
+    code, row = code_of_cases((origin.case,)), first_row(origin.study)
+    if code["commit"] is None or code["changed"]:
+        raise VersionError(f"{PACKAGE}: files that matter are not committed, allowed is a commit of git.")
+    rules = load_study(origin.study, overrides={"fidelity": FIDELITY}).case.solver_rules
+    old, new = (solved(commit, origin.study, row, rules, folder) for commit in (before, code["commit"]))
+    found = tables(old)
+    if not found:
+        raise VersionError(f"{old}: found no table, allowed is one at least.")
+    faults = compare(old, new, {}, 0.0)
+    day = f"{datetime.now(UTC):%Y-%m-%d}"
+    return SpotCheck(origin.study, FIDELITY, row, before, code["commit"], code, day, len(found), "; ".join(faults))
+
+
+def check_pages(origins: Iterable[Origin], docs: Path, folder: Path) -> bool:
+    """Do the checks that pages lack, and print a line for each; return whether all numbers are the same."""
+    same = True
+    for origin in origins:
+        for commit in wanted(origin, docs):
+            check = spot_check(origin, commit, folder)
+            keep_check(docs, check)
+            same &= not check.difference
+            said = f"differs: {check.difference}" if check.difference else "the same numbers to the last digit"
+            print(f"{check.study}, row {check.row}: {check.before} and {check.after}, {check.tables} tables: {said}")
+    return same
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--docs", type=Path, default=Path("docs"), help="where the pages are")
+    parser.add_argument("--page", default="", help="one page alone")
+    parser.add_argument("--folder", type=Path, default=FOLDER, help="of the clones")
+    given = parser.parse_args()
+    try:
+        work_here()
+        return 0 if check_pages(chosen(read_origins(given.docs), given.page), given.docs, given.folder) else 1
+    except (ValueError, RuntimeError) as fault:
+        print(fault, file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,67 @@
+"""Which versions a spot check holds against today's code, and what it makes of their tables; nothing simulates."""
+
+from dataclasses import replace
+
+import pandas as pd
+import pytest
+
+import benchmarks.spot_check as module
+from bulkwear.workflows.engine.provenance import code_of_cases
+from bulkwear.workflows.report.provenance_of_pages import Origin
+from bulkwear.workflows.report.spot_checks import read_checks
+
+CASE = "equipment"
+
+
+@pytest.fixture
+def now(monkeypatch):
+    """Return today's code, as though it were committed."""
+    code = code_of_cases((CASE,)) | {"commit": "today", "changed": False}
+    monkeypatch.setattr(module, "code_of_cases", lambda cases: code)
+    return code
+
+
+@pytest.fixture
+def page(now):
+    """Return a page of two versions, one of today's code."""
+    old = now | {"commit": "before", "parts": now["parts"] | {"wear": "other"}}
+    versions = [{"runs": ["r"], "dates": ["2026-11-20"] * 2, "found": found} for found in (old, now)]
+    return Origin("page.md", CASE, study="which_law", versions=versions)
+
+
+def simulated(monkeypatch, folder, **volumes):
+    """Let versions have simulated, each its volume."""
+    for commit, volume in volumes.items():
+        (folder / commit).mkdir()
+        pd.DataFrame({"volume_m3": [volume]}).to_csv(folder / commit / "wear.csv", index=False)
+    monkeypatch.setattr(module, "solved", lambda commit, *given: folder / commit)
+
+
+def test_the_version_that_is_older_is_checked_once(monkeypatch, now, page, tmp_path, capsys):
+    """The same numbers are kept, and the version is then not asked for again."""
+    simulated(monkeypatch, tmp_path, before=1.25, today=1.25)
+    assert module.wanted(page, tmp_path) == ["before"]
+    assert module.check_pages([page], tmp_path, tmp_path)
+    assert "before and today, 1 tables: the same numbers" in capsys.readouterr().out
+    assert read_checks(tmp_path)[0].code["parts"] == now["parts"]
+    assert module.wanted(page, tmp_path) == []
+    assert module.wanted(replace(page, study=""), tmp_path) == []
+
+
+def test_another_number_in_the_last_digit_is_a_difference(monkeypatch, page, tmp_path):
+    """It is kept with its table, and asked for again."""
+    simulated(monkeypatch, tmp_path, before=1.25, today=1.25 + 1e-15)
+    assert not module.check_pages([page], tmp_path, tmp_path)
+    assert "wear.csv: volume_m3 differs" in read_checks(tmp_path)[0].difference
+    assert module.wanted(page, tmp_path) == ["before"]
+
+
+def test_code_that_is_not_committed_and_runs_without_tables_are_refused(monkeypatch, now, page, tmp_path):
+    """A check of what nobody can look up says nothing, nor does one of no numbers."""
+    (tmp_path / "empty").mkdir()
+    monkeypatch.setattr(module, "solved", lambda *given: tmp_path / "empty")
+    with pytest.raises(module.VersionError, match="found no table"):
+        module.spot_check(page, "before", tmp_path)
+    monkeypatch.setattr(module, "code_of_cases", lambda cases: now | {"changed": True})
+    with pytest.raises(module.VersionError, match="not committed"):
+        module.spot_check(page, "before", tmp_path)
