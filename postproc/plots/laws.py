@@ -27,10 +27,10 @@ from bulkwear.postproc.tables.display import MICROMETRES
 from bulkwear.postproc.tables.law_volumes import LawMap
 
 PANELS = {
-    "over_archard": "Volume over\nArchard's (-)",
-    "over_first": "Volume over that\nof the first (-)",
-    "overlap": "Wear where\nArchard's lies (-)",
-    "front_share": "Share on fronts\nof bumps (-)",
+    "over_archard": "Volume over Archard's (-)",
+    "over_first": "Volume over that of the first (-)",
+    "overlap": "Wear where Archard's lies (-)",
+    "front_share": "Share on fronts of bumps (-)",
 }
 GROUP = 0.8  # of the distance between settings that bars fill
 TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
@@ -59,7 +59,7 @@ def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
             known = {"yerr": ends} if np.isfinite(ends).any() else {}
             look = {"color": SERIES_COLOURS[number % len(SERIES_COLOURS)], "label": law.replace("_", " ")}
             axes.bar(at, value, width, error_kw={"elinewidth": 0.9, "capsize": 2}, **known, **look)
-        axes.set_ylabel(PANELS[name])
+        axes.set_title(PANELS[name], loc="left", fontsize=SMALLEST_FONT)  # panels are too low for words at their side
         axes.set_ylim(bottom=0.0)
     grid[-1].set_xticks(range(len(order)), order, rotation=0 if len(order) <= FEW_PLACES else 90)
     figure.legend(*named_once(grid), loc="outside upper left", ncols=len(laws))
