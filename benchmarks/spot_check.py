@@ -58,8 +58,8 @@ def solved(commit: str, study: str, row: str, rules: Sequence[str], folder: Path
         _call(["git", "clone", "--quiet", "--no-checkout", str(PACKAGE), str(clone)], Path())
         _call(["git", "checkout", "--quiet", "--detach", commit], clone)
     _call(["make", "--silent", "setup"], clone)
-    snakemake = [".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default", study, "--until", *rules]
-    _call([*snakemake, "--config", f"fidelity={FIDELITY}", f"rows={json.dumps([row])}"], clone)
+    command = [".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default", study, "--until", *rules]
+    _call([*command, "--config", f"fidelity={FIDELITY}", f"rows={json.dumps([row])}"], clone)
     return clone / "results" / study
 
 
