@@ -105,8 +105,7 @@ class Estimate:
 class Ends:
     """An interval at CONFIDENCE that no mean over packings gives, as that of a crossing; it is judged like an estimate.
 
-    value: what it is about, NaN where only ends are known; low, high: its ends, NaN where the scatter is unknown
-    packings: behind each point of it
+    value: what it is about; low, high: its ends, NaN where the scatter is unknown; packings: behind each point of it
     """
 
     value: float
@@ -128,10 +127,12 @@ class Ends:
     def text(self, digits: int = 3, unit: str = "") -> str:
         """Return the value with its interval, or that its scatter is unknown."""
         ending = f" {unit}" if unit else ""
-        value = "no value" if math.isnan(self.value) else f"{self.value:.{digits}g}{ending}"
         if not self.known:
-            return f"{value} ({UNKNOWN if self.packings == 1 else 'no interval'})"
-        return f"{value} ({100.0 * CONFIDENCE:.0f} % interval {self.low:.{digits}g} to {self.high:.{digits}g})"
+            return f"{self.value:.{digits}g}{ending} ({UNKNOWN if self.packings == 1 else 'no interval'})"
+        return (
+            f"{self.value:.{digits}g}{ending}"
+            f" ({100.0 * CONFIDENCE:.0f} % interval {self.low:.{digits}g} to {self.high:.{digits}g})"
+        )
 
 
 @cache  # few different ones are asked for, by many estimates

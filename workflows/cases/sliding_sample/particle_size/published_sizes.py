@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -126,7 +127,8 @@ def _words(found: Mapping[Any, Estimate | Ends]) -> str:
     """Return what was found: the estimate, or the range of the means over several scales."""
     if len(found) == 1:
         scale, one = next(iter(found.items()))
-        return f"scale {scale:g}: {one.text()}" if scale != "" else one.text()
+        said = f"no value{one.text().removeprefix('nan')}" if math.isnan(one.value) else one.text()
+        return f"scale {scale:g}: {said}" if scale != "" else said
     values = [one.value for one in found.values()]
     scales = ", ".join(f"{scale:g}" for scale in found)
     return f"{min(values):.3g} to {max(values):.3g} at scales {scales}" if found else ""

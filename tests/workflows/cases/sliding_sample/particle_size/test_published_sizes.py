@@ -7,9 +7,11 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics.crossing import Crossing
+from bulkwear.postproc.statistics.intervals import Ends
 from bulkwear.postproc.statistics.verdicts import AGREES, CONTRADICTS, OTHER_SIZE, UNSAID
 from bulkwear.workflows.cases.sliding_sample.particle_size import figures
 from bulkwear.workflows.cases.sliding_sample.particle_size.published_sizes import (
+    _words,
     beside_the_source,
     critical_sentences,
     packing_beside_the_source,
@@ -189,3 +191,9 @@ def test_the_chart_has_a_panel_for_each_measure_beside_the_source():
         "Relative velocity of the particles (%)",
         "Wear rate over the largest of all runs<br>(%)",
     ]
+
+
+def test_a_crossing_without_a_value_says_so():
+    """Its interval stands alone; no number is printed where there is none."""
+    found = {"": Ends(float("nan"), 10.8, float("inf"), 3)}
+    assert _words(found) == "no value (95 % interval 10.8 to inf)"
