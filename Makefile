@@ -64,8 +64,9 @@ report: setup ## Build results/<STUDY>/report.html, the same as report.pdf, and 
 	$(SNAKEMAKE) results/$(STUDY)/report.pdf
 
 results: setup ## Remake every page of results in docs from its runs, or say which are stale and what redoing costs (RUN=1: do it, CHECK=1: redo a row, PAGE=one)
-	@$(if $(CHECK),.venv/bin/python -m benchmarks.spot_check $(if $(PAGE),--page $(PAGE)))
-	@.venv/bin/python -m bulkwear.workflows.results.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE))
+	@status=0; \
+	$(if $(CHECK),.venv/bin/python -m benchmarks.spot_check $(if $(PAGE),--page $(PAGE)) || status=1;) \
+	.venv/bin/python -m bulkwear.workflows.results.remake --cores $(CORES) $(if $(RUN),--run) $(if $(PAGE),--page $(PAGE)) && exit $$status
 
 docs: setup ## Build the documentation as a site, docs/site/build/index.html
 	.venv/bin/sphinx-build -q -W --keep-going -b html -c docs/site -d docs/site/build/.doctrees . docs/site/build

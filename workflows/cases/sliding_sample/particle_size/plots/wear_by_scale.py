@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.plots.style import (
@@ -46,6 +47,7 @@ MEASURE_NAMES = {
 POINTS = 50  # of a drawn line
 ROOM = 0.08  # -, of the scales, beside them
 MOST_BESIDE = 4  # entries of a legend
+INTERVAL_COLOUR, CRITICAL = "#e5e5e5", "critical scale, 95 %"
 HEIGHT = "height_mm"  # places that stand upright
 
 
@@ -76,7 +78,7 @@ def wear_against_scale(
     axes.axhline(0.0, color="#888888", linewidth=0.6)
     axes.set(xlabel="Particle scale (-)", ylabel="Wear over the plain sample's\nwith the smallest particles (-)")
     axes.set_xlim(places[0], places[-1])
-    _scale_legend(figure, looks, published, not critical.reason)
+    _scale_legend(figure, looks, published, critical)
     return figure
 
 
@@ -86,22 +88,27 @@ def _of_surface(surface: str) -> tuple[str, str, str]:
 
 
 def _critical(axes: Axes, critical: Crossing, ends: tuple[float, float]) -> None:
-    """Mark the critical scale and its interval, as far as the axis shows them."""
+    """Mark the critical scale, where it has a value, and its interval, as far as the axis shows them."""
     if critical.reason:
         return
-    axes.axvline(critical.value, color="black", linewidth=0.8, linestyle="--", label="critical")
-    axes.axvspan(max(critical.low, ends[0]), min(critical.high, ends[1]), color="#e5e5e5", zorder=0)
+    if not np.isnan(critical.value):
+        axes.axvline(critical.value, color="black", linewidth=0.8, linestyle="--", label="critical")
+    axes.axvspan(max(critical.low, ends[0]), min(critical.high, ends[1]), color=INTERVAL_COLOUR, zorder=0)
 
 
 def _scale_legend(
-    figure: Figure, looks: dict[str, tuple[str, str, str]], published: pd.DataFrame, critical: bool
+    figure: Figure, looks: dict[str, tuple[str, str, str]], published: pd.DataFrame, critical: Crossing
 ) -> None:
-    handles = [Line2D([], [], color=shade, marker=mark, label=name) for shade, mark, name in looks.values()]
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], color=shade, marker=mark, label=name) for shade, mark, name in looks.values()
+    ]
     if not published.empty:
         source = published["source"].iloc[0].partition(",")[0]
         handles.append(Line2D([], [], color="black", linestyle=":", label=source))
-    if critical:
-        handles.append(Line2D([], [], color="black", linestyle="--", linewidth=0.8, label="critical scale, 95 %"))
+    if not critical.reason and np.isnan(critical.value):
+        handles.append(Patch(color=INTERVAL_COLOUR, label=CRITICAL))
+    elif not critical.reason:
+        handles.append(Line2D([], [], color="black", linestyle="--", linewidth=0.8, label=CRITICAL))
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), columnspacing=1.2)
 
 

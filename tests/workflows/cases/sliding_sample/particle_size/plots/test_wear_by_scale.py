@@ -1,8 +1,11 @@
 """Figures of wear against particle scale and of motion round a circle."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.colors import to_rgba
 
 from bulkwear.postproc.plots.style import remarks_of
 from bulkwear.postproc.reference.size_ratios import PUBLISHED_DIAMETER, PUBLISHED_PATTERN, size_ratios
@@ -10,6 +13,8 @@ from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.postproc.statistics.intervals import estimate
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.contacts import ASIDE, MEAN_SIZE
 from bulkwear.workflows.cases.sliding_sample.particle_size.plots.wear_by_scale import (
+    CRITICAL,
+    INTERVAL_COLOUR,
     curves_by_scale,
     steady_by_scale,
     wear_against_scale,
@@ -42,6 +47,16 @@ def test_wear_has_points_lines_and_published_lines_for_every_curve():
     critical = next(line for line in axes.lines if line.get_label() == "critical")
     assert critical.get_xdata()[0] == pytest.approx(TRUTH, rel=0.05)
     assert "shrunk" in remarks_of(figure)
+
+
+def test_a_critical_scale_without_a_value_is_a_field_alone():
+    """The legend shows the field of the interval, and no line that the axes do not have."""
+    wear = wear_by_scale(summary(noise=0.02, packings=3))
+    critical = replace(critical_scale(wear)[0], value=np.nan)
+    figure = wear_against_scale(wear, LINES, critical, [])
+    assert "critical" not in labels_of(figure.axes[0])
+    (entry,) = [each for each in figure.legends[0].get_patches() if each.get_label() == CRITICAL]
+    assert entry.get_facecolor() == to_rgba(INTERVAL_COLOUR)
 
 
 def test_two_scales_show_points_only():
