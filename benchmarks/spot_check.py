@@ -29,6 +29,8 @@ from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, keep_che
 from bulkwear.workflows.results.remake import chosen
 
 FIDELITY = "quick"  # of what is simulated again, whatever the page's: standard takes hours
+ONE_PACKING = {"packings": 1}
+WEAR, WORN_RUN = "wear.csv", "worn_run"  # of each run, by the file contract, and the rule that makes it
 FOLDER = Path("results/spot_checks")
 
 
@@ -46,20 +48,28 @@ def wanted(origin: Origin, docs: Path) -> list[str]:
     return list(dict.fromkeys(str(each.found["commit"]) for each in old if each.found["commit"]))
 
 
-def first_row(study: str) -> str:
-    """Return the first row of a study's design, which most designs begin with what others are held against."""
-    return str(load_study(study, overrides={"fidelity": FIDELITY}).design_rows[0]["row"])
+def runs_of_first_row(study: str) -> tuple[str, list[str]]:
+    """Return the first row of a study's design, which most designs begin with what others are held against, and the
+    names of its runs. Raises VersionError where nothing wears.
+    """
+    row = str(load_study(study, overrides={"fidelity": FIDELITY, **ONE_PACKING}).design_rows[0]["row"])
+    chosen_alone = load_study(study, overrides={"fidelity": FIDELITY, **ONE_PACKING, "rows": [row]})
+    if WORN_RUN not in chosen_alone.case.solver_rules:
+        raise VersionError(f"{study}: its runs make no {WEAR}, allowed is a study of worn runs; redo its page.")
+    return row, [run.name for run in chosen_alone.runs]
 
 
-def solved(commit: str, study: str, row: str, rules: Sequence[str], folder: Path) -> Path:
-    """Return the results of a row by a commit, in its clone; goes on where it was left. Raises VersionError."""
+def solved(commit: str, study: str, row: str, runs: Sequence[str], folder: Path) -> Path:
+    """Return the results of a row's runs by a commit, in its clone; goes on where it was left. Raises VersionError."""
     clone = (folder / commit).resolve()
     if not clone.exists():
         _call(["git", "clone", "--quiet", "--no-checkout", str(PACKAGE), str(clone)], Path())
         _call(["git", "checkout", "--quiet", "--detach", commit], clone)
     _call(["make", "--silent", "setup"], clone)
-    command = [".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default", study, "--until", *rules]
-    _call([*command, "--config", f"fidelity={FIDELITY}", f"rows={json.dumps([row])}"], clone)
+    command = [".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default"]
+    wanted_files = [f"results/{study}/{run}/{WEAR}" for run in runs]
+    settings = {"fidelity": FIDELITY, **ONE_PACKING, "rows": [row]}
+    _call([*command, *wanted_files, "--config", *(f"{key}={json.dumps(it)}" for key, it in settings.items())], clone)
     return clone / "results" / study
 
 
@@ -73,14 +83,14 @@ def _call(command: Sequence[str], where: Path) -> None:
 
 def spot_check(origin: Origin, before: str, folder: Path) -> SpotCheck:
     """Return what came of simulating the first row by a commit and by today's. Raises VersionError."""
-    code, row = code_of_cases((origin.case,)), first_row(origin.study)
+    code = code_of_cases((origin.case,))
     if code["commit"] is None or code["changed"]:
         raise VersionError(f"{PACKAGE}: files that matter are not committed, allowed is a commit of git.")
-    rules = load_study(origin.study, overrides={"fidelity": FIDELITY}).case.solver_rules
-    old, new = (solved(commit, origin.study, row, rules, folder) for commit in (before, code["commit"]))
+    row, runs = runs_of_first_row(origin.study)
+    old, new = (solved(commit, origin.study, row, runs, folder) for commit in (before, code["commit"]))
     found = tables(old)
-    if not found:
-        raise VersionError(f"{old}: found no table, allowed is one at least.")
+    if missing := [run for run in runs if f"{run}/{WEAR}" not in found]:
+        raise VersionError(f"{old}: found no {WEAR} of {', '.join(missing)}, allowed is one of each run.")
     faults = compare(old, new, {}, 0.0)
     day = f"{datetime.now(UTC):%Y-%m-%d}"
     return SpotCheck(origin.study, FIDELITY, row, before, code["commit"], code, day, len(found), "; ".join(faults))

@@ -31,9 +31,11 @@ def page(now):
 
 def simulated(monkeypatch, folder, **volumes):
     """Let versions have simulated, each its volume."""
+    _, runs = module.runs_of_first_row("which_law")
     for commit, volume in volumes.items():
-        (folder / commit).mkdir()
-        pd.DataFrame({"volume_m3": [volume]}).to_csv(folder / commit / "wear.csv", index=False)
+        for run in runs:
+            (folder / commit / run).mkdir(parents=True)
+            pd.DataFrame({"volume_m3": [volume]}).to_csv(folder / commit / run / "wear.csv", index=False)
     monkeypatch.setattr(module, "solved", lambda commit, *given: folder / commit)
 
 
@@ -57,11 +59,27 @@ def test_another_number_in_the_last_digit_is_a_difference(monkeypatch, page, tmp
 
 
 def test_code_that_is_not_committed_and_runs_without_tables_are_refused(monkeypatch, now, page, tmp_path):
-    """A check of what nobody can look up says nothing, nor does one of no numbers."""
-    (tmp_path / "empty").mkdir()
-    monkeypatch.setattr(module, "solved", lambda *given: tmp_path / "empty")
-    with pytest.raises(module.VersionError, match="found no table"):
+    """A check of what nobody can look up says nothing, nor does one of beds alone."""
+    simulated(monkeypatch, tmp_path, before=1.25)
+    (_, (run,)) = module.runs_of_first_row("which_law")
+    (tmp_path / "before" / run).rename(tmp_path / "before" / "bed_1")
+    with pytest.raises(module.VersionError, match=f"found no wear.csv of {run}"):
         module.spot_check(page, "before", tmp_path)
     monkeypatch.setattr(module, "code_of_cases", lambda cases: now | {"changed": True})
     with pytest.raises(module.VersionError, match="not committed"):
         module.spot_check(page, "before", tmp_path)
+
+
+def test_the_runs_of_one_packing_of_the_first_row_are_asked_for(monkeypatch, tmp_path):
+    """By the files of its runs, in the clone of that commit; a study in which nothing wears is refused."""
+    called = []
+    monkeypatch.setattr(module, "_call", lambda command, where: called.append((command, where)))
+    row, runs = module.runs_of_first_row("demo")
+    assert (row, runs) == ("R9", ["R9_convex", "R9_plain"])
+    (tmp_path / "before").mkdir()
+    assert module.solved("before", "demo", row, runs, tmp_path) == tmp_path / "before/results/demo"
+    command, where = called[-1]
+    assert where == tmp_path / "before"
+    assert {"results/demo/R9_convex/wear.csv", "results/demo/R9_plain/wear.csv", "packings=1"} <= set(command)
+    with pytest.raises(module.VersionError, match=r"calibration: its runs make no wear\.csv"):
+        module.runs_of_first_row("calibration")

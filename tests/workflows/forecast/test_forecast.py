@@ -1,14 +1,17 @@
 """Forecasts: jobs and their sizes, seconds, memory and disk, and how jobs fill cores."""
 
 import pickle
-import time
+import subprocess
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
+import gmsh
 import pandas as pd
 import pytest
 import yaml
 
+from bulkwear.meshes.own import cad
 from bulkwear.workflows.cases.sliding_sample.particle_size.packings import container
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import by_scale, packed_runs
 from bulkwear.workflows.cases.sliding_sample.work import cycles
@@ -40,7 +43,8 @@ from tests import REPOSITORY
 
 EXACT = 1e-12  # relative; rounding of a few sums
 PARTICLES = 2e-3  # relative; numbers of each size are rounded
-LONGEST = 15.0  # s, of all studies at all fidelities together; it takes about one
+TRIANGLE = 2  # gmsh's number of the element
+OF_BLOCK = 100  # triangles; the tester's block has 42, the smallest sample thousands
 RATES = dict.fromkeys(TERMS, 0.0) | {"particle_steps": 1e-6, "triangle_steps": 1e-7, "cycles": 2.0, "jobs": 1.0}
 SHORT = 40  # letters, of what Snakemake shows of jobs
 PROFILES = REPOSITORY / "profiles"
@@ -60,9 +64,30 @@ def job(name="a", **changes):
 
 @pytest.fixture(scope="module")
 def forecasts():
-    """Tables of every study at every fidelity by the default rates, and how long that took."""
-    started = time.process_time()
-    return shipped_forecasts(), time.process_time() - started
+    """Tables of every study at every fidelity by the default rates, and what was done for them.
+
+    That is the triangles of each mesh, what was read of each file of CAD, and the command of each program.
+    """
+    triangles, read, commands = [], [], []
+    mesh, read_cad, start = gmsh.model.mesh.generate, cad._apart, subprocess.Popen.__init__
+
+    def meshed(dimension):
+        mesh(dimension)
+        triangles.append(len(gmsh.model.mesh.getElementsByType(TRIANGLE)[0]))
+
+    def cad_read(path, what, *given):
+        read.append(what)
+        return read_cad(path, what, *given)
+
+    def started(self, command, *given, **named):
+        commands.append(command)
+        start(self, command, *given, **named)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gmsh.model.mesh, "generate", meshed)
+        patch.setattr(cad, "_apart", cad_read)
+        patch.setattr(subprocess.Popen, "__init__", started)
+        return shipped_forecasts(), triangles, read, commands
 
 
 def test_the_page_of_forecasts_is_up_to_date(forecasts):
@@ -80,9 +105,14 @@ def test_every_study_at_every_fidelity(forecasts):
         assert set(table["needs"]) - {""} <= set(table["job"])
 
 
-def test_nothing_is_meshed_or_simulated_for_it(forecasts):
-    """All of them together are forecast in seconds of processor time."""
-    assert forecasts[1] < LONGEST
+def test_no_surface_is_meshed_and_nothing_simulated_for_it(forecasts):
+    """But the tester's block, a few triangles; CAD is drawn and its areas are read, and no other program starts."""
+    _, triangles, read, commands = forecasts
+    assert max(triangles) <= OF_BLOCK
+    assert set(read) == {"areas"}
+    others = [command for command in commands if cad.PROGRAM not in command]
+    assert len(commands) - len(others) == len(read)
+    assert {Path(command[1]).name for command in others} == {"draw.py"}
 
 
 def test_fidelities_cost_more_and_more(forecasts):
