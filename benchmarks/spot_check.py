@@ -5,7 +5,8 @@
 
 Each version is cloned into a folder of its own (results/spot_checks/<commit>) and set up there; the first row of the
 study's design runs at quick fidelity, one packing of it. What comes of it goes to docs/results_checks.json, and
-`make results` no longer calls such a page older than the code. Exit code 1 where numbers differ.
+`make results` no longer calls such a page older than the code. Exit code 1 where numbers differ
+or cannot be had.
 """
 
 from __future__ import annotations
@@ -97,15 +98,24 @@ def spot_check(origin: Origin, before: str, folder: Path) -> SpotCheck:
 
 
 def check_pages(origins: Iterable[Origin], docs: Path, folder: Path) -> bool:
-    """Do the checks that pages lack, and print a line for each; return whether all numbers are the same."""
+    """Do the checks that pages lack, and print a line for each; return whether all were done with the same numbers.
+
+    What cannot be simulated is told on standard error, and the next page's turn comes.
+    """
     same = True
     for origin in origins:
         for commit in wanted(origin, docs):
-            check = spot_check(origin, commit, folder)
+            try:
+                check = spot_check(origin, commit, folder)
+            except VersionError as fault:
+                print(fault, file=sys.stderr)
+                same = False
+                continue
             keep_check(docs, check)
             same &= not check.difference
             said = f"differs: {check.difference}" if check.difference else "the same numbers to the last digit"
-            print(f"{check.study}, row {check.row}: {check.before} and {check.after}, {check.tables} tables: {said}")
+            told = f"{check.study}, row {check.row}: {check.before} and {check.after}, {check.tables} tables: {said}"
+            print(told, flush=True)
     return same
 
 
