@@ -5,8 +5,8 @@
 
 Each version is cloned into a folder of its own (results/spot_checks/<commit>) and set up there; the first row of the
 study's design runs at quick fidelity, one packing of it. What comes of it goes to docs/results_checks.json, and
-`make results` no longer calls such a page older than the code. Exit code 1 where numbers differ
-or cannot be had.
+`make results` no longer calls such a page older than the code. Exit code 1 where numbers differ or cannot be
+had.
 """
 
 from __future__ import annotations
