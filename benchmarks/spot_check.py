@@ -89,12 +89,13 @@ def spot_check(origin: Origin, before: str, folder: Path) -> SpotCheck:
         raise VersionError(f"{PACKAGE}: files that matter are not committed, allowed is a commit of git.")
     row, runs = runs_of_first_row(origin.study)
     old, new = (solved(commit, origin.study, row, runs, folder) for commit in (before, code["commit"]))
-    found = tables(old)
-    if missing := [run for run in runs if f"{run}/{WEAR}" not in found]:
+    compared = {run: tables(old / run) for run in runs}
+    if missing := [run for run, found in compared.items() if WEAR not in found]:
         raise VersionError(f"{old}: found no {WEAR} of {', '.join(missing)}, allowed is one of each run.")
-    faults = compare(old, new, {}, 0.0)
+    faults = [f"{run}/{fault}" for run in runs for fault in compare(old / run, new / run, {}, 0.0)]
+    count = sum(len(found) for found in compared.values())
     day = f"{datetime.now(UTC):%Y-%m-%d}"
-    return SpotCheck(origin.study, FIDELITY, row, before, code["commit"], code, day, len(found), "; ".join(faults))
+    return SpotCheck(origin.study, FIDELITY, row, before, code["commit"], code, day, count, "; ".join(faults))
 
 
 def check_pages(origins: Iterable[Origin], docs: Path, folder: Path) -> bool:
