@@ -25,10 +25,10 @@ from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.postproc.wear.side import connected_pieces
 from bulkwear.postproc.wear.thickness import thickness_to_back
 from bulkwear.workflows.cases.equipment.checks import thin_phrase
-from bulkwear.workflows.cases.equipment.decks import domain, longest_s, moving_mesh, skin
+from bulkwear.workflows.cases.equipment.decks import domain, largest_cell, longest_s, moving_mesh
 from bulkwear.workflows.cases.equipment.drawings import drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of
-from bulkwear.workflows.cases.equipment.placing import filling_box, largest_diameter, placing_room
+from bulkwear.workflows.cases.equipment.placing import filling_box, placing_room
 from bulkwear.workflows.cases.equipment.stream_checks import check_stream
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, looks, room_needed
 from bulkwear.workflows.config.layers import ConfigError
@@ -111,8 +111,7 @@ def _diagonal(points: np.ndarray) -> float:
 
 def _check_cells(run: Parameters, surface: SurfaceMesh) -> None:
     """Raise ConfigError for room that takes more cells than fit into memory."""
-    sides = [high - low for low, high in domain(run, surface)]
-    cell = 0.5 * (largest_diameter(run) + skin(run))
+    sides, cell = [high - low for low, high in domain(run, surface)], largest_cell(run)
     cells = math.prod(side / cell for side in sides)
     if cells <= MOST_CELLS:
         return

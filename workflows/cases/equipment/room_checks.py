@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.equipment.decks import FASTEST, SHELL_SHARE, room_round
 from bulkwear.workflows.cases.equipment.placing import (
     LEAST_SIDE_DIAMETERS,
@@ -27,7 +28,6 @@ LEAST_NORMAL_VELOCITY = 1e-3  # m/s, through an inlet: below it the solver stops
 LEAST_SLICE_DIAMETERS = 2.5
 TOUCHING = 1e-6  # m; ends that are equal in the drawing and in the settings
 LOOKING_UP = 0.5  # -, z of the unit normal of a rectangle that looks up
-GRAVITY = 9.81  # m/s2
 T_PER_H = 3.6  # of a kg/s
 AXES = "xyz"
 

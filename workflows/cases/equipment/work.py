@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.meshes.own.refine import MOST_TRIANGLES
-from bulkwear.workflows.cases.equipment.decks import moving_mesh, skin
+from bulkwear.workflows.cases.equipment.decks import fall_speed, moving_mesh, skin
 from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing, drawing_digest
 from bulkwear.workflows.engine.work import Stage, bytes_of_run
 
-SPEED = 3.0  # m/s, of the fastest particles, which say how often lists of neighbours are made; a fall of half a metre
+SPEED = 3.0  # m/s, of the fastest particles where no feed falls faster; they say how often lists are made
 EQUILATERAL = math.sqrt(3.0) / 4.0  # -, area of an equilateral triangle over its edge squared
 OVER_EQUILATERAL = (
     1.1  # -, triangles of a mesh over area / equilateral ones: 1.04 to 1.19 of the chute, mill and screw;
@@ -39,7 +39,7 @@ def run_stages(run: Parameters) -> tuple[Stage, ...]:
     triangles = sum(counts)
     moving = MOVING_PER_PARTICLE if any(map(moving_mesh, parts)) else 0.0
     worn = sum(count for part, count in zip(parts, counts, strict=True) if part["wears"])
-    often = 2.0 * SPEED * derived["time_step_s"] / skin(run)
+    often = 2.0 * max(SPEED, fall_speed(run)) * derived["time_step_s"] / skin(run)
     first, others = derived["first_cycle_steps"], derived["travel_steps"]
     blocks = others // first
     return (

@@ -17,6 +17,7 @@ from bulkwear.workflows.cases.equipment.parameters import filled_mass
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, machine_surface, rectangle
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain, deck_text, write_decks
+from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import EXECUTABLE, LEDGER_EXECUTABLE, solver_command, solver_environment
 from tests.support.own_machine_project import machine_study
@@ -221,6 +222,57 @@ def test_filling_keeps_off_the_ends_but_in_a_slice(tmp_path):
     with machine_study(tmp_path / "b", **INLETS["both"], **SLICES["slice"]) as study:
         sliced = equipment_deck.equipment_start(study.runs[0].parameters)
     assert sliced["filling_ends_m"] == [-0.05, 0.05]
+
+
+# ---------------------------------------------------------------- lists and cells of neighbours
+
+
+def test_lists_of_neighbours_last_as_long_as_the_feed_is_fast(tmp_path):
+    """At the speed of the fall a particle moves by half the skin in the steps asked for; at most two radii, and never
+    less than without a feed."""
+    with machine_study(tmp_path) as study:
+        run = {**study.runs[0].parameters}
+    run["parts"] = [{**part, "motion": None} for part in run["parts"]]
+    run["derived"] = {**run["derived"], "time_step_s": 5e-5}
+    radius, step = 0.5 * min(run["particle"]["diameters_m"]), run["derived"]["time_step_s"]
+    inlet, fall = run["inlet"], run["inlet"]["centre_m"][2] - run["outlets"]["below"]["centre_m"][2]
+    fastest = np.sqrt(np.square(inlet["velocity_m_per_s"]).sum() + 2 * 9.81 * fall)
+    assert fall > 0 and equipment_deck.fall_speed(run) == pytest.approx(fastest, rel=ROUND_OFF)
+    assert equipment_deck.skin(run) == pytest.approx(2 * fastest * step * equipment_deck.LIST_STEPS, rel=ROUND_OFF)
+
+    def fed_with(speed):
+        return equipment_deck.skin({**run, "inlet": {**inlet, "velocity_m_per_s": [0, 0, -speed]}})
+
+    assert fed_with(1e3) == pytest.approx(equipment_deck.FED_SKIN_OVER_RADIUS * radius, rel=ROUND_OFF)
+    least = neighbour_skin(run["particle"])
+    assert least == equipment_deck.skin({**run, "inlet": None}) < equipment_deck.skin(run) < fed_with(1e3)
+
+
+def test_cells_of_neighbours_are_wide_where_particles_are_few(tmp_path):
+    """A room that its particles fill keeps the solver's cells and says nothing of them; emptier room has wider ones,
+    up to a multiple of how far neighbours are looked for."""
+    with machine_study(tmp_path) as study:
+        run = study.runs[0].parameters
+        surface = machine_surface(run["parts"])
+    reach = max(run["particle"]["diameters_m"]) + equipment_deck.skin(run)
+
+    def side(particles, length=1.0):
+        held = {**run, "derived": {**run["derived"], "held_particles": particles}}
+        return equipment_deck.cell_side(held, [(0.0, length)] * 3)
+
+    assert side(1e9) == pytest.approx(0.5 * reach, rel=ROUND_OFF)
+    assert side(1.0, 100.0) == pytest.approx(equipment_deck.LARGEST_CELL * reach, rel=ROUND_OFF)
+    few = 1.0 / (equipment_deck.CELLS_PER_PARTICLE * reach**3)
+    assert side(few) == pytest.approx(reach, rel=ROUND_OFF) and side(8 * few, 2.0) == pytest.approx(
+        reach, rel=ROUND_OFF
+    )
+    for particles, said in ((1e9, 0), (1.0, 1)):
+        held = {**run, "derived": {**run["derived"], "held_particles": particles}}
+        equipment_deck.write_shared(held, surface, tmp_path)
+        lines = re.findall(r"^neigh_modify binsize (\S+)$", (tmp_path / "domain.in").read_text(), re.MULTILINE)
+        assert len(lines) == said
+    ends = equipment_deck.domain(run, surface)
+    assert float(lines[0]) == pytest.approx(equipment_deck.cell_side(held, ends), rel=ROUND_OFF)
 
 
 # ---------------------------------------------------------------- the solver runs them
