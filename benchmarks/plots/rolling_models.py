@@ -1,0 +1,42 @@
+"""The figure of `benchmarks.rolling_models`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from benchmarks.rolling_page import MODELS, differences
+from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, new_figure
+from bulkwear.workflows.cases.calibration.responses import response_name
+
+LOOKS = dict(zip(MODELS, ((BLUE, "o"), (ORANGE, "s"), ("#009E73", "^"), (OTHER_COLOUR, "D")), strict=True))
+HEIGHT = 6.2  # inches
+ROOM = 0.08  # -, of the range of a panel
+
+
+def against_source(runs: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
+    """Draw a panel per response: ours over the source's, a mark per pair and model (mean of packings); on the line
+    both are alike.
+
+    runs, published: as in `rolling_page.differences`
+    """
+    found = differences(runs, published)
+    means = found.groupby(["response", "model", "pair", "published"], sort=False)["ours"].mean().reset_index()
+    figure = new_figure(remarks, HEIGHT)
+    responses = list(dict.fromkeys(means["response"]))
+    panels = figure.subplots(-(-len(responses) // 2), 2, squeeze=False).ravel()
+    for axes, response in zip(panels, responses, strict=False):
+        of = means[means["response"] == response]
+        low, high = (getattr(of[["published", "ours"]].to_numpy(), end)() for end in ("min", "max"))
+        room = ROOM * (high - low or high)
+        axes.plot([low - room, high + room], [low - room, high + room], color="#a0a0a0", linewidth=0.8)
+        for model, (colour, marker) in LOOKS.items():
+            some = of[of["model"] == model]
+            axes.plot(some["published"], some["ours"], marker, color=colour, markersize=5.0, alpha=0.8, label=model)
+        axes.set(xlabel=f"{response_name(response)}, Yan 2022", ylabel="Ours")
+    for axes in panels[len(responses) :]:
+        axes.set_axis_off()
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(MODELS))
+    return figure

@@ -1,0 +1,133 @@
+"""Which rolling model did the source run? Pairs of frictions that it simulated, in its shear box and draw-down test,
+under each of our four models: the responses that it prints beside ours.
+
+    python -m benchmarks.rolling_models --cores 2    # in the root of the repository
+    python -m benchmarks.rolling_models --finished   # while it runs, or after it was stopped: of the simulations so far
+    python -m benchmarks.rolling_models --redraw
+
+Simulations stay in `--folder`, where a stopped one goes on; more packings are added to those that are there. Writes
+into docs: rolling_models.csv (every simulation), figure and rolling_models_results.md; `--redraw` makes the last two
+from the first.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from benchmarks.plots.rolling_models import against_source
+from benchmarks.rolling_page import MODELS, results_page
+from bulkwear.postproc.flow.bulk_test import RESPONSES
+from bulkwear.postproc.inference.loop import packing_seed
+from bulkwear.postproc.plots.style import save, save_small
+from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SHEAR_BOX, test_of
+from bulkwear.workflows.cases.calibration.case import pairs_file
+from bulkwear.workflows.cases.calibration.driver import FIRST_REPEAT, pair_of
+from bulkwear.workflows.cases.calibration.simulations import answer, simulate_all
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulation_folder
+from bulkwear.workflows.engine.job import Progress
+
+# A slope under the constant torque of `cdt` creeps, the faster the larger the time step (docs/calibration.md).
+SETTINGS = {model: {"rolling_friction": model} for model in MODELS} | {
+    "cdt": {"rolling_friction": "cdt", "rayleigh_fraction": 0.1}
+}
+FIDELITY = "standard"  # the largest particles that the slot lets pass
+PACKINGS = 2
+FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
+
+
+def wanted(packings: int) -> list[dict[str, Any]]:
+    """Return what is to be simulated, a packing of all before the next: model, test, pair, seed, frictions; `asked` is
+    the test itself.
+    """
+    rows = []
+    studies = {
+        name: load_study("calibration", overrides={"fidelity": FIDELITY, "solver": dict(solver)})
+        for name, solver in SETTINGS.items()
+    }
+    for packing in range(packings):
+        for kind in (SHEAR_BOX, DRAW_DOWN):
+            for model, study in studies.items():
+                run = study.all_runs[0].parameters
+                names = [each["name"] for each in run["calibration"]["parameters"]]
+                seed = packing_seed(run["calibration"]["seed"], FIRST_REPEAT + packing)
+                for pair in pairs_of(pd.read_csv(pairs_file(study)), kind):
+                    values = pair_of(pd.read_csv(pairs_file(study)), pair, names, run)
+                    told = {name.rpartition(".")[2]: value for name, value in values.items()}
+                    rows.append(
+                        {"model": model, "test": kind, "pair": pair, "packing": packing + 1, **told}
+                        | {"asked": test_of(run, kind, values, seed)}
+                    )
+    return rows
+
+
+def pairs_of(published: pd.DataFrame, kind: str) -> list[str]:
+    """Return the pairs of which the source prints a response of a test."""
+    names = [name for name in RESPONSES[kind] if name in published]
+    return list(published.loc[published[names].notna().any(axis=1), "row"])
+
+
+def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int) -> pd.DataFrame:
+    """Return the rows with the responses of each, simulated unless they were before. Raises SolverError."""
+    say = Progress("rolling models", 1).say
+    with state.only_driver(folder, say):
+        found = simulate_all([row["asked"] for row in rows], folder, cores, say)
+    answers = [answer(each) for each in found]
+    return pd.DataFrame([_told(row) | given for row, given in zip(rows, answers, strict=True)])
+
+
+def finished(rows: Sequence[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
+    """Return those rows whose simulation is there."""
+    return [
+        row
+        for row in rows
+        if state.finished_cycles(simulation_folder(row["asked"], folder), inputs_digest(row["asked"])) > 0
+    ]
+
+
+def _told(row: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in row.items() if name != "asked"}
+
+
+def publish(output: Path, runs: pd.DataFrame, published: pd.DataFrame) -> str:
+    """Write figure and page of the simulations; return the page. runs: as from `simulated`."""
+    page = results_page(runs, published)
+    (output / PAGE).write_text(page, encoding="utf-8")
+    remarks = [
+        f"study calibration at {FIDELITY} fidelity, pairs of Tables 3.3, 3.5 and 3.6 of Yan 2022; packings of each:"
+        f" {runs['packing'].nunique()}",
+        f"made by benchmarks/rolling_models.py, {date.today():%Y-%m-%d}",
+    ]
+    save(against_source(runs, published, remarks), output / FIGURE)
+    save_small(output / FIGURE, output / FIGURE)
+    return page
+
+
+def main() -> None:
+    """Simulate what is missing, then write table, figure and page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}")
+    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/rolling_models"))
+    parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
+    parser.add_argument("--finished", action="store_true", help="simulate nothing, take what is finished")
+    parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
+    given = parser.parse_args()
+    file = given.output / FILE
+    if not given.redraw:
+        rows = wanted(given.packings)
+        rows = finished(rows, given.folder) if given.finished else rows
+        simulated(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
+    published = pd.read_csv(pairs_file(load_study("calibration")))
+    print(publish(given.output, pd.read_csv(file), published), flush=True)
+
+
+if __name__ == "__main__":
+    main()
