@@ -1,0 +1,97 @@
+"""Rolling models beside what the source simulated: what is simulated, differences, the sentence, page and figure."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from benchmarks.rolling_models import SETTINGS, finished, pairs_of, publish, wanted
+from benchmarks.rolling_page import MODELS, by_pair, differences, nearest, results_page, summary
+from bulkwear.postproc.statistics.intervals import UNKNOWN
+from bulkwear.workflows.cases.calibration.case import pairs_file
+from bulkwear.workflows.config.design import load_study
+
+STUDENT_95_1 = 12.7062  # two-sided 95 % point of Student's t with one degree of freedom; tables
+OFF = {"cdt": -6.0, "epsd2": -3.0, "own_spin": 0.5, "rvd": 4.0}  # degrees, that these models are off by
+
+
+@pytest.fixture(scope="module")
+def published():
+    return pd.read_csv(pairs_file(load_study("calibration")))
+
+
+def runs_off_by(published, packings=2, spread=1.0):
+    """Simulations whose shear angle in the draw-down test is off by OFF, packings apart by `spread`."""
+    known = published.dropna(subset=["draw_down_shear_angle_deg"])
+    return pd.DataFrame(
+        {"model": model, "test": "draw_down", "pair": row.row, "packing": packing}
+        | {"draw_down_shear_angle_deg": row.draw_down_shear_angle_deg + off + spread * (packing - 1.5)}
+        for model, off in OFF.items()
+        for row in known.itertuples()
+        for packing in range(1, packings + 1)
+    )
+
+
+def test_every_published_pair_is_simulated_under_every_model(published):
+    """In the tests of which the source prints a response, with its frictions and our four models; a packing of all
+    comes before the next one."""
+    rows = wanted(2)
+    assert {row["model"] for row in rows} == set(MODELS) == set(SETTINGS)
+    assert [row["packing"] for row in rows] == sorted(row["packing"] for row in rows)
+    assert len(rows) == 2 * len(MODELS) * (
+        len(pairs_of(published, "shear_box")) + len(pairs_of(published, "draw_down"))
+    )
+    for row in rows:
+        asked = row["asked"]
+        of = published.set_index("row").loc[row["pair"]]
+        contact = asked["particle"]["contact"]
+        assert asked["kind"] == row["test"] and asked["solver"]["rolling_friction"] == row["model"]
+        assert contact["sliding_friction"] == row["sliding_friction"] == of["particle.contact.sliding_friction"]
+        assert contact["rolling_friction"] == row["rolling_friction"] == of["particle.contact.rolling_friction"]
+    assert len({row["asked"]["seed"] for row in rows}) == 2
+
+
+def test_nothing_is_taken_for_finished_that_was_not_simulated(tmp_path):
+    assert finished(wanted(1), tmp_path) == []
+
+
+def test_differences_and_their_interval(published):
+    """A packing counts by the mean of its pairs; Student's t over packings, in closed form for two."""
+    table = summary(differences(runs_off_by(published), published)).set_index("model")
+    for model, off in OFF.items():
+        row = table.loc[model]
+        assert row["mean_difference"] == pytest.approx(off) and row["pairs"] == 6 and row["packings"] == 2
+        assert row["root_mean_square"] == pytest.approx(abs(off))
+        half = STUDENT_95_1 * np.sqrt(0.5) / np.sqrt(2)  # standard deviation of -0.5 and 0.5
+        assert [row["low"], row["high"]] == pytest.approx([off - half, off + half], rel=1e-4)
+
+
+def test_a_packing_without_all_pairs_does_not_count(published):
+    """Else the mean would be of other pairs."""
+    runs = runs_off_by(published)
+    short = runs.drop(runs[(runs["packing"] == 2) & (runs["pair"] == "first_1")].index)
+    table = summary(differences(short, published))
+    assert (table["packings"] == 1).all() and table["low"].isna().all()
+
+
+def test_the_nearest_model_is_named(published):
+    """By the root mean square; with one packing nothing is said of intervals."""
+    table = summary(differences(runs_off_by(published, spread=0.01), published))
+    said = nearest(table, "draw_down_shear_angle_deg")
+    assert "own_spin is nearest (off by 0.5" in said and "cdt farthest (6; mean -6)" in said
+    assert said.endswith("no interval of a mean difference holds 0.")
+    wide = nearest(summary(differences(runs_off_by(published), published)), "draw_down_shear_angle_deg")
+    assert "holds 0 for own_spin" in wide and "rvd" in wide
+    one = nearest(summary(differences(runs_off_by(published, packings=1), published)), "draw_down_shear_angle_deg")
+    assert one.endswith(f"{UNKNOWN}.")
+
+
+def test_page_and_figure(tmp_path, published):
+    """Each pair beside the source under every model; a response that nobody simulated has no section."""
+    runs = runs_off_by(published)
+    page = publish(tmp_path, runs, published)
+    assert page == (tmp_path / "rolling_models_results.md").read_text() == results_page(runs, published)
+    assert page.count("\n## ") == 2 and "nan" not in page
+    found = by_pair(differences(runs, published), "draw_down_shear_angle_deg")
+    assert list(found) == ["pair", "published", *MODELS]
+    assert found["own_spin"].to_numpy() == pytest.approx(found["published"].to_numpy() + OFF["own_spin"])
+    assert (tmp_path / "rolling_models.png").stat().st_size > 0
