@@ -49,6 +49,11 @@ class SimulatedFrom(dict):
     def __reduce__(self) -> tuple[type, tuple[dict[str, Any], str]]:
         return SimulatedFrom, (dict(self), self.digest)
 
+    @staticmethod
+    def all_of(values: Mapping[str, Any]) -> SimulatedFrom:
+        """Return parameters of which every one counts."""
+        return SimulatedFrom(values, state.digest(values))
+
 
 def run_digest(case: Case, parameters: Parameters, bed: Parameters | None) -> str:
     """Return the hash of what a run is simulated from besides its surface and the restart file of its bed."""

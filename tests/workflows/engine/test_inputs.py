@@ -75,3 +75,10 @@ def test_jobs_compare_the_hash_and_get_the_values():
     first, second = SimulatedFrom({"a": 1}, "f" * 64), SimulatedFrom({"a": 1, "new": "none"}, "f" * 64)
     assert repr(first) == repr(second) == "simulated from ffffffffffff"
     assert pickle.loads(pickle.dumps(second)) == {"a": 1, "new": "none"}
+
+
+def test_where_every_value_counts_the_hash_is_of_all():
+    """As of a calibration, whose job keeps its simulations itself."""
+    first, again, other = (SimulatedFrom.all_of({"box": {"width_m": width}}) for width in (0.1, 0.1, 0.2))
+    assert repr(first) == repr(again) != repr(other) and "width_m" not in repr(first)
+    assert pickle.loads(pickle.dumps(other)) == other == {"box": {"width_m": 0.2}}

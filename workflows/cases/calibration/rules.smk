@@ -1,6 +1,7 @@
 """Calibrations: bulk tests simulated where a rule says, and their decks."""
 
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
+from bulkwear.workflows.engine.inputs import SimulatedFrom
 
 
 rule calibrated_parameters:
@@ -20,7 +21,7 @@ rule calibrated_parameters:
         runtime=asked("calibrated_parameters", 0),
         mem_mb=asked("calibrated_parameters", 1),
     params:
-        run=lambda wildcards: calibration_box(study_of(wildcards)),
+        run=lambda wildcards: SimulatedFrom.all_of(calibration_box(study_of(wildcards))),
         templates=templates_digest("shear_box", "draw_down", "wall_shear"),
     message:
         "Calibration of {wildcards.study}"
@@ -42,7 +43,7 @@ rule box_sizes:
         runtime=asked("box_sizes", 0),
         mem_mb=asked("box_sizes", 1),
     params:
-        runs=lambda wildcards: {run.name: run.parameters for run in study_of(wildcards).runs},
+        runs=lambda wildcards: SimulatedFrom.all_of({run.name: run.parameters for run in study_of(wildcards).runs}),
         templates=templates_digest("shear_box"),
     message:
         "Shear boxes of other sizes"
@@ -59,7 +60,7 @@ rule bulk_test_deck:
         test="shear_box|draw_down|wall_shear",
     localrule: True
     params:
-        run=lambda wildcards: calibration_box(study_of(wildcards)),
+        run=lambda wildcards: SimulatedFrom.all_of(calibration_box(study_of(wildcards))),
         templates=templates_digest("shear_box", "draw_down", "wall_shear"),
     message:
         "Deck of the {wildcards.test}"
