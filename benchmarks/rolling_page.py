@@ -72,7 +72,8 @@ def nearest(table: pd.DataFrame, response: str) -> str:
         said = "no interval of a mean difference holds 0"
     return (
         f"{unit}: {best['model']} is nearest (off by {best['root_mean_square']:.2g}, root mean square of"
-        f" {best['pairs']:.0f} pair{'s' if best['pairs'] > 1 else ''}; mean {best['mean_difference']:+.2g}), {last['model']} farthest"
+        f" {best['pairs']:.0f} pair{'s' if best['pairs'] > 1 else ''}; mean {best['mean_difference']:+.2g}),"
+        f" {last['model']} farthest"
         f" ({last['root_mean_square']:.2g}; mean {last['mean_difference']:+.2g}); {said}."
     )
 
