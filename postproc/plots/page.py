@@ -18,8 +18,9 @@ from matplotlib import colormaps
 from matplotlib.colors import rgb2hex
 
 from bulkwear.postproc.plots.style import MAP
-from bulkwear.postproc.tables.compared_surfaces import Shown, packed
+from bulkwear.postproc.tables.compared_surfaces import Shown
 from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.tables.packed_surfaces import packed
 
 TEMPLATE = Path(__file__).with_name("compare.html")
 COLOURS = 9  # of the map, from which the page makes all others

@@ -60,8 +60,8 @@ def worn_surface(job: Job) -> Any:
     and loads, as means over the time until then. One scale holds for all views; it ends at the value that 99 % of the
     area of the surface with the largest ones does not exceed. Differences from the first view are taken between nodes
     nearest to one another, on one scale as well. A section cuts all views at one place, with the unworn shape dotted
-    and what is shown along it below. What does not wear is left out. Of many cycles some are shown, of several packings
-    the first.
+    and what is shown along it below. What does not wear is left out. Of many cycles some are shown; of many runs the
+    cycles before the last have their depth alone. Of several packings the first is shown.
     """,
 )
 def worn_surface_3d(job: Job) -> Any:
@@ -85,6 +85,8 @@ def worn_surface_3d(job: Job) -> Any:
     left_out = len(first) - len({each.run for each in shown})
     remarks = [*job.remarks, *shown_remark(design)]
     remarks += [f"{left_out} runs are left out, so that the page stays small"] if left_out else []
+    if not all(each.whole for each in shown):
+        remarks.append("cycles before the last have their depth alone, so that the page stays small")
     depths = depth_table(meshes, deformed)
 
     def write(path: str) -> None:

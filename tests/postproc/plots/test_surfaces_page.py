@@ -8,6 +8,7 @@ import subprocess
 
 import pytest
 
+from bulkwear.postproc.mesh import node_areas
 from bulkwear.postproc.plots.page import surfaces_page
 from bulkwear.postproc.tables.compared_surfaces import Shown
 from tests.support.accessibility import NEEDS_BROWSER, axe_findings
@@ -16,6 +17,7 @@ from tests.support.shapes import worn_plate
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 DEPTHS = {"R9": 5e-6, "plain": 2e-6}  # m, in the last cycle; a half of it before
+CARRIED = 0.2  # -, of the depth
 REMARKS = ["particles at scale 4", "sample < 100 mm & rigid </script>"]
 PROBE = """<script type="module">
 const wait = () => {
@@ -33,7 +35,12 @@ const wait = () => {
   set("input[name=place]", 50, "input");
   const section = document.getElementById("section");
   found.section = section.data.map((line) => [line.name, line.yaxis ?? "y", line.x.filter((x) => x !== null), line.y]);
+  set("select[name=as]", "values", "change");
+  set("select[name=quantity]", "carried", "change");
+  found.carried = section.data[2].y;
   set(".view input[name=cycle]", 1, "input");
+  found.kept = document.querySelector(".view output").textContent;
+  set("select[name=quantity]", "depth", "change");
   found.earlier = section.data.at(1).name;
   document.title = `FOUND${JSON.stringify(found)}END`;
 };
@@ -45,12 +52,19 @@ section.value = "0";
 section.dispatchEvent(new Event("change"));"""
 
 
+def partly_carried(depth):
+    """A worn plate of whose depth a share is not yet removed."""
+    mesh = worn_plate((1.0 - CARRIED) * depth)
+    mesh.point_data["carried_volume_m3"] = CARRIED * depth * node_areas(mesh)
+    return mesh
+
+
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """A page of two runs, unworn and after two cycles."""
+    """A page of two runs, unworn and after two cycles, the first with its depth alone; a share is carried."""
     path = tmp_path_factory.mktemp("page") / "page.html"
     shown = [
-        Shown(run, cycle, 0.1 * cycle, f"cycle {cycle}", worn_plate(depth * cycle / 2))
+        Shown(run, cycle, 0.1 * cycle, f"cycle {cycle}", partly_carried(depth * cycle / 2), cycle != 1)
         for run, depth in DEPTHS.items()
         for cycle in range(3)
     ]
@@ -85,7 +99,9 @@ def test_views_differences_and_sections_say_what_they_show(page, tmp_path):
     for (run, depth), (_, _, places, values) in zip(DEPTHS.items(), found["section"][2::3], strict=True):
         assert (min(places), max(places)) == pytest.approx((0.0, 10.0), abs=0.01), run  # mm along y
         assert [value for value in values if value is not None] == pytest.approx([1e6 * depth] * 4, abs=1e-3)
-    assert found["earlier"] == "R9, cycle 1"
+    assert found["earlier"] == "R9, cycle 1" and found["kept"] == "cycle 1: depth alone is kept"
+    carried = [value for value in found["carried"] if value is not None]
+    assert carried == pytest.approx([CARRIED * 1e6 * DEPTHS["R9"]] * 4, abs=1e-3)
 
 
 @NEEDS_BROWSER

@@ -1,46 +1,14 @@
-"""Surfaces for comparison: what is shown at a node, which cycles of which runs, and what a page unpacks."""
-
-import zlib
+"""Surfaces for comparison: what is shown at a node, and which cycles of which runs."""
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.mesh import HOLDER_PART, SurfaceMesh, node_areas, write_surface
+from bulkwear.postproc.mesh import node_areas, write_surface
 from bulkwear.postproc.tables import compared_surfaces as compared
-from bulkwear.postproc.tables.compared_surfaces import Shown, packed, quantities, shown_surfaces
+from bulkwear.postproc.tables.compared_surfaces import quantities, shown_surfaces
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS
-
-SIDE, TIME, DEPTH, THICKNESS = 0.01, 0.5, 3e-6, 2e-3  # m, s, m, m
-IMPULSE = 4e-3  # N s, of each of the two triangles
-ROUNDED = 1.0 / compared.LEVELS  # -, of a box and of the largest value
-
-
-def square(depth=DEPTH, **data):
-    """A square of two triangles and one of the holder beside it, worn to a depth."""
-    points = SIDE * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5], [2, 0, 0]], dtype=float)
-    triangles = np.array([[0, 1, 2], [0, 2, 3], [1, 4, 2]])
-    loads = {"normal_impulse_N_s": IMPULSE, "sliding_work_J": 0.0, "impact_energy_J": 0.0, "worn_volume_m3": 1e-12}
-    cells = {"part": np.array([0, 1, HOLDER_PART])} | {name: np.full(3, value) for name, value in loads.items()}
-    nodes = {"removed_thickness_m": np.full(5, depth), "carried_volume_m3": np.zeros(5)} | data
-    return SurfaceMesh(points, triangles, cells, nodes)
-
-
-def as_shown(mesh, run="R9", cycle=1):
-    return Shown(run, cycle, TIME * cycle, f"cycle {cycle}", compared.without_skirt(mesh))
-
-
-def unpacked(told, block):
-    """Points (mm) and values by key of each surface, as a page reads them."""
-    numbers, (low, high) = zlib.decompress(block), np.array(told["box"])
-    for entry in told["surfaces"]:
-        raw = np.frombuffer(numbers, "<u2", 3 * entry["nodes"], entry["points"]).reshape(-1, 3)
-        triangles = np.frombuffer(numbers, "<u4", 3 * entry["faces"], entry["triangles"]).reshape(-1, 3)
-        values = {
-            key: np.frombuffer(numbers, "<u2", entry["nodes"], at) / (compared.LEVELS - 1.0)
-            for key, at in entry["values"].items()
-        }
-        yield low + (high - low) * raw / compared.LEVELS, triangles, values
+from tests.support.worn_square import DEPTH, IMPULSE, THICKNESS, TIME, as_shown, square
 
 
 def test_loads_are_means_over_area_and_time():
@@ -62,35 +30,6 @@ def test_a_rigid_study_shows_an_equivalent_depth():
     assert {"removed", "carried", "remaining"}.isdisjoint(quantities(False))
     depth = quantities(False)["depth"].values(shown)
     np.testing.assert_allclose((depth * node_areas(shown.mesh)).sum(), 2e-12 * 1e6)
-
-
-def test_a_page_unpacks_what_was_packed():
-    """Places to a step of the box, values to a step of their largest; what is alike is kept once, zeros left out."""
-    surfaces = [as_shown(square(DEPTH * factor), cycle=cycle) for cycle, factor in ((1, 0.5), (2, 1.0))]
-    told, block = packed(surfaces, True)
-    first, second = unpacked(told, block)
-    for (points, triangles, values), each in zip((first, second), surfaces, strict=True):
-        np.testing.assert_allclose(points, each.mesh.points * 1e3, atol=ROUNDED * np.ptp(told["box"]))
-        assert triangles.tolist() == each.mesh.triangles.tolist()
-        depth = values["depth"] * told["quantities"]["depth"]["largest"]
-        np.testing.assert_allclose(depth, quantities(True)["depth"].values(each), atol=ROUNDED * DEPTH * 1e6)
-    entries = told["surfaces"]
-    assert entries[0]["triangles"] == entries[1]["triangles"] and entries[0]["points"] == entries[1]["points"]
-    assert entries[0]["values"]["depth"] != entries[1]["values"]["depth"]
-    assert set(told["quantities"]) == {"depth", "removed", "pressure"}
-
-
-@pytest.mark.parametrize(("depth", "unit", "top"), [(DEPTH, "µm", 3.0), (DEPTH * 1000, "mm", 3.0)])
-def test_thousands_of_micrometres_are_millimetres(depth, unit, top):
-    """The unit of a scale fits its largest value."""
-    told, _ = packed([as_shown(square(depth))], True)
-    scale = told["quantities"]["depth"]
-    assert scale["unit"] == unit and scale["top"] == pytest.approx(top)
-
-
-def test_the_part_of_a_node_is_told():
-    """A node between two parts counts to the higher one."""
-    assert compared.node_parts(compared.without_skirt(square())).tolist() == [1, 0, 1, 1]
 
 
 @pytest.fixture
@@ -122,10 +61,26 @@ def test_hours_of_operation_call_a_block(left):
     assert shown_surfaces(runs, hours)[6].said == "620 h (block 6)"
 
 
-@pytest.mark.parametrize(("most", "runs", "cycles"), [(32, 2, 3), (16, 2, 1), (9, 1, 1)])
-def test_a_large_study_shows_fewer_cycles_then_fewer_runs(left, monkeypatch, most, runs, cycles):
-    """Never more nodes than a page takes, but for one run; the last cycle is always there."""
-    monkeypatch.setattr(compared, "MOST_NODES", most)
+NODES = 8  # of the unworn surfaces of both runs, without skirt
+
+
+@pytest.mark.parametrize(
+    ("cost", "runs", "cycles", "whole"),
+    [
+        ((1, 6, 0), 2, 6, 6),  # all values of all cycles
+        ((1, 4, 0), 2, 4, 4),
+        ((1, 1, 3), 2, 4, 1),  # the last one whole, depths of three before it
+        ((1, 1, 0), 2, 1, 1),
+        ((0.5, 0.5, 0), 1, 1, 1),
+    ],
+)
+def test_a_large_study_shows_fewer_values_then_fewer_cycles_then_fewer_runs(
+    left, monkeypatch, cost, runs, cycles, whole
+):
+    """Never more than a page takes, but for one run; the last cycle is always there, with all values."""
+    each = (compared.UNWORN_NODE, compared.WHOLE_NODE, compared.DEPTH_NODE)
+    monkeypatch.setattr(compared, "MOST_BYTES", NODES * sum(a * b for a, b in zip(cost, each, strict=True)) + 1e-6)
     shown = shown_surfaces(*left)
     assert [each.run for each in shown] == [run for run in list(left[0])[:runs] for _ in range(1 + cycles)]
-    assert shown[-1].cycle == 6
+    assert shown[-1].cycle == 6 and shown[-1].whole
+    assert sum(each.whole for each in shown) == runs * (1 + whole)
