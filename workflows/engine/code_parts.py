@@ -29,6 +29,7 @@ ASIDE = {  # files that change no number of a run
     *(f"workflows/engine/{name}.py" for name in ("code_parts", "inputs", "job", "own_code", "project")),
     *(f"workflows/engine/{name}.py" for name in ("provenance", "state", "work")),
     *(f"workflows/engine/{name}.py" for name in ("disk", "patience", "records", "row_check")),
+    *(f"workflows/engine/{name}.py" for name in ("own_machine", "series", "study_folder", "terminal")),
     *("postproc/readers/point_cloud.py", "postproc/readers/restart_file.py"),
     "meshes/estimate.py",
 }
