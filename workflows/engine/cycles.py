@@ -38,7 +38,15 @@ from bulkwear.workflows.engine.chain import (
     write_cycle,
     write_shared_files,
 )
-from bulkwear.workflows.engine.disk import check_room, folder_bytes, is_full, whole_restart
+from bulkwear.workflows.engine.disk import (
+    FEW,
+    LAST_RESTARTS,
+    RESTART_EVERY,
+    check_room,
+    folder_bytes,
+    is_full,
+    whole_restart,
+)
 from bulkwear.workflows.engine.inputs import SIMULATED_FROM, inputs_digest, simulated_from, why_again
 from bulkwear.workflows.engine.job import Progress, write_table
 from bulkwear.workflows.engine.ledgers import SamplesError, producer
@@ -99,10 +107,12 @@ def run_chain(chain: Chain) -> None:
             span = span_of(chain, finished)
         for cycle in range(1, finished - 1):
             drop_files(chain, cycle)
+        drop_restarts(chain, finished)
         while span:
             run_cycle(chain, span, inputs, progress)
             drop_files(chain, span.cycle - 1)
             finished += 1
+            drop_restarts(chain, finished)
             if state.cycle_folder(chain.folder, finished).exists():  # they follow one that was damaged
                 finished = finished_cycles(chain, inputs, announce)
             span = span_of(chain, finished)
@@ -191,6 +201,19 @@ def drop_files(chain: Chain, cycle: int) -> None:
     folder = state.cycle_folder(chain.folder, cycle)
     span = state.read_state(chain.folder, cycle)["span"]
     state.drop_files(folder, chain.case.files_to_drop(chain.parameters, Span(**span) if span else None))
+
+
+def drop_restarts(chain: Chain, finished: int) -> None:
+    """Remove restart files of finished cycles, but for those of cycle 0 and of the last two, from which a run is
+    resumed, and of every tenth, so that little is done again where a file between them turns out to be damaged.
+    """
+    if chain.parameters["solver"]["kept_restarts"] != FEW:
+        return
+    folders = {cycle: state.cycle_folder(chain.folder, cycle) for cycle in range(1, finished)}
+    with_restart = [cycle for cycle, folder in folders.items() if (folder / RESTART).exists()]
+    for cycle in with_restart[:-LAST_RESTARTS]:
+        if cycle % RESTART_EVERY:
+            state.drop_files(folders[cycle], (RESTART,))
 
 
 def origin_digest(chain: Chain, cycle: int, inputs: str) -> str:

@@ -11,6 +11,8 @@ from bulkwear.postproc.readers.restart_file import RestartFile, RestartFileError
 FULL = {errno.ENOSPC, errno.EDQUOT}
 RESERVE_BYTES = 50_000_000  # that stay free: logs, states and tables of a cycle that ends, of all runs side by side
 MEGABYTE, GIGABYTE = 1e6, 1e9
+FEW = "few"  # value of solver.kept_restarts
+LAST_RESTARTS, RESTART_EVERY = 2, 10  # cycles that keep their restart files then: the last ones, and every tenth
 
 
 class DiskError(RuntimeError):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bulkwear.workflows.engine.derived import neighbour_skin
+from bulkwear.workflows.engine.disk import FEW, LAST_RESTARTS, RESTART_EVERY
 from bulkwear.workflows.engine.state import DIGEST_LETTERS, digest
 
 # bytes on disk, of files that the solver and the driver write; measured
@@ -112,12 +113,18 @@ def bytes_of_bed(particles: float) -> float:
     return RESTART_PARTICLE * particles + CYCLE_BYTES
 
 
-def bytes_of_run(particles: float, triangles: float, surface_triangles: float, cycles: int) -> float:
-    """Return what a run leaves on disk: restart file, surface and last picture of the bed of every cycle.
+def bytes_of_run(
+    run: Mapping[str, Any], particles: float, triangles: float, surface_triangles: float, cycles: int
+) -> float:
+    """Return what a run leaves on disk: surface and last picture of the bed of every cycle, restart files of cycle 0
+    and of those cycles that keep them.
 
     triangles: that the solver has; surface_triangles: of the worn surface
     """
-    restart = RESTART_PARTICLE * particles + RESTART_TRIANGLE * triangles + CYCLE_BYTES
+    restart = RESTART_PARTICLE * particles + RESTART_TRIANGLE * triangles
+    few = min(cycles, LAST_RESTARTS + cycles // RESTART_EVERY)
+    restarts = 1 + (few if run["solver"]["kept_restarts"] == FEW else cycles)
     of_cycle = SOLVER_TRIANGLE + LEDGER_TRIANGLE + SURFACE_TRIANGLE
-    cycle = restart + of_cycle * surface_triangles + PICTURE_PARTICLE * particles
-    return restart + (SOLVER_TRIANGLE + RUN_TRIANGLE) * surface_triangles + cycles * cycle
+    cycle = CYCLE_BYTES + of_cycle * surface_triangles + PICTURE_PARTICLE * particles
+    once = CYCLE_BYTES + (SOLVER_TRIANGLE + RUN_TRIANGLE) * surface_triangles
+    return once + restarts * restart + cycles * cycle

@@ -24,9 +24,9 @@ from bulkwear.postproc.wear.balance import BALANCE_TOLERANCE
 from bulkwear.workflows.engine import cycles, state, wear_step
 from bulkwear.workflows.engine.accounting import HISTORY, LEDGER, account, account_and_wear
 from bulkwear.workflows.engine.case import FORCES
-from bulkwear.workflows.engine.chain import write_cycle, write_shared_files
+from bulkwear.workflows.engine.chain import Chain, write_cycle, write_shared_files
 from bulkwear.workflows.engine.derived import law_volume
-from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.inputs import inputs_digest, run_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.ledgers import PRODUCERS
 from bulkwear.workflows.engine.machine import interpreter, machine_facts
@@ -577,6 +577,39 @@ def test_a_cycle_with_a_cut_restart_file_is_done_again(finished, tmp_path, capfd
     assert f"{folder / 'run.restart'}: the restart file of 4096 bytes is not whole" in said
     assert f"{folder.name} is made again" in said
     assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("kept", "finished_cycles", "there"),
+    [("few", 4, {0, 2, 3}), ("few", 24, {0, 10, 20, 22, 23}), ("few", 2, {0, 1}), ("all", 24, set(range(24)))],
+)
+def test_restart_files_that_no_resume_needs_go(tmp_path, kept, finished_cycles, there):
+    """Those of cycle 0, of every tenth cycle and of the last two stay, or all; states of the others do without."""
+    study = tiny_study(solver={"kept_restarts": kept})
+    chain = Chain("R9_convex", tmp_path, study.case, study.run("R9_convex").parameters, tmp_path / "surface.vtu")
+    for cycle in range(finished_cycles):
+        folder = state.cycle_folder(tmp_path, cycle)
+        folder.mkdir()
+        for name in ("run.restart", "surface.vtu"):
+            (folder / name).write_text(name)
+        state.write_state(folder, "same", ("run.restart", "surface.vtu"), {})
+    for count in range(1, finished_cycles + 1):
+        cycles.drop_restarts(chain, count)
+    folders = {cycle: state.cycle_folder(tmp_path, cycle) for cycle in range(finished_cycles)}
+    assert {cycle for cycle, folder in folders.items() if (folder / "run.restart").exists()} == there
+    assert state.finished_cycles(tmp_path, "same", ("run.restart", "surface.vtu")) == finished_cycles
+    (folders[finished_cycles - 1] / "run.restart").write_text("damage")
+    assert state.finished_cycles(tmp_path, "same", ("run.restart", "surface.vtu")) == finished_cycles - 1
+
+
+def test_kept_restart_files_change_no_input():
+    """What is kept is no reason to simulate again."""
+    digests = {inputs_of(tiny_study(solver={"kept_restarts": kept})) for kept in ("few", "all")}
+    assert len(digests) == 1
+
+
+def inputs_of(study):
+    return run_digest(study.case, study.run("R9_convex").parameters, study.beds[study.bed_of("R9_convex")])
 
 
 def test_a_cycle_whose_ledger_cannot_be_read_is_simulated_again(in_pieces, tmp_path, monkeypatch):

@@ -76,4 +76,4 @@ def bed_bytes(run: Parameters) -> float:
 
 def run_bytes(run: Parameters) -> float:
     """Return what a run leaves on disk."""
-    return bytes_of_run(settled_particles(run), triangles(run), surface_triangles(run), run["sliding"]["cycles"])
+    return bytes_of_run(run, settled_particles(run), triangles(run), surface_triangles(run), run["sliding"]["cycles"])

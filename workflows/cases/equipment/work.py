@@ -53,7 +53,7 @@ def run_bytes(run: Parameters) -> float:
     blocks = run["derived"]["travel_steps"] // run["derived"]["first_cycle_steps"]
     triangles = sum(map(triangles_of, run["parts"]))
     pictures = run["sampling"]["pictures_per_block"]
-    return bytes_of_run(run["derived"]["held_particles"] * pictures, triangles, triangles, blocks)
+    return bytes_of_run(run, run["derived"]["held_particles"] * pictures, triangles, triangles, blocks)
 
 
 def triangles_of(part: Parameters) -> float:

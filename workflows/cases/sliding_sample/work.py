@@ -81,4 +81,4 @@ def bed_bytes(run: Parameters) -> float:
 def run_bytes(run: Parameters) -> float:
     """Return what a run leaves on disk."""
     triangles = surface_triangles(run)
-    return bytes_of_run(run["derived"]["bed_particles"], triangles, triangles, cycles(run))
+    return bytes_of_run(run, run["derived"]["bed_particles"], triangles, triangles, cycles(run))
