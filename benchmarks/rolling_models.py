@@ -40,38 +40,44 @@ SETTINGS = {model: {"rolling_friction": model} for model in MODELS} | {
 }
 FIDELITY = "standard"  # the largest particles that the slot lets pass
 PACKINGS = 2
+KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN), "calibrated"  # the pair of Table 3.6
 FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
 
 
 def wanted(packings: int) -> list[dict[str, Any]]:
-    """Return what is to be simulated, a packing of all before the next: model, test, pair, seed, frictions; `asked` is
-    the test itself.
+    """Return what is to be simulated: model, test, pair, packing, frictions; `asked` is the test itself.
+
+    In an order in which models stand beside one another early: a packing of all before the next, a pair under all
+    models before the next pair.
     """
     rows = []
     studies = {
         name: load_study("calibration", overrides={"fidelity": FIDELITY, "solver": dict(solver)})
         for name, solver in SETTINGS.items()
     }
-    for packing in range(packings):
-        for kind in (SHEAR_BOX, DRAW_DOWN):
-            for model, study in studies.items():
-                run = study.all_runs[0].parameters
-                names = [each["name"] for each in run["calibration"]["parameters"]]
-                seed = packing_seed(run["calibration"]["seed"], FIRST_REPEAT + packing)
-                for pair in pairs_of(pd.read_csv(pairs_file(study)), kind):
-                    values = pair_of(pd.read_csv(pairs_file(study)), pair, names, run)
-                    told = {name.rpartition(".")[2]: value for name, value in values.items()}
-                    rows.append(
-                        {"model": model, "test": kind, "pair": pair, "packing": packing + 1, **told}
-                        | {"asked": test_of(run, kind, values, seed)}
-                    )
+    published = pd.read_csv(pairs_file(next(iter(studies.values()))))
+    asked = [
+        (packing, kind, pair) for packing in range(packings) for kind in KINDS for pair in pairs_of(published, kind)
+    ]
+    for packing, kind, pair in asked:
+        for model, study in studies.items():
+            run = study.all_runs[0].parameters
+            names = [each["name"] for each in run["calibration"]["parameters"]]
+            seed = packing_seed(run["calibration"]["seed"], FIRST_REPEAT + packing)
+            values = pair_of(published, pair, names, run)
+            told = {name.rpartition(".")[2]: value for name, value in values.items()}
+            rows.append(
+                {"model": model, "test": kind, "pair": pair, "packing": packing + 1, **told}
+                | {"asked": test_of(run, kind, values, seed)}
+            )
     return rows
 
 
 def pairs_of(published: pd.DataFrame, kind: str) -> list[str]:
-    """Return the pairs of which the source prints a response of a test."""
+    """Return the pairs of which the source prints a response of a test, its calibrated one first."""
     names = [name for name in RESPONSES[kind] if name in published]
-    return list(published.loc[published[names].notna().any(axis=1), "row"])
+    found = published.loc[published[names].notna().any(axis=1), "row"]
+    return sorted(found, key=lambda pair: pair != CALIBRATED)
 
 
 def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int) -> pd.DataFrame:
