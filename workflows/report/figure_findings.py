@@ -42,6 +42,8 @@ def depth_of_half(shares: pd.DataFrame) -> str:
     runs = list(dict.fromkeys(deeper["run"]))
     deeper = deeper[deeper["area_share_percent"] >= PERCENT * HALF].groupby("run")["depth_um"].max()
     deeper = deeper.reindex(runs)
+    if deeper.isna().all() and len(deeper) > 1:
+        return "Half or more of the area of every sample is worn hardly or not at all."
     few = len(deeper) <= MOST_NAMED
     shown = deeper if few else deeper.sort_values(kind="stable", na_position="first").iloc[[0, -1]]
     said = [

@@ -513,8 +513,8 @@ def test_particles_scaled_beyond_their_bumps_are_said_on_every_figure(config):
         load_study("small", config.project, {"particle_scale": scale, **thin}) for scale in (2.7, 3, 3.5)
     )
     assert not any(remark.startswith(BEYOND_BUMPS) for remark in figure_remarks(fine))
-    assert f"{BEYOND_BUMPS}: R9 (3, 2.7)" in figure_remarks(one)
-    assert f"{BEYOND_BUMPS}: R9 (3.5, 2.7), R5 (3.5, 3.5)" in figure_remarks(both)
+    assert f"{BEYOND_BUMPS}, row with scale and limit: R9 (3, 2.7)" in figure_remarks(one)
+    assert f"{BEYOND_BUMPS}, row with scale and limit: R9 (3.5, 2.7), R5 (3.5, 3.5)" in figure_remarks(both)
 
 
 def test_bumps_smaller_than_real_particles_are_no_matter_of_scale(config):
@@ -522,6 +522,14 @@ def test_bumps_smaller_than_real_particles_are_no_matter_of_scale(config):
     config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "R9,1.5,1.5,20,1.0,1.0,40")
     study = load_study("small", config.project)
     assert not any(remark.startswith(BEYOND_BUMPS) for remark in figure_remarks(study))
+
+
+def test_many_rows_are_counted_and_not_named():
+    """Of a screening in coarse particles a figure says how many rows; the table of runs has each."""
+    settings = {"particle_scale": 4, "bed": {"allow_thin_bed": True}}
+    remarks = figure_remarks(load_study("screening", overrides=settings))
+    assert f"{BEYOND_BUMPS}, rows: 12 of 13" in remarks
+    assert "fewer than three layers of particles in the bed: 8 of 13" in remarks
 
 
 def test_a_thin_bed_is_said_on_every_figure(config):

@@ -33,9 +33,8 @@ ALONG = {  # bed.ends -> what it makes of the packing along the travel
     PERIODIC: " and along it, so that it passes the sample again and again",
     WINDOW: " and along it: the same packing comes again, undisturbed, after each length of the window",
 }
-BEYOND_BUMPS = (
-    "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17), row with scale and limit"
-)
+BEYOND_BUMPS = "particles scaled beyond the size of the bumps, over which they ride (Yan 2022, Fig 4.17)"
+MOST_NAMED = 4  # rows that a remark on every figure names; of more it says how many, the table of runs has them
 FIGURES_OF_ALL = {  # of every study, by section
     "Where and when it wears": (
         "wear_against_travel",
@@ -149,15 +148,22 @@ def remarks(study: Study) -> list[str]:
     if varies_scale(study):
         said.append(f"layers of particles in the bed: {', '.join(f'{row} {each:.1f}' for row, each in layers.items())}")
     elif thin := {setting: layers[setting] for setting in of_settings if of_settings[setting]["derived"]["thin_bed"]}:
-        rows = ", ".join(f"{row} ({each:.1f})" for row, each in thin.items())
+        rows = _named({row: f"{each:.1f}" for row, each in thin.items()}, len(layers))
         said.append(f"fewer than three layers of particles in the bed: {rows}")
     if larger := _beyond_bumps(study):
-        rows = ", ".join(f"{row} ({scale:.3g}, {most:.2g})" for row, (scale, most) in larger.items())
-        said.append(f"{BEYOND_BUMPS}: {rows}")
+        rows = _named({row: f"{scale:.3g}, {most:.2g}" for row, (scale, most) in larger.items()}, len(layers))
+        said.append(f"{BEYOND_BUMPS}, {'row with scale and limit' if len(larger) <= MOST_NAMED else 'rows'}: {rows}")
     hop = max(run.parameters["derived"]["ramp_hop_m"] for run in study.runs)
     if hop > TOLD_HOP * study.runs[0].parameters["sample"]["length_m"]:
         said.append(f"particles hop off the ramp, up to {1000.0 * hop:.0f} mm at the highest velocity")
     return said
+
+
+def _named(rows: Mapping[str, str], count: int) -> str:
+    """Return rows with what is said of each, or how many of all rows they are where that would be long."""
+    if len(rows) > MOST_NAMED:
+        return f"{len(rows)} of {count}"
+    return ", ".join(f"{row} ({said})" for row, said in rows.items())
 
 
 def _beyond_bumps(study: Study) -> dict[str, tuple[float, float]]:

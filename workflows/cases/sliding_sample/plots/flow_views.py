@@ -24,8 +24,8 @@ SLAB = 1.0  # -, thickness of what is shown, in largest diameters: one layer, wh
 TOP_SHARE = 0.98  # of the particles lie inside the colours
 LABELS = {
     SIDE: ("", "z (mm)"),  # shares the axis of the view below it
-    BOTTOM: ("Along the travel, y (mm)", "x (mm)"),
-    ACROSS: ("Across the travel, x (mm)", "z (mm)"),
+    BOTTOM: ("y (mm)", "x (mm)"),
+    ACROSS: ("x (mm)", "z (mm)"),
 }
 ROW_GAP = 0.09  # inches above and below every panel: titles clear the labels of the row above
 LEAST_SHARE = 0.25  # -, of the highest panel: what a flat one gets of the height of the figure
@@ -100,8 +100,8 @@ def flow_views(
         for axes, view in zip(grid[:, column], AXES, strict=True):
             _draw(axes, table[table["view"] == view], lines[run][view] * MILLIMETRES, norm)
             axes.set(xlim=limits[view][0], ylim=limits[view][1], xlabel=LABELS[view][0])
-            moves = ", bed →" if view == SIDE else ""
-            axes.set_title(f"{run.replace('_', ' ')}, {view}{moves}", loc="left", fontsize=SMALLEST_FONT, pad=2)
+            title = f"{run.replace('_', ' ')}, bed →\n{view}" if view == SIDE else view
+            axes.set_title(title, loc="left", fontsize=SMALLEST_FONT, pad=2)
     for axes, view in zip(grid[:, 0], AXES, strict=True):
         axes.set_ylabel(LABELS[view][1])
     bar = figure.colorbar(ScalarMappable(norm, MAP), ax=grid, extend="max", shrink=0.85, pad=0.02, aspect=30)

@@ -81,10 +81,10 @@ def test_figure_shows_all_views_of_all_runs(particles, sample):
     *panels, bar = figure.axes
     assert len(panels) == 6
     assert "(°/s)" in bar.get_ylabel()
-    assert panels[2].get_xlabel() == "Along the travel, y (mm)"
+    assert panels[2].get_xlabel() == "y (mm)"
     assert panels[0].get_ylabel() == "z (mm)"
     assert [axes.get_title(loc="left") for axes in panels[:2]] == [
-        f"R9 {kind}, side view, bed →" for kind in ("convex", "plain")
+        f"R9 {kind}, bed →\nside view" for kind in ("convex", "plain")
     ]
     circles = panels[0].collections[0]
     side = views["R9_convex"][views["R9_convex"]["view"] == SIDE]
