@@ -75,13 +75,14 @@ class CycleMaps:
 def maps_of_cycles(folder: Path, worn: WornBy, flow: Sequence[float] | None = None) -> list[CycleMaps]:
     """Return the maps of all wear cycles of a run that count, by all laws that its ledgers serve.
 
-    folder: of the run, with a surface after every cycle; flow: (3,) direction in which material passes
+    folder: of the run; a cycle whose first surface was not kept, as of a pin within its revolutions, is left out
+    flow: (3,) direction in which material passes
     """
     before, found = folder / SURFACE, []
     for cycle in cycle_folders(folder):
         if not (cycle / LEDGER).is_file():
             continue
-        if _counts(folder, cycle):
+        if before.is_file() and _counts(folder, cycle):
             found.append(_maps(read_surface(before), pd.read_parquet(cycle / LEDGER), worn, flow))
         before = cycle / SURFACE
     return found
@@ -100,7 +101,7 @@ def _maps(surface: SurfaceMesh, ledger: pd.DataFrame, worn: WornBy, flow: Sequen
     faces = worn_faces(surface)
     labels = surface.cell_data.get("part", np.zeros(len(faces), dtype=int))
     faces = faces if worn.label is None else faces & (labels == worn.label)
-    columns = {name: ledger[name].to_numpy()[faces] for name in ledger}
+    columns = {name: values[faces] for name, values in _on_faces(ledger, len(faces)).items()}
     volumes = {law: _volume(law, columns, given) for law, given in worn.beside().items()}
     front, bumps = None, labels[faces] > 0
     if flow is not None and bumps.any():
@@ -109,6 +110,16 @@ def _maps(surface: SurfaceMesh, ledger: pd.DataFrame, worn: WornBy, flow: Sequen
     area = areas(surface.points, surface.triangles)[faces]
     there = {law: volume for law, volume in volumes.items() if volume is not None}
     return CycleMaps(there, area, front, surface, np.flatnonzero(faces))
+
+
+def _on_faces(ledger: pd.DataFrame, count: int) -> dict[str, np.ndarray]:
+    """Return the columns of a ledger (count,): nothing on faces that it, of touched ones alone, does not name."""
+    if "triangle" not in ledger:
+        return {name: ledger[name].to_numpy() for name in ledger}
+    found = {name: np.zeros(count) for name in ledger if name != "triangle"}
+    for name, values in found.items():
+        values[ledger["triangle"].to_numpy()] = ledger[name].to_numpy()
+    return found
 
 
 def _volume(law: str, columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray | None:

@@ -12,6 +12,7 @@ from bulkwear.workflows.report.text import range_text
 
 HALF, MOST_WORN = 0.5, 0.99  # -, of an area
 MOST_NAMED = 4  # samples of which a sentence tells
+LAWS_AGREE = 1.5  # -, largest over smallest ratio of two settings by laws that are said to agree
 UNIT = "µm"
 
 
@@ -22,6 +23,8 @@ def deepest_run(depths: pd.DataFrame) -> str:
     """
     found = depth_summary(_first(depths)).sort_values("depth_of_99_percent_um", ascending=False, kind="stable")
     first, last = found.iloc[0], found.iloc[-1]
+    if not first["depth_of_99_percent_um"] > 0.0:
+        return "No wear is on these surfaces: less than a hundredth of the area of each is worn."
     said = f"{first['run']} wears deepest: a hundredth of its area by {measured(first['depth_of_99_percent_um'], 'µm')}"
     if len(found) == 1:
         return f"{said} or more."
@@ -78,9 +81,37 @@ def laws_apart(laws: pd.DataFrame) -> str:
     if others.empty:
         return ""
     least = others.loc[others["overlap"].idxmin()]
-    at = " ".join(str(least[name]) for name in ("setting", "surface", "part") if least.get(name))
+    at = " ".join(str(least[name]) for name in ("setting", "surface", "part") if _is_word(least.get(name)))
     share = f"{PERCENT * least['overlap']:.0f} %"
     return f"By {spoken(least['law'])} {share} of the wear lies where Archard's does, at {at}, the least of all."
+
+
+def _is_word(value: object) -> bool:
+    return isinstance(value, str) and bool(value)
+
+
+def laws_on_designs(laws: pd.DataFrame) -> str:
+    """Return of which part and setting laws disagree most on how its wear compares with that of the first setting; ""
+    of one setting, and where laws agree within LAWS_AGREE. laws: as from `laws_of_settings`, of machines
+    """
+    known = laws[laws["over_first"].notna()]
+    if known.empty or "part" not in known:
+        return ""
+    ends = known.groupby(["part", "setting"], sort=False)["over_first"].agg(["min", "max"])
+    apart = ends["max"] / ends["min"]
+    if not apart.max() > LAWS_AGREE:
+        return ""
+    part, setting = apart.idxmax()
+    rows = known[(known["part"] == part) & (known["setting"] == setting)].sort_values("over_first")
+    said = [f"{_with_ends(row)} by {spoken(row['law'])}" for _, row in rows.iterrows()]
+    first = laws["setting"].iloc[0]
+    return f"Laws disagree most on the {spoken(part)} of {setting}: over that of {first} it wears {listed(said)}."
+
+
+def _with_ends(row: pd.Series) -> str:
+    if pd.isna(row["over_first_low"]):
+        return f"{row['over_first']:.3g}"
+    return f"{row['over_first']:.3g} ({row['over_first_low']:.3g} to {row['over_first_high']:.3g})"
 
 
 def steepest_map(maps: pd.DataFrame) -> str:

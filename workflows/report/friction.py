@@ -68,6 +68,6 @@ def friction_light(study: Mapping[str, Any], folder: Path) -> Light:
     return Light(
         what,
         WEAK,
-        f"In {run} friction does {PERCENT * share:.0f} % of what sliding at its limit would: contacts flutter, and "
-        "wear by sliding is too large. Try half of solver.rayleigh_fraction.",
+        f"In {run} friction does {PERCENT * share:.0f} % of what sliding at its limit would: contacts flutter, or "
+        "stick as in square impacts, and wear by sliding is too large. Try half of solver.rayleigh_fraction.",
     )

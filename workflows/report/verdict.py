@@ -104,9 +104,9 @@ def steady_light(answers: Sequence[str]) -> Light:
 def cap_light(study: Mapping[str, Any], summary: pd.DataFrame) -> Light:
     """Return whether caps on a step hold back wear."""
     what = "Not limited by a cap"
-    if not study["settings"]["wear"]["deform"]:
-        return Light(what, CARE, "The shape is kept as built: wear is told, not applied.")
     share = float((summary["carried_volume_m3"] / summary["worn_volume_m3"]).max())
+    if not study["settings"]["wear"]["deform"] or np.isnan(share):  # of a machine without updates nothing is worn
+        return Light(what, CARE, "The shape is kept as built: wear is told, not applied.")
     state = SOUND if share < LEAST_CARRIED else CARE if share < MUCH_CARRIED else WEAK
     if state == SOUND:
         return Light(what, state, "All wear is in the shape.")

@@ -59,6 +59,24 @@ def test_laws_are_told_from_the_same_ledgers(tmp_path):
     assert table["front_share"].tolist() == pytest.approx([0.5, 0.5], rel=ROUNDING)
 
 
+def test_a_ledger_of_touched_faces_and_surfaces_that_are_gone(tmp_path):
+    """As of a pin: rows of touched faces alone count as all rows do; cycles whose first surface is gone do not."""
+    whole = table_of(tmp_path / "a", tangential=FRICTION * np.array([1.0, 0.0, 1.0, 1.0]))
+    touched = table_of(tmp_path / "b", tangential=FRICTION * np.array([1.0, 0.0, 1.0, 1.0]))
+    for path in sorted((tmp_path / "b").rglob("ledger.parquet")):
+        ledger = pd.read_parquet(path)
+        ledger.insert(0, "triangle", np.arange(len(ledger)))
+        ledger.iloc[:4].to_parquet(path)  # the holder's are left out
+    worn = {"A_plain": [WornBy("archard", {"wear_coefficient_per_pa": ALPHA})]}
+
+    def again():
+        return law_volumes(tmp_path / "b" / "design.csv", [tmp_path / "b" / "A_plain"], worn, (0.0, 1.0, 0.0))
+
+    pd.testing.assert_frame_equal(again(), whole)
+    (tmp_path / "b" / "A_plain" / "cycle_001" / "surface.vtu").unlink()
+    assert (touched["cycles"] == CYCLES).all() and (again()["cycles"] == CYCLES - 1).all()
+
+
 def test_where_contacts_stick_shear_work_lies_elsewhere(tmp_path):
     """All of it on the front: half of Archard's wear is not there."""
     table = table_of(tmp_path, tangential=FRICTION * np.array([1.0, 1.0, 0.0, 0.0])).set_index("law")

@@ -8,7 +8,7 @@ from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.plots.laws import law_bars, law_pictures
 from bulkwear.postproc.plots.style import remarks_of
 from bulkwear.postproc.tables.law_volumes import LawMap, laws_of_settings, map_table
-from bulkwear.workflows.report.figure_findings import laws_apart, steepest_map
+from bulkwear.workflows.report.figure_findings import laws_apart, laws_on_designs, steepest_map
 from bulkwear.workflows.report.laws import coefficients_remark, flow_of, wear_by_law, what_wears
 from bulkwear.workflows.report.products import products_of_study
 from tests.support.charts import drawn_chart, names, values
@@ -52,6 +52,17 @@ def test_bars_are_the_means_with_intervals_over_packings():
     assert [text.get_text() for text in lower.get_xticklabels()] == ["A liner", "B liner"]
     assert remarks_of(figure) == "said"
     assert laws_apart(table).startswith("By finnie 10 % of the wear lies where Archard's does, at B liner")
+
+
+def test_the_design_on_which_laws_disagree_is_named():
+    """Over the first one, each law with its interval, least first; nothing where they agree, or of one setting."""
+    table = laws_of_settings(volumes("part", front=False))  # Finnie wears B twice as much, in half as many blocks
+    assert laws_on_designs(table) == (
+        "Laws disagree most on the liner of B: over that of A it wears 2 (2 to 2) by archard, 2 (2 to 2) by tangential"
+        " work and 4 (4 to 4) by finnie."
+    )
+    assert laws_on_designs(table[table["law"] != "finnie"]) == ""
+    assert laws_on_designs(table[table["setting"] == "A"]) == ""
 
 
 PLACES = [("part", False, 3), ("surface", True, 4), ("surface", False, 3)]

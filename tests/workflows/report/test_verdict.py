@@ -23,7 +23,10 @@ def test_what_caps_hold_back_is_told(carried, state):
     summary = pd.DataFrame({"carried_volume_m3": [0.0, carried], "worn_volume_m3": 1.0})
     light = verdict.cap_light({"settings": {"wear": {"deform": True}}}, summary)
     assert light.state == state and (f"{100.0 * carried:.2g} %" in light.said) == (state != SOUND)
-    assert verdict.cap_light({"settings": {"wear": {"deform": False}}}, summary).state == CARE
+    nothing = summary.assign(carried_volume_m3=0.0, worn_volume_m3=0.0)
+    for deform, table in ((False, summary), (True, nothing)):  # a machine without updates wears nothing
+        kept = verdict.cap_light({"settings": {"wear": {"deform": deform}}}, table)
+        assert kept.state == CARE and "kept as built" in kept.said
 
 
 @pytest.mark.parametrize(("packings", "state"), [(1, WEAK), (2, CARE), (verdict.ENOUGH_PACKINGS, SOUND)])

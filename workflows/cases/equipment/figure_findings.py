@@ -54,6 +54,8 @@ def depth_reached(depths: pd.DataFrame) -> str:
     """
     means = depths[(depths["packing"] == 0) & depths["simulated"].astype(bool)]
     last = means.loc[means.groupby(["setting", "part"], sort=False)["operation_h"].idxmax()]
+    if last["operation_h"].eq(0.0).all() and len(last):
+        return "The shape is kept as built: lines go on at its rate."
     said = [
         f"{who(depths, row)} has lost {rounded(row['depth_mm'])} mm {_after(row['operation_h'])}"
         for _, row in last.iterrows()

@@ -18,6 +18,7 @@ from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.report.sentences import spoken
 
 Tables = Mapping[str, pd.DataFrame]
+TOO_WIDE = 100.0  # -, of the ends of an interval that tells nothing
 DIGITS = 2  # significant ones of an answer, whose interval is wide
 SMALLEST_CHANGE = 0.1  # %, below which a change is called none
 STEADINESS = {STEADY: "steady", DRIFTING: "not steady", NOT_SAID: "not known to be steady"}
@@ -94,6 +95,8 @@ def interval_words(row: pd.Series) -> str:
     """Return the interval of a life, or what is known of it from one packing."""
     ends = row.life_low_h, row.life_high_h
     if row.packings > FROM_ONE and np.isfinite(ends[0]):
+        if ends[1] > TOO_WIDE * ends[0]:
+            return f"{row.packings} packings do not tell it within a factor of {TOO_WIDE:g}"
         return f"{span(*ends, 'h')}, {PER_CENT}"
     unknown = UNKNOWN if row.packings <= FROM_ONE else "scatter unknown"
     if np.isfinite(ends[0]):

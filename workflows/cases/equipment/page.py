@@ -6,13 +6,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.postproc.tables.summary import read_summary
+import pandas as pd
+
+from bulkwear.postproc.tables.law_volumes import laws_of_settings
+from bulkwear.postproc.tables.summary import NAMES, read_summary
 from bulkwear.workflows.cases.equipment import findings, heads, page_blocks
 from bulkwear.workflows.cases.equipment.heads import shown
 from bulkwear.workflows.cases.equipment.page_blocks import read_tables
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.cases.equipment.surfaces import label_of
 from bulkwear.workflows.cases.equipment.tables import FIRST_WALL
+from bulkwear.workflows.report.figure_findings import laws_on_designs
 from bulkwear.workflows.report.sections import Pictures, Section
 from bulkwear.workflows.report.text import range_text
 
@@ -28,7 +32,8 @@ DECKS = (
     ("A block with wear counted", "{run}/cycle_001/deck.in"),
 )
 SECONDS_PER_HOUR = 3600.0
-SUMMARY = "summary.csv"
+SUMMARY, VOLUMES = "summary.csv", "volume_by_law.csv"
+SEVERAL = 2  # laws by which parts of a study wear that compares laws
 WEIGHTIEST = "Wear coefficient"  # every life is in proportion to it
 # Figures of the sections, by name; a study has those that its modules of figures declare
 LIFE_FIGURES = ("life_bars", "recession_against_time")
@@ -68,7 +73,21 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
 
 def answers(folder: Path) -> list[str]:
     """Return in sentences what a study that is done answers."""
-    return findings.all_answers(read_tables(folder), read_summary(folder / SUMMARY))
+    return [
+        *_answer_on_laws(folder / VOLUMES),
+        *findings.all_answers(read_tables(folder), read_summary(folder / SUMMARY)),
+    ]
+
+
+def _answer_on_laws(file: Path) -> list[str]:
+    """Return on which design laws disagree, of a study that compares them: its parts wear by several."""
+    if not file.is_file():
+        return []
+    volumes = pd.read_csv(file, dtype=NAMES)
+    if volumes.loc[volumes["over_study_law"] == 1.0, "law"].nunique() < SEVERAL:
+        return []
+    said = laws_on_designs(laws_of_settings(volumes))
+    return [said] if said else []
 
 
 def steadiness(folder: Path) -> list[str]:
