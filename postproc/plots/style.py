@@ -29,6 +29,9 @@ LABEL_LINE = 0.2  # inches, height of a label of the whole figure
 REMARK_CHARACTERS = 108  # of a line of remarks across the figure
 SMALLEST_PLAIN, LARGEST_PLAIN = 0.01, 1e4  # numbers on an axis without a power of ten
 COARSER, THOUSAND = {"µm": "mm"}, 3  # unit of a thousand of another one; its power of ten
+CHARACTER = 0.073  # inches, of a letter of a label, on average
+AXES_ROOM = 0.9  # inches, of a figure's height for its legend, titles and the axis below
+FOLDED = 0.6  # -, of a label's letters in the longer of its two lines, at most
 TOP_ROOM = 0.04  # inches above the topmost text
 MOST_FACET_COLUMNS = 5
 OTHER_COLOUR = "#595959"
@@ -141,10 +144,26 @@ def scaled(unit: str, largest: float) -> tuple[str, FuncFormatter]:
 
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as its name ends: PNG, SVG or PDF; without the date, so that equal figures are equal files."""
+    fold_labels(figure)
     kind = Path(path).suffix[1:]
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind)
     with mpl.rc_context({"svg.hashsalt": "bulkwear"}):
         figure.savefig(path, dpi=RESOLUTION, metadata=undated)
+
+
+def fold_labels(figure: Figure) -> None:
+    """Write labels of vertical axes in two lines where they would be longer than their axes are high, by far."""
+    _, _, _, share = figure.get_layout_engine().get().get("rect", (0.0, 0.0, 1.0, 1.0))
+    for axes in figure.axes:
+        text, place = axes.get_ylabel(), axes.get_subplotspec()
+        if place is None or "\n" in text or " " not in text:
+            continue
+        ratios = place.get_gridspec().get_height_ratios() or [1.0] * place.get_gridspec().nrows
+        rows = sum(ratios[place.rowspan.start : place.rowspan.stop]) / sum(ratios)
+        room = (share * figure.get_figheight() - AXES_ROOM) * rows
+        lines = textwrap.wrap(text, math.ceil(FOLDED * len(text)))
+        if len(text) * CHARACTER > room and len(lines) == 2:
+            axes.set_ylabel("\n".join(lines))
 
 
 def save_small(figure: str | Path, path: str | Path) -> None:

@@ -322,8 +322,8 @@ def worn_disc(job: Job) -> Any:
     inputs=WORN_DISCS,
     digits=4,
     caption="""
-    Depth on the track, angle against radius, one map per scheme with a scale of its own. The pin starts at 0 degrees
-    and goes towards larger angles.
+    Depth on the track, angle against radius, one map per scheme, on one scale. The pin starts at 0 degrees and goes
+    towards larger angles.
     """,
 )
 def unrolled_track(job: Job) -> Any:

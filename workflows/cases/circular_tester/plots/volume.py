@@ -304,4 +304,4 @@ def _faster_words(row: tuple) -> str:
     name = row.run.replace("_", " ")
     if not np.isfinite(row.faster_revolution):
         return f"{name}: slower than plain throughout"
-    return f"{name}: first faster than plain at {row.faster_revolution:.3g}, {100.0 * row.faster_share:.2g} % left"
+    return f"{name}: first faster than plain at {row.faster_revolution:.3g}, {100.0 * row.faster_share:.3g} % left"

@@ -139,39 +139,40 @@ def _slice(axes, mesh: SurfaceMesh, radii: np.ndarray, angle: int) -> None:
 
 
 def unrolled_track(maps: Mapping[str, pd.DataFrame], remarks: Sequence[str]) -> Figure:
-    """Draw depth (um) over angle and radius, one map per scheme, each with a scale of its own.
+    """Draw depth (um) over angle and radius, one map per scheme, on one scale.
 
     maps : by scheme, as from `contours.track_map`.
     """
     figure = new_figure(remarks, 4.6)
     grid = figure.subplots(len(maps), 1, sharex=True, squeeze=False)[:, 0]
+    top = max(np.finfo(float).tiny, *(float(np.quantile(depth, DEEPEST_SHARE)) for depth in maps.values()))
     for axes, (scheme, depth) in zip(grid, maps.items(), strict=True):
         extent = (-0.5, CONTOURS - 0.5, depth.index[0], depth.index[-1])
-        top = max(float(np.quantile(depth, DEEPEST_SHARE)), np.finfo(float).tiny)
         look = {"origin": "lower", "aspect": "auto", "cmap": MAP, "interpolation": "nearest"}
         drawn = axes.imshow(depth.to_numpy(), extent=extent, vmin=0.0, vmax=top, **look)
         axes.grid(False)
         axes.set_title(SCHEME_NAMES[scheme], loc="left")
         axes.set_ylabel("Radius (mm)")
-        figure.colorbar(drawn, ax=axes, label="Depth (µm)", extend="max")
+    figure.colorbar(drawn, ax=list(grid), label="Depth (µm)", extend="max")
     grid[-1].set_xlabel("Angle (degrees)")
     grid[-1].set_xticks(range(0, 361, 60))
     return figure
 
 
 def worn_disc(meshes: Mapping[str, SurfaceMesh], track_radius: float, remarks: Sequence[str]) -> Figure:
-    """Draw the tracks of worn discs in 3-D, one per scheme; depth and width exaggerated by factors written at each."""
+    """Draw the tracks of worn discs in 3-D, one per scheme, on one scale; depth and width exaggerated by the factors
+    that are written above.
+    """
     figure = new_figure(remarks, LARGEST_HEIGHT)
     grid = figure.subplots(1, len(meshes), squeeze=False)[0]
+    deepest = max(np.finfo(float).tiny, *(-float(mesh.points[:, 2].min()) for mesh in meshes.values()))
+    factor, limits = float(f"{RELIEF * track_radius / deepest:.0e}"), (0.0, MICROMETRES * deepest)
+    said = f"depth exaggerated {factor:g} times, width {STRETCH:g} times"
     for axes, (scheme, mesh) in zip(grid, meshes.items(), strict=True):
-        deepest = max(-float(mesh.points[:, 2].min()), np.finfo(float).tiny)
-        factor = float(f"{RELIEF * track_radius / deepest:.0e}")
-        limits = (0.0, MICROMETRES * deepest)
         picture(axes, trimmed([_relief(mesh, track_radius, factor, limits)])[0])
-        said = f"depth exaggerated {factor:g} times, width {STRETCH:g} times"
         axes.set_title(f"{SCHEME_NAMES[scheme]}\n{said}", fontsize=SMALLEST_FONT)
-        bar = ScalarMappable(Normalize(*limits), MAP)
-        figure.colorbar(bar, ax=axes, label="Depth (µm)", location="bottom", shrink=0.8, pad=0.02)
+    bar = ScalarMappable(Normalize(*limits), MAP)
+    figure.colorbar(bar, ax=list(grid), label="Depth (µm)", location="bottom", shrink=0.6, pad=0.02)
     return figure
 
 
