@@ -11,6 +11,7 @@ from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
 from bulkwear.workflows.config.published_tables import check_published
+from bulkwear.workflows.config.run_checks import check_files
 from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
 from bulkwear.workflows.config.until import read_round
 from bulkwear.workflows.engine.cases import case_folders
@@ -73,7 +74,7 @@ def checked_studies():
         if not GIVEN.target_jobs:
             check_published(PROJECT)
             for study in studies.values():
-                study.case.check_files(study.runs)
+                check_files(study.name, study.case, study.runs)
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:
         raise WorkflowError(str(fault)) from None

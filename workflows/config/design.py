@@ -57,6 +57,7 @@ from bulkwear.workflows.config.validation import (
     locate,
     read_design,
     unknown_name,
+    with_place,
 )
 from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
@@ -389,7 +390,10 @@ def _checked_run(
     of_row = with_coefficients(case, of_row, materials, sources.names_coefficient(stack))
     check_hardness(stack, case, of_row)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
-    parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
+    try:
+        parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
+    except ConfigError as fault:
+        raise ConfigError(with_place(stack, str(fault))) from None
     check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks, *LAST_CHECKS))
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)

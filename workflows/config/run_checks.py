@@ -7,7 +7,7 @@ those of every case and those of a sliding sample are here.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from bulkwear.workflows.config.validation import allowed_text, files_of, locate,
 from bulkwear.workflows.engine.templates import DeckError, own_templates, solver_settings, template_variables
 
 if TYPE_CHECKING:
-    from bulkwear.workflows.engine.case import Case
+    from bulkwear.workflows.engine.case import Case, Run
 
 Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is allowed
 
@@ -56,6 +56,15 @@ def check_run(run: CheckedRun, checks: tuple[Check, ...]) -> None:
             if not key:
                 raise ConfigError(f"{run.row.where()}: {allowed}.")
             raise ConfigError(f"{_where(run, key)} is {_found(run, key)}{_for_row(run, key)}, allowed is {allowed}.")
+
+
+def check_files(study: str, case: Case, runs: Sequence[Run]) -> None:
+    """Look into the files that the runs of a study name. Raises ConfigError with the study and the row."""
+    for run in runs:
+        try:
+            case.check_files([run])
+        except ConfigError as fault:
+            raise ConfigError(f"study {study}, row {run.row}: {fault}") from None
 
 
 def check_needed(

@@ -106,20 +106,33 @@ def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[K
 
 
 def check_given(
-    layers: tuple[Layer, ...], settings: dict[str, Any], schema: dict[str, Any], path: KeyPath = ()
+    layers: tuple[Layer, ...],
+    settings: dict[str, Any],
+    schema: dict[str, Any],
+    path: KeyPath = (),
+    beside: Sequence[str] = (),
 ) -> None:
     """Raise ConfigError for a key that a block of the settings needs (`x-needed`), and nobody gives.
 
     It is said to be missing in the strongest layer that has the block, at the top in the last file.
+    beside: names of the other blocks in the one round it
     """
     for key in schema.get(NEEDED, ()):
         if key not in settings:
             inner = schema["properties"][key]
             where = locate(layers if path else files_of(layers), path)
-            raise ConfigError(f"{where}: {dotted((*path, key))} is missing, allowed is {allowed_text(inner)}.")
+            hint = _meant_for(layers, path, beside)
+            raise ConfigError(f"{where}: {dotted((*path, key))} is missing, allowed is {allowed_text(inner)}{hint}.")
     for key, value in settings.items():
         if isinstance(value, dict) and (inner := subschema(schema, (key,))):
-            check_given(layers, value, inner, (*path, key))
+            check_given(layers, value, inner, (*path, key), [other for other in settings if other != key])
+
+
+def _meant_for(layers: tuple[Layer, ...], path: KeyPath, beside: Sequence[str]) -> str:
+    """Return a hint for a block that a layer adds to those of the others, with a name that is nearly one of theirs."""
+    added = path and any(layer.holds(path[:-1]) and not layer.holds(path) for layer in layers)
+    near = difflib.get_close_matches(path[-1], beside, n=1) if added else []
+    return f" (or was {dotted((*path[:-1], near[0]))} meant)" if near else ""
 
 
 def allowed_text(schema: dict[str, Any]) -> str:
@@ -300,3 +313,9 @@ def files_of(layers: tuple[Layer, ...]) -> tuple[Layer, ...]:
 def locate(layers: tuple[Layer, ...], path: KeyPath) -> str:
     """Return where a setting stands: in the strongest layer that holds it."""
     return next(layer for layer in reversed(layers) if layer.holds(path)).where(path)
+
+
+def with_place(layers: tuple[Layer, ...], sentence: str) -> str:
+    """Return a sentence on a setting, which it begins with, after the place where that stands; others as they are."""
+    path = tuple(sentence.partition(" ")[0].removesuffix(":").split("."))
+    return f"{locate(layers, path)}: {sentence}" if any(layer.holds(path) for layer in layers) else sentence

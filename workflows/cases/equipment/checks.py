@@ -253,7 +253,11 @@ def steps_within_reason(run: CheckedRun) -> Fault | None:
     steps, block_s = derived["run_in_steps"] + derived["travel_steps"], run.parameters["sampling"]["block_s"]
     if steps <= MOST_STEPS:
         return None
-    found = f"it takes {steps:.2g} time steps of {derived['time_step_s']:.2g} s, at most {MOST_STEPS:.2g} are allowed"
+    finest = 1e3 * min(run.parameters["particle"]["diameters_m"])
+    found = (
+        f"it takes {steps:.2g} time steps of {derived['time_step_s']:.2g} s, by its particles of {finest:.3g} mm, at"
+        f" most {MOST_STEPS:.2g} are allowed"
+    )
     starting = start_up_blocks(run.parameters)
     left = MOST_STEPS / derived["first_cycle_steps"] - (blocks - starting)
     if 2 * starting > blocks and left >= 2.0:

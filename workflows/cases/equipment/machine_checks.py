@@ -302,7 +302,7 @@ def is_within(points: np.ndarray, triangles: np.ndarray, place: np.ndarray) -> b
 
 def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> None:
     """Raise ConfigError for a liner that is thinner, over half of its area, than its elements are long, or no thicker
-    than what shall remain of it.
+    than what shall remain of it, and for an open surface without a thickness: what is measured in it is the way across.
     """
     if not part["wears"]:
         return
@@ -318,6 +318,12 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
                 f" {millimetres(size)}, the size of {part['file']}."
             )
         return
+    if not _is_closed(run, mesh):
+        raise ConfigError(
+            f"parts.{part['name']}.thickness_mm is missing, allowed is the thickness of the liner: the surface of"
+            f" {part['file']} is open, first at {_place(mesh.points[boundary_nodes(mesh.triangles)[0]])}, and has no"
+            " back to be measured to."
+        )
     thickness, source = thickness_of(mesh), f"the thickness in {part['file']}"
     if thickness < part["edge_m"] * (1.0 - MEASURED):
         allowed = thin_phrase(thickness, source)

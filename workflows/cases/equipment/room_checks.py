@@ -111,6 +111,21 @@ def filling_before_outlets(run: CheckedRun) -> Fault | None:
     return None
 
 
+def inlet_before_outlets(run: CheckedRun) -> Fault | None:
+    """No outlet cuts through the room behind the inlet, in which particles are placed: they would leave at once."""
+    if not run.parameters["inlet"]:
+        return None
+    room = placing_room(run.parameters)
+    for name, given in (run.parameters["outlets"] or {}).items():
+        away = _over(given, room)
+        if away is not None and away.min() < -TOUCHING and away.max() > TOUCHING:
+            return f"outlets.{name}.centre_mm", (
+                "a place from which it does not cut through the room behind the inlet, in which particles are placed:"
+                " they would leave before they come in"
+            )
+    return None
+
+
 def _over(given: Mapping[str, Any], points: np.ndarray) -> np.ndarray | None:
     """Return how far (n,) m places (n, 3) m lie beyond the plane of a rectangle; None where they lie beside it."""
     corners = rectangle(given).points
@@ -279,6 +294,7 @@ ROOM_CHECKS: tuple[Check, ...] = (
     particles_fit_outlets,
     outlets_are_reached,
     outlets_apart,
+    inlet_before_outlets,
     filling_before_outlets,
     velocity_through_inlet,
     particles_fit_inlet,

@@ -26,6 +26,7 @@ from bulkwear.workflows.cases.equipment.placing import (
     placing_room,
 )
 from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.run_checks import check_files
 from bulkwear.workflows.engine.solver import cycle_fault
 from tests.support.law_cases import LONG_SLIP, long_slip_registered
 from tests.support.own_machine_project import SETTINGS, machine_study
@@ -242,6 +243,14 @@ ROOM = [
         "outlets.again.centre_mm is [300, 0, -345.5]",
         "mm before or behind outlets.below, or beside it",  # 1.2 mm, at 10 m/s in a step
     ),
+    *(
+        (
+            {"outlets": {"below": {"centre_mm": [0, 0, height]}}},
+            f"outlets.below.centre_mm is [0, 0, {height}]",
+            "does not cut through the room behind the inlet, in which particles are placed: they would leave",
+        )
+        for height in (161, 200)
+    ),
     (
         {"filling": {**FILLING, "centre_mm": [0, 0, -320]}},
         "filling.centre_mm is [0, 0, -320]",
@@ -357,7 +366,7 @@ EFFORT = [
     (
         {"start_up": {"most_s": 9000}},
         "start_up.most_s is 9000",
-        "at most 6147 s: it takes 7.3e+07 time steps of 0.00012 s, at most 5e+07 are allowed",
+        "at most 6147 s: it takes 7.3e+07 time steps of 0.00012 s, by its particles of 9.6 mm, at most",
     ),
     (
         {"particle_scale": 1, "start_up": {"most_s": 1000}, "inlet": {"size_mm": [500, 500], "rate_t_per_h": 500}},
@@ -380,6 +389,25 @@ def test_what_a_row_asks_for_is_named_with_its_line(tmp_path):
     """A tonnage of the design that is too high for the inlet: the second row, not the study."""
     message = message_of(tmp_path, "row,inlet.rate_t_per_h\nlow,1\nhigh,20\n")
     assert message.startswith(f"{TABLE}, line 3, row high: inlet.rate_t_per_h is 20, allowed is at most 14.31 t/h")
+
+
+def test_what_is_wrong_with_a_drawing_of_a_row_is_named_with_it(tmp_path):
+    """The second row's drawing has no body of the name that the study asks for."""
+    rows = "row,parts.liner.file\nA,\nB,plate.stl\n"
+    words = r"^study machine, row B: parts\.liner\.solid is 'liner', allowed is one of plate\.$"
+    with (
+        machine_study(tmp_path, rows, parts={"liner": {"solid": "liner"}, "plate": None}) as study,
+        pytest.raises(ConfigError, match=words),
+    ):
+        check_files(study.name, study.case, study.runs)
+
+
+def test_a_column_of_a_part_that_is_misspelt_is_told_of_the_one_that_is_near(tmp_path):
+    """A part that only a design has needs all of its keys."""
+    assert message_of(tmp_path, "row,parts.linr.file\nA,liner.stl\n") == (
+        "config/designs/machine.csv, line 2, row A: parts.linr.unit is missing, allowed is one of m, mm, cm, um, in, ft"
+        " (or was parts.liner meant)."
+    )
 
 
 def test_a_design_may_choose_which_parts_wear(tmp_path):
@@ -450,7 +478,7 @@ def test_kernels_of_a_part_s_own_law_are_asked_of_the_solver(tmp_path):
         {"sampling": {"pictures_per_block": 7}},
         *(
             {"outlets": {"other": {**SETTINGS["outlets"]["below"], "centre_mm": centre}}}
-            for centre in ([0, 0, -347], [900, 0, -345])
+            for centre in ([0, 0, -347], [900, 0, -345], [900, 0, 180])
         ),
         {"inlet": {"normal": [0, 0, -5], "velocity_m_per_s": [3, 0, -0.5]}},
         {

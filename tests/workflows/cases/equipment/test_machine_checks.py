@@ -339,6 +339,18 @@ def test_a_thickness_that_no_part_of_that_size_has(run):
     check_machine(*machine(run, ("plate", PLATE, {"thickness_m": 0.413})))
 
 
+def test_an_open_surface_without_a_thickness(run):
+    """It has no back: what a tray has across is not its thickness. One that keeps its shape needs none, nor one that is
+    open at the ends of a slice.
+    """
+    tray = without_lid((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.3))
+    message = message_of(run, ("tray", tray, {}))
+    assert message.startswith("parts.tray.thickness_mm is missing, allowed is the thickness of the liner: the surface")
+    assert "of tray.stl is open, first at (" in message
+    for changes in ({"wears": False}, {"thickness_m": 0.03}):
+        check_machine(*machine(run, ("tray", tray, changes)))
+
+
 def test_thickness_is_that_of_half_the_area():
     """Of a plate through its thin side, of a bulky body across; a sheet has no back."""
     assert thickness_of(box((0.4, 0.3, 0.03), 0.03)) == pytest.approx(0.03, rel=MEASURED)

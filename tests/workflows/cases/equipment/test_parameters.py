@@ -102,8 +102,9 @@ def test_sizes_are_those_of_the_material_or_of_sieves(tmp_path, run):
 
 
 def test_sieves_that_fall_are_one_sentence(tmp_path):
-    """What passes a coarser sieve is at least what passes a finer one."""
-    with pytest.raises(ConfigError, match=r"bulk\.passing.*0\.3 passes the sieve of 4 mm, allowed is 0\.6 or more"):
+    """What passes a coarser sieve is at least what passes a finer one; the file and the line are told."""
+    words = r"0\.3 passes the sieve of 4 mm, allowed is 0\.6 or more"
+    with pytest.raises(ConfigError, match=rf"^config/studies/machine\.yaml, line \d+: bulk\.passing: {words}"):
         parameters_of(tmp_path, bulk={"passing": {"sieve_mm": [1, 2, 4, 8], "fraction": [0, 0.6, 0.3, 1]}})
 
 
