@@ -25,6 +25,7 @@ from bulkwear.workflows.cases.circular_tester.volume import (
 from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
+from bulkwear.workflows.report.text import number
 
 PUBLISHED_FITS = PACKAGE / "config" / "published" / "circular_tester_volume.csv"
 FIT_DIGITS = 5
@@ -110,15 +111,15 @@ def time_words(scale: pd.Series) -> str:
         f"source's two revolutions stand for 56 h would be {_with_interval(scale, 'wear_coefficient')} 1/Pa (simulated "
         f"{scale['simulated_coefficient']:.3g}), the laboratory's own, by its pressure and 121 km, is "
         f"{scale['laboratory_coefficient']:.3g} 1/Pa. Distance of the test over that of the revolutions: "
-        f"{scale['distance_scale']:.3g}."
+        f"{number(scale['distance_scale'], 3)}."
     )
 
 
 def _with_interval(row: pd.Series, name: str) -> str:
     low, high = row[f"{name}_low"], row[f"{name}_high"]
     if not np.isfinite(low):
-        return f"{row[name]:.3g} ({UNKNOWN})"
-    return f"{row[name]:.3g} ({low:.3g} to {high:.3g})"
+        return f"{number(row[name], 3)} ({UNKNOWN})"
+    return f"{number(row[name], 3)} ({number(low, 3)} to {number(high, 3)})"
 
 
 def cards(compared: pd.DataFrame, ratios: pd.DataFrame, name: str) -> list[tuple[str, str]]:
