@@ -94,8 +94,8 @@ def test_the_bed_is_as_asked(finished):
 
 
 def test_a_longer_run_goes_on_from_a_shorter_one(finished, tmp_path):
-    """Shortened, a run keeps its first cycles, without the solver; lengthened again, also from nothing but those, it
-    ends in the very table of the run that was that long from the start.
+    """Shortened, a run keeps its first cycles, without the solver; lengthened again, also where nothing but those is
+    left, it ends in the very table of the run that was that long from the start.
     """
     whole = finished.chains["plain"]
     folder = shutil.copytree(whole.folder, tmp_path / "plain")
@@ -103,11 +103,9 @@ def test_a_longer_run_goes_on_from_a_shorter_one(finished, tmp_path):
     cycles.run_chain(half)
     expected = pd.read_csv(whole.folder / "wear.csv")
     pd.testing.assert_frame_equal(pd.read_csv(folder / "wear.csv"), expected.iloc[:2])
-    cost = (folder / "cycle_002" / "state.json").read_bytes()
     shutil.rmtree(folder / "superseded")
     cycles.run_chain(replace(whole, folder=folder))
     pd.testing.assert_frame_equal(pd.read_csv(folder / "wear.csv"), expected)
-    assert (folder / "cycle_002" / "state.json").read_bytes() == cost
 
 
 def test_the_trough_takes_the_bed_along(finished):
