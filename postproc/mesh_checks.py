@@ -10,11 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 from numba import njit
 
-from bulkwear.postproc.mesh import area_vectors
+from bulkwear.postproc.mesh_cuts import cutting
 
 LEAST_SOLVER_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 LARGEST_PAIR_BLOCK = 500_000  # pairs of faces handled at once: bounds the memory at some 300 MB
-IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
 MORTON_BITS = 20  # per axis, of a place along the curve that orders boxes: three of them fit an int64
 LEAF = 4  # boxes in a leaf of the tree
 DEEPEST = 64  # levels of the tree: more than any int64 count needs
@@ -29,7 +28,7 @@ def intersecting_faces(
     of the other's plane by more, on both sides, along a line that is longer. Neighbours at an edge never count.
     Coplanar overlap is not found (`overlapping_faces`).
     """
-    return _searched(points, triangles, among, clearance_m, _cutting)
+    return _searched(points, triangles, among, clearance_m, cutting)
 
 
 def overlapping_faces(points: np.ndarray, triangles: np.ndarray, clearance_m: float) -> np.ndarray:
@@ -48,57 +47,6 @@ def _searched(points, triangles, among, clearance, narrow) -> np.ndarray:
     for pairs in overlapping_boxes(*boxes, among):
         found.append(pairs[narrow(points, triangles, pairs, clearance)])
     return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
-
-
-def _cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
-    """Mask (p,) of the pairs that pass through one another along a line; neighbours at an edge never do.
-
-    Both meet the line common to their planes in an interval; they cut where the intervals overlap. Source:
-    T. Moeller, J. Graphics Tools 2 (1997) 25.
-    """
-    first, second = triangles[pairs[:, 0]], triangles[pairs[:, 1]]
-    rows = np.flatnonzero((first[:, :, None] == second[:, None, :]).sum(axis=(1, 2)) < 2)
-    first, second = first[rows], second[rows]
-    normals = area_vectors(points, first), area_vectors(points, second)
-    reach = np.linalg.norm(points[first] - points[second[:, :1]], axis=2).max(axis=1)
-    least = np.maximum(IN_PLANE * reach, clearance)
-    heights = [
-        _heights(points, ours, theirs, normal)
-        for ours, theirs, normal in ((first, second, normals[1]), (second, first, normals[0]))
-    ]
-    crossing = np.all([(h.min(axis=1) < -least) & (h.max(axis=1) > least) for h in heights], axis=0)
-    rows, first, second, least = (array[crossing] for array in (rows, first, second, least))
-    line = np.cross(normals[0][crossing], normals[1][crossing])
-    line /= np.maximum(np.linalg.norm(line, axis=1, keepdims=True), np.finfo(float).tiny)
-    origin = points[first[:, 0]]
-    low, high = zip(
-        *(
-            _interval(points[ours] - origin[:, None], h[crossing], line)
-            for ours, h in zip((first, second), heights, strict=True)
-        ),
-        strict=True,
-    )
-    result = np.zeros(len(pairs), dtype=bool)
-    result[rows[np.minimum(*high) - np.maximum(*low) > least]] = True
-    return result
-
-
-def _heights(points: np.ndarray, ours: np.ndarray, theirs: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Height (k, 3) m of our corners over their planes; 0 at common nodes, so that rounding tells no side."""
-    length = np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
-    heights = np.einsum("kcj,kj->kc", points[ours] - points[theirs[:, :1]], normal) / length[:, None]
-    heights[(ours[:, :, None] == theirs[:, None, :]).any(axis=2)] = 0.0
-    return heights
-
-
-def _interval(corners: np.ndarray, heights: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where triangles (k, 3, 3) with corners on both sides of a plane cross it, along a line: from, to (k,) m."""
-    place = np.einsum("kcj,kj->kc", corners, line)
-    next_height, next_place = np.roll(heights, -1, axis=1), np.roll(place, -1, axis=1)
-    passes = (heights > 0.0) != (next_height > 0.0)  # two edges of each
-    step = np.divide(heights, heights - next_height, out=np.zeros_like(heights), where=passes)
-    crossed = place + step * (next_place - place)
-    return np.where(passes, crossed, np.inf).min(axis=1), np.where(passes, crossed, -np.inf).max(axis=1)
 
 
 def _covering(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:

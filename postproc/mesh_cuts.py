@@ -1,0 +1,115 @@
+"""Whether two faces cut one another along a line: compiled, because a surface has several close pairs per face.
+
+Both meet the line common to their planes in an interval; they cut where the intervals overlap. Source: T. Moeller,
+J. Graphics Tools 2 (1997) 25.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
+TINY = np.finfo(np.float64).tiny
+
+
+@njit(cache=True)
+def cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
+    """Mask (p,) of the pairs (p, 2) of faces that pass through one another; neighbours at an edge never do.
+
+    points (n, 3) m; triangles (m, 3); clearance: m, see `postproc.mesh_checks.intersecting_faces`
+    """
+    result = np.zeros(len(pairs), dtype=np.bool_)
+    normals, heights, line = np.empty((2, 3)), np.empty((2, 3)), np.empty(3)
+    interval = np.empty((2, 2))
+    for row in range(len(pairs)):
+        faces = triangles[pairs[row, 0]], triangles[pairs[row, 1]]
+        if _common_nodes(*faces) >= 2:
+            continue
+        least = max(IN_PLANE * _reach(points, *faces), clearance)
+        crossing = True
+        for k in range(2):  # heights of one face over the plane of the other
+            _area_vector(points, faces[1 - k], normals[1 - k])
+            _heights_over(points, faces[k], faces[1 - k], normals[1 - k], heights[k])
+            crossing = heights[k].min() < -least and heights[k].max() > least
+            if not crossing:
+                break
+        if not crossing:
+            continue
+        _cross(normals[0], normals[1], line)
+        line /= max(np.sqrt(_dot(line, line)), TINY)
+        for k in range(2):
+            _interval_on(points, faces[k], points[faces[0][0]], heights[k], line, interval[k])
+        result[row] = min(interval[0, 1], interval[1, 1]) - max(interval[0, 0], interval[1, 0]) > least
+    return result
+
+
+@njit(cache=True)
+def _dot(a, b) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)
+def _cross(a, b, out) -> None:
+    out[0] = a[1] * b[2] - a[2] * b[1]
+    out[1] = a[2] * b[0] - a[0] * b[2]
+    out[2] = a[0] * b[1] - a[1] * b[0]
+
+
+@njit(cache=True)
+def _area_vector(points, face, out) -> None:
+    first, second, third = points[face[0]], points[face[1]], points[face[2]]
+    a0, a1, a2 = second[0] - first[0], second[1] - first[1], second[2] - first[2]
+    b0, b1, b2 = third[0] - first[0], third[1] - first[1], third[2] - first[2]
+    _cross((a0, a1, a2), (b0, b1, b2), out)
+    for axis in range(3):
+        out[axis] *= 0.5
+
+
+@njit(cache=True)
+def _common_nodes(ours, theirs) -> int:
+    count = 0
+    for i in range(3):
+        for j in range(3):
+            count += ours[i] == theirs[j]
+    return count
+
+
+@njit(cache=True)
+def _reach(points, ours, theirs) -> float:
+    """Largest distance (m) of our corners from the first of theirs."""
+    largest = 0.0
+    for i in range(3):
+        square = 0.0
+        for axis in range(3):
+            square += (points[ours[i], axis] - points[theirs[0], axis]) ** 2
+        largest = max(largest, square)
+    return np.sqrt(largest)
+
+
+@njit(cache=True)
+def _heights_over(points, ours, theirs, normal, heights) -> None:
+    """Fill in the heights (3,) m of our corners over their plane; 0 at common nodes, so that rounding tells no side."""
+    length = max(np.sqrt(_dot(normal, normal)), TINY)
+    for i in range(3):
+        height = 0.0
+        if ours[i] != theirs[0] and ours[i] != theirs[1] and ours[i] != theirs[2]:
+            for axis in range(3):
+                height += (points[ours[i], axis] - points[theirs[0], axis]) * normal[axis]
+        heights[i] = height / length
+
+
+@njit(cache=True)
+def _interval_on(points, face, origin, heights, line, interval) -> None:
+    """Fill in where (from, to, m) a face with corners on both sides of a plane crosses it, along a line."""
+    interval[0], interval[1] = np.inf, -np.inf
+    for i in range(3):
+        j = (i + 1) % 3
+        if (heights[i] > 0.0) == (heights[j] > 0.0):
+            continue
+        here, there = 0.0, 0.0
+        for axis in range(3):
+            here += (points[face[i], axis] - origin[axis]) * line[axis]
+            there += (points[face[j], axis] - origin[axis]) * line[axis]
+        place = here + heights[i] / (heights[i] - heights[j]) * (there - here)
+        interval[0], interval[1] = min(interval[0], place), max(interval[1], place)
