@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bulkwear.postproc.mesh import area_vectors, smallest_angles, sum_over_nodes
+from bulkwear.postproc.mesh import area_vectors, sum_over_nodes
+from bulkwear.postproc.wear.remesh_kernels import acute_faces, angles, common_neighbours, sound
 from bulkwear.postproc.wear.remesh_patch import (
     CURVE,
     FIXED,
@@ -22,7 +23,6 @@ from bulkwear.postproc.wear.remesh_patch import (
     Edges,
     OldSurface,
     Patch,
-    adjacency,
     edges_of,
     freedom,
     lowest_beside,
@@ -73,7 +73,7 @@ def split(patch: Patch, limits: Limits) -> tuple[Patch, int]:
     """Halve the long edges, the longest of each face first. Border edges stay."""
     edges = edges_of(patch)
     relative = _relative_lengths(patch, edges)
-    acute = smallest_angles(patch.points, patch.triangles) < limits.acute_deg
+    acute = acute_faces(patch.points, patch.triangles, limits.acute_deg)
     limit = np.where(acute[edges.faces].any(axis=1), SPLIT_ACUTE, SPLIT_ABOVE)
     wanted = (relative > limit) & (edges.faces[:, 1] >= 0)
     chosen = _first_of_faces(edges, wanted, -relative, len(patch.triangles))
@@ -144,7 +144,7 @@ def _collapse_round(patch, old, limits, refused):
 def _collapsible(patch: Patch, edges: Edges, kind, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
     """Mask (e,) of edges that are short and may be collapsed, and all lengths over their target."""
     relative = _relative_lengths(patch, edges)
-    acute = smallest_angles(patch.points, patch.triangles) < limits.acute_deg
+    acute = acute_faces(patch.points, patch.triangles, limits.acute_deg)
     limit = np.where(acute[edges.faces].any(axis=1), COLLAPSE_ACUTE, limits.collapse_below)
     ends = kind[edges.ends]
     wanted = (relative < limit) & (edges.faces[:, 1] >= 0) & (ends.min(axis=1) != FIXED)
@@ -152,9 +152,7 @@ def _collapsible(patch: Patch, edges: Edges, kind, limits: Limits) -> tuple[np.n
     few = np.bincount(patch.label)[patch.label] <= FEWEST_FACES  # no label may vanish
     wanted &= ~few[edges.faces].any(axis=1)
     found = np.flatnonzero(wanted)
-    near = adjacency(edges, len(patch.points))
-    common = near[edges.ends[found, 0]].multiply(near[edges.ends[found, 1]]).sum(axis=1)
-    wanted[found] = np.asarray(common).ravel() == 2  # else two sheets would be joined
+    wanted[found] = common_neighbours(edges.ends, found, len(patch.points)) == 2  # else two sheets would be joined
     return wanted, relative
 
 
@@ -226,10 +224,10 @@ def _flippable(patch: Patch, edges: Edges, acute_deg: float) -> tuple[np.ndarray
     """The new faces of each edge, see `flipped_faces`, and the gain (e,) of the smallest angle, degrees."""
     quads, allowed = flipped_faces(patch, edges)
     gain = np.zeros(len(quads))
-    now = smallest_angles(patch.points, patch.triangles)[edges.faces].min(axis=1)
+    now = angles(patch.points, patch.triangles)[edges.faces].min(axis=1)
     rows = np.flatnonzero(allowed & (now < acute_deg))
     now = now[rows]
-    then = smallest_angles(patch.points, quads[rows].reshape(-1, 3)).reshape(-1, 2).min(axis=1)
+    then = angles(patch.points, quads[rows].reshape(-1, 3)).reshape(-1, 2).min(axis=1)
     gain[rows] = then - now
     return quads, gain
 
@@ -243,7 +241,7 @@ def shift(patch: Patch, old: OldSurface, limits: Limits, seed: int, erode: bool 
     edges = edges_of(patch)
     kind = freedom(patch, edges)
     waiting = np.zeros(len(kind), dtype=bool)
-    waiting[patch.triangles[erode | (smallest_angles(patch.points, patch.triangles) < limits.acute_deg)]] = True
+    waiting[patch.triangles[erode | acute_faces(patch.points, patch.triangles, limits.acute_deg)]] = True
     waiting &= kind != FIXED
     order = np.random.default_rng(seed).permutation(len(kind)).astype(np.float64)
     for _ in range(SETS):
@@ -305,26 +303,11 @@ def _along_curve(patch: Patch, edges: Edges, nodes: np.ndarray) -> np.ndarray:
 
 def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: OldSurface, limits: Limits) -> np.ndarray:
     """Mask (count,) of the operations that leave the patch sound. `of_face` (m,): operation of a face, or -1."""
-    rows = np.flatnonzero(of_face >= 0)
-    group = of_face[rows]
-    good = np.zeros(count, dtype=bool)
-    good[group] = True
-    angle_before = np.full(count, np.inf)
-    np.minimum.at(angle_before, group, smallest_angles(before.points, before.triangles[rows]))
-    vectors = area_vectors(before.points, before.triangles[rows])
-    mean = np.zeros((count, 3))
-    np.add.at(mean, group, vectors)
-    cosine_before = np.full(count, np.inf)
-    np.minimum.at(cosine_before, group, _cosines(vectors, mean[group]))
-    held = np.bincount(group, all_fixed(before, rows), count)
+    shapes = before.points, before.triangles, after.points, after.triangles
+    bounds = GOOD_ANGLE, LEAST_COSINE, COSINE_SLACK
+    good = sound(*shapes, of_face, alive, before.fixed, count, *bounds)
     left = np.flatnonzero((of_face >= 0) & alive)
-    group = of_face[left]
-    good[np.bincount(group, all_fixed(after, left), count) > held] = False
-    angle = smallest_angles(after.points, after.triangles[left])
-    good[group[angle < np.minimum(angle_before, GOOD_ANGLE)[group]]] = False
-    cosine = _cosines(area_vectors(after.points, after.triangles[left]), mean[group])
-    good[group[~(cosine >= np.minimum(cosine_before, LEAST_COSINE)[group] - COSINE_SLACK)]] = False
-    left = left[good[group]]
+    left = left[good[of_face[left]]]
     reach = old.range_over_faces(after.points, after.triangles[left], after.size)
     good[of_face[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
     return good
@@ -333,12 +316,6 @@ def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: Ol
 def all_fixed(patch: Patch, faces: np.ndarray | slice = slice(None)) -> np.ndarray:
     """Mask (k,) of faces none of whose nodes may move: what becomes of such a face nothing can mend."""
     return patch.fixed[patch.triangles[faces]].all(axis=1)
-
-
-def _cosines(vectors: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Cosine of the angle between rows, (k,); -1 where one of them is zero."""
-    length = np.linalg.norm(vectors, axis=1) * np.linalg.norm(others, axis=1)
-    return np.divide((vectors * others).sum(axis=1), length, out=np.full(len(length), -1.0), where=length > 0.0)
 
 
 def _relative_lengths(patch: Patch, edges: Edges) -> np.ndarray:

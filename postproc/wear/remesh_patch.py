@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import sparse
 
 from bulkwear.postproc.mesh import directed_edges, unit_normals
+from bulkwear.postproc.wear.remesh_kernels import edge_table, heights, node_normals_by_angle
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
 ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside
@@ -50,19 +50,9 @@ class Edges:
 
 def edges_of(patch: Patch) -> Edges:
     """Edges of the patch in the order of their node indices."""
-    directed = directed_edges(patch.triangles)
-    low, high = directed.min(axis=1), directed.max(axis=1)
-    order = np.lexsort((directed[:, 0], high, low))
-    new = np.ones(len(order), dtype=bool)
-    new[1:] = (low[order][1:] != low[order][:-1]) | (high[order][1:] != high[order][:-1])
-    first = np.flatnonzero(new)
-    double = np.diff(np.append(first, len(order))) > 1
-    chosen = np.column_stack([order[first], np.where(double, order[np.minimum(first + 1, len(order) - 1)], -1)])
-    faces = np.where(chosen >= 0, chosen // 3, -1)
-    third = patch.triangles[faces, (chosen % 3 + 2) % 3]
-    opposite = np.where(chosen >= 0, third, -1)
-    curve = double & (patch.label[faces[:, 0]] != patch.label[faces[:, 1]])
-    return Edges(directed[chosen[:, 0]], faces, opposite, curve)
+    ends, faces, opposite = edge_table(patch.triangles, len(patch.points))
+    curve = (faces[:, 1] >= 0) & (patch.label[faces[:, 0]] != patch.label[faces[:, 1]])
+    return Edges(ends, faces, opposite, curve)
 
 
 def freedom(patch: Patch, edges: Edges) -> np.ndarray:
@@ -71,12 +61,6 @@ def freedom(patch: Patch, edges: Edges) -> np.ndarray:
     result = np.where(degree == 0, INNER, np.where(degree == 2, CURVE, FIXED))
     result[patch.fixed] = FIXED
     return result
-
-
-def adjacency(edges: Edges, n_points: int) -> sparse.csr_array:
-    """Symmetric matrix (n, n) of ones between nodes that share an edge."""
-    rows, columns = np.concatenate([edges.ends, edges.ends[:, ::-1]]).T
-    return sparse.csr_array((np.ones(len(rows)), (rows, columns)), shape=(n_points, n_points))
 
 
 def lowest_beside(rank: np.ndarray, edges: Edges) -> np.ndarray:
@@ -119,10 +103,7 @@ class OldSurface:
         self._tree = igl.AABB()
         self._tree.init(points, triangles)
         normals = np.nan_to_num(unit_normals(points, triangles))
-        at_corner = corner_angles(points, triangles)[:, :, None] * normals[:, None]
-        at_node = np.zeros_like(points)
-        np.add.at(at_node, triangles, at_corner)
-        self._of_corner = at_node[triangles]
+        self._of_node = node_normals_by_angle(points, triangles, normals)
         self._of_face = normals
         self._of_edge = np.repeat(normals[:, None], 3, axis=1)  # k: opposite to corner k
         pairs, sides = neighbours(triangles)
@@ -135,13 +116,9 @@ class OldSurface:
         if not len(places):
             return np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 3))
         square, face, point = self._tree.squared_distance(self.points, self.triangles, places)
-        weight = barycentric(point, self.points[self.triangles[face]])
-        zero = weight < ON_EDGE
-        count, row = zero.sum(axis=1), np.arange(len(face))
-        normal = np.where((count == 1)[:, None], self._of_edge[face, zero.argmax(axis=1)], self._of_face[face])
-        normal = np.where((count == 2)[:, None], self._of_corner[face, weight.argmax(axis=1)], normal)
-        above = ((places - point) * normal).sum(axis=1)
-        return np.copysign(np.sqrt(square), above)[row], face, point
+        normals = self._of_face, self._of_edge, self._of_node
+        above = heights(places, point, face, self.points, self.triangles, *normals, ON_EDGE)
+        return np.copysign(np.sqrt(square), above), face, point
 
     def range_over_faces(self, points: np.ndarray, triangles: np.ndarray, size: np.ndarray) -> np.ndarray:
         """Smallest and largest signed distance of each face over its mean target edge, (k, 2).
@@ -178,14 +155,6 @@ def border_nodes(triangles: np.ndarray) -> np.ndarray:
     differs[1:-1] = keys[1:] != keys[:-1]
     single = keys[differs[1:] & differs[:-1]]
     return np.unique(np.concatenate([single // base, single % base]))
-
-
-def corner_angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Interior angle at each corner, (m, 3) rad."""
-    corners = points[triangles]
-    forward, backward = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
-    sine = np.linalg.norm(np.cross(forward, backward), axis=2)
-    return np.arctan2(sine, (forward * backward).sum(axis=2))
 
 
 def neighbours(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -19,6 +19,7 @@ from bulkwear.postproc.wear.mesh_faults import (
     folded_faces,
     mesh_faults,
 )
+from bulkwear.postproc.wear.remesh_kernels import common_neighbours
 from bulkwear.postproc.wear.remesh_operations import (
     LARGEST_OUTWARD,
     OUTWARD_BY_OPERATIONS,
@@ -31,7 +32,6 @@ from bulkwear.postproc.wear.remesh_patch import (
     FIXED,
     OldSurface,
     Patch,
-    adjacency,
     edges_of,
     freedom,
     rings,
@@ -167,9 +167,7 @@ def _candidates(patch: Patch, bounds: Bounds) -> list[tuple[int, int, bool]]:
     near[patch.triangles[_tangled(patch, bounds)]] = True
     wanted = near[edges.ends].any(axis=1) & (edges.faces[:, 1] >= 0) & (kind[edges.ends].min(axis=1) != FIXED)
     found = np.flatnonzero(wanted)
-    beside = adjacency(edges, len(patch.points))
-    common = beside[edges.ends[found, 0]].multiply(beside[edges.ends[found, 1]]).sum(axis=1)
-    found = found[np.asarray(common).ravel() == 2]
+    found = found[common_neighbours(edges.ends, found, len(patch.points)) == 2]
     length = np.linalg.norm(np.diff(patch.points[edges.ends[found]], axis=1)[:, 0], axis=1)
     ends = edges.ends[found[np.argsort(length, kind="stable")[:MOST_CANDIDATES]]]
     ends = np.where((kind[ends[:, 0]] > kind[ends[:, 1]])[:, None], ends[:, ::-1], ends)

@@ -1,0 +1,247 @@
+"""Compiled loops of remeshing over the faces of a patch: edges, angles, what an operation leaves, distances.
+
+Remeshing tries some hundred sets of operations on patches of a few hundred faces, for which calls of numpy cost more
+than the arithmetic. Sums run in the order of the faces, so that results depend on nothing else.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def cross(a, b):
+    """Cross product of two triples."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@njit(cache=True)
+def dot(a, b):
+    """Scalar product of two triples."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)
+def between(points, start, end):
+    """Vector (a triple, m) from one node to another."""
+    return (
+        points[end, 0] - points[start, 0],
+        points[end, 1] - points[start, 1],
+        points[end, 2] - points[start, 2],
+    )
+
+
+@njit(cache=True)
+def between_places(start, end):
+    """Vector (a triple, m) from one place to another."""
+    return end[0] - start[0], end[1] - start[1], end[2] - start[2]
+
+
+@njit(cache=True)
+def area_vector(points, face):
+    """Outward normal times area of a face (3,) of nodes, a triple in m2."""
+    x, y, z = cross(between(points, face[0], face[1]), between(points, face[0], face[2]))
+    return 0.5 * x, 0.5 * y, 0.5 * z
+
+
+@njit(cache=True)
+def smallest_angle(points, face) -> float:
+    """Smallest interior angle of a face, degrees, as `postproc.mesh.smallest_angles`."""
+    least = np.inf
+    for k in range(3):
+        forward = between(points, face[k], face[(k + 1) % 3])
+        backward = between(points, face[k], face[(k + 2) % 3])
+        normal = cross(forward, backward)
+        least = min(least, math.atan2(math.sqrt(dot(normal, normal)), dot(forward, backward)) * (180.0 / math.pi))
+    return least
+
+
+@njit(cache=True)
+def acute_faces(points, triangles, bound: float) -> np.ndarray:
+    """Mask (m,) of the faces whose smallest angle is below a bound, degrees."""
+    result = np.empty(len(triangles), dtype=np.bool_)
+    for row in range(len(triangles)):
+        result[row] = smallest_angle(points, triangles[row]) < bound
+    return result
+
+
+@njit(cache=True)
+def angles(points, triangles) -> np.ndarray:
+    """Smallest interior angle of each face, (m,) degrees."""
+    result = np.empty(len(triangles))
+    for row in range(len(triangles)):
+        result[row] = smallest_angle(points, triangles[row])
+    return result
+
+
+@njit(cache=True)
+def edge_table(triangles, count):
+    """Undirected edges in the order of their nodes, see `postproc.wear.remesh_patch.Edges`: ends, faces, third nodes.
+
+    triangles (m, 3); count: of nodes. Where more than two faces meet the first two count, those that run upwards first.
+    """
+    start = np.zeros(count + 1, dtype=np.int64)
+    for face in triangles:
+        for k in range(3):
+            start[min(face[k], face[(k + 1) % 3]) + 1] += 1
+    start = np.cumsum(start)
+    held, place = np.empty(3 * len(triangles), dtype=np.int64), start[:-1].copy()
+    keys = np.empty(3 * len(triangles), dtype=np.int64)
+    for row in range(len(triangles)):
+        for k in range(3):
+            a, b = triangles[row, k], triangles[row, (k + 1) % 3]
+            low, key = min(a, b), 2 * max(a, b) + (a > b)
+            at = place[low]
+            place[low] += 1
+            while at > start[low] and keys[at - 1] > key:
+                keys[at], held[at] = keys[at - 1], held[at - 1]
+                at -= 1
+            keys[at], held[at] = key, 3 * row + k
+    ends = np.empty((len(held), 2), dtype=np.int64)
+    faces, opposite = np.full((len(held), 2), -1), np.full((len(held), 2), -1)
+    found = 0
+    for low in range(count):
+        at = start[low]
+        while at < start[low + 1]:
+            following = at
+            while following < start[low + 1] and keys[following] // 2 == keys[at] // 2:
+                if following < at + 2:
+                    row, k = held[following] // 3, held[following] % 3
+                    faces[found, following - at] = row
+                    opposite[found, following - at] = triangles[row, (k + 2) % 3]
+                following += 1
+            row, k = held[at] // 3, held[at] % 3
+            ends[found, 0], ends[found, 1] = triangles[row, k], triangles[row, (k + 1) % 3]
+            found += 1
+            at = following
+    return ends[:found].copy(), faces[:found].copy(), opposite[:found].copy()
+
+
+@njit(cache=True)
+def common_neighbours(ends, chosen, count) -> np.ndarray:
+    """How many nodes are neighbours of both ends of each chosen edge, (k,).
+
+    ends (e, 2) nodes of all edges; chosen (k,) edges; count: of nodes
+    """
+    start = np.zeros(count + 1, dtype=np.int64)
+    for a, b in ends:
+        start[a + 1] += 1
+        start[b + 1] += 1
+    start = np.cumsum(start)
+    beside, place = np.empty(2 * len(ends), dtype=np.int64), start[:-1].copy()
+    for a, b in ends:
+        beside[place[a]] = b
+        beside[place[b]] = a
+        place[a] += 1
+        place[b] += 1
+    marked, result = np.full(count, -1), np.zeros(len(chosen), dtype=np.int64)
+    for row in range(len(chosen)):
+        a, b = ends[chosen[row]]
+        for at in range(start[a], start[a + 1]):
+            marked[beside[at]] = row
+        for at in range(start[b], start[b + 1]):
+            result[row] += marked[beside[at]] == row
+    return result
+
+
+@njit(cache=True)
+def cosine(a, b) -> float:
+    """Cosine of the angle between two triples; -1 where one of them is zero."""
+    length = math.sqrt(dot(a, a)) * math.sqrt(dot(b, b))
+    return dot(a, b) / length if length > 0.0 else -1.0
+
+
+@njit(cache=True)
+def all_of(mask, face) -> bool:
+    """Whether a mask (n,) holds at all nodes of a face."""
+    return mask[face[0]] and mask[face[1]] and mask[face[2]]
+
+
+@njit(cache=True)
+def sound(points, triangles, new_points, new_triangles, of_face, alive, fixed, count, good_angle, least_cosine, slack):
+    """Mask (count,) of the operations that spoil no face: no smaller angle, no turned face, no more faces held fast.
+
+    points (n, 3) m, triangles (m, 3) : before; new_points, new_triangles: after, the same rows
+    of_face (m,) : operation of each face, or -1; alive (m,): faces that are left after it
+    fixed (n,) : nodes that may not move
+    good_angle : degrees, least_cosine, slack : -, see `postproc.wear.remesh_operations`
+    """
+    angle, least, mean = np.full(count, np.inf), np.full(count, np.inf), np.zeros((count, 3))
+    held, good = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.bool_)
+    rows = np.flatnonzero(of_face >= 0)
+    for row in rows:
+        group, face = of_face[row], triangles[row]
+        good[group] = True
+        angle[group] = min(angle[group], smallest_angle(points, face))
+        held[group] += all_of(fixed, face)
+        vector = area_vector(points, face)
+        for axis in range(3):
+            mean[group, axis] += vector[axis]
+    for row in rows:
+        group = of_face[row]
+        least[group] = min(least[group], cosine(area_vector(points, triangles[row]), mean[group]))
+        if alive[row]:
+            held[group] -= all_of(fixed, new_triangles[row])
+    for row in rows:
+        group, face = of_face[row], new_triangles[row]
+        if not (alive[row] and good[group]):
+            continue
+        flat = cosine(area_vector(new_points, face), mean[group]) >= min(least[group], least_cosine) - slack
+        acute = smallest_angle(new_points, face) < min(angle[group], good_angle)
+        good[group] = flat and not acute and held[group] >= 0
+    return good
+
+
+@njit(cache=True)
+def node_normals_by_angle(points, triangles, normals) -> np.ndarray:
+    """Sum at each node of the unit normals (m, 3) of its faces, weighted by their angle there, (n, 3) rad."""
+    result = np.zeros_like(points)
+    for row in range(len(triangles)):
+        face = triangles[row]
+        for k in range(3):
+            forward = between(points, face[k], face[(k + 1) % 3])
+            backward = between(points, face[k], face[(k + 2) % 3])
+            normal = cross(forward, backward)
+            angle = math.atan2(math.sqrt(dot(normal, normal)), dot(forward, backward))
+            for axis in range(3):
+                result[face[k], axis] += angle * normals[row, axis]
+    return result
+
+
+@njit(cache=True)
+def heights(places, nearest, closest, points, triangles, of_face, of_edge, of_node, on_edge) -> np.ndarray:
+    """Height (k,) m of places over the closest points `nearest` (k, 3) m, along the normal there: its sign is told.
+
+    closest (k,) : face of each closest point; points (n, 3) m, triangles (m, 3)
+    of_face (m, 3), of_edge (m, 3, 3), of_node (n, 3) : normals; those of edges by the opposite corner
+    on_edge : -, barycentric weight below which a point lies on an edge
+    """
+    result, weight, spokes = np.empty(len(places)), np.empty(3), np.empty((3, 3))
+    for row in range(len(places)):
+        face = triangles[closest[row]]
+        for k in range(3):
+            for axis in range(3):
+                spokes[k, axis] = points[face[k], axis] - nearest[row, axis]
+        normal = cross(between(points, face[0], face[1]), between(points, face[0], face[2]))
+        for k in range(3):
+            weight[k] = max(dot(cross(spokes[(k + 1) % 3], spokes[(k + 2) % 3]), normal), 0.0)
+        total = weight[0] + weight[1] + weight[2]
+        count, edge, largest = 0, 0, 0
+        for k in range(3):
+            weight[k] = weight[k] / total if total > 0.0 else 1.0 / 3.0
+            if weight[k] < on_edge:
+                edge = k if count == 0 else edge
+                count += 1
+            if weight[k] > weight[largest]:
+                largest = k
+        side = of_face[closest[row]]
+        if count == 1:
+            side = of_edge[closest[row], edge]
+        elif count == 2:
+            side = of_node[face[largest]]
+        offset = between_places(nearest[row], places[row])
+        result[row] = dot(offset, side)
+    return result
