@@ -245,3 +245,92 @@ def heights(places, nearest, closest, points, triangles, of_face, of_edge, of_no
         offset = between_places(nearest[row], places[row])
         result[row] = dot(offset, side)
     return result
+
+
+@njit(cache=True)
+def probes(points, triangles):
+    """Where faces are held against another surface, (q, 3) m, and the seven of them of each face, (m, 7).
+
+    Corners, middles of the edges and centroids, common corners once. points (n, 3) m; triangles (m, 3)
+    """
+    number, count = np.full(len(points), -1), 0
+    place, at = np.empty((7 * len(triangles), 3)), np.empty((len(triangles), 7), dtype=np.int64)
+    for row in range(len(triangles)):
+        face = triangles[row]
+        for k in range(3):
+            if number[face[k]] < 0:
+                number[face[k]] = count
+                place[count] = points[face[k]]
+                count += 1
+            at[row, k] = number[face[k]]
+        for k in range(3):
+            for axis in range(3):
+                place[count, axis] = 0.5 * (points[face[k], axis] + points[face[(k + 1) % 3], axis])
+            at[row, 3 + k] = count
+            count += 1
+        for axis in range(3):
+            place[count, axis] = (points[face[0], axis] + points[face[1], axis] + points[face[2], axis]) / 3.0
+        at[row, 6] = count
+        count += 1
+    return place[:count].copy(), at
+
+
+@njit(cache=True)
+def ranges(distance, at, triangles, size) -> np.ndarray:
+    """Smallest and largest distance at the probes of each face over its mean target edge, (m, 2).
+
+    distance (q,) m and at (m, 7): see `probes`; triangles (m, 3); size (n,) m
+    """
+    result = np.empty((len(triangles), 2))
+    for row in range(len(triangles)):
+        face, low, high = triangles[row], np.inf, -np.inf
+        for k in range(7):
+            low, high = min(low, distance[at[row, k]]), max(high, distance[at[row, k]])
+        mean = (size[face[0]] + size[face[1]] + size[face[2]]) / 3.0
+        result[row, 0], result[row, 1] = low / mean, high / mean
+    return result
+
+
+@njit(cache=True)
+def star_sums(points, triangles, size, of_face, nodes):
+    """Sums over the faces round nodes no two of which share a face.
+
+    points (n, 3) m; triangles (m, 3); size (n,) m: target edges; of_face (m,): place in `nodes` of the one among its
+    corners, or -1; nodes (k,)
+
+    Returns weights (k,), areas over the square of the target edge; moments (k, 3) m, the sums of the centroids with
+    those weights; gradients (k, 3) m2, area vectors. They are summed corner by corner, as `sum_over_nodes` does.
+    """
+    weight, moment, gradient = np.zeros(len(nodes)), np.zeros((len(nodes), 3)), np.zeros((len(nodes), 3))
+    rows = np.flatnonzero(of_face >= 0)
+    for k in range(3):
+        for row in rows:
+            group, face = of_face[row], triangles[row]
+            if face[k] != nodes[group]:
+                continue
+            vector = area_vector(points, face)
+            mean = (size[face[0]] + size[face[1]] + size[face[2]]) / 3.0
+            density = math.sqrt(dot(vector, vector)) / (mean * mean)
+            weight[group] += density
+            for axis in range(3):
+                middle = (points[face[0], axis] + points[face[1], axis] + points[face[2], axis]) / 3.0
+                moment[group, axis] += density * middle
+                gradient[group, axis] += vector[axis]
+    return weight, moment, gradient
+
+
+@njit(cache=True)
+def opposite_areas(points, triangles, nodes, places):
+    """Twice the area vectors (m, 3) m2 of triangles from a place each to the edge opposite to a node, from it.
+
+    points (n, 3) m; triangles (m, 3); nodes (m,), one corner of each; places (m, 3) m
+    """
+    result = np.empty((len(triangles), 3))
+    for row in range(len(triangles)):
+        face, k = triangles[row], 0
+        while k < 2 and face[k] != nodes[row]:
+            k += 1
+        first = between_places(places[row], points[face[(k + 1) % 3]])
+        second = between_places(places[row], points[face[(k + 2) % 3]])
+        result[row] = cross(first, second)
+    return result

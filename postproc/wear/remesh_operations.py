@@ -14,8 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bulkwear.postproc.mesh import area_vectors, sum_over_nodes
-from bulkwear.postproc.wear.remesh_kernels import acute_faces, angles, common_neighbours, sound
+from bulkwear.postproc.wear.remesh_kernels import (
+    acute_faces,
+    angles,
+    common_neighbours,
+    opposite_areas,
+    sound,
+    star_sums,
+)
 from bulkwear.postproc.wear.remesh_patch import (
     CURVE,
     FIXED,
@@ -170,11 +176,8 @@ def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[
     local = patch.points[patch.triangles[rows]] - middle[group][:, None]
     before = np.bincount(group, weights=_determinants(local), minlength=len(ends))
     left = rows[~vanish[rows]]
-    group, row = of_face[left], np.arange(len(left))
-    at = (triangles[left] == kept[group][:, None]).argmax(axis=1)
-    first, second = (patch.points[triangles[left][row, (at + k) % 3]] - middle[group] for k in (1, 2))
-    gradient = np.zeros((len(ends), 3))
-    np.add.at(gradient, group, np.cross(first, second))
+    group, gradient = of_face[left], np.zeros((len(ends), 3))
+    np.add.at(gradient, group, opposite_areas(patch.points, triangles[left], kept[group], middle[group]))
     square = (gradient**2).sum(axis=1)
     factor = np.divide(before, square, out=np.zeros_like(before), where=inner & (square > 0.0))
     sunk = middle - SINK * np.linalg.norm(np.diff(patch.points[ends], axis=1)[:, 0], axis=1, keepdims=True) * np.divide(
@@ -253,31 +256,28 @@ def shift(patch: Patch, old: OldSurface, limits: Limits, seed: int, erode: bool 
         operation = np.full(len(kind), -1)
         operation[chosen] = np.arange(len(chosen))
         of_face = operation[patch.triangles].max(axis=1)
-        motion, inward = _motion(patch, edges, kind, chosen, erode)
+        motion, inward = _motion(patch, edges, kind, chosen, of_face, erode)
+        good = np.zeros(len(chosen), dtype=bool)
         for factor, depth in SHIFTS:
-            points = patch.points.copy()
-            points[chosen] += factor * motion + depth * patch.size[chosen, None] * inward
-            tried = patch.changed(points=points)
-            good = _acceptable(patch, tried, of_face, of_face >= 0, len(chosen), old, limits)
+            points, left = patch.points.copy(), chosen[~good]
+            points[left] += factor * motion[~good] + depth * patch.size[left, None] * inward[~good]
+            tried, still = patch.changed(points=points), np.where(good[of_face], -1, of_face)
+            good |= _acceptable(patch, tried, still, still >= 0, len(chosen), old, limits)
             points[chosen[~good]] = patch.points[chosen[~good]]
             patch = patch.changed(points=points)
-            motion[good], inward[good] = 0.0, 0.0
+            if good.all():
+                break
     return patch
 
 
-def _motion(patch: Patch, edges: Edges, kind, chosen, erode: bool) -> tuple[np.ndarray, np.ndarray]:
+def _motion(patch: Patch, edges: Edges, kind, chosen, of_face, erode: bool) -> tuple[np.ndarray, np.ndarray]:
     """Shifts (k, 3) m of the chosen nodes, square to the gradient of the volume, or falling along it to `erode`.
 
-    Returns them and the unit directions (k, 3) into the body.
+    of_face (m,): place in `chosen` of a face's node. Returns them and the unit directions (k, 3) into the body.
     """
-    vectors = area_vectors(patch.points, patch.triangles)
-    density = np.linalg.norm(vectors, axis=1) / patch.size[patch.triangles].mean(axis=1) ** 2
-    centre = patch.points[patch.triangles].mean(axis=1)
-    count = len(patch.points)
-    weight = sum_over_nodes(patch.triangles, density, count)[chosen, None]
-    moment = sum_over_nodes(patch.triangles, density[:, None] * centre, count)[chosen]
+    weight, moment, gradient = star_sums(patch.points, patch.triangles, patch.size, of_face, chosen)
+    weight = weight[:, None]
     target = np.divide(moment, weight, out=patch.points[chosen], where=weight > 0.0)
-    gradient = sum_over_nodes(patch.triangles, vectors, count)[chosen]
     motion = SHIFT * (target - patch.points[chosen])
     on_curve = kind[chosen] == CURVE
     motion[on_curve] = _along_curve(patch, edges, chosen[on_curve])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bulkwear.postproc.mesh import directed_edges, unit_normals
-from bulkwear.postproc.wear.remesh_kernels import edge_table, heights, node_normals_by_angle
+from bulkwear.postproc.wear.remesh_kernels import edge_table, heights, node_normals_by_angle, probes, ranges
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
 ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside
@@ -125,15 +125,10 @@ class OldSurface:
 
         Taken at the corners, the middles of the edges and the centroid. `size` (n,) m: target edge at the nodes.
         """
-        nodes, at = np.unique(triangles, return_inverse=True)
-        corners = points[triangles]
-        middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-        inside = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)
-        distance, face, _ = self.closest(np.concatenate([points[nodes], inside.reshape(-1, 3)]))
+        places, at = probes(points, triangles)
+        distance, face, _ = self.closest(places)
         distance = np.where(self.tangled[face], np.minimum(distance, 0.0), distance)
-        at_corner, within = distance[: len(nodes)][at.reshape(-1, 3)], distance[len(nodes) :].reshape(-1, 4)
-        distance = np.concatenate([at_corner, within], axis=1) / size[triangles].mean(axis=1, keepdims=True)
-        return np.column_stack([distance.min(axis=1), distance.max(axis=1)])
+        return ranges(distance, at, triangles, size)
 
 
 def barycentric(places: np.ndarray, corners: np.ndarray) -> np.ndarray:

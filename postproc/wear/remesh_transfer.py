@@ -10,13 +10,26 @@ from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE
 from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch, barycentric, border_nodes
 
+WIDEST = 4  # integers per face, between the lowest and the highest, for which no sorting is needed
+
 
 def labels_of(mesh: SurfaceMesh) -> np.ndarray:
     """One number (m,) per combination of the integer data of a face (part, column, row)."""
-    columns = [mesh.cell_data[name] for name in _label_names(mesh)]
-    if not columns:
-        return np.zeros(len(mesh.triangles), dtype=np.int64)
-    return np.unique(np.column_stack(columns), axis=0, return_inverse=True)[1].ravel()
+    label = np.zeros(len(mesh.triangles), dtype=np.int64)
+    for name in _label_names(mesh):
+        values = _ranks(np.asarray(mesh.cell_data[name]).astype(np.int64))
+        label = _ranks(label * (values.max(initial=0) + 1) + values)
+    return label
+
+
+def _ranks(values: np.ndarray) -> np.ndarray:
+    """Rank (m,) of integers (m,) among those that there are: 0 for the lowest."""
+    first = values.min(initial=0)
+    if (span := values.max(initial=0) - first + 1) > WIDEST * len(values):
+        return np.unique(values, return_inverse=True)[1]
+    there = np.zeros(span, dtype=bool)
+    there[values - first] = True
+    return (np.cumsum(there) - 1)[values - first]
 
 
 def _label_names(mesh: SurfaceMesh) -> list[str]:
