@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from bulkwear.postproc.triangle import area_vector, cross, dot
+
 IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
 TINY = np.finfo(np.float64).tiny
 
@@ -29,41 +31,19 @@ def cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, cleara
         least = max(IN_PLANE * _reach(points, *faces), clearance)
         crossing = True
         for k in range(2):  # heights of one face over the plane of the other
-            _area_vector(points, faces[1 - k], normals[1 - k])
+            normals[1 - k] = area_vector(points, faces[1 - k])
             _heights_over(points, faces[k], faces[1 - k], normals[1 - k], heights[k])
             crossing = heights[k].min() < -least and heights[k].max() > least
             if not crossing:
                 break
         if not crossing:
             continue
-        _cross(normals[0], normals[1], line)
-        line /= max(np.sqrt(_dot(line, line)), TINY)
+        line[:] = cross(normals[0], normals[1])
+        line /= max(np.sqrt(dot(line, line)), TINY)
         for k in range(2):
             _interval_on(points, faces[k], points[faces[0][0]], heights[k], line, interval[k])
         result[row] = min(interval[0, 1], interval[1, 1]) - max(interval[0, 0], interval[1, 0]) > least
     return result
-
-
-@njit(cache=True)
-def _dot(a, b) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@njit(cache=True)
-def _cross(a, b, out) -> None:
-    out[0] = a[1] * b[2] - a[2] * b[1]
-    out[1] = a[2] * b[0] - a[0] * b[2]
-    out[2] = a[0] * b[1] - a[1] * b[0]
-
-
-@njit(cache=True)
-def _area_vector(points, face, out) -> None:
-    first, second, third = points[face[0]], points[face[1]], points[face[2]]
-    a0, a1, a2 = second[0] - first[0], second[1] - first[1], second[2] - first[2]
-    b0, b1, b2 = third[0] - first[0], third[1] - first[1], third[2] - first[2]
-    _cross((a0, a1, a2), (b0, b1, b2), out)
-    for axis in range(3):
-        out[axis] *= 0.5
 
 
 @njit(cache=True)
@@ -90,7 +70,7 @@ def _reach(points, ours, theirs) -> float:
 @njit(cache=True)
 def _heights_over(points, ours, theirs, normal, heights) -> None:
     """Fill in the heights (3,) m of our corners over their plane; 0 at common nodes, so that rounding tells no side."""
-    length = max(np.sqrt(_dot(normal, normal)), TINY)
+    length = max(np.sqrt(dot(normal, normal)), TINY)
     for i in range(3):
         height = 0.0
         if ours[i] != theirs[0] and ours[i] != theirs[1] and ours[i] != theirs[2]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, centroids, worn_faces
+from bulkwear.postproc.wear.face_kernels import corner_words, rows_among
 from bulkwear.postproc.wear.mesh_faults import (
     DEFAULT_BOUNDS,
     TARGET_EDGE,
@@ -168,6 +169,5 @@ def _within(mesh: SurfaceMesh, changed: np.ndarray, old: OldSurface) -> SurfaceM
 
 def _changed(before: SurfaceMesh, after: SurfaceMesh) -> np.ndarray:
     """Mask of the faces of the new mesh whose corners are not, bit for bit, those of a face of the old one."""
-    corners = [np.ascontiguousarray(mesh.points[mesh.triangles].reshape(-1, 9)) for mesh in (before, after)]
-    known, new = (rows.view(np.dtype((np.void, rows.itemsize * 9))).ravel() for rows in corners)
-    return ~np.isin(new, known)
+    known, new = (corner_words(mesh.points, mesh.triangles) for mesh in (before, after))
+    return ~rows_among(new, known)

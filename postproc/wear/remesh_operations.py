@@ -14,14 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bulkwear.postproc.wear.remesh_kernels import (
-    acute_faces,
-    angles,
-    common_neighbours,
-    opposite_areas,
-    sound,
-    star_sums,
-)
+from bulkwear.postproc.wear.edge_kernels import common_neighbours
+from bulkwear.postproc.wear.face_kernels import acute_faces, angles
+from bulkwear.postproc.wear.remesh_kernels import opposite_areas, sound, star_sums
 from bulkwear.postproc.wear.remesh_patch import (
     CURVE,
     FIXED,

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bulkwear.postproc.mesh import directed_edges, unit_normals
-from bulkwear.postproc.wear.remesh_kernels import edge_table, heights, node_normals_by_angle, probes, ranges
+from bulkwear.postproc.mesh import unit_normals
+from bulkwear.postproc.wear.edge_kernels import edge_table, on_border, sorted_edges
+from bulkwear.postproc.wear.remesh_kernels import heights, node_normals_by_angle, probes, ranges
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
 ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside
@@ -142,21 +143,13 @@ def barycentric(places: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def border_nodes(triangles: np.ndarray) -> np.ndarray:
-    """Sorted nodes on edges of a single triangle, (k,): as `boundary_nodes`, much faster by plain sorting."""
-    base = triangles.max(initial=0) + 1
-    following = np.roll(triangles, -1, axis=1)
-    keys = np.sort((np.minimum(triangles, following) * base + np.maximum(triangles, following)).ravel())
-    differs = np.ones(len(keys) + 1, dtype=bool)
-    differs[1:-1] = keys[1:] != keys[:-1]
-    single = keys[differs[1:] & differs[:-1]]
-    return np.unique(np.concatenate([single // base, single % base]))
+    """Sorted nodes on edges of a single triangle, (k,): as `boundary_nodes`, much faster."""
+    return np.flatnonzero(on_border(triangles, triangles.max(initial=-1) + 1))
 
 
 def neighbours(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of faces that share an edge, (k, 2), and the corner of each that lies opposite to it, (k, 2)."""
-    edges = np.sort(directed_edges(triangles), axis=1)
-    keys = edges[:, 0] * (edges.max(initial=0) + 1) + edges[:, 1]
-    order = np.argsort(keys, kind="stable")
-    same = np.flatnonzero(keys[order][1:] == keys[order][:-1])
-    both = np.column_stack([order[same], order[same + 1]])
+    held, new = sorted_edges(triangles, triangles.max(initial=-1) + 1, False)
+    same = np.flatnonzero(~new[1:-1])
+    both = np.column_stack([held[same], held[same + 1]])
     return both // 3, (both % 3 + 2) % 3

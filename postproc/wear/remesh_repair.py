@@ -12,6 +12,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, worn_faces
 from bulkwear.postproc.mesh_checks import intersecting_faces
+from bulkwear.postproc.wear.edge_kernels import common_neighbours
 from bulkwear.postproc.wear.mesh_faults import (
     TARGET_EDGE,
     Bounds,
@@ -19,7 +20,6 @@ from bulkwear.postproc.wear.mesh_faults import (
     folded_faces,
     mesh_faults,
 )
-from bulkwear.postproc.wear.remesh_kernels import common_neighbours
 from bulkwear.postproc.wear.remesh_operations import (
     LARGEST_OUTWARD,
     OUTWARD_BY_OPERATIONS,
