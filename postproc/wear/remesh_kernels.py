@@ -143,15 +143,26 @@ def probes(points, triangles):
 
 
 @njit(cache=True)
+def centroid_probes(points, triangles):
+    """The same of the centroids alone, (m, 3) m and (m, 1): a first look at faces most of which are refused."""
+    place, at = np.empty((len(triangles), 3)), np.empty((len(triangles), 1), dtype=np.int64)
+    for row in range(len(triangles)):
+        face, at[row, 0] = triangles[row], row
+        for axis in range(3):
+            place[row, axis] = (points[face[0], axis] + points[face[1], axis] + points[face[2], axis]) / 3.0
+    return place, at
+
+
+@njit(cache=True)
 def ranges(distance, at, triangles, size) -> np.ndarray:
     """Smallest and largest distance at the probes of each face over its mean target edge, (m, 2).
 
-    distance (q,) m and at (m, 7): see `probes`; triangles (m, 3); size (n,) m
+    distance (q,) m and at (m, k): see `probes`; triangles (m, 3); size (n,) m
     """
     result = np.empty((len(triangles), 2))
     for row in range(len(triangles)):
         face, low, high = triangles[row], np.inf, -np.inf
-        for k in range(7):
+        for k in range(at.shape[1]):
             low, high = min(low, distance[at[row, k]]), max(high, distance[at[row, k]])
         mean = (size[face[0]] + size[face[1]] + size[face[2]]) / 3.0
         result[row, 0], result[row, 1] = low / mean, high / mean
@@ -200,4 +211,33 @@ def opposite_areas(points, triangles, nodes, places):
         first = between_places(places[row], points[face[(k + 1) % 3]])
         second = between_places(places[row], points[face[(k + 2) % 3]])
         result[row] = cross(first, second)
+    return result
+
+
+@njit(cache=True)
+def operations_of(triangles, operation):
+    """The operation (m,) of each face, -1 for none, and how many of its corners take part, (m,).
+
+    triangles (m, 3); operation (n,) of each node, -1 for none; those of a face are the same
+    """
+    of_face, taking_part = np.empty(len(triangles), dtype=np.int64), np.zeros(len(triangles), dtype=np.int64)
+    for row in range(len(triangles)):
+        first, second, third = (
+            operation[triangles[row, 0]],
+            operation[triangles[row, 1]],
+            operation[triangles[row, 2]],
+        )
+        of_face[row] = max(first, second, third)
+        taking_part[row] = (first >= 0) + (second >= 0) + (third >= 0)
+    return of_face, taking_part
+
+
+@njit(cache=True)
+def relative_lengths(points, ends, size) -> np.ndarray:
+    """Length of each edge (e, 2) over the mean target edge of its ends, (e,). size (n,) m"""
+    result = np.empty(len(ends))
+    for row in range(len(ends)):
+        first, second = ends[row, 0], ends[row, 1]
+        edge = between(points, first, second)
+        result[row] = math.sqrt(dot(edge, edge)) / ((size[first] + size[second]) / 2.0)
     return result

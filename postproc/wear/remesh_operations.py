@@ -16,7 +16,15 @@ import numpy as np
 
 from bulkwear.postproc.wear.edge_kernels import common_neighbours
 from bulkwear.postproc.wear.face_kernels import acute_faces, angles
-from bulkwear.postproc.wear.remesh_kernels import opposite_areas, sound, star_sums
+from bulkwear.postproc.wear.remesh_kernels import (
+    centroid_probes,
+    operations_of,
+    opposite_areas,
+    probes,
+    relative_lengths,
+    sound,
+    star_sums,
+)
 from bulkwear.postproc.wear.remesh_patch import (
     CURVE,
     FIXED,
@@ -73,9 +81,9 @@ def improve(patch: Patch, old: OldSurface, limits: Limits, erode: bool = False) 
 def split(patch: Patch, limits: Limits) -> tuple[Patch, int]:
     """Halve the long edges, the longest of each face first. Border edges stay."""
     edges = edges_of(patch)
-    relative = _relative_lengths(patch, edges)
+    relative = relative_lengths(patch.points, edges.ends, patch.size)
     acute = acute_faces(patch.points, patch.triangles, limits.acute_deg)
-    limit = np.where(acute[edges.faces].any(axis=1), SPLIT_ACUTE, SPLIT_ABOVE)
+    limit = np.where(acute[edges.faces[:, 0]] | acute[edges.faces[:, 1]], SPLIT_ACUTE, SPLIT_ABOVE)
     wanted = (relative > limit) & (edges.faces[:, 1] >= 0)
     chosen = _first_of_faces(edges, wanted, -relative, len(patch.triangles))
     ends, count = edges.ends[chosen], len(chosen)
@@ -122,8 +130,8 @@ def _collapse_round(patch, old, limits, refused):
     gone = ends.sum(axis=1) - kept
     operation = np.full(len(patch.points), -1)
     operation[ends] = np.arange(len(ends))[:, None]
-    of_face = operation[patch.triangles].max(axis=1)
-    vanish = (operation[patch.triangles] >= 0).sum(axis=1) == 2
+    of_face, taking_part = operations_of(patch.triangles, operation)
+    vanish = taking_part == 2
     renamed = np.arange(len(patch.points))
     renamed[gone] = kept
     triangles, points = renamed[patch.triangles], patch.points.copy()
@@ -144,14 +152,14 @@ def _collapse_round(patch, old, limits, refused):
 
 def _collapsible(patch: Patch, edges: Edges, kind, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
     """Mask (e,) of edges that are short and may be collapsed, and all lengths over their target."""
-    relative = _relative_lengths(patch, edges)
+    relative = relative_lengths(patch.points, edges.ends, patch.size)
     acute = acute_faces(patch.points, patch.triangles, limits.acute_deg)
-    limit = np.where(acute[edges.faces].any(axis=1), COLLAPSE_ACUTE, limits.collapse_below)
-    ends = kind[edges.ends]
-    wanted = (relative < limit) & (edges.faces[:, 1] >= 0) & (ends.min(axis=1) != FIXED)
-    wanted &= (ends.min(axis=1) == INNER) | edges.curve | (relative < PINCH_BELOW)
+    limit = np.where(acute[edges.faces[:, 0]] | acute[edges.faces[:, 1]], COLLAPSE_ACUTE, limits.collapse_below)
+    freest = np.minimum(kind[edges.ends[:, 0]], kind[edges.ends[:, 1]])
+    wanted = (relative < limit) & (edges.faces[:, 1] >= 0) & (freest != FIXED)
+    wanted &= (freest == INNER) | edges.curve | (relative < PINCH_BELOW)
     few = np.bincount(patch.label)[patch.label] <= FEWEST_FACES  # no label may vanish
-    wanted &= ~few[edges.faces].any(axis=1)
+    wanted &= ~(few[edges.faces[:, 0]] | few[edges.faces[:, 1]])
     found = np.flatnonzero(wanted)
     wanted[found] = common_neighbours(edges.ends, found, len(patch.points)) == 2  # else two sheets would be joined
     return wanted, relative
@@ -168,8 +176,9 @@ def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[
     inner = alike & (kind[ends[:, 0]] == INNER)
     rows = np.flatnonzero(of_face >= 0)
     group = of_face[rows]
-    local = patch.points[patch.triangles[rows]] - middle[group][:, None]
-    before = np.bincount(group, weights=_determinants(local), minlength=len(ends))
+    first, place = patch.triangles[rows, 0], middle[group]
+    across = opposite_areas(patch.points, patch.triangles[rows], first, place)
+    before = np.bincount(group, np.einsum("ij,ij->i", patch.points[first] - place, across), len(ends))
     left = rows[~vanish[rows]]
     group, gradient = of_face[left], np.zeros((len(ends), 3))
     np.add.at(gradient, group, opposite_areas(patch.points, triangles[left], kept[group], middle[group]))
@@ -182,10 +191,6 @@ def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[
     return [np.where(alike[:, None], place, patch.points[kept]) for place in places]
 
 
-def _determinants(corners: np.ndarray) -> np.ndarray:
-    return np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
-
-
 def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
     """Turn the common edge of two faces of one label, one of them acute, where that raises their smallest angle."""
     refused, total = np.empty((0, 2), dtype=np.int64), 0
@@ -194,7 +199,7 @@ def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
         quads, gain = _flippable(patch, edges, limits.acute_deg)
         gain[_is_among(edges.ends, refused, len(patch.points))] = 0.0
         chosen = _first_of_faces(edges, gain > LEAST_GAIN, -gain, len(patch.triangles))
-        _, unique = np.unique(np.sort(edges.opposite[chosen], axis=1), axis=0, return_index=True)
+        _, unique = np.unique(_pair_keys(edges.opposite[chosen], len(patch.points)), return_index=True)
         chosen = chosen[np.sort(unique)]  # two flips to the same edge would join two sheets
         if not len(chosen):
             break
@@ -210,23 +215,27 @@ def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
     return patch, total
 
 
-def flipped_faces(patch: Patch, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
-    """The two new faces (e, 2, 3) of each edge if it were flipped, and the mask (e,) of edges that may be."""
-    (a, b), (c, d) = edges.ends.T, edges.opposite.T
+def flipped_faces(patch: Patch, edges: Edges, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The two new faces (k, 2, 3) of each chosen edge (k,) if it were flipped, and which (k,) may be."""
+    (a, b), (c, d) = edges.ends[chosen].T, edges.opposite[chosen].T
     quads = np.stack([np.stack([a, d, c], axis=1), np.stack([d, b, c], axis=1)], axis=1)
-    allowed = (edges.faces[:, 1] >= 0) & ~edges.curve & (c != d)
-    return quads, allowed & ~_is_among(edges.opposite, edges.ends, len(patch.points))
+    allowed = (edges.faces[chosen, 1] >= 0) & ~edges.curve[chosen] & (c != d)
+    return quads, allowed & ~_is_among(edges.opposite[chosen], edges.ends, len(patch.points))
 
 
 def _flippable(patch: Patch, edges: Edges, acute_deg: float) -> tuple[np.ndarray, np.ndarray]:
-    """The new faces of each edge, see `flipped_faces`, and the gain (e,) of the smallest angle, degrees."""
-    quads, allowed = flipped_faces(patch, edges)
-    gain = np.zeros(len(quads))
-    now = angles(patch.points, patch.triangles)[edges.faces].min(axis=1)
-    rows = np.flatnonzero(allowed & (now < acute_deg))
-    now = now[rows]
-    then = angles(patch.points, quads[rows].reshape(-1, 3)).reshape(-1, 2).min(axis=1)
-    gain[rows] = then - now
+    """The new faces (e, 2, 3) of each edge at an acute face that may be flipped, and the gain (e,) of the smallest
+    angle, degrees; 0 for all other edges.
+    """
+    quads, gain = np.zeros((len(edges.ends), 2, 3), dtype=np.int64), np.zeros(len(edges.ends))
+    angle = angles(patch.points, patch.triangles)
+    now = np.minimum(angle[edges.faces[:, 0]], angle[edges.faces[:, 1]])
+    rows = np.flatnonzero(now < acute_deg)
+    flipped, allowed = flipped_faces(patch, edges, rows)
+    rows = rows[allowed]
+    quads[rows] = flipped[allowed]
+    then = angles(patch.points, quads[rows].reshape(-1, 3)).reshape(-1, 2)
+    gain[rows] = np.minimum(then[:, 0], then[:, 1]) - now[rows]
     return quads, gain
 
 
@@ -250,7 +259,7 @@ def shift(patch: Patch, old: OldSurface, limits: Limits, seed: int, erode: bool 
         waiting[chosen] = False
         operation = np.full(len(kind), -1)
         operation[chosen] = np.arange(len(chosen))
-        of_face = operation[patch.triangles].max(axis=1)
+        of_face, _ = operations_of(patch.triangles, operation)
         motion, inward = _motion(patch, edges, kind, chosen, of_face, erode)
         good = np.zeros(len(chosen), dtype=bool)
         for factor, depth in SHIFTS:
@@ -302,21 +311,16 @@ def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: Ol
     bounds = GOOD_ANGLE, LEAST_COSINE, COSINE_SLACK
     good = sound(*shapes, of_face, alive, before.fixed, count, *bounds)
     left = np.flatnonzero((of_face >= 0) & alive)
-    left = left[good[of_face[left]]]
-    reach = old.range_over_faces(after.points, after.triangles[left], after.size)
-    good[of_face[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
+    for held in (centroid_probes, probes):
+        left = left[good[of_face[left]]]
+        reach = old.range_over_faces(after.points, after.triangles[left], after.size, held)
+        good[of_face[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
     return good
 
 
 def all_fixed(patch: Patch, faces: np.ndarray | slice = slice(None)) -> np.ndarray:
     """Mask (k,) of faces none of whose nodes may move: what becomes of such a face nothing can mend."""
     return patch.fixed[patch.triangles[faces]].all(axis=1)
-
-
-def _relative_lengths(patch: Patch, edges: Edges) -> np.ndarray:
-    """Length of each edge over the mean target of its ends, (e,)."""
-    length = np.linalg.norm(patch.points[edges.ends[:, 1]] - patch.points[edges.ends[:, 0]], axis=1)
-    return length / patch.size[edges.ends].mean(axis=1)
 
 
 def _ranks(wanted: np.ndarray, urgency: np.ndarray) -> np.ndarray:
@@ -329,25 +333,31 @@ def _ranks(wanted: np.ndarray, urgency: np.ndarray) -> np.ndarray:
 
 def _first_of_faces(edges: Edges, wanted, urgency, n_faces: int) -> np.ndarray:
     """Edges that are first in both of their faces: no two of them share a face."""
-    rank = _ranks(wanted, urgency)
+    rank, rows = _ranks(wanted, urgency), np.flatnonzero(wanted)
     first = np.full(n_faces + 1, np.inf)  # the last entry takes the missing faces of border edges
-    np.minimum.at(first, edges.faces, rank[:, None])
-    return np.flatnonzero(wanted & (rank[:, None] == first[edges.faces]).all(axis=1))
+    np.minimum.at(first, edges.faces[rows], rank[rows, None])
+    return rows[(rank[rows, None] == first[edges.faces[rows]]).all(axis=1)]
 
 
 def _alone_in_ring(edges: Edges, wanted, urgency, n_points: int) -> np.ndarray:
     """Edges that are first at their ends and at all neighbours of these: no two stars share a face."""
-    rank = _ranks(wanted, urgency)
+    rank, rows = _ranks(wanted, urgency), np.flatnonzero(wanted)
     at_node = np.full(n_points, np.inf)
-    np.minimum.at(at_node, edges.ends, rank[:, None])
+    np.minimum.at(at_node, edges.ends[rows], rank[rows, None])
     first = np.minimum(at_node, lowest_beside(at_node, edges))
-    return np.flatnonzero(wanted & (rank[:, None] == first[edges.ends]).all(axis=1))
+    return rows[(rank[rows, None] == first[edges.ends[rows]]).all(axis=1)]
 
 
 def _is_among(pairs: np.ndarray, others: np.ndarray, n_points: int) -> np.ndarray:
     """Mask of the node pairs that occur in `others`, in either sense."""
-    keys, known = (np.sort(x, axis=1) @ np.array([n_points + 1, 1]) for x in (pairs, others))
-    return np.isin(keys, known)
+    if not len(others):
+        return np.zeros(len(pairs), dtype=bool)
+    return np.isin(_pair_keys(pairs, n_points), _pair_keys(others, n_points))
+
+
+def _pair_keys(pairs: np.ndarray, n_points: int) -> np.ndarray:
+    """One integer (k,) per pair of nodes (k, 2), in the order of the lower and then the higher one."""
+    return np.minimum(*pairs.T) * (n_points + 1) + np.maximum(*pairs.T)
 
 
 def _without_loose_nodes(patch: Patch) -> Patch:

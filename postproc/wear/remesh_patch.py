@@ -121,12 +121,13 @@ class OldSurface:
         above = heights(places, point, face, self.points, self.triangles, *normals, ON_EDGE)
         return np.copysign(np.sqrt(square), above), face, point
 
-    def range_over_faces(self, points: np.ndarray, triangles: np.ndarray, size: np.ndarray) -> np.ndarray:
+    def range_over_faces(self, points: np.ndarray, triangles: np.ndarray, size: np.ndarray, held=probes) -> np.ndarray:
         """Smallest and largest signed distance of each face over its mean target edge, (k, 2).
 
-        Taken at the corners, the middles of the edges and the centroid. `size` (n,) m: target edge at the nodes.
+        Taken at the corners, the middles of the edges and the centroid, or at what else `held` gives as `probes` does.
+        `size` (n,) m: target edge at the nodes.
         """
-        places, at = probes(points, triangles)
+        places, at = held(points, triangles)
         distance, face, _ = self.closest(places)
         distance = np.where(self.tangled[face], np.minimum(distance, 0.0), distance)
         return ranges(distance, at, triangles, size)

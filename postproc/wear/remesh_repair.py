@@ -189,12 +189,12 @@ def _merges(patch: Patch, gone: int, kept: int, free: bool):
 def _flips(patch: Patch, bounds: Bounds) -> list[Patch]:
     """The patches with one edge of a tangled face flipped."""
     edges = edges_of(patch)
-    quads, allowed = flipped_faces(patch, edges)
-    found = np.flatnonzero(allowed & _tangled(patch, bounds)[edges.faces].any(axis=1))
+    found = np.flatnonzero(_tangled(patch, bounds)[edges.faces].any(axis=1))
+    quads, allowed = flipped_faces(patch, edges, found)
     result = []
-    for edge in found[:MOST_CANDIDATES]:
+    for edge, faces in zip(found[allowed][:MOST_CANDIDATES], quads[allowed], strict=False):
         triangles = patch.triangles.copy()
-        triangles[edges.faces[edge]] = quads[edge]
+        triangles[edges.faces[edge]] = faces
         result.append(patch.changed(triangles=triangles))
     return result
 
