@@ -41,12 +41,23 @@ def overlapping_faces(points: np.ndarray, triangles: np.ndarray, clearance_m: fl
 
 def _searched(points, triangles, among, clearance, narrow) -> np.ndarray:
     """Sorted pairs of faces with overlapping boxes for which `narrow` says yes, (p, 2)."""
-    corners = points[triangles]
-    boxes = corners.min(axis=1) - clearance, corners.max(axis=1) + clearance
+    boxes = _boxes(points, triangles, clearance)
     found = [np.empty((0, 2), dtype=np.int64)]
     for pairs in overlapping_boxes(*boxes, among):
         found.append(pairs[narrow(points, triangles, pairs, clearance)])
     return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
+
+
+@njit(cache=True)
+def _boxes(points, triangles, clearance) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest corners (m, 3) m of the boxes round faces, wider by a clearance on all sides."""
+    low, high = np.empty((len(triangles), 3)), np.empty((len(triangles), 3))
+    for row in range(len(triangles)):
+        a, b, c = triangles[row]
+        for axis in range(3):
+            low[row, axis] = min(points[a, axis], points[b, axis], points[c, axis]) - clearance
+            high[row, axis] = max(points[a, axis], points[b, axis], points[c, axis]) + clearance
+    return low, high
 
 
 def _covering(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
@@ -96,11 +107,18 @@ def _along_a_curve(places: np.ndarray) -> np.ndarray:
     """Order (m,) of places (m, 3) along Morton's curve, so that neighbours in the order lie close together."""
     low, size = places.min(axis=0), np.maximum(np.ptp(places, axis=0).max(), np.finfo(float).tiny)
     cell = ((places - low) / size * (2**MORTON_BITS - 1)).astype(np.int64)
-    key = np.zeros(len(places), dtype=np.int64)
-    for bit in range(MORTON_BITS):
-        for axis in range(3):
-            key |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return np.argsort(key, kind="stable")
+    return np.argsort(_interleaved(cell), kind="stable")
+
+
+@njit(cache=True)
+def _interleaved(cell) -> np.ndarray:
+    """Bits of three integers (m, 3) one by one in turn, (m,)."""
+    key = np.zeros(len(cell), dtype=np.int64)
+    for row in range(len(cell)):
+        for bit in range(MORTON_BITS):
+            for axis in range(3):
+                key[row] |= ((cell[row, axis] >> bit) & 1) << (3 * bit + axis)
+    return key
 
 
 def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -28,15 +28,14 @@ def cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, cleara
         faces = triangles[pairs[row, 0]], triangles[pairs[row, 1]]
         if _common_nodes(*faces) >= 2:
             continue
+        normals[1] = area_vector(points, faces[1])
+        _heights_over(points, faces[0], faces[1], normals[1], heights[0])
+        if not _on_both_sides(heights[0], 0.0):
+            continue
+        normals[0] = area_vector(points, faces[0])
+        _heights_over(points, faces[1], faces[0], normals[0], heights[1])
         least = max(IN_PLANE * _reach(points, *faces), clearance)
-        crossing = True
-        for k in range(2):  # heights of one face over the plane of the other
-            normals[1 - k] = area_vector(points, faces[1 - k])
-            _heights_over(points, faces[k], faces[1 - k], normals[1 - k], heights[k])
-            crossing = heights[k].min() < -least and heights[k].max() > least
-            if not crossing:
-                break
-        if not crossing:
+        if not (_on_both_sides(heights[0], least) and _on_both_sides(heights[1], least)):
             continue
         line[:] = cross(normals[0], normals[1])
         line /= max(np.sqrt(dot(line, line)), TINY)
@@ -44,6 +43,13 @@ def cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, cleara
             _interval_on(points, faces[k], points[faces[0][0]], heights[k], line, interval[k])
         result[row] = min(interval[0, 1], interval[1, 1]) - max(interval[0, 0], interval[1, 0]) > least
     return result
+
+
+@njit(cache=True)
+def _on_both_sides(heights, least) -> bool:
+    """Whether heights (3,) m are above and below a plane, by more than so much."""
+    lowest, highest = min(heights[0], heights[1], heights[2]), max(heights[0], heights[1], heights[2])
+    return lowest < -least and highest > least
 
 
 @njit(cache=True)

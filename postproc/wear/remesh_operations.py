@@ -68,6 +68,25 @@ class Limits:
     collapse_below: float = COLLAPSE_BELOW
 
 
+@dataclass(frozen=True, eq=False)
+class Stars:
+    """The faces that operations change which have none in common.
+
+    before, after (k, 3): their nodes; group (k,): the operation of each; alive (k,): whether there is a face after it
+    """
+
+    before: np.ndarray
+    after: np.ndarray
+    group: np.ndarray
+    alive: np.ndarray
+
+    @classmethod
+    def of(cls, patch: Patch, triangles: np.ndarray, of_face: np.ndarray, alive: np.ndarray) -> Stars:
+        """Return those of a patch whose faces become `triangles` (m, 3); of_face (m,): operation, or -1; alive (m,)."""
+        rows = np.flatnonzero(of_face >= 0)
+        return cls(patch.triangles[rows], triangles[rows], of_face[rows], alive[rows])
+
+
 def improve(patch: Patch, old: OldSurface, limits: Limits, erode: bool = False) -> Patch:
     """Sweeps of splits, collapses, flips and shifts (M. Botsch and L. Kobbelt, Symp. Geom. Proc. 2004, 185)."""
     for sweep in range(SWEEPS):
@@ -135,15 +154,14 @@ def _collapse_round(patch, old, limits, refused):
     renamed = np.arange(len(patch.points))
     renamed[gone] = kept
     triangles, points = renamed[patch.triangles], patch.points.copy()
+    stars = Stars.of(patch, triangles, of_face, ~vanish)
     good = np.zeros(len(ends), dtype=bool)
-    for places in _merged_points(patch, ends, kept, kind, triangles, of_face, vanish):
+    for places in _merged_points(patch, ends, kept, kind, stars):
         points[kept[~good]] = places[~good]
-        tried = patch.changed(points=points, triangles=triangles)
-        open_faces = np.where((of_face >= 0) & ~good[of_face], of_face, -1)
-        good |= _acceptable(patch, tried, open_faces, ~vanish, len(ends), old, limits)
+        good |= _acceptable(patch, points, stars, ~good, old, limits)
         if good.all():
             break
-    triangles = np.where((of_face >= 0)[:, None] & good[of_face][:, None], triangles, patch.triangles)
+    triangles = np.where(((of_face >= 0) & good[of_face])[:, None], triangles, patch.triangles)
     points[kept[~good]] = patch.points[kept[~good]]
     stay = ~(vanish & good[of_face])
     result = patch.changed(points=points, triangles=triangles[stay], label=patch.label[stay])
@@ -165,7 +183,7 @@ def _collapsible(patch: Patch, edges: Edges, kind, limits: Limits) -> tuple[np.n
     return wanted, relative
 
 
-def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[np.ndarray]:
+def _merged_points(patch, ends, kept, kind, stars: Stars) -> list[np.ndarray]:
     """Places (k, 3) m of the merged nodes to try: where the volume stays, halfway, at
     one end or the other, and a little deeper.
 
@@ -174,14 +192,11 @@ def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[
     middle = patch.points[ends].mean(axis=1)
     alike = kind[ends[:, 0]] == kind[ends[:, 1]]
     inner = alike & (kind[ends[:, 0]] == INNER)
-    rows = np.flatnonzero(of_face >= 0)
-    group = of_face[rows]
-    first, place = patch.triangles[rows, 0], middle[group]
-    across = opposite_areas(patch.points, patch.triangles[rows], first, place)
-    before = np.bincount(group, np.einsum("ij,ij->i", patch.points[first] - place, across), len(ends))
-    left = rows[~vanish[rows]]
-    group, gradient = of_face[left], np.zeros((len(ends), 3))
-    np.add.at(gradient, group, opposite_areas(patch.points, triangles[left], kept[group], middle[group]))
+    first, place = stars.before[:, 0], middle[stars.group]
+    across = opposite_areas(patch.points, stars.before, first, place)
+    before = np.bincount(stars.group, np.einsum("ij,ij->i", patch.points[first] - place, across), len(ends))
+    group, gradient = stars.group[stars.alive], np.zeros((len(ends), 3))
+    np.add.at(gradient, group, opposite_areas(patch.points, stars.after[stars.alive], kept[group], middle[group]))
     square = (gradient**2).sum(axis=1)
     factor = np.divide(before, square, out=np.zeros_like(before), where=inner & (square > 0.0))
     sunk = middle - SINK * np.linalg.norm(np.diff(patch.points[ends], axis=1)[:, 0], axis=1, keepdims=True) * np.divide(
@@ -207,8 +222,8 @@ def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
         triangles[faces] = quads[chosen]
         of_face = np.full(len(triangles), -1)
         of_face[faces] = np.arange(len(chosen))[:, None]
-        tried = patch.changed(triangles=triangles)
-        good = _acceptable(patch, tried, of_face, of_face >= 0, len(chosen), old, limits)
+        stars = Stars.of(patch, triangles, of_face, of_face >= 0)
+        good = _acceptable(patch, patch.points, stars, np.ones(len(chosen), dtype=bool), old, limits)
         triangles[faces[~good]] = patch.triangles[faces[~good]]
         patch, total = patch.changed(triangles=triangles), total + int(good.sum())
         refused = np.concatenate([refused, edges.ends[chosen[~good]]])
@@ -261,16 +276,17 @@ def shift(patch: Patch, old: OldSurface, limits: Limits, seed: int, erode: bool 
         operation[chosen] = np.arange(len(chosen))
         of_face, _ = operations_of(patch.triangles, operation)
         motion, inward = _motion(patch, edges, kind, chosen, of_face, erode)
-        good = np.zeros(len(chosen), dtype=bool)
+        stars = Stars.of(patch, patch.triangles, of_face, of_face >= 0)
+        points, good = patch.points.copy(), np.zeros(len(chosen), dtype=bool)
         for factor, depth in SHIFTS:
-            points, left = patch.points.copy(), chosen[~good]
-            points[left] += factor * motion[~good] + depth * patch.size[left, None] * inward[~good]
-            tried, still = patch.changed(points=points), np.where(good[of_face], -1, of_face)
-            good |= _acceptable(patch, tried, still, still >= 0, len(chosen), old, limits)
-            points[chosen[~good]] = patch.points[chosen[~good]]
-            patch = patch.changed(points=points)
+            left = chosen[~good]
+            shifted = factor * motion[~good] + depth * patch.size[left, None] * inward[~good]
+            points[left] = patch.points[left] + shifted
+            good |= _acceptable(patch, points, stars, ~good, old, limits)
             if good.all():
                 break
+        points[chosen[~good]] = patch.points[chosen[~good]]
+        patch = patch.changed(points=points)
     return patch
 
 
@@ -305,16 +321,19 @@ def _along_curve(patch: Patch, edges: Edges, nodes: np.ndarray) -> np.ndarray:
     return SHIFT * np.divide(along, square, out=np.zeros_like(square), where=square > 0.0) * chord
 
 
-def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: OldSurface, limits: Limits) -> np.ndarray:
-    """Mask (count,) of the operations that leave the patch sound. `of_face` (m,): operation of a face, or -1."""
-    shapes = before.points, before.triangles, after.points, after.triangles
+def _acceptable(patch: Patch, points, stars: Stars, asked, old: OldSurface, limits: Limits) -> np.ndarray:
+    """Mask (count,) of the operations among the mask `asked` that leave the patch sound, its nodes at `points` then."""
+    judged = np.where(asked[stars.group], stars.group, -1)
     bounds = GOOD_ANGLE, LEAST_COSINE, COSINE_SLACK
-    good = sound(*shapes, of_face, alive, before.fixed, count, *bounds)
-    left = np.flatnonzero((of_face >= 0) & alive)
+    shapes = patch.points, stars.before, points, stars.after
+    good = sound(*shapes, judged, stars.alive, patch.fixed, len(asked), *bounds)
+    left = np.flatnonzero((judged >= 0) & stars.alive)
     for held in (centroid_probes, probes):
-        left = left[good[of_face[left]]]
-        reach = old.range_over_faces(after.points, after.triangles[left], after.size, held)
-        good[of_face[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
+        left = left[good[judged[left]]]
+        if not len(left):
+            break
+        reach = old.range_over_faces(points, stars.after[left], patch.size, held)
+        good[judged[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
     return good
 
 
