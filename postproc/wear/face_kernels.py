@@ -16,20 +16,53 @@ SHIFT = np.uint64(32)
 
 @njit(cache=True)
 def face_measures(points, triangles):
-    """Smallest angle (m,) degrees, lengths of the edges 0-1, 1-2, 2-0 (m, 3) m, and area vector (m, 3) m2 of each face.
-
-    points (n, 3) m; triangles (m, 3)
+    """Smallest angle (m,) degrees, lengths of the edges 0-1, 1-2, 2-0 (m, 3) m, their longest (m,) m and the area (m,)
+    m2 of each face. points (n, 3) m; triangles (m, 3)
     """
     angle, lengths = np.empty(len(triangles)), np.empty((len(triangles), 3))
-    vectors = np.empty((len(triangles), 3))
+    longest, area = np.empty(len(triangles)), np.empty(len(triangles))
     for row in range(len(triangles)):
         face = triangles[row]
         angle[row] = smallest_angle(points, face)
         for k in range(3):
             edge = between(points, face[k], face[(k + 1) % 3])
             lengths[row, k] = math.sqrt(dot(edge, edge))
-        vectors[row] = area_vector(points, face)
-    return angle, lengths, vectors
+        longest[row] = max(lengths[row, 0], lengths[row, 1], lengths[row, 2])
+        vector = area_vector(points, face)
+        area[row] = math.sqrt(dot(vector, vector))
+    return angle, lengths, longest, area
+
+
+@njit(cache=True)
+def folds(points, triangles, held, new, least_cosine) -> np.ndarray:
+    """Mask (m,) of the faces of no area, and of those whose normals at a common edge have a smaller cosine.
+
+    held, new : see `postproc.wear.edge_kernels.sorted_edges`, of the triangles (m, 3)
+    """
+    normals, result = np.zeros((len(triangles), 3)), np.zeros(len(triangles), dtype=np.bool_)
+    for row in range(len(triangles)):
+        vector = area_vector(points, triangles[row])
+        size = math.sqrt(dot(vector, vector))
+        result[row] = not size > 0.0
+        for axis in range(3):
+            if size > 0.0:
+                normals[row, axis] = vector[axis] / size
+    for at in range(1, len(held)):
+        if not new[at]:
+            one, other = held[at - 1] // 3, held[at] // 3
+            if dot(normals[one], normals[other]) < least_cosine:
+                result[one] = result[other] = True
+    return result
+
+
+@njit(cache=True)
+def any_corner(mask, triangles) -> np.ndarray:
+    """Mask (m,) of the triangles (m, 3) one of whose nodes is in a mask (n,)."""
+    result = np.empty(len(triangles), dtype=np.bool_)
+    for row in range(len(triangles)):
+        face = triangles[row]
+        result[row] = mask[face[0]] or mask[face[1]] or mask[face[2]]
+    return result
 
 
 @njit(cache=True)

@@ -22,8 +22,9 @@ from bulkwear.postproc.mesh import (
     worn_faces,
 )
 from bulkwear.postproc.mesh_checks import intersecting_faces
-from bulkwear.postproc.wear.face_kernels import face_measures
-from bulkwear.postproc.wear.remesh_patch import border_nodes, neighbours
+from bulkwear.postproc.wear.edge_kernels import sorted_edges
+from bulkwear.postproc.wear.face_kernels import face_measures, folds
+from bulkwear.postproc.wear.remesh_patch import border_nodes
 
 TARGET_EDGE = "target_edge_m"  # point data: edge length that the mesh should have at a node
 METRES_TO_MM = 1e3
@@ -125,10 +126,11 @@ def mesh_faults(
     """
     points, triangles = mesh.points, mesh.triangles
     worn = worn_faces(mesh)
-    angle, lengths, vectors = face_measures(points, triangles)
-    aspect = _aspects(lengths, vectors)
+    angle, lengths, longest, area = face_measures(points, triangles)
+    aspect = _aspects(longest, area)
     relative = edges_over_target(mesh, lengths)
-    edge = worn & ~((relative >= bounds.smallest_edge) & (relative <= bounds.largest_edge)).all(axis=1)
+    within = ((relative >= bounds.smallest_edge) & (relative <= bounds.largest_edge)).T
+    edge = worn & ~(within[0] & within[1] & within[2])
     return MeshFaults(
         float(angle[worn].min(initial=60.0)),
         float(aspect[worn].max(initial=0.0)),
@@ -137,7 +139,7 @@ def mesh_faults(
         worn & (angle < bounds.smallest_angle_deg),
         worn & (aspect > bounds.largest_aspect),
         edge,
-        _folded(triangles, vectors, bounds.largest_fold_deg),
+        folded_faces(points, triangles, bounds.largest_fold_deg),
         _cuts(points, triangles, among, known),
     )
 
@@ -163,14 +165,13 @@ def tangle_message(mesh: SurfaceMesh, faults: MeshFaults) -> str:
 
 def aspects(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Longest edge over smallest altitude of each triangle, (m,), infinite without area."""
-    _, lengths, vectors = face_measures(points, triangles)
-    return _aspects(lengths, vectors)
+    _, _, longest, area = face_measures(points, triangles)
+    return _aspects(longest, area)
 
 
-def _aspects(lengths: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """The same (m,) of the lengths (m, 3) m of the edges and the area vectors (m, 3) m2."""
-    longest, area = np.maximum.reduce(lengths.T), np.linalg.norm(vectors, axis=1)
-    return np.divide(longest**2, 2.0 * area, out=np.full(len(lengths), np.inf), where=area > 0.0)
+def _aspects(longest: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """The same (m,) of the longest edges (m,) m and the areas (m,) m2."""
+    return np.divide(longest**2, 2.0 * area, out=np.full(len(area), np.inf), where=area > 0.0)
 
 
 def edges_over_target(mesh: SurfaceMesh, lengths: np.ndarray) -> np.ndarray:
@@ -191,18 +192,8 @@ def edges_over_target(mesh: SurfaceMesh, lengths: np.ndarray) -> np.ndarray:
 
 def folded_faces(points: np.ndarray, triangles: np.ndarray, largest_fold_deg: float) -> np.ndarray:
     """Mask (m,) of faces at an edge whose two normals differ by more than that many degrees, or of no area."""
-    return _folded(triangles, area_vectors(points, triangles), largest_fold_deg)
-
-
-def _folded(triangles: np.ndarray, vectors: np.ndarray, largest_fold_deg: float) -> np.ndarray:
-    """The same (m,) of the area vectors (m, 3) m2."""
-    size = np.linalg.norm(vectors, axis=1)
-    result = ~(size > 0.0)
-    normals = np.divide(vectors, size[:, None], out=np.zeros_like(vectors), where=size[:, None] > 0.0)
-    pairs, _ = neighbours(triangles)
-    cosine = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)
-    result[pairs[cosine < np.cos(np.radians(largest_fold_deg))].ravel()] = True
-    return result
+    edges = sorted_edges(triangles, len(points), False)
+    return folds(points, triangles, *edges, np.cos(np.radians(largest_fold_deg)))
 
 
 def node_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

@@ -135,10 +135,10 @@ def _attempt(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, count: int, 
     """The mesh and its faults after an attempt on the bad faces and `count` rings; or as they were."""
     worn = worn_faces(mesh)
     core = rings(mesh.triangles, faults.faces, count, worn, len(mesh.points))
+    start, left = cut_out(mesh, core), OldSurface(mesh.points, mesh.triangles[core])
     for inward in INWARD_BY_OPERATIONS:
-        patch = cut_out(mesh, core)
-        patch = improve(patch, old, Limits(OUTWARD_BY_OPERATIONS, inward, 1.5 * bounds.smallest_angle_deg))
-        raw, changed = transferred(mesh, core, patch)
+        patch = improve(start, old, Limits(OUTWARD_BY_OPERATIONS, inward, 1.5 * bounds.smallest_angle_deg))
+        raw, changed = transferred(mesh, core, patch, left)
         gained = volume_gained(mesh, raw, core, changed)
         new = restore_volume(raw, gained, changed)
         if new is None:
@@ -146,9 +146,9 @@ def _attempt(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, count: int, 
         new = _within(new, changed, old)
         if new is None:
             break
-        left = faults_after(faults, raw, new, bounds, core, changed)
-        if badness(left) < badness(faults):
-            return new, left
+        remaining = faults_after(faults, raw, new, bounds, core, changed)
+        if badness(remaining) < badness(faults):
+            return new, remaining
         break
     return mesh, faults
 

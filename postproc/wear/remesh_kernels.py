@@ -118,12 +118,18 @@ def heights(places, nearest, closest, points, triangles, of_face, of_edge, of_no
 def probes(points, triangles):
     """Where faces are held against another surface, (q, 3) m, and the seven of them of each face, (m, 7).
 
-    Corners, middles of the edges and centroids, common corners once. points (n, 3) m; triangles (m, 3)
+    Centroids, corners and middles of the edges, common ones once. points (n, 3) m; triangles (m, 3)
     """
-    number, count = np.full(len(points), -1), 0
+    number, count = np.full(len(points), -1), len(triangles)
+    size = 2
+    while size < 6 * len(triangles):
+        size *= 2
+    table = np.full((size, 2), -1)
     place, at = np.empty((7 * len(triangles), 3)), np.empty((len(triangles), 7), dtype=np.int64)
     for row in range(len(triangles)):
-        face = triangles[row]
+        face, at[row, 6] = triangles[row], row
+        for axis in range(3):
+            place[row, axis] = (points[face[0], axis] + points[face[1], axis] + points[face[2], axis]) / 3.0
         for k in range(3):
             if number[face[k]] < 0:
                 number[face[k]] = count
@@ -131,15 +137,25 @@ def probes(points, triangles):
                 count += 1
             at[row, k] = number[face[k]]
         for k in range(3):
-            for axis in range(3):
-                place[count, axis] = 0.5 * (points[face[k], axis] + points[face[(k + 1) % 3], axis])
-            at[row, 3 + k] = count
-            count += 1
-        for axis in range(3):
-            place[count, axis] = (points[face[0], axis] + points[face[1], axis] + points[face[2], axis]) / 3.0
-        at[row, 6] = count
-        count += 1
+            start, end = face[k], face[(k + 1) % 3]
+            slot = _edge_slot(table, min(start, end) * len(points) + max(start, end))
+            if table[slot, 1] < 0:
+                table[slot, 1] = count
+                for axis in range(3):
+                    place[count, axis] = 0.5 * (points[start, axis] + points[end, axis])
+                count += 1
+            at[row, 3 + k] = table[slot, 1]
     return place[:count].copy(), at
+
+
+@njit(cache=True)
+def _edge_slot(table, key) -> int:
+    """Row of a table (size a power of 2, 2) of keys and values where a key stands, or is put with the value -1."""
+    slot = (key ^ (key >> 7)) & (len(table) - 1)
+    while table[slot, 0] >= 0 and table[slot, 0] != key:
+        slot = (slot + 1) & (len(table) - 1)
+    table[slot, 0] = key
+    return slot
 
 
 @njit(cache=True)

@@ -371,7 +371,8 @@ def _is_among(pairs: np.ndarray, others: np.ndarray, n_points: int) -> np.ndarra
     """Mask of the node pairs that occur in `others`, in either sense."""
     if not len(others):
         return np.zeros(len(pairs), dtype=bool)
-    return np.isin(_pair_keys(pairs, n_points), _pair_keys(others, n_points))
+    keys, known = _pair_keys(pairs, n_points), np.sort(_pair_keys(others, n_points))
+    return known[np.searchsorted(known[:-1], keys)] == keys
 
 
 def _pair_keys(pairs: np.ndarray, n_points: int) -> np.ndarray:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from bulkwear.postproc.mesh import unit_normals
 from bulkwear.postproc.wear.edge_kernels import edge_table, on_border, sorted_edges
-from bulkwear.postproc.wear.remesh_kernels import heights, node_normals_by_angle, probes, ranges
+from bulkwear.postproc.wear.face_kernels import any_corner
+from bulkwear.postproc.wear.remesh_kernels import heights, node_normals_by_angle, opposite_areas, probes, ranges
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
 ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside
@@ -74,8 +76,9 @@ def lowest_beside(rank: np.ndarray, edges: Edges) -> np.ndarray:
 
 def six_volumes(points: np.ndarray, triangles: np.ndarray, origin: np.ndarray) -> np.ndarray:
     """Six times the signed volume between each triangle and `origin`, (m,) m3."""
-    a, b, c = (points[triangles[:, k]] - origin for k in range(3))
-    return np.einsum("ij,ij->i", a, np.cross(b, c))
+    first = triangles[:, 0]
+    across = opposite_areas(points, triangles, first, np.full((len(triangles), 3), origin))
+    return np.einsum("ij,ij->i", points[first] - origin, across)
 
 
 def rings(triangles: np.ndarray, faces: np.ndarray, count: int, allowed: np.ndarray, n_points: int) -> np.ndarray:
@@ -84,7 +87,7 @@ def rings(triangles: np.ndarray, faces: np.ndarray, count: int, allowed: np.ndar
     for _ in range(count):
         near = np.zeros(n_points, dtype=bool)
         near[triangles[mask]] = True
-        mask = near[triangles].any(axis=1) & allowed
+        mask = any_corner(near, triangles) & allowed
     return mask
 
 
@@ -103,22 +106,28 @@ class OldSurface:
         self.tangled = np.zeros(len(triangles), dtype=bool) if tangled is None else tangled
         self._tree = igl.AABB()
         self._tree.init(points, triangles)
-        normals = np.nan_to_num(unit_normals(points, triangles))
-        self._of_node = node_normals_by_angle(points, triangles, normals)
-        self._of_face = normals
-        self._of_edge = np.repeat(normals[:, None], 3, axis=1)  # k: opposite to corner k
-        pairs, sides = neighbours(triangles)
-        both = normals[pairs[:, 0]] + normals[pairs[:, 1]]
+
+    @cached_property
+    def _normals(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Normals of the faces (m, 3), of their edges by the opposite corner (m, 3, 3) and of the nodes (n, 3)."""
+        of_face = np.nan_to_num(unit_normals(self.points, self.triangles))
+        of_edge = np.repeat(of_face[:, None], 3, axis=1)
+        pairs, sides = neighbours(self.triangles)
+        both = of_face[pairs[:, 0]] + of_face[pairs[:, 1]]
         for side in range(2):
-            self._of_edge[pairs[:, side], sides[:, side]] = both
+            of_edge[pairs[:, side], sides[:, side]] = both
+        return of_face, of_edge, node_normals_by_angle(self.points, self.triangles, of_face)
+
+    def nearest(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Square of the distance (k,) m2, the closest face (k,) and the closest point (k, 3) m."""
+        if not len(places):
+            return np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 3))
+        return self._tree.squared_distance(self.points, self.triangles, places)
 
     def closest(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Signed distance (k,) m, outside > 0, the closest face (k,) and the closest point (k, 3) m."""
-        if not len(places):
-            return np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 3))
-        square, face, point = self._tree.squared_distance(self.points, self.triangles, places)
-        normals = self._of_face, self._of_edge, self._of_node
-        above = heights(places, point, face, self.points, self.triangles, *normals, ON_EDGE)
+        square, face, point = self.nearest(places)
+        above = heights(places, point, face, self.points, self.triangles, *self._normals, ON_EDGE)
         return np.copysign(np.sqrt(square), above), face, point
 
     def range_over_faces(self, points: np.ndarray, triangles: np.ndarray, size: np.ndarray, held=probes) -> np.ndarray:

@@ -13,6 +13,7 @@ import numpy as np
 from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, worn_faces
 from bulkwear.postproc.mesh_checks import intersecting_faces
 from bulkwear.postproc.wear.edge_kernels import common_neighbours
+from bulkwear.postproc.wear.face_kernels import any_corner
 from bulkwear.postproc.wear.mesh_faults import (
     TARGET_EDGE,
     Bounds,
@@ -104,7 +105,7 @@ def _repaired(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, old: OldSur
     else:
         limits = Limits(OUTWARD_BY_OPERATIONS, inward, 1.5 * bounds.smallest_angle_deg, SINK_COLLAPSE)
         patch = improve(patch, old, limits, erode=True)
-    raw, changed = transferred(mesh, core, patch)
+    raw, changed = transferred(mesh, core, patch, OldSurface(mesh.points, mesh.triangles[core]))
     new, ahead = _balanced(raw, volume_gained(mesh, raw, core, changed), changed)
     left = faults_after(faults, raw, new, bounds, core, changed)
     reach = old.range_over_faces(new.points, new.triangles[changed], new.point_data[TARGET_EDGE])[:, 1]
@@ -122,7 +123,7 @@ def faults_after(
     outside = faults.intersecting[~core[faults.intersecting].any(axis=1)]
     number = np.cumsum(~core) - 1
     moved = (raw.points != mesh.points).any(axis=1)
-    return mesh_faults(mesh, bounds, changed | moved[mesh.triangles].any(axis=1), number[outside])
+    return mesh_faults(mesh, bounds, changed | any_corner(moved, mesh.triangles), number[outside])
 
 
 def badness(faults: MeshFaults) -> tuple[int, int, float]:
