@@ -41,11 +41,22 @@ def overlapping_faces(points: np.ndarray, triangles: np.ndarray, clearance_m: fl
 
 def _searched(points, triangles, among, clearance, narrow) -> np.ndarray:
     """Sorted pairs of faces with overlapping boxes for which `narrow` says yes, (p, 2)."""
-    boxes = _boxes(points, triangles, clearance)
+    low, high = _boxes(points, triangles, clearance)
+    near = np.arange(len(triangles)) if among is None else _beside(low, high, among)
+    asked = None if among is None else among[near]
     found = [np.empty((0, 2), dtype=np.int64)]
-    for pairs in overlapping_boxes(*boxes, among):
+    for pairs in overlapping_boxes(low[near], high[near], asked):
+        pairs = near[pairs]
         found.append(pairs[narrow(points, triangles, pairs, clearance)])
     return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
+
+
+def _beside(low: np.ndarray, high: np.ndarray, among: np.ndarray) -> np.ndarray:
+    """Boxes (k,) of all (m, 3) m that overlap the one box round those `among` (m,): no others can overlap these."""
+    if not among.any():
+        return np.empty(0, dtype=np.int64)
+    apart = (low > high[among].max(axis=0)) | (high < low[among].min(axis=0))
+    return np.flatnonzero(~(apart[:, 0] | apart[:, 1] | apart[:, 2]))
 
 
 @njit(cache=True)

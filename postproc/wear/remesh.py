@@ -82,11 +82,12 @@ def remesh(mesh: SurfaceMesh, bounds: Bounds = DEFAULT_BOUNDS, moved: np.ndarray
     if not faults.faces.any():
         return Remeshed(mesh, 0, 0.0, 0.0, 0.0, faults)
     start, tangled, advanced = present, faults.tangled, 0.0
+    old = OldSurface(start.points, start.triangles)
     for widen in (None, *UNTRUSTED_RINGS):
         if widen is not None and not faults.tangled.any():
             break
         untrusted = rings(start.triangles, tangled, widen or 0, np.ones(len(tangled), bool), len(start.points))
-        old = OldSurface(start.points, start.triangles, untrusted)
+        old = old.without(untrusted)
         present, ahead, faults = _improved(present, faults, bounds, old, widen is not None)
         advanced += ahead
     if faults.tangled.any():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -96,16 +97,22 @@ class OldSurface:
 
     The sign comes from the normal of the closest face, edge or corner, weighted by angle at a corner (J. A. Baerentzen
     and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243). Faces that are folded or cut others bound no body:
-    nothing counts as outside of those marked `tangled` (m,).
+    nothing counts as outside of those marked `tangled` (m,), see `without`.
     """
 
-    def __init__(self, points: np.ndarray, triangles: np.ndarray, tangled: np.ndarray | None = None):
+    def __init__(self, points: np.ndarray, triangles: np.ndarray):
         import igl  # only a surface that really is remeshed needs it
 
         self.points, self.triangles = points, triangles
-        self.tangled = np.zeros(len(triangles), dtype=bool) if tangled is None else tangled
+        self.tangled = np.zeros(len(triangles), dtype=bool)
         self._tree = igl.AABB()
         self._tree.init(points, triangles)
+
+    def without(self, tangled: np.ndarray) -> OldSurface:
+        """The same surface, with other faces (m,) that bound no body."""
+        other = copy(self)
+        other.tangled = tangled
+        return other
 
     @cached_property
     def _normals(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
