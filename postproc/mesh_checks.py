@@ -158,6 +158,24 @@ def _overlap(low, high, i, others_low, others_high, j) -> bool:
 
 
 @njit(cache=True)
+def _starts(i, leaves, once, stack) -> int:
+    """Put the nodes on a stack below which a walk looks for pairs of box i, and say how many: the root, or those that
+    together hold its own leaf and all later ones.
+    """
+    if not once:
+        stack[0] = 1
+        return 1
+    node, depth = leaves + i // LEAF, 1
+    stack[0] = node
+    while node > 1:
+        if node % 2 == 0:
+            stack[depth] = node + 1
+            depth += 1
+        node //= 2
+    return depth
+
+
+@njit(cache=True)
 def _pairs(lower, upper, low, high, asked, position, once, found) -> tuple[int, int]:
     """Fill `found` with overlapping pairs of the asked boxes from `position` on: how many, and where to go on.
 
@@ -167,7 +185,7 @@ def _pairs(lower, upper, low, high, asked, position, once, found) -> tuple[int, 
     stack = np.empty(DEEPEST, dtype=np.int64)
     while position < len(asked):
         i, before = asked[position], count
-        stack[0], depth = 1, 1
+        depth = _starts(i, leaves, once, stack)
         while depth > 0:
             depth -= 1
             node = stack[depth]

@@ -79,6 +79,26 @@ def node_normals_by_angle(points, triangles, normals) -> np.ndarray:
 
 
 @njit(cache=True)
+def edge_normals(normals, held, new) -> np.ndarray:
+    """Sum (m, 3, 3) of the normals (m, 3) of the two faces at each edge, by its opposite corner; their own at a border.
+
+    held, new : see `postproc.wear.edge_kernels.sorted_edges`
+    """
+    result = np.empty((len(normals), 3, 3))
+    for row in range(len(normals)):
+        for k in range(3):
+            result[row, k] = normals[row]
+    for at in range(1, len(held)):
+        if new[at]:
+            continue
+        for edge in (held[at - 1], held[at]):
+            for axis in range(3):
+                both = normals[held[at - 1] // 3, axis] + normals[held[at] // 3, axis]
+                result[edge // 3, (edge % 3 + 2) % 3, axis] = both
+    return result
+
+
+@njit(cache=True)
 def heights(places, nearest, closest, points, triangles, of_face, of_edge, of_node, on_edge) -> np.ndarray:
     """Height (k,) m of places over the closest points `nearest` (k, 3) m, along the normal there: its sign is told.
 

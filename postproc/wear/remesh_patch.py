@@ -11,7 +11,14 @@ import numpy as np
 from bulkwear.postproc.mesh import unit_normals
 from bulkwear.postproc.wear.edge_kernels import edge_table, on_border, sorted_edges
 from bulkwear.postproc.wear.face_kernels import any_corner
-from bulkwear.postproc.wear.remesh_kernels import heights, node_normals_by_angle, opposite_areas, probes, ranges
+from bulkwear.postproc.wear.remesh_kernels import (
+    edge_normals,
+    heights,
+    node_normals_by_angle,
+    opposite_areas,
+    probes,
+    ranges,
+)
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
 ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside
@@ -118,11 +125,8 @@ class OldSurface:
     def _normals(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Normals of the faces (m, 3), of their edges by the opposite corner (m, 3, 3) and of the nodes (n, 3)."""
         of_face = np.nan_to_num(unit_normals(self.points, self.triangles))
-        of_edge = np.repeat(of_face[:, None], 3, axis=1)
-        pairs, sides = neighbours(self.triangles)
-        both = of_face[pairs[:, 0]] + of_face[pairs[:, 1]]
-        for side in range(2):
-            of_edge[pairs[:, side], sides[:, side]] = both
+        edges = sorted_edges(self.triangles, len(self.points), False)
+        of_edge = edge_normals(of_face, *edges)
         return of_face, of_edge, node_normals_by_angle(self.points, self.triangles, of_face)
 
     def nearest(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
