@@ -11,11 +11,15 @@ from bulkwear.postproc.mesh import (
     edge_lengths_per_triangle,
     smallest_angles,
     sum_over_nodes,
+    unit_normals,
 )
 from bulkwear.postproc.wear.edge_kernels import common_neighbours, edge_table, on_border, sorted_edges
 from bulkwear.postproc.wear.face_kernels import any_corner, corner_words, face_measures, folds, rows_among
 from bulkwear.postproc.wear.remesh_kernels import (
     centroid_probes,
+    edge_normals,
+    heights,
+    node_normals_by_angle,
     operations_of,
     opposite_areas,
     probes,
@@ -140,6 +144,32 @@ def test_sums_round_nodes(sheet, size, stars):
     places, first = points[triangles].mean(axis=1), triangles[:, 1]
     theirs = np.cross(points[triangles[:, 2]] - places, points[triangles[:, 0]] - places)
     assert np.array_equal(opposite_areas(points, triangles, first, places), theirs)
+
+
+def test_the_side_of_a_place_is_told_by_the_normal_there(sheet):
+    """Closest to a face its own normal tells, to an edge the sum of its faces', to a corner that of all by angle."""
+    points, triangles = sheet
+    normals = unit_normals(points, triangles)
+    _, faces, opposite = edge_table(triangles, len(points))
+    of_edge = edge_normals(normals, *sorted_edges(triangles, len(points), False))
+    both = np.where(faces[:, 1:] >= 0, normals[faces[:, 0]] + normals[faces[:, 1]], normals[faces[:, 0]])
+    at = (triangles[faces[:, 0]] == opposite[:, :1]).argmax(axis=1)
+    assert np.array_equal(of_edge[faces[:, 0], at], both)
+    corners = points[triangles]
+    spokes = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+    angle = np.arctan2(np.linalg.norm(np.cross(*spokes), axis=2), (spokes[0] * spokes[1]).sum(axis=2))
+    of_node = np.zeros_like(points)
+    np.add.at(of_node, triangles, angle[:, :, None] * normals[:, None])
+    assert np.array_equal(node_normals_by_angle(points, triangles, normals), of_node)
+    offset = np.array([1e-4, -2e-4, 3e-4])
+    rows = np.arange(len(triangles))
+    for nearest, normal in (
+        (corners.mean(axis=1), normals),
+        (0.5 * (corners[:, 1] + corners[:, 2]), of_edge[:, 0]),
+        (corners[:, 1], of_node[triangles[:, 1]]),
+    ):
+        told = heights(nearest + offset, nearest, rows, points, triangles, normals, of_edge, of_node, 1e-6)
+        np.testing.assert_allclose(told, normal @ offset, rtol=0.0, atol=1e-15)
 
 
 def cosines(vectors, others):
