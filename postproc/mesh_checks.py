@@ -64,7 +64,7 @@ def _boxes(points, triangles, clearance) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest corners (m, 3) m of the boxes round faces, wider by a clearance on all sides."""
     low, high = np.empty((len(triangles), 3)), np.empty((len(triangles), 3))
     for row in range(len(triangles)):
-        a, b, c = triangles[row]
+        a, b, c = triangles[row, 0], triangles[row, 1], triangles[row, 2]
         for axis in range(3):
             low[row, axis] = min(points[a, axis], points[b, axis], points[c, axis]) - clearance
             high[row, axis] = max(points[a, axis], points[b, axis], points[c, axis]) + clearance

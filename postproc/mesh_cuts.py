@@ -22,25 +22,25 @@ def cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, cleara
     points (n, 3) m; triangles (m, 3); clearance: m, see `postproc.mesh_checks.intersecting_faces`
     """
     result = np.zeros(len(pairs), dtype=np.bool_)
-    normals, heights, line = np.empty((2, 3)), np.empty((2, 3)), np.empty(3)
-    interval = np.empty((2, 2))
+    heights, interval = np.empty((2, 3)), np.empty((2, 2))
     for row in range(len(pairs)):
-        faces = triangles[pairs[row, 0]], triangles[pairs[row, 1]]
-        if _common_nodes(*faces) >= 2:
+        first, second = triangles[pairs[row, 0]], triangles[pairs[row, 1]]
+        if _common_nodes(first, second) >= 2:
             continue
-        normals[1] = area_vector(points, faces[1])
-        _heights_over(points, faces[0], faces[1], normals[1], heights[0])
+        other_normal = area_vector(points, second)
+        _heights_over(points, first, second, other_normal, heights[0])
         if not _on_both_sides(heights[0], 0.0):
             continue
-        normals[0] = area_vector(points, faces[0])
-        _heights_over(points, faces[1], faces[0], normals[0], heights[1])
-        least = max(IN_PLANE * _reach(points, *faces), clearance)
+        normal = area_vector(points, first)
+        _heights_over(points, second, first, normal, heights[1])
+        least = max(IN_PLANE * _reach(points, first, second), clearance)
         if not (_on_both_sides(heights[0], least) and _on_both_sides(heights[1], least)):
             continue
-        line[:] = cross(normals[0], normals[1])
-        line /= max(np.sqrt(dot(line, line)), TINY)
-        for k in range(2):
-            _interval_on(points, faces[k], points[faces[0][0]], heights[k], line, interval[k])
+        x, y, z = cross(normal, other_normal)
+        length = max(np.sqrt(dot((x, y, z), (x, y, z))), TINY)
+        line = x / length, y / length, z / length
+        _interval_on(points, first, points[first[0]], heights[0], line, interval[0])
+        _interval_on(points, second, points[first[0]], heights[1], line, interval[1])
         result[row] = min(interval[0, 1], interval[1, 1]) - max(interval[0, 0], interval[1, 0]) > least
     return result
 

@@ -17,7 +17,8 @@ def sorted_edges(triangles, count, by_sense):
     for row in range(len(triangles)):
         for k in range(3):
             start[min(triangles[row, k], triangles[row, (k + 1) % 3]) + 1] += 1
-    start = np.cumsum(start)
+    for node in range(count):
+        start[node + 1] += start[node]
     place = start[:-1].copy()
     held, keys = np.empty(3 * len(triangles), dtype=np.int64), np.empty(3 * len(triangles), dtype=np.int64)
     for row in range(len(triangles)):
@@ -31,19 +32,19 @@ def sorted_edges(triangles, count, by_sense):
                 at -= 1
             keys[at], held[at] = key, 3 * row + k
     new = np.zeros(len(held) + 1, dtype=np.bool_)
-    new[start] = True
+    for node in range(count + 1):
+        new[start[node]] = True
     for at in range(1, len(held)):
         new[at] = new[at] or keys[at] // 2 != keys[at - 1] // 2
     return held, new
 
 
 @njit(cache=True)
-def edge_table(triangles, count):
+def edge_table(triangles, held, new):
     """Undirected edges in the order of their nodes, see `postproc.wear.remesh_patch.Edges`: ends, faces, third nodes.
 
-    triangles (m, 3); count: of nodes. Where more than two faces meet the first two count, those that run upwards first.
+    triangles (m, 3); held, new: `sorted_edges` of them. Where more than two faces meet the first two count.
     """
-    held, new = sorted_edges(triangles, count, True)
     first = np.flatnonzero(new[:-1])
     ends = np.empty((len(first), 2), dtype=np.int64)
     faces, opposite = np.full((len(first), 2), -1), np.full((len(first), 2), -1)
@@ -57,9 +58,8 @@ def edge_table(triangles, count):
 
 
 @njit(cache=True)
-def on_border(triangles, count) -> np.ndarray:
-    """Mask (n,) of the nodes on edges of a single face. triangles (m, 3); count: of nodes"""
-    held, new = sorted_edges(triangles, count, False)
+def on_border(triangles, held, new, count) -> np.ndarray:
+    """Mask (count,) of the nodes on edges of a single face. triangles (m, 3); held, new: `sorted_edges` of them."""
     result = np.zeros(count, dtype=np.bool_)
     for at in range(len(held)):
         if new[at] and new[at + 1]:
@@ -75,19 +75,21 @@ def common_neighbours(ends, chosen, count) -> np.ndarray:
     ends (e, 2) nodes of all edges; chosen (k,) edges; count: of nodes
     """
     start = np.zeros(count + 1, dtype=np.int64)
-    for a, b in ends:
-        start[a + 1] += 1
-        start[b + 1] += 1
-    start = np.cumsum(start)
+    for row in range(len(ends)):
+        start[ends[row, 0] + 1] += 1
+        start[ends[row, 1] + 1] += 1
+    for node in range(count):
+        start[node + 1] += start[node]
     beside, place = np.empty(2 * len(ends), dtype=np.int64), start[:-1].copy()
-    for a, b in ends:
+    for row in range(len(ends)):
+        a, b = ends[row, 0], ends[row, 1]
         beside[place[a]] = b
         beside[place[b]] = a
         place[a] += 1
         place[b] += 1
     marked, result = np.full(count, -1), np.zeros(len(chosen), dtype=np.int64)
     for row in range(len(chosen)):
-        a, b = ends[chosen[row]]
+        a, b = ends[chosen[row], 0], ends[chosen[row], 1]
         for at in range(start[a], start[a + 1]):
             marked[beside[at]] = row
         for at in range(start[b], start[b + 1]):

@@ -87,7 +87,8 @@ def edge_normals(normals, held, new) -> np.ndarray:
     result = np.empty((len(normals), 3, 3))
     for row in range(len(normals)):
         for k in range(3):
-            result[row, k] = normals[row]
+            for axis in range(3):
+                result[row, k, axis] = normals[row, axis]
     for at in range(1, len(held)):
         if new[at]:
             continue
@@ -153,7 +154,8 @@ def probes(points, triangles):
         for k in range(3):
             if number[face[k]] < 0:
                 number[face[k]] = count
-                place[count] = points[face[k]]
+                for axis in range(3):
+                    place[count, axis] = points[face[k], axis]
                 count += 1
             at[row, k] = number[face[k]]
         for k in range(3):
@@ -246,7 +248,7 @@ def opposite_areas(points, triangles, nodes, places):
             k += 1
         first = between_places(places[row], points[face[(k + 1) % 3]])
         second = between_places(places[row], points[face[(k + 2) % 3]])
-        result[row] = cross(first, second)
+        result[row, 0], result[row, 1], result[row, 2] = cross(first, second)
     return result
 
 

@@ -192,7 +192,7 @@ def _merged_points(patch, ends, kept, kind, stars: Stars) -> list[np.ndarray]:
     middle = patch.points[ends].mean(axis=1)
     alike = kind[ends[:, 0]] == kind[ends[:, 1]]
     inner = alike & (kind[ends[:, 0]] == INNER)
-    first, place = stars.before[:, 0], middle[stars.group]
+    first, place = stars.before[:, 0].copy(), middle[stars.group]
     across = opposite_areas(patch.points, stars.before, first, place)
     before = np.bincount(stars.group, np.einsum("ij,ij->i", patch.points[first] - place, across), len(ends))
     group, gradient = stars.group[stars.alive], np.zeros((len(ends), 3))

@@ -61,7 +61,8 @@ class Edges:
 
 def edges_of(patch: Patch) -> Edges:
     """Edges of the patch in the order of their node indices."""
-    ends, faces, opposite = edge_table(patch.triangles, len(patch.points))
+    in_order = sorted_edges(patch.triangles, len(patch.points), True)
+    ends, faces, opposite = edge_table(patch.triangles, *in_order)
     curve = (faces[:, 1] >= 0) & (patch.label[faces[:, 0]] != patch.label[faces[:, 1]])
     return Edges(ends, faces, opposite, curve)
 
@@ -84,7 +85,7 @@ def lowest_beside(rank: np.ndarray, edges: Edges) -> np.ndarray:
 
 def six_volumes(points: np.ndarray, triangles: np.ndarray, origin: np.ndarray) -> np.ndarray:
     """Six times the signed volume between each triangle and `origin`, (m,) m3."""
-    first = triangles[:, 0]
+    first = triangles[:, 0].copy()
     across = opposite_areas(points, triangles, first, np.full((len(triangles), 3), origin))
     return np.einsum("ij,ij->i", points[first] - origin, across)
 
@@ -165,7 +166,8 @@ def barycentric(places: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 def border_nodes(triangles: np.ndarray) -> np.ndarray:
     """Sorted nodes on edges of a single triangle, (k,): as `boundary_nodes`, much faster."""
-    return np.flatnonzero(on_border(triangles, triangles.max(initial=-1) + 1))
+    count = triangles.max(initial=-1) + 1
+    return np.flatnonzero(on_border(triangles, *sorted_edges(triangles, count, False), count))
 
 
 def neighbours(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -69,7 +69,7 @@ def test_edges_come_in_the_order_of_their_nodes(sheet):
     found = {}
     for edge in np.lexsort((directed[:, 0], high, low)):
         found.setdefault((low[edge], high[edge]), []).append(edge)
-    ends, faces, opposite = edge_table(triangles, len(points))
+    ends, faces, opposite = edge_table(triangles, *sorted_edges(triangles, len(points), True))
     assert np.array_equal(ends, [directed[edges[0]] for edges in found.values()])
     padded = np.array([(*edges, -1)[:2] for edges in found.values()])
     assert np.array_equal(faces, np.where(padded < 0, -1, padded // 3))
@@ -77,7 +77,10 @@ def test_edges_come_in_the_order_of_their_nodes(sheet):
     beside = {node: set(directed[(directed == node).any(axis=1)].ravel()) - {node} for node in range(len(points))}
     expected = [len(beside[a] & beside[b]) for a, b in ends[::3]]
     assert common_neighbours(ends, np.arange(len(ends))[::3], len(points)).tolist() == expected
-    assert np.array_equal(np.flatnonzero(on_border(triangles, len(points))), boundary_nodes(triangles))
+    assert np.array_equal(
+        np.flatnonzero(on_border(triangles, *sorted_edges(triangles, len(points), False), len(points))),
+        boundary_nodes(triangles),
+    )
 
 
 def test_measures_of_faces(sheet, size):
@@ -87,7 +90,7 @@ def test_measures_of_faces(sheet, size):
     expected = smallest_angles(points, triangles), lengths, lengths.max(axis=1), areas(points, triangles)
     for ours, theirs in zip(face_measures(points, triangles), expected, strict=True):
         assert np.array_equal(ours, theirs)
-    ends, faces, _ = edge_table(triangles, len(points))
+    ends, faces, _ = edge_table(triangles, *sorted_edges(triangles, len(points), True))
     normals = area_vectors(points, triangles) / areas(points, triangles)[:, None]
     cosine = (normals[faces[:, 0]] * normals[faces[:, 1]]).sum(axis=1)
     folded = np.unique(faces[(faces[:, 1] >= 0) & (cosine < LEAST_COSINE)])
@@ -150,7 +153,7 @@ def test_the_side_of_a_place_is_told_by_the_normal_there(sheet):
     """Closest to a face its own normal tells, to an edge the sum of its faces', to a corner that of all by angle."""
     points, triangles = sheet
     normals = unit_normals(points, triangles)
-    _, faces, opposite = edge_table(triangles, len(points))
+    _, faces, opposite = edge_table(triangles, *sorted_edges(triangles, len(points), True))
     of_edge = edge_normals(normals, *sorted_edges(triangles, len(points), False))
     both = np.where(faces[:, 1:] >= 0, normals[faces[:, 0]] + normals[faces[:, 1]], normals[faces[:, 0]])
     at = (triangles[faces[:, 0]] == opposite[:, :1]).argmax(axis=1)
