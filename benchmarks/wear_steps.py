@@ -2,8 +2,8 @@
 
 Every case is a child process that has compiled before it is measured; both versions must give the same numbers, to the
 last bit. The worn sample (60 x 60 mm, edges of 3 mm, three bumps) has 36 updates, each with a load of its own: the time
-is that of remeshing alone. Sheets are those of `remesh` and `displacement`.
-In a copy without that commit nothing is compared.
+is that of remeshing alone. Sheets are those of `remesh` and `displacement`. In a copy without that commit nothing is
+compared.
 """
 
 from __future__ import annotations

@@ -271,8 +271,11 @@ def stl_corners(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 def _vertex_lines(points: np.ndarray) -> np.ndarray:
     """Coordinates (n, 3) m as words, (n,): every node is a corner of some six facets, and written once here."""
-    text = ("%.9g %.9g %.9g\n" * len(points)) % tuple(np.asarray(points).ravel().tolist())
-    return np.array(text.splitlines(), dtype=object)
+    lines = []
+    for start in range(0, len(points), STL_FACETS_PER_BLOCK):
+        block = np.asarray(points)[start : start + STL_FACETS_PER_BLOCK]
+        lines += (("%.9g %.9g %.9g\n" * len(block)) % tuple(block.ravel().tolist())).splitlines()
+    return np.array(lines, dtype=object)
 
 
 def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray) -> None:
