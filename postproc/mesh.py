@@ -19,11 +19,7 @@ HOLDER_PART = -1  # label `part` of the faces that do not wear
 PLAIN = "plain"  # name of a sample's surface without a pattern; one with a pattern has the pattern's name
 RIGHT_ANGLE = 1e-9  # -, cosine of an angle that counts as right
 STL_FACETS_PER_BLOCK = 20_000  # facets formatted at once: bounds the memory of a write
-_FACET = (
-    "  facet normal %.9g %.9g %.9g\n    outer loop\n"
-    + "      vertex %.9g %.9g %.9g\n" * 3
-    + "    endloop\n  endfacet\n"
-)
+_FACET = "  facet normal %.9g %.9g %.9g\n    outer loop\n" + "      vertex %s\n" * 3 + "    endloop\n  endfacet\n"
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,42 +58,61 @@ def worn_faces(mesh: SurfaceMesh) -> np.ndarray:
     return np.asarray(part) > HOLDER_PART
 
 
+def _corners(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Coordinates (3, 3, m) m by axis, corner and triangle: arithmetic on whole columns is the fastest."""
+    return np.take(np.asarray(points).T, triangles.T, axis=1)
+
+
+def _cross(first: np.ndarray, second: np.ndarray) -> list[np.ndarray]:
+    """Cross products of vectors (3, m), three columns (m,)."""
+    return [first[i] * second[j] - first[j] * second[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+
+
+def _length(columns) -> np.ndarray:
+    """Lengths (m,) of vectors given as three columns (m,)."""
+    x, y, z = columns
+    return np.sqrt(x * x + y * y + z * z)
+
+
 def area_vectors(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Outward normal times area of each triangle, (m, 3) m2."""
-    first, second, third = (points[triangles[:, k]] for k in range(3))
-    return 0.5 * np.cross(second - first, third - first)
+    corners = _corners(points, triangles)
+    return 0.5 * np.stack(_cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
 
 
 def areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Area of each triangle, (m,) m2."""
-    return np.linalg.norm(area_vectors(points, triangles), axis=1)
+    return _length(area_vectors(points, triangles).T)
 
 
 def unit_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Outward unit normal of each triangle, (m, 3); NaN where a triangle has no area."""
     vectors = area_vectors(points, triangles)
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    lengths = _length(vectors.T)[:, None]
     return np.divide(vectors, lengths, out=np.full_like(vectors, np.nan), where=lengths > 0)
 
 
 def centroids(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Centroid of each triangle, (m, 3) m."""
-    return points[triangles].mean(axis=1)
+    first, second, third = (points[triangles[:, k]] for k in range(3))
+    return (first + second + third) / 3.0
 
 
 def edge_lengths_per_triangle(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Lengths of the edges 0-1, 1-2 and 2-0 of each triangle, (m, 3) m."""
-    corners = points[triangles]
-    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    corners = _corners(points, triangles)
+    return np.stack([_length(corners[:, (k + 1) % 3] - corners[:, k]) for k in range(3)], axis=1)
 
 
 def smallest_angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Smallest interior angle of each triangle, (m,) degrees; 0 where a triangle has no area."""
-    corners = points[triangles]
-    forward = np.roll(corners, -1, axis=1) - corners
-    backward = np.roll(corners, 1, axis=1) - corners
-    sine = np.linalg.norm(np.cross(forward, backward), axis=2)  # atan2 stays exact for slivers, arccos does not
-    return np.degrees(np.arctan2(sine, (forward * backward).sum(axis=2))).min(axis=1)
+    corners, least = _corners(points, triangles), np.full(len(triangles), np.inf)
+    for k in range(3):
+        forward, backward = (corners[:, (k + step) % 3] - corners[:, k] for step in (1, 2))
+        sine = _length(_cross(forward, backward))  # atan2 stays exact for slivers, arccos does not
+        product = forward * backward
+        np.minimum(least, np.degrees(np.arctan2(sine, product[0] + product[1] + product[2])), out=least)
+    return least
 
 
 def shortest_edge_at_nodes(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -122,7 +137,23 @@ def _edge_keys(edges: np.ndarray) -> np.ndarray:
 def boundary_edges(triangles: np.ndarray) -> np.ndarray:
     """Edges with a triangle on one side only, (k, 2) node indices, directed as in that triangle."""
     edges = directed_edges(triangles)
-    return edges[~np.isin(_edge_keys(edges), _edge_keys(edges[:, ::-1]))]
+    start, end = np.ascontiguousarray(edges.T)
+    base = edges.max(initial=0) + 1
+    keys = 2 * (np.minimum(start, end) * base + np.maximum(start, end)) + (start < end)
+    single = _one_way(np.sort(keys))  # as numbers, for they sort several times faster than places
+    mask = np.zeros(base, dtype=bool)
+    mask[single // base] = mask[single % base] = True
+    near = np.flatnonzero(mask[start] & mask[end] & (start != end))  # few are left to be looked up
+    return edges[near[np.isin(keys[near] // 2, single)]]
+
+
+def _one_way(keys: np.ndarray) -> np.ndarray:
+    """Halves (k,) of sorted integers (m,) that occur as 2 q or as 2 q + 1, but not as both."""
+    half = keys[np.diff(keys, prepend=-1) > 0] // 2
+    same = half[1:] == half[:-1]
+    paired = np.zeros(len(half), dtype=bool)
+    paired[1:][same] = paired[:-1][same] = True
+    return half[~paired]
 
 
 def boundary_nodes(triangles: np.ndarray) -> np.ndarray:
@@ -238,6 +269,15 @@ def stl_corners(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.asarray(points)[obtuse_last(points, triangles)]
 
 
+def _vertex_lines(points: np.ndarray) -> np.ndarray:
+    """Coordinates (n, 3) m as words, (n,): every node is a corner of some six facets, and written once here."""
+    lines = []
+    for start in range(0, len(points), STL_FACETS_PER_BLOCK):
+        block = np.asarray(points)[start : start + STL_FACETS_PER_BLOCK]
+        lines += (("%.9g %.9g %.9g\n" * len(block)) % tuple(block.ravel().tolist())).splitlines()
+    return np.array(lines, dtype=object)
+
+
 def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray) -> None:
     """Write an ASCII STL with nine significant digits, facets in the order of the triangles, obtuse corners last.
 
@@ -247,14 +287,16 @@ def write_stl(path: str | os.PathLike, points: np.ndarray, triangles: np.ndarray
     faulty = np.flatnonzero(~np.isfinite(normals).all(axis=1))
     if faulty.size:
         raise ValueError(f"{path}: facet {faulty[0]} has no area; {faulty.size} such facets found, allowed are 0")
-    numbers = np.concatenate([normals[:, None], stl_corners(points, triangles)], axis=1).reshape(len(triangles), 12)
+    corners, nodes = obtuse_last(points, triangles), _vertex_lines(points)
 
     def write(name: Path) -> None:
         with open(name, "w", encoding="ascii") as file:
             file.write("solid surface\n")
-            for start in range(0, len(numbers), STL_FACETS_PER_BLOCK):
-                block = numbers[start : start + STL_FACETS_PER_BLOCK]
-                file.write((_FACET * len(block)) % tuple(block.ravel().tolist()))
+            for start in range(0, len(corners), STL_FACETS_PER_BLOCK):
+                block = slice(start, start + STL_FACETS_PER_BLOCK)
+                words = np.empty((len(corners[block]), 6), dtype=object)
+                words[:, :3], words[:, 3:] = normals[block], nodes[corners[block]]
+                file.write((_FACET * len(words)) % tuple(words.ravel().tolist()))
             file.write("endsolid surface\n")
 
     _write_atomically(path, write)

@@ -10,11 +10,10 @@ from collections.abc import Iterator
 import numpy as np
 from numba import njit
 
-from bulkwear.postproc.mesh import area_vectors
+from bulkwear.postproc.mesh_cuts import cutting
 
 LEAST_SOLVER_ANGLE = 0.3  # degrees; LIGGGHTS refuses a mesh with a smaller one than 0.256
 LARGEST_PAIR_BLOCK = 500_000  # pairs of faces handled at once: bounds the memory at some 300 MB
-IN_PLANE = 1e-9  # -, height over distance: faces that lie in one plane up to rounding do not cut one another
 MORTON_BITS = 20  # per axis, of a place along the curve that orders boxes: three of them fit an int64
 LEAF = 4  # boxes in a leaf of the tree
 DEEPEST = 64  # levels of the tree: more than any int64 count needs
@@ -29,7 +28,7 @@ def intersecting_faces(
     of the other's plane by more, on both sides, along a line that is longer. Neighbours at an edge never count.
     Coplanar overlap is not found (`overlapping_faces`).
     """
-    return _searched(points, triangles, among, clearance_m, _cutting)
+    return _searched(points, triangles, among, clearance_m, cutting)
 
 
 def overlapping_faces(points: np.ndarray, triangles: np.ndarray, clearance_m: float) -> np.ndarray:
@@ -42,63 +41,34 @@ def overlapping_faces(points: np.ndarray, triangles: np.ndarray, clearance_m: fl
 
 def _searched(points, triangles, among, clearance, narrow) -> np.ndarray:
     """Sorted pairs of faces with overlapping boxes for which `narrow` says yes, (p, 2)."""
-    corners = points[triangles]
-    boxes = corners.min(axis=1) - clearance, corners.max(axis=1) + clearance
+    low, high = _boxes(points, triangles, clearance)
+    near = np.arange(len(triangles)) if among is None else _beside(low, high, among)
+    asked = None if among is None else among[near]
     found = [np.empty((0, 2), dtype=np.int64)]
-    for pairs in overlapping_boxes(*boxes, among):
+    for pairs in overlapping_boxes(low[near], high[near], asked):
+        pairs = near[pairs]
         found.append(pairs[narrow(points, triangles, pairs, clearance)])
     return np.unique(np.sort(np.concatenate(found), axis=1), axis=0)
 
 
-def _cutting(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
-    """Mask (p,) of the pairs that pass through one another along a line; neighbours at an edge never do.
-
-    Both meet the line common to their planes in an interval; they cut where the intervals overlap. Source:
-    T. Moeller, J. Graphics Tools 2 (1997) 25.
-    """
-    first, second = triangles[pairs[:, 0]], triangles[pairs[:, 1]]
-    rows = np.flatnonzero((first[:, :, None] == second[:, None, :]).sum(axis=(1, 2)) < 2)
-    first, second = first[rows], second[rows]
-    normals = area_vectors(points, first), area_vectors(points, second)
-    reach = np.linalg.norm(points[first] - points[second[:, :1]], axis=2).max(axis=1)
-    least = np.maximum(IN_PLANE * reach, clearance)
-    heights = [
-        _heights(points, ours, theirs, normal)
-        for ours, theirs, normal in ((first, second, normals[1]), (second, first, normals[0]))
-    ]
-    crossing = np.all([(h.min(axis=1) < -least) & (h.max(axis=1) > least) for h in heights], axis=0)
-    rows, first, second, least = (array[crossing] for array in (rows, first, second, least))
-    line = np.cross(normals[0][crossing], normals[1][crossing])
-    line /= np.maximum(np.linalg.norm(line, axis=1, keepdims=True), np.finfo(float).tiny)
-    origin = points[first[:, 0]]
-    low, high = zip(
-        *(
-            _interval(points[ours] - origin[:, None], h[crossing], line)
-            for ours, h in zip((first, second), heights, strict=True)
-        ),
-        strict=True,
-    )
-    result = np.zeros(len(pairs), dtype=bool)
-    result[rows[np.minimum(*high) - np.maximum(*low) > least]] = True
-    return result
+def _beside(low: np.ndarray, high: np.ndarray, among: np.ndarray) -> np.ndarray:
+    """Boxes (k,) of all (m, 3) m that overlap the one box round those `among` (m,): no others can overlap these."""
+    if not among.any():
+        return np.empty(0, dtype=np.int64)
+    apart = (low > high[among].max(axis=0)) | (high < low[among].min(axis=0))
+    return np.flatnonzero(~(apart[:, 0] | apart[:, 1] | apart[:, 2]))
 
 
-def _heights(points: np.ndarray, ours: np.ndarray, theirs: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Height (k, 3) m of our corners over their planes; 0 at common nodes, so that rounding tells no side."""
-    length = np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
-    heights = np.einsum("kcj,kj->kc", points[ours] - points[theirs[:, :1]], normal) / length[:, None]
-    heights[(ours[:, :, None] == theirs[:, None, :]).any(axis=2)] = 0.0
-    return heights
-
-
-def _interval(corners: np.ndarray, heights: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where triangles (k, 3, 3) with corners on both sides of a plane cross it, along a line: from, to (k,) m."""
-    place = np.einsum("kcj,kj->kc", corners, line)
-    next_height, next_place = np.roll(heights, -1, axis=1), np.roll(place, -1, axis=1)
-    passes = (heights > 0.0) != (next_height > 0.0)  # two edges of each
-    step = np.divide(heights, heights - next_height, out=np.zeros_like(heights), where=passes)
-    crossed = place + step * (next_place - place)
-    return np.where(passes, crossed, np.inf).min(axis=1), np.where(passes, crossed, -np.inf).max(axis=1)
+@njit(cache=True)
+def _boxes(points, triangles, clearance) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest corners (m, 3) m of the boxes round faces, wider by a clearance on all sides."""
+    low, high = np.empty((len(triangles), 3)), np.empty((len(triangles), 3))
+    for row in range(len(triangles)):
+        a, b, c = triangles[row, 0], triangles[row, 1], triangles[row, 2]
+        for axis in range(3):
+            low[row, axis] = min(points[a, axis], points[b, axis], points[c, axis]) - clearance
+            high[row, axis] = max(points[a, axis], points[b, axis], points[c, axis]) + clearance
+    return low, high
 
 
 def _covering(points: np.ndarray, triangles: np.ndarray, pairs: np.ndarray, clearance: float) -> np.ndarray:
@@ -148,11 +118,18 @@ def _along_a_curve(places: np.ndarray) -> np.ndarray:
     """Order (m,) of places (m, 3) along Morton's curve, so that neighbours in the order lie close together."""
     low, size = places.min(axis=0), np.maximum(np.ptp(places, axis=0).max(), np.finfo(float).tiny)
     cell = ((places - low) / size * (2**MORTON_BITS - 1)).astype(np.int64)
-    key = np.zeros(len(places), dtype=np.int64)
-    for bit in range(MORTON_BITS):
-        for axis in range(3):
-            key |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return np.argsort(key, kind="stable")
+    return np.argsort(_interleaved(cell), kind="stable")
+
+
+@njit(cache=True)
+def _interleaved(cell) -> np.ndarray:
+    """Bits of three integers (m, 3) one by one in turn, (m,)."""
+    key = np.zeros(len(cell), dtype=np.int64)
+    for row in range(len(cell)):
+        for bit in range(MORTON_BITS):
+            for axis in range(3):
+                key[row] |= ((cell[row, axis] >> bit) & 1) << (3 * bit + axis)
+    return key
 
 
 def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -181,6 +158,24 @@ def _overlap(low, high, i, others_low, others_high, j) -> bool:
 
 
 @njit(cache=True)
+def _starts(i, leaves, once, stack) -> int:
+    """Put the nodes on a stack below which a walk looks for pairs of box i, and say how many: the root, or those that
+    together hold its own leaf and all later ones.
+    """
+    if not once:
+        stack[0] = 1
+        return 1
+    node, depth = leaves + i // LEAF, 1
+    stack[0] = node
+    while node > 1:
+        if node % 2 == 0:
+            stack[depth] = node + 1
+            depth += 1
+        node //= 2
+    return depth
+
+
+@njit(cache=True)
 def _pairs(lower, upper, low, high, asked, position, once, found) -> tuple[int, int]:
     """Fill `found` with overlapping pairs of the asked boxes from `position` on: how many, and where to go on.
 
@@ -190,7 +185,7 @@ def _pairs(lower, upper, low, high, asked, position, once, found) -> tuple[int, 
     stack = np.empty(DEEPEST, dtype=np.int64)
     while position < len(asked):
         i, before = asked[position], count
-        stack[0], depth = 1, 1
+        depth = _starts(i, leaves, once, stack)
         while depth > 0:
             depth -= 1
             node = stack[depth]

@@ -25,9 +25,11 @@ LARGEST_FILE_BYTES = 1_000_000
 CASE = "workflows.cases.<own>"
 LAYERS = {
     "postproc.mesh": (),
-    "postproc.mesh_checks": ("postproc.mesh",),
+    "postproc.triangle": (),
+    "postproc.mesh_cuts": ("postproc.triangle",),
+    "postproc.mesh_checks": ("postproc.mesh", "postproc.mesh_cuts"),
     "postproc.readers": ("postproc.mesh", "postproc.readers"),
-    "postproc.wear": ("postproc.mesh", "postproc.mesh_checks", "postproc.wear"),
+    "postproc.wear": ("postproc.mesh", "postproc.mesh_checks", "postproc.triangle", "postproc.wear"),
     "postproc.reference": ("postproc.reference",),
     "postproc.statistics": ("postproc.statistics",),
     "postproc.inference": ("postproc.inference",),

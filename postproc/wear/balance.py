@@ -17,6 +17,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, area_vectors, boundary_edges, worn_faces
 from bulkwear.postproc.wear.displacement import swept_volume
+from bulkwear.postproc.wear.face_kernels import corner_words, rows_among
 from bulkwear.postproc.wear.remesh_patch import six_volumes
 from bulkwear.postproc.wear.side import turned_as
 
@@ -83,14 +84,10 @@ def lost_volume(pristine: SurfaceMesh, present: SurfaceMesh) -> tuple[float, flo
 def _changed_cones(before: SurfaceMesh, after: SurfaceMesh, origin: np.ndarray) -> list[np.ndarray]:
     """Six times the cones over the worn faces of either surface that the other one has not, bit for bit."""
     faces = [mesh.triangles[worn_faces(mesh)] for mesh in (before, after)]
-    rows = [
-        np.ascontiguousarray(mesh.points[each].reshape(-1, 9))
-        for mesh, each in zip((before, after), faces, strict=True)
-    ]
-    keys = [row.view(np.dtype((np.void, row.itemsize * 9))).ravel() for row in rows]
+    words = [corner_words(mesh.points, each) for mesh, each in zip((before, after), faces, strict=True)]
     return [
-        six_volumes(mesh.points, each[~np.isin(key, other)], origin)
-        for mesh, each, key, other in zip((before, after), faces, keys, keys[::-1], strict=True)
+        six_volumes(mesh.points, each[~rows_among(own, other)], origin)
+        for mesh, each, own, other in zip((before, after), faces, words, words[::-1], strict=True)
     ]
 
 

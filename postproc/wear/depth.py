@@ -22,7 +22,7 @@ import igl
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bulkwear.postproc.mesh import unit_normals
+from bulkwear.postproc.mesh import centroids, unit_normals
 
 LARGEST_RAY_OVER_THICKNESS = 2.0  # -, present and pristine normals then differ by 60 degrees
 OUTSIDE_TOLERANCE = 0.01  # -, of a triangle's edge: a remeshed node may lie that far outside, depth 0
@@ -44,7 +44,8 @@ def height_loss(points: np.ndarray, pristine_points: np.ndarray, pristine_triang
     flat = pristine_points * (1.0, 1.0, 0.0)
     up = np.broadcast_to((0.0, 0.0, 1.0), points.shape)
     at = points * (1.0, 1.0, 0.0)
-    return _along_rays(points, up, pristine_points, pristine_triangles, at, flat, 0.0, np.inf)[0]
+    classes = _size_classes(flat, pristine_triangles)
+    return _along_rays(points, up, pristine_points, pristine_triangles, at, classes, 0.0, np.inf)[0]
 
 
 def ray_depth(
@@ -59,7 +60,8 @@ def ray_depth(
     Parameters: points (k, 3) m; outward (k, 3) unit vectors; removed_thickness (k,) m, bounds the length of
     the ray by `LARGEST_RAY_OVER_THICKNESS` times it; pristine_points (n, 3) m; pristine_triangles (m, 3).
     """
-    return _to_pristine(points, outward, removed_thickness, pristine_points, pristine_triangles)[0]
+    old = pristine_points, pristine_triangles
+    return _to_pristine(points, outward, removed_thickness, *old, _size_classes(*old))[0]
 
 
 def pristine_normal_depth(
@@ -74,36 +76,46 @@ def pristine_normal_depth(
     Parameters as in `ray_depth`. The normal is that of the pristine face which the ray of `ray_depth` meets. Where
     either meets none, as at rims and in corners, it is the distance to the nearest place of the pristine surface.
     """
+    return ray_and_normal_depth(points, outward, removed_thickness, pristine_points, pristine_triangles)[1]
+
+
+def ray_and_normal_depth(
+    points: np.ndarray,
+    outward: np.ndarray,
+    removed_thickness: np.ndarray,
+    pristine_points: np.ndarray,
+    pristine_triangles: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Both `ray_depth` and `pristine_normal_depth`, (k,) m each: they share the search along the outward normals."""
     old = pristine_points, pristine_triangles
-    _, face = _to_pristine(points, outward, removed_thickness, *old)
+    classes = _size_classes(*old)
+    along, face = _to_pristine(points, outward, removed_thickness, *old, classes)
     found = np.flatnonzero(face >= 0)
     normal = unit_normals(pristine_points, pristine_triangles[face[found]])
     result = np.full(len(points), np.nan)
-    result[found] = _to_pristine(points[found], normal, removed_thickness[found], *old)[0]
+    result[found] = _to_pristine(points[found], normal, removed_thickness[found], *old, classes)[0]
     if (missing := np.flatnonzero(np.isnan(result))).size:
         at, surface = np.ascontiguousarray(points[missing]), map(np.ascontiguousarray, old)
         result[missing] = np.sqrt(igl.point_mesh_squared_distance(at, *surface)[0])
-    return result
+    return along, result
 
 
-def _to_pristine(points, directions, removed_thickness, pristine_points, pristine_triangles):
+def _to_pristine(points, directions, removed_thickness, pristine_points, pristine_triangles, classes):
     """Distance (k,) m along each direction to the pristine surface, and the face (k,) there; NaN and -1 where none."""
     reach = LARGEST_RAY_OVER_THICKNESS * removed_thickness
     middle = points + 0.5 * reach[:, None] * directions
-    return _along_rays(
-        points, directions, pristine_points, pristine_triangles, middle, pristine_points, 0.5 * reach, reach
-    )
+    return _along_rays(points, directions, pristine_points, pristine_triangles, middle, classes, 0.5 * reach, reach)
 
 
-def _along_rays(origins, directions, points, triangles, search_at, search_points, radius, reach):
+def _along_rays(origins, directions, points, triangles, search_at, classes, radius, reach):
     """Distance (k,) m to the nearest hit of each ray, 0 <= t <= reach, and its triangle (k,); NaN and -1 where none.
 
-    Candidates are the triangles that may come within `radius` of `search_at`, both in the space of
-    `search_points` (projected on the ground for vertical rays, so that any height difference is found).
+    Candidates are the triangles that may come within `radius` of `search_at`, both in the space of `classes`, see
+    `_size_classes` (projected on the ground for vertical rays, so that any height difference is found).
     """
     radius, reach = np.broadcast_to(radius, len(origins)), np.broadcast_to(reach, len(origins))
     nearest, nearest_face = np.full(len(origins), np.inf), np.full(len(origins), -1)
-    for members, tree, size in _size_classes(search_points, triangles):
+    for members, tree, size in classes:
         counts = tree.query_ball_point(search_at, radius + size, return_length=True)
         for block in _blocks(counts):
             found = tree.query_ball_point(search_at[block], radius[block] + size)
@@ -124,15 +136,18 @@ def _blocks(counts: np.ndarray) -> list[slice]:
     return [slice(start, stop) for start, stop in pairwise(limits)]
 
 
-def _size_classes(points: np.ndarray, triangles: np.ndarray):
-    """Yield (member triangles, tree of their centroids, largest centroid-to-corner distance) per class."""
-    corners = points[triangles]
-    centre = corners.mean(axis=1)
-    size = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
+def _size_classes(points: np.ndarray, triangles: np.ndarray) -> list[tuple[np.ndarray, cKDTree, float]]:
+    """Member triangles, tree of their centroids, largest centroid-to-corner distance of each class of alike size."""
+    centre = centroids(points, triangles)
+    size = np.zeros(len(triangles))
+    for k in range(3):
+        np.maximum(size, np.linalg.norm(points[triangles[:, k]] - centre, axis=1), out=size)
     exponent = np.floor(np.log(np.maximum(size, np.finfo(float).tiny)) / np.log(SIZE_CLASS_RATIO))
+    classes = []
     for value in np.unique(exponent):
         members = np.flatnonzero(exponent == value)
-        yield members, cKDTree(centre[members]), (1.0 + EDGE_TOLERANCE) * size[members].max()
+        classes.append((members, cKDTree(centre[members]), (1.0 + EDGE_TOLERANCE) * size[members].max()))
+    return classes
 
 
 def _ray_triangle(origins: np.ndarray, directions: np.ndarray, corners: np.ndarray) -> np.ndarray:

@@ -17,14 +17,14 @@ import numpy as np
 from bulkwear.postproc.mesh import (
     SurfaceMesh,
     area_vectors,
-    areas,
     edge_lengths_per_triangle,
-    smallest_angles,
     sum_over_nodes,
     worn_faces,
 )
 from bulkwear.postproc.mesh_checks import intersecting_faces
-from bulkwear.postproc.wear.remesh_patch import border_nodes, neighbours
+from bulkwear.postproc.wear.edge_kernels import sorted_edges
+from bulkwear.postproc.wear.face_kernels import face_measures, folds
+from bulkwear.postproc.wear.remesh_patch import border_nodes
 
 TARGET_EDGE = "target_edge_m"  # point data: edge length that the mesh should have at a node
 METRES_TO_MM = 1e3
@@ -126,10 +126,11 @@ def mesh_faults(
     """
     points, triangles = mesh.points, mesh.triangles
     worn = worn_faces(mesh)
-    angle = smallest_angles(points, triangles)
-    aspect = aspects(points, triangles)
-    relative = edges_over_target(mesh)
-    edge = worn & ~((relative >= bounds.smallest_edge) & (relative <= bounds.largest_edge)).all(axis=1)
+    angle, lengths, longest, area = face_measures(points, triangles)
+    aspect = _aspects(longest, area)
+    relative = edges_over_target(mesh, lengths)
+    within = ((relative >= bounds.smallest_edge) & (relative <= bounds.largest_edge)).T
+    edge = worn & ~(within[0] & within[1] & within[2])
     return MeshFaults(
         float(angle[worn].min(initial=60.0)),
         float(aspect[worn].max(initial=0.0)),
@@ -164,19 +165,23 @@ def tangle_message(mesh: SurfaceMesh, faults: MeshFaults) -> str:
 
 def aspects(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Longest edge over smallest altitude of each triangle, (m,), infinite without area."""
-    longest, area = edge_lengths_per_triangle(points, triangles).max(axis=1), areas(points, triangles)
-    return np.divide(longest**2, 2.0 * area, out=np.full(len(triangles), np.inf), where=area > 0.0)
+    _, _, longest, area = face_measures(points, triangles)
+    return _aspects(longest, area)
 
 
-def edges_over_target(mesh: SurfaceMesh) -> np.ndarray:
-    """Lengths of the edges 0-1, 1-2, 2-0 over their target, (m, 3); ones where the mesh has no targets.
+def _aspects(longest: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """The same (m,) of the longest edges (m,) m and the areas (m,) m2."""
+    return np.divide(longest**2, 2.0 * area, out=np.full(len(area), np.inf), where=area > 0.0)
+
+
+def edges_over_target(mesh: SurfaceMesh, lengths: np.ndarray) -> np.ndarray:
+    """Lengths (m, 3) m of the edges 0-1, 1-2, 2-0 over their target, (m, 3) -; ones where the mesh has no targets.
 
     Edges whose length remeshing may not change, those between two boundary nodes of the worn faces, count as 1.
     """
     if TARGET_EDGE not in mesh.point_data:
         return np.ones((len(mesh.triangles), 3))
     target = np.asarray(mesh.point_data[TARGET_EDGE])[mesh.triangles]
-    lengths = edge_lengths_per_triangle(mesh.points, mesh.triangles)
     kept = np.zeros(len(mesh.points), dtype=bool)
     kept[border_nodes(mesh.triangles[worn_faces(mesh)])] = True
     at_corner = kept[mesh.triangles]
@@ -187,14 +192,8 @@ def edges_over_target(mesh: SurfaceMesh) -> np.ndarray:
 
 def folded_faces(points: np.ndarray, triangles: np.ndarray, largest_fold_deg: float) -> np.ndarray:
     """Mask (m,) of faces at an edge whose two normals differ by more than that many degrees, or of no area."""
-    vectors = area_vectors(points, triangles)
-    size = np.linalg.norm(vectors, axis=1)
-    result = ~(size > 0.0)
-    normals = np.divide(vectors, size[:, None], out=np.zeros_like(vectors), where=size[:, None] > 0.0)
-    pairs, _ = neighbours(triangles)
-    cosine = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)
-    result[pairs[cosine < np.cos(np.radians(largest_fold_deg))].ravel()] = True
-    return result
+    edges = sorted_edges(triangles, len(points), False)
+    return folds(points, triangles, *edges, np.cos(np.radians(largest_fold_deg)))
 
 
 def node_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

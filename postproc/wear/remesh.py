@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, centroids, worn_faces
+from bulkwear.postproc.wear.face_kernels import corner_words, rows_among
 from bulkwear.postproc.wear.mesh_faults import (
     DEFAULT_BOUNDS,
     TARGET_EDGE,
@@ -81,11 +82,12 @@ def remesh(mesh: SurfaceMesh, bounds: Bounds = DEFAULT_BOUNDS, moved: np.ndarray
     if not faults.faces.any():
         return Remeshed(mesh, 0, 0.0, 0.0, 0.0, faults)
     start, tangled, advanced = present, faults.tangled, 0.0
+    old = OldSurface(start.points, start.triangles)
     for widen in (None, *UNTRUSTED_RINGS):
         if widen is not None and not faults.tangled.any():
             break
         untrusted = rings(start.triangles, tangled, widen or 0, np.ones(len(tangled), bool), len(start.points))
-        old = OldSurface(start.points, start.triangles, untrusted)
+        old = old.without(untrusted)
         present, ahead, faults = _improved(present, faults, bounds, old, widen is not None)
         advanced += ahead
     if faults.tangled.any():
@@ -134,10 +136,10 @@ def _attempt(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, count: int, 
     """The mesh and its faults after an attempt on the bad faces and `count` rings; or as they were."""
     worn = worn_faces(mesh)
     core = rings(mesh.triangles, faults.faces, count, worn, len(mesh.points))
+    start, left = cut_out(mesh, core), OldSurface(mesh.points, mesh.triangles[core])
     for inward in INWARD_BY_OPERATIONS:
-        patch = cut_out(mesh, core)
-        patch = improve(patch, old, Limits(OUTWARD_BY_OPERATIONS, inward, 1.5 * bounds.smallest_angle_deg))
-        raw, changed = transferred(mesh, core, patch)
+        patch = improve(start, old, Limits(OUTWARD_BY_OPERATIONS, inward, 1.5 * bounds.smallest_angle_deg))
+        raw, changed = transferred(mesh, core, patch, left)
         gained = volume_gained(mesh, raw, core, changed)
         new = restore_volume(raw, gained, changed)
         if new is None:
@@ -145,9 +147,9 @@ def _attempt(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, count: int, 
         new = _within(new, changed, old)
         if new is None:
             break
-        left = faults_after(faults, raw, new, bounds, core, changed)
-        if badness(left) < badness(faults):
-            return new, left
+        remaining = faults_after(faults, raw, new, bounds, core, changed)
+        if badness(remaining) < badness(faults):
+            return new, remaining
         break
     return mesh, faults
 
@@ -168,6 +170,5 @@ def _within(mesh: SurfaceMesh, changed: np.ndarray, old: OldSurface) -> SurfaceM
 
 def _changed(before: SurfaceMesh, after: SurfaceMesh) -> np.ndarray:
     """Mask of the faces of the new mesh whose corners are not, bit for bit, those of a face of the old one."""
-    corners = [np.ascontiguousarray(mesh.points[mesh.triangles].reshape(-1, 9)) for mesh in (before, after)]
-    known, new = (rows.view(np.dtype((np.void, rows.itemsize * 9))).ravel() for rows in corners)
-    return ~np.isin(new, known)
+    known, new = (corner_words(mesh.points, mesh.triangles) for mesh in (before, after))
+    return ~rows_among(new, known)

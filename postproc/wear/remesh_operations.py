@@ -14,7 +14,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bulkwear.postproc.mesh import area_vectors, smallest_angles, sum_over_nodes
+from bulkwear.postproc.wear.edge_kernels import common_neighbours
+from bulkwear.postproc.wear.face_kernels import acute_faces, angles
+from bulkwear.postproc.wear.remesh_kernels import (
+    centroid_probes,
+    operations_of,
+    opposite_areas,
+    probes,
+    relative_lengths,
+    sound,
+    star_sums,
+)
 from bulkwear.postproc.wear.remesh_patch import (
     CURVE,
     FIXED,
@@ -22,7 +32,6 @@ from bulkwear.postproc.wear.remesh_patch import (
     Edges,
     OldSurface,
     Patch,
-    adjacency,
     edges_of,
     freedom,
     lowest_beside,
@@ -59,6 +68,25 @@ class Limits:
     collapse_below: float = COLLAPSE_BELOW
 
 
+@dataclass(frozen=True, eq=False)
+class Stars:
+    """The faces that operations change which have none in common.
+
+    before, after (k, 3): their nodes; group (k,): the operation of each; alive (k,): whether there is a face after it
+    """
+
+    before: np.ndarray
+    after: np.ndarray
+    group: np.ndarray
+    alive: np.ndarray
+
+    @classmethod
+    def of(cls, patch: Patch, triangles: np.ndarray, of_face: np.ndarray, alive: np.ndarray) -> Stars:
+        """Return those of a patch whose faces become `triangles` (m, 3); of_face (m,): operation, or -1; alive (m,)."""
+        rows = np.flatnonzero(of_face >= 0)
+        return cls(patch.triangles[rows], triangles[rows], of_face[rows], alive[rows])
+
+
 def improve(patch: Patch, old: OldSurface, limits: Limits, erode: bool = False) -> Patch:
     """Sweeps of splits, collapses, flips and shifts (M. Botsch and L. Kobbelt, Symp. Geom. Proc. 2004, 185)."""
     for sweep in range(SWEEPS):
@@ -72,9 +100,9 @@ def improve(patch: Patch, old: OldSurface, limits: Limits, erode: bool = False) 
 def split(patch: Patch, limits: Limits) -> tuple[Patch, int]:
     """Halve the long edges, the longest of each face first. Border edges stay."""
     edges = edges_of(patch)
-    relative = _relative_lengths(patch, edges)
-    acute = smallest_angles(patch.points, patch.triangles) < limits.acute_deg
-    limit = np.where(acute[edges.faces].any(axis=1), SPLIT_ACUTE, SPLIT_ABOVE)
+    relative = relative_lengths(patch.points, edges.ends, patch.size)
+    acute = acute_faces(patch.points, patch.triangles, limits.acute_deg)
+    limit = np.where(acute[edges.faces[:, 0]] | acute[edges.faces[:, 1]], SPLIT_ACUTE, SPLIT_ABOVE)
     wanted = (relative > limit) & (edges.faces[:, 1] >= 0)
     chosen = _first_of_faces(edges, wanted, -relative, len(patch.triangles))
     ends, count = edges.ends[chosen], len(chosen)
@@ -121,20 +149,19 @@ def _collapse_round(patch, old, limits, refused):
     gone = ends.sum(axis=1) - kept
     operation = np.full(len(patch.points), -1)
     operation[ends] = np.arange(len(ends))[:, None]
-    of_face = operation[patch.triangles].max(axis=1)
-    vanish = (operation[patch.triangles] >= 0).sum(axis=1) == 2
+    of_face, taking_part = operations_of(patch.triangles, operation)
+    vanish = taking_part == 2
     renamed = np.arange(len(patch.points))
     renamed[gone] = kept
     triangles, points = renamed[patch.triangles], patch.points.copy()
+    stars = Stars.of(patch, triangles, of_face, ~vanish)
     good = np.zeros(len(ends), dtype=bool)
-    for places in _merged_points(patch, ends, kept, kind, triangles, of_face, vanish):
+    for places in _merged_points(patch, ends, kept, kind, stars):
         points[kept[~good]] = places[~good]
-        tried = patch.changed(points=points, triangles=triangles)
-        open_faces = np.where((of_face >= 0) & ~good[of_face], of_face, -1)
-        good |= _acceptable(patch, tried, open_faces, ~vanish, len(ends), old, limits)
+        good |= _acceptable(patch, points, stars, ~good, old, limits)
         if good.all():
             break
-    triangles = np.where((of_face >= 0)[:, None] & good[of_face][:, None], triangles, patch.triangles)
+    triangles = np.where(((of_face >= 0) & good[of_face])[:, None], triangles, patch.triangles)
     points[kept[~good]] = patch.points[kept[~good]]
     stay = ~(vanish & good[of_face])
     result = patch.changed(points=points, triangles=triangles[stay], label=patch.label[stay])
@@ -143,22 +170,20 @@ def _collapse_round(patch, old, limits, refused):
 
 def _collapsible(patch: Patch, edges: Edges, kind, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
     """Mask (e,) of edges that are short and may be collapsed, and all lengths over their target."""
-    relative = _relative_lengths(patch, edges)
-    acute = smallest_angles(patch.points, patch.triangles) < limits.acute_deg
-    limit = np.where(acute[edges.faces].any(axis=1), COLLAPSE_ACUTE, limits.collapse_below)
-    ends = kind[edges.ends]
-    wanted = (relative < limit) & (edges.faces[:, 1] >= 0) & (ends.min(axis=1) != FIXED)
-    wanted &= (ends.min(axis=1) == INNER) | edges.curve | (relative < PINCH_BELOW)
+    relative = relative_lengths(patch.points, edges.ends, patch.size)
+    acute = acute_faces(patch.points, patch.triangles, limits.acute_deg)
+    limit = np.where(acute[edges.faces[:, 0]] | acute[edges.faces[:, 1]], COLLAPSE_ACUTE, limits.collapse_below)
+    freest = np.minimum(kind[edges.ends[:, 0]], kind[edges.ends[:, 1]])
+    wanted = (relative < limit) & (edges.faces[:, 1] >= 0) & (freest != FIXED)
+    wanted &= (freest == INNER) | edges.curve | (relative < PINCH_BELOW)
     few = np.bincount(patch.label)[patch.label] <= FEWEST_FACES  # no label may vanish
-    wanted &= ~few[edges.faces].any(axis=1)
+    wanted &= ~(few[edges.faces[:, 0]] | few[edges.faces[:, 1]])
     found = np.flatnonzero(wanted)
-    near = adjacency(edges, len(patch.points))
-    common = near[edges.ends[found, 0]].multiply(near[edges.ends[found, 1]]).sum(axis=1)
-    wanted[found] = np.asarray(common).ravel() == 2  # else two sheets would be joined
+    wanted[found] = common_neighbours(edges.ends, found, len(patch.points)) == 2  # else two sheets would be joined
     return wanted, relative
 
 
-def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[np.ndarray]:
+def _merged_points(patch, ends, kept, kind, stars: Stars) -> list[np.ndarray]:
     """Places (k, 3) m of the merged nodes to try: where the volume stays, halfway, at
     one end or the other, and a little deeper.
 
@@ -167,16 +192,11 @@ def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[
     middle = patch.points[ends].mean(axis=1)
     alike = kind[ends[:, 0]] == kind[ends[:, 1]]
     inner = alike & (kind[ends[:, 0]] == INNER)
-    rows = np.flatnonzero(of_face >= 0)
-    group = of_face[rows]
-    local = patch.points[patch.triangles[rows]] - middle[group][:, None]
-    before = np.bincount(group, weights=_determinants(local), minlength=len(ends))
-    left = rows[~vanish[rows]]
-    group, row = of_face[left], np.arange(len(left))
-    at = (triangles[left] == kept[group][:, None]).argmax(axis=1)
-    first, second = (patch.points[triangles[left][row, (at + k) % 3]] - middle[group] for k in (1, 2))
-    gradient = np.zeros((len(ends), 3))
-    np.add.at(gradient, group, np.cross(first, second))
+    first, place = stars.before[:, 0].copy(), middle[stars.group]
+    across = opposite_areas(patch.points, stars.before, first, place)
+    before = np.bincount(stars.group, np.einsum("ij,ij->i", patch.points[first] - place, across), len(ends))
+    group, gradient = stars.group[stars.alive], np.zeros((len(ends), 3))
+    np.add.at(gradient, group, opposite_areas(patch.points, stars.after[stars.alive], kept[group], middle[group]))
     square = (gradient**2).sum(axis=1)
     factor = np.divide(before, square, out=np.zeros_like(before), where=inner & (square > 0.0))
     sunk = middle - SINK * np.linalg.norm(np.diff(patch.points[ends], axis=1)[:, 0], axis=1, keepdims=True) * np.divide(
@@ -184,10 +204,6 @@ def _merged_points(patch, ends, kept, kind, triangles, of_face, vanish) -> list[
     )
     places = [middle + factor[:, None] * gradient, middle, *patch.points[ends.T], sunk]
     return [np.where(alike[:, None], place, patch.points[kept]) for place in places]
-
-
-def _determinants(corners: np.ndarray) -> np.ndarray:
-    return np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
 
 
 def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
@@ -198,7 +214,7 @@ def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
         quads, gain = _flippable(patch, edges, limits.acute_deg)
         gain[_is_among(edges.ends, refused, len(patch.points))] = 0.0
         chosen = _first_of_faces(edges, gain > LEAST_GAIN, -gain, len(patch.triangles))
-        _, unique = np.unique(np.sort(edges.opposite[chosen], axis=1), axis=0, return_index=True)
+        _, unique = np.unique(_pair_keys(edges.opposite[chosen], len(patch.points)), return_index=True)
         chosen = chosen[np.sort(unique)]  # two flips to the same edge would join two sheets
         if not len(chosen):
             break
@@ -206,31 +222,35 @@ def flip(patch: Patch, old: OldSurface, limits: Limits) -> tuple[Patch, int]:
         triangles[faces] = quads[chosen]
         of_face = np.full(len(triangles), -1)
         of_face[faces] = np.arange(len(chosen))[:, None]
-        tried = patch.changed(triangles=triangles)
-        good = _acceptable(patch, tried, of_face, of_face >= 0, len(chosen), old, limits)
+        stars = Stars.of(patch, triangles, of_face, of_face >= 0)
+        good = _acceptable(patch, patch.points, stars, np.ones(len(chosen), dtype=bool), old, limits)
         triangles[faces[~good]] = patch.triangles[faces[~good]]
         patch, total = patch.changed(triangles=triangles), total + int(good.sum())
         refused = np.concatenate([refused, edges.ends[chosen[~good]]])
     return patch, total
 
 
-def flipped_faces(patch: Patch, edges: Edges) -> tuple[np.ndarray, np.ndarray]:
-    """The two new faces (e, 2, 3) of each edge if it were flipped, and the mask (e,) of edges that may be."""
-    (a, b), (c, d) = edges.ends.T, edges.opposite.T
+def flipped_faces(patch: Patch, edges: Edges, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The two new faces (k, 2, 3) of each chosen edge (k,) if it were flipped, and which (k,) may be."""
+    (a, b), (c, d) = edges.ends[chosen].T, edges.opposite[chosen].T
     quads = np.stack([np.stack([a, d, c], axis=1), np.stack([d, b, c], axis=1)], axis=1)
-    allowed = (edges.faces[:, 1] >= 0) & ~edges.curve & (c != d)
-    return quads, allowed & ~_is_among(edges.opposite, edges.ends, len(patch.points))
+    allowed = (edges.faces[chosen, 1] >= 0) & ~edges.curve[chosen] & (c != d)
+    return quads, allowed & ~_is_among(edges.opposite[chosen], edges.ends, len(patch.points))
 
 
 def _flippable(patch: Patch, edges: Edges, acute_deg: float) -> tuple[np.ndarray, np.ndarray]:
-    """The new faces of each edge, see `flipped_faces`, and the gain (e,) of the smallest angle, degrees."""
-    quads, allowed = flipped_faces(patch, edges)
-    gain = np.zeros(len(quads))
-    now = smallest_angles(patch.points, patch.triangles)[edges.faces].min(axis=1)
-    rows = np.flatnonzero(allowed & (now < acute_deg))
-    now = now[rows]
-    then = smallest_angles(patch.points, quads[rows].reshape(-1, 3)).reshape(-1, 2).min(axis=1)
-    gain[rows] = then - now
+    """The new faces (e, 2, 3) of each edge at an acute face that may be flipped, and the gain (e,) of the smallest
+    angle, degrees; 0 for all other edges.
+    """
+    quads, gain = np.zeros((len(edges.ends), 2, 3), dtype=np.int64), np.zeros(len(edges.ends))
+    angle = angles(patch.points, patch.triangles)
+    now = np.minimum(angle[edges.faces[:, 0]], angle[edges.faces[:, 1]])
+    rows = np.flatnonzero(now < acute_deg)
+    flipped, allowed = flipped_faces(patch, edges, rows)
+    rows = rows[allowed]
+    quads[rows] = flipped[allowed]
+    then = angles(patch.points, quads[rows].reshape(-1, 3)).reshape(-1, 2)
+    gain[rows] = np.minimum(then[:, 0], then[:, 1]) - now[rows]
     return quads, gain
 
 
@@ -243,7 +263,7 @@ def shift(patch: Patch, old: OldSurface, limits: Limits, seed: int, erode: bool 
     edges = edges_of(patch)
     kind = freedom(patch, edges)
     waiting = np.zeros(len(kind), dtype=bool)
-    waiting[patch.triangles[erode | (smallest_angles(patch.points, patch.triangles) < limits.acute_deg)]] = True
+    waiting[patch.triangles[erode | acute_faces(patch.points, patch.triangles, limits.acute_deg)]] = True
     waiting &= kind != FIXED
     order = np.random.default_rng(seed).permutation(len(kind)).astype(np.float64)
     for _ in range(SETS):
@@ -254,32 +274,30 @@ def shift(patch: Patch, old: OldSurface, limits: Limits, seed: int, erode: bool 
         waiting[chosen] = False
         operation = np.full(len(kind), -1)
         operation[chosen] = np.arange(len(chosen))
-        of_face = operation[patch.triangles].max(axis=1)
-        motion, inward = _motion(patch, edges, kind, chosen, erode)
+        of_face, _ = operations_of(patch.triangles, operation)
+        motion, inward = _motion(patch, edges, kind, chosen, of_face, erode)
+        stars = Stars.of(patch, patch.triangles, of_face, of_face >= 0)
+        points, good = patch.points.copy(), np.zeros(len(chosen), dtype=bool)
         for factor, depth in SHIFTS:
-            points = patch.points.copy()
-            points[chosen] += factor * motion + depth * patch.size[chosen, None] * inward
-            tried = patch.changed(points=points)
-            good = _acceptable(patch, tried, of_face, of_face >= 0, len(chosen), old, limits)
-            points[chosen[~good]] = patch.points[chosen[~good]]
-            patch = patch.changed(points=points)
-            motion[good], inward[good] = 0.0, 0.0
+            left = chosen[~good]
+            shifted = factor * motion[~good] + depth * patch.size[left, None] * inward[~good]
+            points[left] = patch.points[left] + shifted
+            good |= _acceptable(patch, points, stars, ~good, old, limits)
+            if good.all():
+                break
+        points[chosen[~good]] = patch.points[chosen[~good]]
+        patch = patch.changed(points=points)
     return patch
 
 
-def _motion(patch: Patch, edges: Edges, kind, chosen, erode: bool) -> tuple[np.ndarray, np.ndarray]:
+def _motion(patch: Patch, edges: Edges, kind, chosen, of_face, erode: bool) -> tuple[np.ndarray, np.ndarray]:
     """Shifts (k, 3) m of the chosen nodes, square to the gradient of the volume, or falling along it to `erode`.
 
-    Returns them and the unit directions (k, 3) into the body.
+    of_face (m,): place in `chosen` of a face's node. Returns them and the unit directions (k, 3) into the body.
     """
-    vectors = area_vectors(patch.points, patch.triangles)
-    density = np.linalg.norm(vectors, axis=1) / patch.size[patch.triangles].mean(axis=1) ** 2
-    centre = patch.points[patch.triangles].mean(axis=1)
-    count = len(patch.points)
-    weight = sum_over_nodes(patch.triangles, density, count)[chosen, None]
-    moment = sum_over_nodes(patch.triangles, density[:, None] * centre, count)[chosen]
+    weight, moment, gradient = star_sums(patch.points, patch.triangles, patch.size, of_face, chosen)
+    weight = weight[:, None]
     target = np.divide(moment, weight, out=patch.points[chosen], where=weight > 0.0)
-    gradient = sum_over_nodes(patch.triangles, vectors, count)[chosen]
     motion = SHIFT * (target - patch.points[chosen])
     on_curve = kind[chosen] == CURVE
     motion[on_curve] = _along_curve(patch, edges, chosen[on_curve])
@@ -303,48 +321,25 @@ def _along_curve(patch: Patch, edges: Edges, nodes: np.ndarray) -> np.ndarray:
     return SHIFT * np.divide(along, square, out=np.zeros_like(square), where=square > 0.0) * chord
 
 
-def _acceptable(before: Patch, after: Patch, of_face, alive, count: int, old: OldSurface, limits: Limits) -> np.ndarray:
-    """Mask (count,) of the operations that leave the patch sound. `of_face` (m,): operation of a face, or -1."""
-    rows = np.flatnonzero(of_face >= 0)
-    group = of_face[rows]
-    good = np.zeros(count, dtype=bool)
-    good[group] = True
-    angle_before = np.full(count, np.inf)
-    np.minimum.at(angle_before, group, smallest_angles(before.points, before.triangles[rows]))
-    vectors = area_vectors(before.points, before.triangles[rows])
-    mean = np.zeros((count, 3))
-    np.add.at(mean, group, vectors)
-    cosine_before = np.full(count, np.inf)
-    np.minimum.at(cosine_before, group, _cosines(vectors, mean[group]))
-    held = np.bincount(group, all_fixed(before, rows), count)
-    left = np.flatnonzero((of_face >= 0) & alive)
-    group = of_face[left]
-    good[np.bincount(group, all_fixed(after, left), count) > held] = False
-    angle = smallest_angles(after.points, after.triangles[left])
-    good[group[angle < np.minimum(angle_before, GOOD_ANGLE)[group]]] = False
-    cosine = _cosines(area_vectors(after.points, after.triangles[left]), mean[group])
-    good[group[~(cosine >= np.minimum(cosine_before, LEAST_COSINE)[group] - COSINE_SLACK)]] = False
-    left = left[good[group]]
-    reach = old.range_over_faces(after.points, after.triangles[left], after.size)
-    good[of_face[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
+def _acceptable(patch: Patch, points, stars: Stars, asked, old: OldSurface, limits: Limits) -> np.ndarray:
+    """Mask (count,) of the operations among the mask `asked` that leave the patch sound, its nodes at `points` then."""
+    judged = np.where(asked[stars.group], stars.group, -1)
+    bounds = GOOD_ANGLE, LEAST_COSINE, COSINE_SLACK
+    shapes = patch.points, stars.before, points, stars.after
+    good = sound(*shapes, judged, stars.alive, patch.fixed, len(asked), *bounds)
+    left = np.flatnonzero((judged >= 0) & stars.alive)
+    for held in (centroid_probes, probes):
+        left = left[good[judged[left]]]
+        if not len(left):
+            break
+        reach = old.range_over_faces(points, stars.after[left], patch.size, held)
+        good[judged[left[(reach[:, 1] > limits.outside) | (reach[:, 0] < -limits.inside)]]] = False
     return good
 
 
 def all_fixed(patch: Patch, faces: np.ndarray | slice = slice(None)) -> np.ndarray:
     """Mask (k,) of faces none of whose nodes may move: what becomes of such a face nothing can mend."""
     return patch.fixed[patch.triangles[faces]].all(axis=1)
-
-
-def _cosines(vectors: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Cosine of the angle between rows, (k,); -1 where one of them is zero."""
-    length = np.linalg.norm(vectors, axis=1) * np.linalg.norm(others, axis=1)
-    return np.divide((vectors * others).sum(axis=1), length, out=np.full(len(length), -1.0), where=length > 0.0)
-
-
-def _relative_lengths(patch: Patch, edges: Edges) -> np.ndarray:
-    """Length of each edge over the mean target of its ends, (e,)."""
-    length = np.linalg.norm(patch.points[edges.ends[:, 1]] - patch.points[edges.ends[:, 0]], axis=1)
-    return length / patch.size[edges.ends].mean(axis=1)
 
 
 def _ranks(wanted: np.ndarray, urgency: np.ndarray) -> np.ndarray:
@@ -357,25 +352,32 @@ def _ranks(wanted: np.ndarray, urgency: np.ndarray) -> np.ndarray:
 
 def _first_of_faces(edges: Edges, wanted, urgency, n_faces: int) -> np.ndarray:
     """Edges that are first in both of their faces: no two of them share a face."""
-    rank = _ranks(wanted, urgency)
+    rank, rows = _ranks(wanted, urgency), np.flatnonzero(wanted)
     first = np.full(n_faces + 1, np.inf)  # the last entry takes the missing faces of border edges
-    np.minimum.at(first, edges.faces, rank[:, None])
-    return np.flatnonzero(wanted & (rank[:, None] == first[edges.faces]).all(axis=1))
+    np.minimum.at(first, edges.faces[rows], rank[rows, None])
+    return rows[(rank[rows, None] == first[edges.faces[rows]]).all(axis=1)]
 
 
 def _alone_in_ring(edges: Edges, wanted, urgency, n_points: int) -> np.ndarray:
     """Edges that are first at their ends and at all neighbours of these: no two stars share a face."""
-    rank = _ranks(wanted, urgency)
+    rank, rows = _ranks(wanted, urgency), np.flatnonzero(wanted)
     at_node = np.full(n_points, np.inf)
-    np.minimum.at(at_node, edges.ends, rank[:, None])
+    np.minimum.at(at_node, edges.ends[rows], rank[rows, None])
     first = np.minimum(at_node, lowest_beside(at_node, edges))
-    return np.flatnonzero(wanted & (rank[:, None] == first[edges.ends]).all(axis=1))
+    return rows[(rank[rows, None] == first[edges.ends[rows]]).all(axis=1)]
 
 
 def _is_among(pairs: np.ndarray, others: np.ndarray, n_points: int) -> np.ndarray:
     """Mask of the node pairs that occur in `others`, in either sense."""
-    keys, known = (np.sort(x, axis=1) @ np.array([n_points + 1, 1]) for x in (pairs, others))
-    return np.isin(keys, known)
+    if not len(others):
+        return np.zeros(len(pairs), dtype=bool)
+    keys, known = _pair_keys(pairs, n_points), np.sort(_pair_keys(others, n_points))
+    return known[np.searchsorted(known[:-1], keys)] == keys
+
+
+def _pair_keys(pairs: np.ndarray, n_points: int) -> np.ndarray:
+    """One integer (k,) per pair of nodes (k, 2), in the order of the lower and then the higher one."""
+    return np.minimum(*pairs.T) * (n_points + 1) + np.maximum(*pairs.T)
 
 
 def _without_loose_nodes(patch: Patch) -> Patch:

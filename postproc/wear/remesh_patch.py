@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from scipy import sparse
 
-from bulkwear.postproc.mesh import directed_edges, unit_normals
+from bulkwear.postproc.mesh import unit_normals
+from bulkwear.postproc.wear.edge_kernels import edge_table, on_border, sorted_edges
+from bulkwear.postproc.wear.face_kernels import any_corner
+from bulkwear.postproc.wear.remesh_kernels import (
+    edge_normals,
+    heights,
+    node_normals_by_angle,
+    opposite_areas,
+    probes,
+    ranges,
+)
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
 ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside
@@ -50,19 +61,10 @@ class Edges:
 
 def edges_of(patch: Patch) -> Edges:
     """Edges of the patch in the order of their node indices."""
-    directed = directed_edges(patch.triangles)
-    low, high = directed.min(axis=1), directed.max(axis=1)
-    order = np.lexsort((directed[:, 0], high, low))
-    new = np.ones(len(order), dtype=bool)
-    new[1:] = (low[order][1:] != low[order][:-1]) | (high[order][1:] != high[order][:-1])
-    first = np.flatnonzero(new)
-    double = np.diff(np.append(first, len(order))) > 1
-    chosen = np.column_stack([order[first], np.where(double, order[np.minimum(first + 1, len(order) - 1)], -1)])
-    faces = np.where(chosen >= 0, chosen // 3, -1)
-    third = patch.triangles[faces, (chosen % 3 + 2) % 3]
-    opposite = np.where(chosen >= 0, third, -1)
-    curve = double & (patch.label[faces[:, 0]] != patch.label[faces[:, 1]])
-    return Edges(directed[chosen[:, 0]], faces, opposite, curve)
+    in_order = sorted_edges(patch.triangles, len(patch.points), True)
+    ends, faces, opposite = edge_table(patch.triangles, *in_order)
+    curve = (faces[:, 1] >= 0) & (patch.label[faces[:, 0]] != patch.label[faces[:, 1]])
+    return Edges(ends, faces, opposite, curve)
 
 
 def freedom(patch: Patch, edges: Edges) -> np.ndarray:
@@ -71,12 +73,6 @@ def freedom(patch: Patch, edges: Edges) -> np.ndarray:
     result = np.where(degree == 0, INNER, np.where(degree == 2, CURVE, FIXED))
     result[patch.fixed] = FIXED
     return result
-
-
-def adjacency(edges: Edges, n_points: int) -> sparse.csr_array:
-    """Symmetric matrix (n, n) of ones between nodes that share an edge."""
-    rows, columns = np.concatenate([edges.ends, edges.ends[:, ::-1]]).T
-    return sparse.csr_array((np.ones(len(rows)), (rows, columns)), shape=(n_points, n_points))
 
 
 def lowest_beside(rank: np.ndarray, edges: Edges) -> np.ndarray:
@@ -89,8 +85,9 @@ def lowest_beside(rank: np.ndarray, edges: Edges) -> np.ndarray:
 
 def six_volumes(points: np.ndarray, triangles: np.ndarray, origin: np.ndarray) -> np.ndarray:
     """Six times the signed volume between each triangle and `origin`, (m,) m3."""
-    a, b, c = (points[triangles[:, k]] - origin for k in range(3))
-    return np.einsum("ij,ij->i", a, np.cross(b, c))
+    first = triangles[:, 0].copy()
+    across = opposite_areas(points, triangles, first, np.full((len(triangles), 3), origin))
+    return np.einsum("ij,ij->i", points[first] - origin, across)
 
 
 def rings(triangles: np.ndarray, faces: np.ndarray, count: int, allowed: np.ndarray, n_points: int) -> np.ndarray:
@@ -99,7 +96,7 @@ def rings(triangles: np.ndarray, faces: np.ndarray, count: int, allowed: np.ndar
     for _ in range(count):
         near = np.zeros(n_points, dtype=bool)
         near[triangles[mask]] = True
-        mask = near[triangles].any(axis=1) & allowed
+        mask = any_corner(near, triangles) & allowed
     return mask
 
 
@@ -108,55 +105,53 @@ class OldSurface:
 
     The sign comes from the normal of the closest face, edge or corner, weighted by angle at a corner (J. A. Baerentzen
     and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243). Faces that are folded or cut others bound no body:
-    nothing counts as outside of those marked `tangled` (m,).
+    nothing counts as outside of those marked `tangled` (m,), see `without`.
     """
 
-    def __init__(self, points: np.ndarray, triangles: np.ndarray, tangled: np.ndarray | None = None):
+    def __init__(self, points: np.ndarray, triangles: np.ndarray):
         import igl  # only a surface that really is remeshed needs it
 
         self.points, self.triangles = points, triangles
-        self.tangled = np.zeros(len(triangles), dtype=bool) if tangled is None else tangled
+        self.tangled = np.zeros(len(triangles), dtype=bool)
         self._tree = igl.AABB()
         self._tree.init(points, triangles)
-        normals = np.nan_to_num(unit_normals(points, triangles))
-        at_corner = corner_angles(points, triangles)[:, :, None] * normals[:, None]
-        at_node = np.zeros_like(points)
-        np.add.at(at_node, triangles, at_corner)
-        self._of_corner = at_node[triangles]
-        self._of_face = normals
-        self._of_edge = np.repeat(normals[:, None], 3, axis=1)  # k: opposite to corner k
-        pairs, sides = neighbours(triangles)
-        both = normals[pairs[:, 0]] + normals[pairs[:, 1]]
-        for side in range(2):
-            self._of_edge[pairs[:, side], sides[:, side]] = both
+
+    def without(self, tangled: np.ndarray) -> OldSurface:
+        """The same surface, with other faces (m,) that bound no body."""
+        other = copy(self)
+        other.tangled = tangled
+        return other
+
+    @cached_property
+    def _normals(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Normals of the faces (m, 3), of their edges by the opposite corner (m, 3, 3) and of the nodes (n, 3)."""
+        of_face = np.nan_to_num(unit_normals(self.points, self.triangles))
+        edges = sorted_edges(self.triangles, len(self.points), False)
+        of_edge = edge_normals(of_face, *edges)
+        return of_face, of_edge, node_normals_by_angle(self.points, self.triangles, of_face)
+
+    def nearest(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Square of the distance (k,) m2, the closest face (k,) and the closest point (k, 3) m."""
+        if not len(places):
+            return np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 3))
+        return self._tree.squared_distance(self.points, self.triangles, places)
 
     def closest(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Signed distance (k,) m, outside > 0, the closest face (k,) and the closest point (k, 3) m."""
-        if not len(places):
-            return np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 3))
-        square, face, point = self._tree.squared_distance(self.points, self.triangles, places)
-        weight = barycentric(point, self.points[self.triangles[face]])
-        zero = weight < ON_EDGE
-        count, row = zero.sum(axis=1), np.arange(len(face))
-        normal = np.where((count == 1)[:, None], self._of_edge[face, zero.argmax(axis=1)], self._of_face[face])
-        normal = np.where((count == 2)[:, None], self._of_corner[face, weight.argmax(axis=1)], normal)
-        above = ((places - point) * normal).sum(axis=1)
-        return np.copysign(np.sqrt(square), above)[row], face, point
+        square, face, point = self.nearest(places)
+        above = heights(places, point, face, self.points, self.triangles, *self._normals, ON_EDGE)
+        return np.copysign(np.sqrt(square), above), face, point
 
-    def range_over_faces(self, points: np.ndarray, triangles: np.ndarray, size: np.ndarray) -> np.ndarray:
+    def range_over_faces(self, points: np.ndarray, triangles: np.ndarray, size: np.ndarray, held=probes) -> np.ndarray:
         """Smallest and largest signed distance of each face over its mean target edge, (k, 2).
 
-        Taken at the corners, the middles of the edges and the centroid. `size` (n,) m: target edge at the nodes.
+        Taken at the corners, the middles of the edges and the centroid, or at what else `held` gives as `probes` does.
+        `size` (n,) m: target edge at the nodes.
         """
-        nodes, at = np.unique(triangles, return_inverse=True)
-        corners = points[triangles]
-        middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-        inside = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)
-        distance, face, _ = self.closest(np.concatenate([points[nodes], inside.reshape(-1, 3)]))
+        places, at = held(points, triangles)
+        distance, face, _ = self.closest(places)
         distance = np.where(self.tangled[face], np.minimum(distance, 0.0), distance)
-        at_corner, within = distance[: len(nodes)][at.reshape(-1, 3)], distance[len(nodes) :].reshape(-1, 4)
-        distance = np.concatenate([at_corner, within], axis=1) / size[triangles].mean(axis=1, keepdims=True)
-        return np.column_stack([distance.min(axis=1), distance.max(axis=1)])
+        return ranges(distance, at, triangles, size)
 
 
 def barycentric(places: np.ndarray, corners: np.ndarray) -> np.ndarray:
@@ -170,29 +165,14 @@ def barycentric(places: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def border_nodes(triangles: np.ndarray) -> np.ndarray:
-    """Sorted nodes on edges of a single triangle, (k,): as `boundary_nodes`, much faster by plain sorting."""
-    base = triangles.max(initial=0) + 1
-    following = np.roll(triangles, -1, axis=1)
-    keys = np.sort((np.minimum(triangles, following) * base + np.maximum(triangles, following)).ravel())
-    differs = np.ones(len(keys) + 1, dtype=bool)
-    differs[1:-1] = keys[1:] != keys[:-1]
-    single = keys[differs[1:] & differs[:-1]]
-    return np.unique(np.concatenate([single // base, single % base]))
-
-
-def corner_angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Interior angle at each corner, (m, 3) rad."""
-    corners = points[triangles]
-    forward, backward = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
-    sine = np.linalg.norm(np.cross(forward, backward), axis=2)
-    return np.arctan2(sine, (forward * backward).sum(axis=2))
+    """Sorted nodes on edges of a single triangle, (k,): as `boundary_nodes`, much faster."""
+    count = triangles.max(initial=-1) + 1
+    return np.flatnonzero(on_border(triangles, *sorted_edges(triangles, count, False), count))
 
 
 def neighbours(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of faces that share an edge, (k, 2), and the corner of each that lies opposite to it, (k, 2)."""
-    edges = np.sort(directed_edges(triangles), axis=1)
-    keys = edges[:, 0] * (edges.max(initial=0) + 1) + edges[:, 1]
-    order = np.argsort(keys, kind="stable")
-    same = np.flatnonzero(keys[order][1:] == keys[order][:-1])
-    both = np.column_stack([order[same], order[same + 1]])
+    held, new = sorted_edges(triangles, triangles.max(initial=-1) + 1, False)
+    same = np.flatnonzero(~new[1:-1])
+    both = np.column_stack([held[same], held[same + 1]])
     return both // 3, (both % 3 + 2) % 3

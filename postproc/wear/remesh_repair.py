@@ -12,6 +12,8 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, smallest_angles, worn_faces
 from bulkwear.postproc.mesh_checks import intersecting_faces
+from bulkwear.postproc.wear.edge_kernels import common_neighbours
+from bulkwear.postproc.wear.face_kernels import any_corner
 from bulkwear.postproc.wear.mesh_faults import (
     TARGET_EDGE,
     Bounds,
@@ -31,7 +33,6 @@ from bulkwear.postproc.wear.remesh_patch import (
     FIXED,
     OldSurface,
     Patch,
-    adjacency,
     edges_of,
     freedom,
     rings,
@@ -104,7 +105,7 @@ def _repaired(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, old: OldSur
     else:
         limits = Limits(OUTWARD_BY_OPERATIONS, inward, 1.5 * bounds.smallest_angle_deg, SINK_COLLAPSE)
         patch = improve(patch, old, limits, erode=True)
-    raw, changed = transferred(mesh, core, patch)
+    raw, changed = transferred(mesh, core, patch, OldSurface(mesh.points, mesh.triangles[core]))
     new, ahead = _balanced(raw, volume_gained(mesh, raw, core, changed), changed)
     left = faults_after(faults, raw, new, bounds, core, changed)
     reach = old.range_over_faces(new.points, new.triangles[changed], new.point_data[TARGET_EDGE])[:, 1]
@@ -122,7 +123,7 @@ def faults_after(
     outside = faults.intersecting[~core[faults.intersecting].any(axis=1)]
     number = np.cumsum(~core) - 1
     moved = (raw.points != mesh.points).any(axis=1)
-    return mesh_faults(mesh, bounds, changed | moved[mesh.triangles].any(axis=1), number[outside])
+    return mesh_faults(mesh, bounds, changed | any_corner(moved, mesh.triangles), number[outside])
 
 
 def badness(faults: MeshFaults) -> tuple[int, int, float]:
@@ -167,9 +168,7 @@ def _candidates(patch: Patch, bounds: Bounds) -> list[tuple[int, int, bool]]:
     near[patch.triangles[_tangled(patch, bounds)]] = True
     wanted = near[edges.ends].any(axis=1) & (edges.faces[:, 1] >= 0) & (kind[edges.ends].min(axis=1) != FIXED)
     found = np.flatnonzero(wanted)
-    beside = adjacency(edges, len(patch.points))
-    common = beside[edges.ends[found, 0]].multiply(beside[edges.ends[found, 1]]).sum(axis=1)
-    found = found[np.asarray(common).ravel() == 2]
+    found = found[common_neighbours(edges.ends, found, len(patch.points)) == 2]
     length = np.linalg.norm(np.diff(patch.points[edges.ends[found]], axis=1)[:, 0], axis=1)
     ends = edges.ends[found[np.argsort(length, kind="stable")[:MOST_CANDIDATES]]]
     ends = np.where((kind[ends[:, 0]] > kind[ends[:, 1]])[:, None], ends[:, ::-1], ends)
@@ -191,12 +190,12 @@ def _merges(patch: Patch, gone: int, kept: int, free: bool):
 def _flips(patch: Patch, bounds: Bounds) -> list[Patch]:
     """The patches with one edge of a tangled face flipped."""
     edges = edges_of(patch)
-    quads, allowed = flipped_faces(patch, edges)
-    found = np.flatnonzero(allowed & _tangled(patch, bounds)[edges.faces].any(axis=1))
+    found = np.flatnonzero(_tangled(patch, bounds)[edges.faces].any(axis=1))
+    quads, allowed = flipped_faces(patch, edges, found)
     result = []
-    for edge in found[:MOST_CANDIDATES]:
+    for edge, faces in zip(found[allowed][:MOST_CANDIDATES], quads[allowed], strict=False):
         triangles = patch.triangles.copy()
-        triangles[edges.faces[edge]] = quads[edge]
+        triangles[edges.faces[edge]] = faces
         result.append(patch.changed(triangles=triangles))
     return result
 

@@ -10,13 +10,26 @@ from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE
 from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch, barycentric, border_nodes
 
+WIDEST = 4  # integers per face, between the lowest and the highest, for which no sorting is needed
+
 
 def labels_of(mesh: SurfaceMesh) -> np.ndarray:
     """One number (m,) per combination of the integer data of a face (part, column, row)."""
-    columns = [mesh.cell_data[name] for name in _label_names(mesh)]
-    if not columns:
-        return np.zeros(len(mesh.triangles), dtype=np.int64)
-    return np.unique(np.column_stack(columns), axis=0, return_inverse=True)[1].ravel()
+    label = np.zeros(len(mesh.triangles), dtype=np.int64)
+    for name in _label_names(mesh):
+        values = _ranks(np.asarray(mesh.cell_data[name]).astype(np.int64))
+        label = _ranks(label * (values.max(initial=0) + 1) + values)
+    return label
+
+
+def _ranks(values: np.ndarray) -> np.ndarray:
+    """Rank (m,) of integers (m,) among those that there are: 0 for the lowest."""
+    first = values.min(initial=0)
+    if (span := values.max(initial=0) - first + 1) > WIDEST * len(values):
+        return np.unique(values, return_inverse=True)[1]
+    there = np.zeros(span, dtype=bool)
+    there[values - first] = True
+    return (np.cumsum(there) - 1)[values - first]
 
 
 def _label_names(mesh: SurfaceMesh) -> list[str]:
@@ -41,13 +54,13 @@ def cut_out(mesh: SurfaceMesh, core: np.ndarray) -> Patch:
     return Patch(mesh.points[nodes], local.reshape(-1, 3), label[order], size, fixed[nodes], nodes)
 
 
-def transferred(mesh: SurfaceMesh, core: np.ndarray, patch: Patch) -> tuple[SurfaceMesh, np.ndarray]:
+def transferred(mesh: SurfaceMesh, core: np.ndarray, patch: Patch, left: OldSurface) -> tuple[SurfaceMesh, np.ndarray]:
     """The mesh with a patch in place of its faces `core` (m,), and the mask of the patch's faces in it.
 
     Faces outside `core` keep their order and come first; nodes keep theirs, new ones come last, those that vanished
     are left out. Nodes in place keep their data bit for bit, others get them from the old surface, barycentric at the
     closest point (NaN corners do not count). The carried volume of a node that vanished goes to the nearest node with
-    the same labels round it, so its sum over each of them stays.
+    the same labels round it, so its sum over each of them stays. left: the faces `core`, which give way.
     """
     new = patch.origin < 0
     index = np.where(new, len(mesh.points) + np.cumsum(new) - 1, patch.origin)
@@ -59,9 +72,9 @@ def transferred(mesh: SurfaceMesh, core: np.ndarray, patch: Patch) -> tuple[Surf
     kept[triangles] = True
     moved = np.ones(len(points), dtype=bool)
     moved[: len(mesh.points)] = (points[: len(mesh.points)] != mesh.points).any(axis=1)
-    cells = _cell_data(mesh, core, patch)
+    cells = _cell_data(mesh, core, patch, left)
     whole = SurfaceMesh(points, triangles, cells)
-    data = _point_data(mesh, core, points, np.flatnonzero(moved & kept))
+    data = _point_data(mesh, left, points, np.flatnonzero(moved & kept))
     if CARRIED_VOLUME in mesh.point_data:
         data[CARRIED_VOLUME] = _carried(mesh, whole, kept)
     number = np.cumsum(kept) - 1
@@ -69,7 +82,7 @@ def transferred(mesh: SurfaceMesh, core: np.ndarray, patch: Patch) -> tuple[Surf
     return result, np.arange(len(triangles)) >= np.count_nonzero(~core)
 
 
-def _cell_data(mesh: SurfaceMesh, core: np.ndarray, patch: Patch) -> dict[str, np.ndarray]:
+def _cell_data(mesh: SurfaceMesh, core: np.ndarray, patch: Patch, left: OldSurface) -> dict[str, np.ndarray]:
     """Labels of the patch by their number, other data of its faces from the closest old face."""
     first = np.unique(labels_of(mesh), return_index=True)[1]
     by_label = first[patch.label]
@@ -77,18 +90,17 @@ def _cell_data(mesh: SurfaceMesh, core: np.ndarray, patch: Patch) -> dict[str, n
     names = _label_names(mesh)
     closest = by_label
     if len(names) < len(mesh.cell_data):
-        closest = np.flatnonzero(core)[OldSurface(mesh.points, mesh.triangles[core]).closest(centres)[1]]
+        closest = np.flatnonzero(core)[left.nearest(centres)[1]]
     return {
         name: np.concatenate([data[~core], data[by_label if name in names else closest]])
         for name, data in mesh.cell_data.items()
     }
 
 
-def _point_data(mesh: SurfaceMesh, core: np.ndarray, points: np.ndarray, moved: np.ndarray) -> dict[str, np.ndarray]:
+def _point_data(mesh: SurfaceMesh, left: OldSurface, points: np.ndarray, moved: np.ndarray) -> dict[str, np.ndarray]:
     """Data of all points, interpolated at the nodes `moved`."""
-    faces = mesh.triangles[core]
-    _, face, place = OldSurface(mesh.points, faces).closest(points[moved])
-    corners = faces[face]
+    _, face, place = left.nearest(points[moved])
+    corners = left.triangles[face]
     weight = barycentric(place, mesh.points[corners])
     result = {}
     for name, values in mesh.point_data.items():

@@ -36,9 +36,10 @@ def restore_volume(mesh: SurfaceMesh, gained: float, changed: np.ndarray) -> Sur
     normals = node_normals(mesh.points, mesh.triangles)
     for count in MARGIN_RINGS:
         region = rings(mesh.triangles, changed, count, worn, len(mesh.points))
-        weight = np.zeros(len(mesh.points))
-        inner = np.setdiff1d(mesh.triangles[region], mesh.triangles[~region])
-        weight[inner] = np.where(movable, mesh.point_data[TARGET_EDGE], 0.0)[inner]
+        inner = np.zeros(len(mesh.points), dtype=bool)
+        inner[mesh.triangles[region]] = True
+        inner[mesh.triangles[~region]] = False
+        weight = np.where(inner & movable, mesh.point_data[TARGET_EDGE], 0.0)
         area = np.einsum("ij,ij->i", node_area_vectors(mesh.points, mesh.triangles), normals) @ weight
         if area * limit > abs(gained):
             points = _shifted(mesh.points, mesh.triangles[region], weight[:, None] * normals, gained, area)

@@ -7,7 +7,7 @@ import numpy as np
 from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes, smallest_angles, unit_normals, worn_faces
 from bulkwear.postproc.wear.balance import check_growth, with_swept_rim
 from bulkwear.postproc.wear.built_shape import PRISTINE_RISE, face_labels, with_turned_shape
-from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, pristine_normal_depth, ray_depth
+from bulkwear.postproc.wear.depth import add_removed_thickness, height_loss, ray_and_normal_depth
 from bulkwear.postproc.wear.directions import SliceEnds, inward_directions, rim_directions, slice_directions
 from bulkwear.postproc.wear.displacement import Displacement, volume_at_corners
 from bulkwear.postproc.wear.fields import (
@@ -170,10 +170,8 @@ def with_depths(worn: SurfaceMesh, pristine: SurfaceMesh) -> SurfaceMesh:
     touched = np.flatnonzero(thickness > 0.0)
     outward = -inward_directions(worn.points, worn.triangles, worn_faces(worn))
     at, old = worn.points[touched], (pristine.points, pristine.triangles)
-    found = {
-        RAY_DEPTH: ray_depth(at, outward[touched], thickness[touched], *old),
-        NORMAL_DEPTH: pristine_normal_depth(at, outward[touched], thickness[touched], *old),
-    }
+    along_normals = ray_and_normal_depth(at, outward[touched], thickness[touched], *old)
+    found = dict(zip((RAY_DEPTH, NORMAL_DEPTH), along_normals, strict=True))
     if stands_over_plan(worn, pristine):
         found[HEIGHT_LOSS] = height_loss(at, *old)
     fields = {name: np.zeros(len(thickness)) for name in found}

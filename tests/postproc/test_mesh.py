@@ -217,3 +217,29 @@ def test_stl_refuses_a_facet_without_area(tmp_path):
     with pytest.raises(ValueError, match="facet 1 has no area"):
         pm.write_stl(tmp_path / "a.stl", points, np.array([[0, 1, 2], [0, 1, 3]]))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_geometry_of_columns_is_that_of_rows():
+    """Arithmetic on whole columns gives, bit for bit, what numpy's own functions give for rows."""
+    random = np.random.default_rng(20220317)
+    points, triangles = random.normal(size=(50, 3)), random.integers(0, 50, (200, 3))
+    corners = points[triangles]
+    spokes = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+    vectors = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sine = np.linalg.norm(np.cross(*spokes), axis=2)
+    angles = np.degrees(np.arctan2(sine, (spokes[0] * spokes[1]).sum(axis=2)))
+    assert np.array_equal(pm.area_vectors(points, triangles), vectors)
+    assert np.array_equal(pm.areas(points, triangles), np.linalg.norm(vectors, axis=1))
+    assert np.array_equal(pm.edge_lengths_per_triangle(points, triangles), np.linalg.norm(spokes[0], axis=2))
+    assert np.array_equal(pm.smallest_angles(points, triangles), angles.min(axis=1))
+    assert np.array_equal(pm.centroids(points, triangles), corners.mean(axis=1))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_boundary_edges_are_those_without_their_reverse(seed):
+    """In the order of the triangles, also where these are turned, doubled, meet in threes or have a node twice."""
+    triangles = np.random.default_rng(seed).integers(0, 4 + 2 * seed, (5 * seed, 3))
+    edges = pm.directed_edges(triangles)
+    there = {tuple(edge) for edge in edges.tolist()}
+    expected = [edge for edge in edges.tolist() if tuple(edge[::-1]) not in there]
+    assert pm.boundary_edges(triangles).tolist() == expected

@@ -53,6 +53,25 @@ def test_search_among_some_faces():
     assert np.array_equal(intersecting_faces(points, triangles, among), expected)
 
 
+def passes_through(edge, face):
+    """Whether a segment (2, 3) passes through a triangle (3, 3), by solving for where it meets its plane."""
+    sides = np.column_stack([face[1] - face[0], face[2] - face[0], edge[0] - edge[1]])
+    first, second, along = np.linalg.solve(sides, edge[0] - face[0])
+    return min(first, second, 1.0 - first - second, along, 1.0 - along) > 0.0
+
+
+def test_all_cuts_of_random_faces_are_found():
+    """The same pairs as by asking of every two faces whether an edge of one passes through the other."""
+    corners = np.random.default_rng(SEED).random((40, 3, 3))
+    expected = []
+    for i, j in zip(*np.triu_indices(40, 1), strict=True):
+        ways = ((corners[a][[k, (k + 1) % 3]], corners[b]) for a, b in ((i, j), (j, i)) for k in range(3))
+        if any(passes_through(*way) for way in ways):
+            expected.append([i, j])
+    assert len(expected) > 50
+    assert intersecting_faces(corners.reshape(-1, 3), np.arange(120).reshape(-1, 3)).tolist() == expected
+
+
 def test_sound_surfaces_neither_cut_nor_cover_themselves():
     """Plate and sphere: no pair, although neighbours touch everywhere."""
     for mesh in (flat_plate(0.06, 0.039, 0.003), sphere(0.01, 3)):

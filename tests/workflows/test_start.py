@@ -7,7 +7,10 @@ import pytest
 
 from tests import REPOSITORY
 
-SLOW = ("numba", "scipy.optimize", "scipy.spatial", "scipy.special", "scipy.stats", "matplotlib", "pyvista")
+SLOW = (
+    *("jsonschema", "numba", "scipy.optimize", "scipy.spatial", "scipy.special", "scipy.stats"),
+    *("matplotlib", "pyvista"),
+)
 NEEDED = {"page": {"scipy.special"}}  # its verdicts ask for quantiles
 IMPORTED = "import sys\n{code}\nprint(*(name for name in {names} if name in sys.modules))"
 STARTS = {
@@ -24,7 +27,7 @@ assert products_of(find_case("sliding_sample"))
 
 @pytest.mark.parametrize("start", STARTS)
 def test_a_start_imports_nothing_slow(start):
-    """Each of these takes 0.3 to 1 s of processor time, and a study has tens of jobs."""
+    """Each of these takes 0.1 to 1 s of processor time, and a study has tens of jobs."""
     code = IMPORTED.format(code=STARTS[start], names=SLOW)
     done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True, check=True)
     assert set(done.stdout.split()) == NEEDED.get(start, set())

@@ -8,8 +8,6 @@ from functools import cache, reduce
 from pathlib import Path
 from typing import Any
 
-import jsonschema
-
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, display_name, read_yaml
 from bulkwear.workflows.config.patterns import with_patterns
@@ -42,8 +40,13 @@ def _is_integer(_checker: Any, value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-_TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
-Validator = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=_TYPES)
+@cache
+def validator() -> type:
+    """Return the validator of the schemas (class of jsonschema), for which a number is finite and no boolean."""
+    from jsonschema import Draft202012Validator, validators  # slow to import, and most jobs validate nothing
+
+    types = Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
+    return validators.extend(Draft202012Validator, type_checker=types)
 
 
 def schema_files(name: str) -> list[Path]:
@@ -82,9 +85,11 @@ def _read_schema(path: Path) -> dict[str, Any]:
         )
     if path.is_relative_to(OF_PACKAGE):
         return schema
+    from jsonschema import SchemaError
+
     try:
-        Validator.check_schema(schema)
-    except jsonschema.SchemaError as fault:
+        validator().check_schema(schema)
+    except SchemaError as fault:
         place = ".".join(map(str, fault.absolute_path)) or "the schema"
         raise ConfigError(f"{shown}: {place} is {fault.instance!r}, allowed is a JSON schema.") from None
     return schema

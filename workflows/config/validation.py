@@ -24,7 +24,7 @@ from bulkwear.workflows.config.layers import (
     dotted,
     read_csv_rows,
 )
-from bulkwear.workflows.config.schema import Validator, leaves, subschema
+from bulkwear.workflows.config.schema import leaves, subschema, validator
 
 # Suffix of a key -> unit as written in the schemas (x-unit); no suffix: "-".
 UNIT_OF_SUFFIX = {
@@ -86,7 +86,7 @@ def check_alternatives(layer: Layer, alternatives: Sequence[KeyPath], required: 
 
 def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
     """Yield (key path, what makes the sentence without its end) for every value that is wrong and every unknown key."""
-    for error in Validator(schema).iter_errors(values):
+    for error in validator()(schema).iter_errors(values):
         path = tuple(error.absolute_path)
         if error.validator == "additionalProperties":
             for key in [key for key in error.instance if key not in error.schema.get("properties", {})]:
@@ -97,7 +97,7 @@ def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[Ke
 
 def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
     """Yield (path of the block, what makes the sentence) for every block in which a key is missing."""
-    for error in Validator(schema).iter_errors(values):
+    for error in validator()(schema).iter_errors(values):
         if error.validator == "required":
             path = tuple(error.absolute_path)
             key = next(key for key in error.validator_value if key not in error.instance)

@@ -13,7 +13,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError, command_line_layer, dotted, merge, read_yaml
 from bulkwear.workflows.config.patterns import SURFACES, with_patterns
 from bulkwear.workflows.config.readme import readme
-from bulkwear.workflows.config.schema import OF_PACKAGE, SCHEMA_FOLDER, Validator, leaves, load_schema
+from bulkwear.workflows.config.schema import OF_PACKAGE, SCHEMA_FOLDER, leaves, load_schema, validator
 from bulkwear.workflows.config.validation import ALL_SUFFIXES, UNIT_OF_SUFFIX, check_layer
 from bulkwear.workflows.engine.cases import case_names, find_case
 from bulkwear.workflows.engine.ledgers import PRODUCERS
@@ -624,7 +624,7 @@ def test_schemas_of_the_package_are_json_schemas():
     files = sorted(OF_PACKAGE.rglob("*.schema.yaml"))
     assert SCHEMA_FOLDER / "settings.schema.yaml" in files and any("cases" in path.parts for path in files)
     for path in files:
-        Validator.check_schema(with_patterns(read_yaml(path, REPOSITORY).values))
+        validator().check_schema(with_patterns(read_yaml(path, REPOSITORY).values))
 
 
 @pytest.mark.parametrize("name", SCHEMAS)
