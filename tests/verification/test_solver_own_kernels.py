@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,10 +11,16 @@ from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.kernels import KERNELS, Kernel
 from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.engine.cycles import own_kernels
 from bulkwear.workflows.engine.own_code import code_of_law
 from bulkwear.workflows.engine.own_kernels import own_library, python_fault
 from bulkwear.workflows.engine.project import ProjectError, enter_project, leave_project
-from bulkwear.workflows.engine.solver import missing_kernels, own_kernels_words, solver_environment
+from bulkwear.workflows.engine.solver import (
+    missing_kernels,
+    own_kernels_words,
+    solver_command,
+    solver_environment,
+)
 from tests.verification.ledger_cases import (
     LEDGER_LINE,
     MASS,
@@ -145,6 +152,17 @@ def test_the_program_has_them_with_the_library_alone(project):
     assert "slip_power slip_power_J exponent speed_m_per_s" in told.stdout.splitlines()
     leave_project()
     assert "it has no contact kernel twin" in missing_kernels(str(SOLVER), ["twin"])
+
+
+def test_a_run_loads_them(project):
+    """A run whose law has kernels in C++ starts the solver with their library; sampled contacts need none."""
+    case = SimpleNamespace(kernels=lambda parameters: {"slip_power": {}, "finnie_work": {}})
+    chain = SimpleNamespace(case=case, parameters={"ledger": "solver"})
+    library = own_kernels(chain)
+    assert library == own_library(["slip_power"])
+    assert solver_command(1, "ours", own_kernels=library)[-2:] == ["-own-kernels", str(library)]
+    chain.parameters["ledger"] = "dumps"
+    assert own_kernels(chain) is None
 
 
 def test_a_changed_kernel_is_another_one(project):
