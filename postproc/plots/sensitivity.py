@@ -57,6 +57,7 @@ def _bars(axes: Axes, known: pd.DataFrame) -> None:
     for (name, colour, label), shift in zip(BARS, (0.5 * BAR, -0.5 * BAR), strict=True):
         value = known[name].to_numpy()
         ends = np.abs(known[[f"{name}_low", f"{name}_high"]].to_numpy().T - value)
+        ends = np.where(ends > 0.0, ends, np.nan)  # of a factor that the surrogate does not have
         look = {"ecolor": OTHER_COLOUR, "capsize": 2.5}
         axes.barh(places + shift, value, BAR, xerr=ends, color=colour, label=label, error_kw=look)
     axes.set_yticks(places, known["factor"])
