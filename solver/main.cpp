@@ -1,7 +1,7 @@
 // LIGGGHTS with a load ledger and rolling models: the solver of the shared library, unchanged, plus a fix style
 // (load/ledger) and two models of rolling friction (own_spin, rvd).
 // Used like the plain program: liggghts-ledger -in deck.in; -search stock leaves the search for contacts with meshes to
-// the library.
+// the library; -own-kernels FILE adds contact kernels that a project has compiled of its own.
 // liggghts-ledger -kernels lists its contact kernels: name, column of the ledger, parameters; -rolling its models of
 // rolling friction.
 
@@ -16,6 +16,7 @@
 #include "input.h"
 #include "lammps.h"
 #include "modify.h"
+#include "own_kernels.h"
 #include "private_member.h"
 #include "rolling/fix_spin_friction.h"
 #include "rolling/rolling_models.h"
@@ -42,7 +43,7 @@ Fix* create_spin_friction(LAMMPS* lammps, int narg, char** arg) {
 }
 
 void list_kernels() {
-  for (const load_ledger::Kernel& kernel : load_ledger::KERNELS) {
+  for (const load_ledger::Kernel& kernel : load_ledger::kernels()) {
     std::printf("%s %s", kernel.name, kernel.column);
     for (int k = 0; k < load_ledger::parameter_count(kernel); ++k) std::printf(" %s", kernel.parameters[k]);
     std::printf("\n");
@@ -67,6 +68,21 @@ bool take_search(int& argc, char** argv) {
   return true;
 }
 
+// Takes "-own-kernels FILE" out of the words likewise and loads these. Returns whether they are well.
+bool take_own_kernels(int& argc, char** argv) {
+  for (int k = 1; k + 1 < argc; ++k) {
+    if (std::strcmp(argv[k], "-own-kernels")) continue;
+    if (const char* fault = load_ledger::load_own_kernels(argv[k + 1])) {
+      std::fprintf(stderr, "-own-kernels: found %s: %s; allowed is a library of contact kernels.\n", argv[k + 1], fault);
+      return false;
+    }
+    std::copy(argv + k + 2, argv + argc, argv + k);
+    argc -= 2;
+    return true;
+  }
+  return true;
+}
+
 // As the plain program does: a first signal ends the run after the next step, with a restart file if the deck asks for
 // one.
 void handle_signals() {
@@ -78,6 +94,7 @@ void handle_signals() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (!take_own_kernels(argc, argv)) return 1;
   if (argc == 2 && !std::strcmp(argv[1], "-kernels")) {
     list_kernels();
     return 0;

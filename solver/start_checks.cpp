@@ -16,6 +16,7 @@
 #include "fix_property_global.h"
 #include "library.h"
 #include "modify.h"
+#include "own_kernels.h"
 #include "properties.h"
 #include "tri_mesh.h"
 #include "universe.h"
@@ -37,7 +38,7 @@ constexpr int PROOF_INTERVAL = 1000;                // steps between two looks f
 
 std::string kernel_names() {
   std::string names;
-  for (const Kernel& kernel : KERNELS) names += (names.empty() ? "" : ", ") + std::string(kernel.name);
+  for (const Kernel& kernel : kernels()) names += (names.empty() ? "" : ", ") + std::string(kernel.name);
   return names;
 }
 
@@ -84,7 +85,7 @@ void FixLoadLedger::parse_kernels(int narg, char** arg, int first) {
   for (int k = first; k < narg;) {
     const std::string name = arg[k++];
     const Kernel* found = nullptr;
-    for (const Kernel& kernel : KERNELS)
+    for (const Kernel& kernel : kernels())
       if (name == kernel.name) found = &kernel;
     if (!found) stop("found kernel '" + name + "', allowed are " + kernel_names() + ".");
     const int count = parameter_count(*found);

@@ -26,6 +26,7 @@ NOISE = (0.02, 1.7)
 MEAN_VARIANCE = 4.0  # -, of the process' unknown mean over that of the responses
 DRAWS_POWER = 10  # 1024 draws from the prior, and as many near the ones that fit
 KERNELS = 16  # draws from the posterior that predictions are means over
+DRAW_JITTER = 1e-8  # -, of the variance of draws at many points, for rounding
 JITTER = 1e-9  # -, of the diagonal over the variance of the responses
 
 
@@ -54,6 +55,31 @@ class Surrogate:
     def seed_deviation(self) -> float:
         """Standard deviation between simulations that differ in their seed only: the median of the draws."""
         return self.scale * float(np.sqrt(np.median(self.kernels[:, -1])))
+
+    def draws(self, points: np.ndarray, of_each: int, seed: int) -> np.ndarray:
+        """Return draws (n, k of_each) of the response itself at (n, p) points, `of_each` by each kernel; seeded."""
+        chance, found = np.random.default_rng(seed), []
+        for kernel, factor, weights in zip(self.kernels, *self._solved, strict=True):
+            across = _covariance(points, self.points, kernel[None])[0]
+            rest = solve_triangular(factor, across.T, lower=True, check_finite=False)
+            left = _covariance(points, points, kernel[None])[0] - rest.T @ rest
+            spread = np.linalg.cholesky(left + DRAW_JITTER * (kernel[-2] + MEAN_VARIANCE) * np.eye(len(points)))
+            found.append((across @ weights)[:, None] + spread @ chance.standard_normal((len(points), of_each)))
+        return self.centre + self.scale * np.hstack(found)
+
+    @property
+    def left_out_share(self) -> float:
+        """Part (-) of the simulations' variance that the surrogate of all others explains of each; 0 for their mean.
+
+        By the inverse of the covariance, without another fit (C. E. Rasmussen and C. K. I. Williams, 2006, Eq 5.12),
+        mean over the kernels.
+        """
+        factors, weights = self._solved
+        identity = np.eye(len(self.values))
+        inverse = np.array([cho_solve((factor, True), identity).diagonal() for factor in factors])
+        missed = (weights / inverse).mean(axis=0)
+        spread = (self.values - self.values.mean()) * len(self.values) / (len(self.values) - 1.0)
+        return 1.0 - float(missed @ missed) / float(spread @ spread)
 
     def with_point(self, point: np.ndarray) -> Surrogate:
         """Return the surrogate as if its own mean had been simulated at a point (p,): its doubt shrinks there."""

@@ -93,14 +93,15 @@ class Kernel:
 
     value: (contacts, motion, normals of their triangles, parameters by name) -> (n,) array per unit time, as
         `finnie_work`, or of impacts, as `impact_above_threshold`; motion as of
-        `postproc.wear.ledger.contact_kinematics`, of impacts with their mass too
+        `postproc.wear.ledger.contact_kinematics`, of impacts with their mass too; None of one that is there in the
+        solver alone, which sampled contacts then cannot do with
     unit: of the sum, as the ledger's column spells it
     parameters: names of the numbers that `value` takes, SI, each with its unit; a law that needs the kernel has them
         too
     per_impact: summed over the first touches of episodes, not over time
     """
 
-    value: Callable[..., np.ndarray]
+    value: Callable[..., np.ndarray] | None
     unit: str = "J"
     parameters: tuple[str, ...] = ()
     per_impact: bool = False
@@ -147,9 +148,12 @@ def is_per_impact(name: str) -> bool:
 def kernel_value(name: str, parameters: Mapping[str, float]) -> Callable[..., np.ndarray]:
     """Return a kernel as a function of (contacts, motion, normals of their triangles).
 
-    Raises ValueError for a name that is no kernel and for parameters that are not exactly those of the kernel.
+    Raises ValueError for a name that is no kernel, for parameters that are not exactly those of the kernel, and for one
+    that is there in the solver alone.
     """
     kernel = _kernel(name)
+    if kernel.value is None:
+        raise ValueError(f"contact kernel '{name}' is there in C++ alone, allowed for sampled contacts is a function")
     if set(parameters) != set(kernel.parameters):
         found, allowed = (", ".join(names) or "nothing" for names in (parameters, kernel.parameters))
         raise ValueError(f"parameters of the contact kernel '{name}' are {found}, allowed are: {allowed}")

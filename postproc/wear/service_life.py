@@ -1,11 +1,8 @@
 """Service life of a part: how much it may lose, when that is lost, and the interval of it.
 
 Life is what is allowed over the rate at which it is lost. The rate scatters between packings and blocks, and its
-coefficient of wear is known to some error, which is one factor on all rates of a part. Both are independent factors:
-their 95 % half widths are added as squares in the logarithm. Of half widths by Student's t such an interval holds the
-truth at least as often as it says (S. K. Banerjee, Sankhya 22, 1960, 357; H. Ruben, Sankhya A 64, 2002, 139). An error
-of the coefficient of 0.2 means 0.8 to 1.2 times the value, so that it makes the life at most 1/0.8 as long and at least
-1/1.2: the interval of the life is not symmetric, even in the logarithm.
+coefficient of wear is known to some error, which is one factor on all rates of a part: `prediction` joins both. An
+error of the coefficient of 0.2 makes the life at most 1/0.8 as long and at least 1/1.2.
 
 A rate of one packing has an interval of its own blocks: the life is then that of this packing. How often intervals hold
 the truth: benchmarks/service_life_coverage.py.
@@ -14,57 +11,36 @@ the truth: benchmarks/service_life_coverage.py.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from dataclasses import astuple
+from typing import NamedTuple
 
 import numpy as np
+
+from bulkwear.postproc.wear.prediction import Estimated, Prediction, joined, log_reach, predicted
 
 TONNES_PER_MT = 1e6
 
 
-class Estimated(Protocol):
-    """What is asked of an estimate, as `postproc.statistics.intervals.Estimate` is one."""
-
-    value: float
-    packings: int
-
-    @property
-    def known(self) -> bool:
-        """Whether there is an interval."""
-
-    def interval(self) -> tuple[float, float]:
-        """Both ends at 95 %."""
-
-
-@dataclass(frozen=True)
-class Life:
+class Life(Prediction):
     """When an allowed amount is lost, in hours of operation, with the 95 % interval.
 
-    hours: allowed amount over the rate, infinite where nothing is lost; low_h, high_h: NaN where the scatter is unknown
-    scatter_reach, coefficient_reach: -, half widths in the logarithm, of the rate and of the coefficient
-    packings: behind the rate; with 1 the interval is of this packing alone
+    value: allowed amount over the rate, infinite where nothing is lost
     """
 
-    hours: float
-    low_h: float
-    high_h: float
-    scatter_reach: float
-    coefficient_reach: float
-    packings: int
+    @property
+    def hours(self) -> float:
+        """The life, h."""
+        return self.value
 
     @property
-    def known(self) -> bool:
-        """Whether there is an interval."""
-        return not (math.isnan(self.low_h) or math.isnan(self.high_h))
+    def low_h(self) -> float:
+        """Lower end of its interval, h; NaN where the scatter is unknown."""
+        return self.low
 
     @property
-    def scatter_share(self) -> float:
-        """What part (-) of the interval's squared width the scatter of the rate makes; the coefficient makes the rest.
-
-        NaN where the scatter is unknown or there is neither.
-        """
-        squares = self.scatter_reach**2 + self.coefficient_reach**2
-        return self.scatter_reach**2 / squares if squares > 0.0 else math.nan
+    def high_h(self) -> float:
+        """Upper end of its interval, h; NaN where the scatter is unknown."""
+        return self.high
 
     def throughput_mt(self, rate_t_per_h: float) -> tuple[float, float, float]:
         """Life and its ends in Mt of bulk, at so many t/h."""
@@ -74,19 +50,9 @@ class Life:
         """Life and its ends in years of so many hours of operation."""
         return tuple(hours / hours_per_year for hours in (self.hours, self.low_h, self.high_h))
 
-    def said(self) -> str:
+    def said(self, unit: str = "h") -> str:
         """Life, interval, what makes it wide, and of what it is, in words."""
-        if not self.known:
-            return f"{_few(self.hours)} h{' (one packing, scatter unknown)' * (self.packings < 2)}"
-        of = f"{self.packings} packings" if self.packings > 1 else "of this packing alone"
-        share = "" if math.isnan(self.scatter_share) else f", {_shares(self.scatter_share)}"
-        low, high = _few(self.low_h), _few(self.high_h)
-        return f"{_few(self.hours)} h (95 % interval {low} to {high} h, {of}{share})"
-
-
-def _few(hours: float) -> str:
-    """Hours with three significant digits, without an exponent."""
-    return f"{float(f'{hours:.3g}'):,.12g}"
+        return super().said(unit)
 
 
 class Reached(NamedTuple):
@@ -135,14 +101,10 @@ def life(rate: Estimated, coefficient_error: float, allowed: float) -> Life:
     """
     if rate.value < 0.0:
         raise ValueError(f"the rate of wear is {rate.value:g} per hour, allowed is 0 or more")
-    both = coefficient_reaches(coefficient_error)
-    mean = 0.5 * sum(both)
-    if not rate.value > 0.0:
-        hours = math.inf if rate.value == 0.0 and allowed > 0.0 else math.nan
-        return Life(hours, math.nan, math.nan, math.nan, mean, rate.packings)
-    hours, scatter = allowed / rate.value, _reach(rate)
-    low, high = _ends(hours, scatter, both)
-    return Life(hours, low, high, scatter, mean, rate.packings)
+    known = rate.value > 0.0
+    hours = allowed / rate.value if known else math.inf if rate.value == 0.0 and allowed > 0.0 else math.nan
+    reach = log_reach(rate) if known else math.nan
+    return Life(*astuple(joined(hours, reach, coefficient_error, rate.packings, inverse=True)))
 
 
 def life_interval(hours: Estimated, coefficient_error: float) -> tuple[float, float]:
@@ -150,17 +112,8 @@ def life_interval(hours: Estimated, coefficient_error: float) -> tuple[float, fl
 
     hours: with the scatter of packings or blocks; coefficient_error: as of `life`. NaN where the scatter is unknown.
     """
-    return _ends(hours.value, _reach(hours), coefficient_reaches(coefficient_error))
-
-
-def coefficient_reaches(coefficient_error: float) -> tuple[float, float]:
-    """Half widths (-) in the logarithm by which the coefficient's error makes a life shorter, and longer.
-
-    Raises ValueError for an error not within 0 and less than 1.
-    """
-    if not 0.0 <= coefficient_error < 1.0:
-        raise ValueError(f"the error of the wear coefficient is {coefficient_error:g}, allowed is 0 to less than 1")
-    return math.log1p(coefficient_error), -math.log1p(-coefficient_error)
+    found = predicted(hours, coefficient_error, inverse=True)
+    return found.low, found.high
 
 
 def hour_reached(
@@ -199,22 +152,3 @@ def throughput_mt(hours: float, rate_t_per_h: float) -> float:
 def hours_of(throughput_mt: float, rate_t_per_h: float) -> float:
     """Hours in which so much bulk (Mt) passes at so many t/h."""
     return throughput_mt * TONNES_PER_MT / rate_t_per_h
-
-
-def _reach(found: Estimated) -> float:
-    """Half width (-) in the logarithm, by the upper end; of an estimate that is not of the logarithm to first order."""
-    if not found.known or not found.value > 0.0:
-        return math.nan
-    upper = found.interval()[1] / found.value
-    return math.log(upper) if getattr(found, "log", False) else upper - 1.0
-
-
-def _ends(hours: float, scatter: float, coefficient: tuple[float, float]) -> tuple[float, float]:
-    shorter, longer = (math.hypot(scatter, each) for each in coefficient)
-    return hours * math.exp(-shorter), hours * math.exp(longer)
-
-
-def _shares(scatter: float) -> str:
-    return (
-        f"scatter makes {100.0 * scatter:.0f} % of its square and the wear coefficient {100.0 * (1.0 - scatter):.0f} %"
-    )

@@ -21,7 +21,7 @@ from bulkwear.postproc.wear.laws import kernels_of_laws
 from bulkwear.workflows.engine.derived import law_parameters, law_volume
 from bulkwear.workflows.engine.schedule import Span, first_span, next_span
 from bulkwear.workflows.engine.work import Stage, Work
-from bulkwear.workflows.engine.worn_pair import ONLY_TOLD, WornPair, pair_of_section
+from bulkwear.workflows.engine.worn_pair import COEFFICIENT_ERROR, ONLY_TOLD, WornPair, pair_of_section
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -118,7 +118,7 @@ class Case:
     geometry: tuple[str, ...] = ()
     consumed: tuple[str, ...] = ("wear", "remeshing", "sliding")
     length: tuple[tuple[str, str], ...] = ()
-    only_told: tuple[str, ...] = ONLY_TOLD
+    only_told: tuple[str, ...] = (*ONLY_TOLD, COEFFICIENT_ERROR)
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)
     kept: tuple[str, ...] = ()

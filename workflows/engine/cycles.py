@@ -50,6 +50,7 @@ from bulkwear.workflows.engine.disk import (
 from bulkwear.workflows.engine.inputs import SIMULATED_FROM, inputs_digest, simulated_from, why_again
 from bulkwear.workflows.engine.job import Progress, write_table
 from bulkwear.workflows.engine.ledgers import SamplesError, producer
+from bulkwear.workflows.engine.own_kernels import own_library
 from bulkwear.workflows.engine.patience import PATIENCE, Patience
 from bulkwear.workflows.engine.pieces import Piece, finished_pieces, forget_pieces, simulate_in_pieces
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code, write_provenance
@@ -250,10 +251,17 @@ def simulate(
             variables=variables,
             patience=replace(chain.patience, say=progress.say),
             search=chain.parameters["solver"]["search"],
+            own_kernels=own_kernels(chain),
         )
 
     ends = chain.case.piece_ends(chain.parameters, chain.bed, span)
     return simulate_in_pieces(folder, origin, ends, run)
+
+
+def own_kernels(chain: Chain) -> Path | None:
+    """Return the library of the contact kernels that a run's project has in C++; none where contacts are sampled."""
+    summed = chain.parameters["ledger"] == "solver"
+    return own_library(chain.case.kernels(chain.parameters)) if summed else None
 
 
 def cycle_executable(chain: Chain) -> str:

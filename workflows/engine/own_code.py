@@ -9,8 +9,10 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+from bulkwear.postproc.wear.laws import law_of
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.cases import case_folders
+from bulkwear.workflows.engine.own_kernels import own_sources
 from bulkwear.workflows.engine.project import CASES_OF_PACKAGE, MESHES, current_project
 from bulkwear.workflows.engine.state import digest, file_digest
 
@@ -36,10 +38,13 @@ def _within_case(path: Path, cases: Path) -> str:
 
 
 def code_of_law(name: str) -> dict[str, str]:
-    """Return {file: its hash} of a project's own law and the helpers beside it; empty for the package's laws."""
+    """Return {file: its hash} of a project's own law, the helpers beside it, and its contact kernels in C++.
+
+    Empty for the package's laws with the package's kernels.
+    """
     law = dict(current_project().own_laws).get(name)
     files = [law, *sorted(law.parent.glob("_*.py"))] if law else []
-    return {path.name: _hash(path) for path in files}
+    return {path.name: _hash(path) for path in (*files, *own_sources(law_of(name).kernels).values())}
 
 
 def code_of_pages(module: ModuleType) -> str:

@@ -21,8 +21,9 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
 from bulkwear.workflows.engine.disk import RESERVE_BYTES, free_bytes, full_sentence
+from bulkwear.workflows.engine.own_kernels import own_library, python_fault
 from bulkwear.workflows.engine.patience import PATIENCE, Patience, Watch
-from bulkwear.workflows.engine.project import PACKAGE
+from bulkwear.workflows.engine.project import PACKAGE, ProjectError
 
 if TYPE_CHECKING:
     from bulkwear.workflows.engine.case import Case
@@ -92,10 +93,12 @@ def missing_rolling_model(executable: str, model: str) -> str | None:
 
 def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
     """Return a sentence that says what to do where a program lacks contact kernels (`postproc/wear/kernels.py`) as they
-    are here: column and parameters; None where it has them.
+    are here: column and parameters; None where it has them, by itself or from the project (`own_kernels`).
+
+    Raises ProjectError for a kernel of the project that cannot be compiled.
     """
     wanted = {name: " ".join([name, kernel_column(name), *kernel_parameters(name)]) for name in kernels}
-    known = _told(executable, "-kernels") if wanted else ()
+    known = _told(executable, *own_kernels_words(own_library(wanted)), "-kernels") if wanted else ()
     if missing := [name for name, line in wanted.items() if line not in known]:
         return (
             f"{executable}: it has no contact kernel {', '.join(missing)} as postproc/wear/kernels.py has it, found: "
@@ -106,14 +109,16 @@ def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
 
 
 @cache  # a study asks once per run
-def _told(executable: str, question: str) -> tuple[str, ...]:
+def _told(executable: str, *question: str) -> tuple[str, ...]:
     """Return what a program says of what it has, a line each; nothing from one that does not know the question."""
     try:
         told = subprocess.run(
-            [executable, question], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=ANSWER_SECONDS
+            [executable, *question], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=ANSWER_SECONDS
         )
     except subprocess.TimeoutExpired:
-        raise SolverError(f"{executable}: it gives no answer to {question}, allowed is a solver of ours.") from None
+        raise SolverError(
+            f"{executable}: it gives no answer to {' '.join(question)}, allowed is a solver of ours."
+        ) from None
     return tuple(told.stdout.splitlines()) if told.returncode == 0 else ()
 
 
@@ -121,24 +126,36 @@ def cycle_fault(executable: str, case: Case, run: Mapping[str, Any]) -> str | No
     """Return a sentence that says what to do where a program cannot simulate the wear cycles of a run of a case, with
     the kernels of all its laws and its rolling model; else None.
     """
-    kernels = case.kernels(run) if run["ledger"] == "solver" else ()
-    return (
-        missing_program(executable)
-        or missing_kernels(executable, kernels)
-        or missing_rolling_model(executable, run["solver"]["rolling_friction"])
-    )
+    if missing := missing_program(executable):
+        return missing
+    kernels = case.kernels(run)
+    try:
+        lacking = missing_kernels(executable, kernels) if run["ledger"] == "solver" else python_fault(kernels)
+    except ProjectError as fault:
+        return str(fault)
+    return lacking or missing_rolling_model(executable, run["solver"]["rolling_friction"])
+
+
+def own_kernels_words(library: Path | None) -> list[str]:
+    """Return the words by which our program loads the kernels of a project."""
+    return ["-own-kernels", str(library)] if library else []
 
 
 def solver_command(
-    ranks: int, executable: str = EXECUTABLE, launcher: str = LAUNCHER, search: str = SEARCHES[0]
+    ranks: int,
+    executable: str = EXECUTABLE,
+    launcher: str = LAUNCHER,
+    search: str = SEARCHES[0],
+    own_kernels: Path | None = None,
 ) -> list[str]:
     """Return the command that runs a deck; output is line-buffered, or fatal messages would vanish in a pipe.
 
-    search: of `SEARCHES`; the plain program has but its own
+    search: of `SEARCHES`; the plain program has but its own; own_kernels: library of a project, for our program
     """
     deck = ["stdbuf", "-oL", executable, "-in", DECK, "-log", LOG]
     if executable != EXECUTABLE and search != SEARCHES[0]:
         deck += ["-search", search]
+    deck += own_kernels_words(own_kernels)
     return deck if ranks == 1 else [*shlex.split(launcher), "-n", str(ranks), *deck]
 
 
@@ -175,6 +192,7 @@ def run_deck(
     variables: Mapping[str, str] = MappingProxyType({}),
     patience: Patience = PATIENCE,
     search: str = SEARCHES[0],
+    own_kernels: Path | None = None,
 ) -> float:
     """Run `deck.in` of a folder to its end and return the wall time in s.
 
@@ -185,6 +203,7 @@ def run_deck(
     variables: of style index, whose values in the deck these replace
     patience: how long it may make no step
     search: for contacts with meshes
+    own_kernels: library of a project's contact kernels, see `own_kernels`
 
     Raises SolverError. A solver on a disk that is nearly full is stopped, before it leaves half a file.
     """
@@ -194,7 +213,7 @@ def run_deck(
     given = [word for name, value in variables.items() for word in ("-var", name, value)]
     with open(folder / SCREEN, "wb") as screen:
         process = subprocess.Popen(
-            [*solver_command(ranks, executable, launcher, search), *given],
+            [*solver_command(ranks, executable, launcher, search, own_kernels), *given],
             cwd=folder,
             env=solver_environment(ranks, by_slurm=ranks > 1 and shlex.split(launcher)[0] == "srun"),
             stdin=subprocess.DEVNULL,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.calibration import charts, figure_findings
 from bulkwear.workflows.cases.calibration.case import calibration_box, measured_file, pairs_file
+from bulkwear.workflows.report import sensitivity
 from bulkwear.workflows.report.products import Job, figure, tables
 
 if TYPE_CHECKING:
@@ -93,6 +94,30 @@ def response_maps(job: Job) -> Any:
     grid = response_grid(done.problem, done.known)
     marked = done.everything, done.problem.measured, done.published, done.problem.names
     return responses.response_maps(grid, *marked, job.remarks), grid
+
+
+@figure(
+    CATEGORY,
+    "Which parameter decides",
+    finding=sensitivity.finding,
+    inputs=SIMULATED,
+    told=TOLD,
+    digits=6,
+    caption="""
+    Sobol indices with 95 % intervals: the part of the response's variance that a factor makes over the range of the
+    design, alone and with all its interactions. All parameters vary evenly and independently over the ranges in which
+    they were looked for. The intervals are those of draws of the surrogate, so that they hold what it does not know.
+    Nothing is told of a surrogate of too few simulations, or of one that predicts simulations that are left out no
+    better than their mean does.
+    """,
+)
+def calibration_sensitivity(job: Job) -> Any:
+    """Draw the Sobol indices of every response."""
+    from bulkwear.postproc.plots.sensitivity import sensitivity_bars
+    from bulkwear.workflows.cases.calibration.sensitivity import sensitivity_table
+
+    table = sensitivity_table(_calibrated(job))
+    return sensitivity_bars(table, job.remarks), table
 
 
 @figure(

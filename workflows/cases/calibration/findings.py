@@ -29,6 +29,7 @@ from bulkwear.workflows.cases.calibration.simulations import BLOCKED, cost_table
 from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.report.sections import Block, Cards, Listing, Pictures, Points, Section, Table, Text
+from bulkwear.workflows.report.sensitivity import read_indices, sensitivity_blocks
 
 INSIDE = (
     "Inside: at most one standard deviation of the measurement away; within its uncertainty: closer than that and the "
@@ -71,6 +72,7 @@ def sections_of(done: Calibrated, study: str) -> list[Section]:
         Section("Against what was measured", against_measured(done)),
         Section("What to measure next", next_measurement(done)),
         Section("Responses over both frictions", [*simulations(done), Pictures(["response_maps"])]),
+        Section("Which parameter decides", [*deciding(done.folder), Pictures(["calibration_sensitivity"])]),
         Section("At the pairs that others simulated", [at_published(done)]),
         Section("Size and width of the box", [Table(sizes(done.folder)), Pictures(["box_sizes"])]),
         *([Section("Pairs in tests that the calibration did not use", checked_pairs(done))] if checked else []),
@@ -216,6 +218,11 @@ def simulations(done: Calibrated) -> list[Block]:
     counts = done.simulations.groupby(["test", "why"], sort=False).size()
     told = ", ".join(f"{number} {test.replace('_', ' ')} ({why})" for (test, why), number in counts.items())
     return [Text(f"Simulations: {told}."), Table(_named(done.simulations.astype({"seed": str})), "simulations")]
+
+
+def deciding(folder: Path) -> list[Block]:
+    """Return the Sobol indices of every response over the parameters."""
+    return sensitivity_blocks(read_indices(folder / "figures" / "calibration_sensitivity.csv"))
 
 
 def sizes(folder: Path) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,13 @@ import pandas as pd
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
+from bulkwear.postproc.wear.prediction import Prediction, joined
 from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
 from bulkwear.workflows.cases.circular_tester.flow import steady_revolutions
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW
 from bulkwear.workflows.cases.circular_tester.tables import LABORATORY, OURS, THESIS, THESIS_ALIKE
 from bulkwear.workflows.cases.circular_tester.volume import (
+    SETTING,
     TERMS,
     change_of_terms,
     published_terms,
@@ -24,6 +27,7 @@ from bulkwear.workflows.cases.circular_tester.volume import (
 )
 from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.engine.project import PACKAGE
+from bulkwear.workflows.report.predictions import HEADS, Foreseen, error_of, prediction_note, prediction_table
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
 from bulkwear.workflows.report.text import number
 
@@ -52,6 +56,7 @@ STEADY_HEADS = {
     "drift_low": ("drift, interval from", "%"),
     "drift_high": ("to", "%"),
 }
+PER_REVOLUTION = "worn volume per revolution"
 INTERVALS = "Intervals: 95 %, over packings; of one packing the scatter is unknown."
 REDUCED = "At the reduced scale told at the top of the page: a finding that is contradicted here is not thereby wrong."
 RESULTS_NOTE = (
@@ -166,7 +171,7 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
     return [Text(" ".join(said)), Table(table[shown], "findings", beside_source=True)]
 
 
-def rates(folder: Path) -> list[Block]:
+def rates(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return what each setting loses per revolution and how that changes, beside the fits of the source."""
     theirs = pd.read_csv(PUBLISHED_FITS)[["surface", "particle_scale", *TERMS, "r_squared", "source"]]
     note = (
@@ -176,7 +181,28 @@ def rates(folder: Path) -> list[Block]:
     return [
         Table(with_fits(of_study(folder, "rates"), theirs), "rates", note, heads=heads_of(RATE) | FIT_RATE),
         Table(theirs, digits=dict.fromkeys([*TERMS, "r_squared"], FIT_DIGITS), heads=FIT_HEADS),
+        *predicted_rates(of_study(folder, "rates"), error_of(study["settings"])),
     ]
+
+
+def predicted_rates(found: pd.DataFrame, error: float) -> list[Block]:
+    """Return what each setting loses per revolution with the error (-) of its coefficient; nothing where none is given.
+
+    found: as from `volume.rates`. Hours of the test need none: the plain sample's measured volume sets them.
+    """
+    if not error > 0.0:
+        return []
+    rows = [
+        Foreseen({name: getattr(row, name) for name in SETTING}, PER_REVOLUTION, "mm³", _joined(row, error))
+        for row in found.itertuples()
+    ]
+    note = f"{prediction_note(rows, error)} Hours of the test do without: the plain sample's measured volume sets them."
+    return [Table(prediction_table(rows), "predictions", note, heads=HEADS)]
+
+
+def _joined(row: Any, error: float) -> Prediction:
+    rate, high = row.rate_mm3_per_revolution, row.rate_mm3_per_revolution_high
+    return joined(rate, high / rate - 1.0 if rate > 0.0 else math.nan, error, row.packings)
 
 
 def with_fits(rates: pd.DataFrame, fits: pd.DataFrame) -> pd.DataFrame:

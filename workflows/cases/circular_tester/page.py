@@ -68,7 +68,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
             ("tester_hours", "tester_benchmark"),
         ),
         ("Findings of the source", key_numbers.findings(study, folder), ()),
-        ("Volume by revolution", key_numbers.rates(folder), ("tester_volume", "tester_increments")),
+        ("Volume by revolution", key_numbers.rates(study, folder), ("tester_volume", "tester_increments")),
         ("Patterned over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
         ("Every run", key_numbers.every_run(folder), ("worn_surface", "worn_surface_3d")),
         ("Beds", blocks_of_beds(folder, NOTE), ()),

@@ -46,7 +46,7 @@ class Equipment(Case):
     figure_modules = ("figures", "map_figures", "flow_figures", "lifter_figures")
     geometry = ("parts", "particle", "inlet", "filling", "outlets", "periodic", "domain")
     consumed = ("wear", "remeshing", "parts", "sampling", "start_up", "updates")
-    only_told = (*Case.only_told, "wear_coefficient_error", "change_out_remaining_m", "change_out_by_mass")
+    only_told = (*Case.only_told, "change_out_remaining_m", "change_out_by_mass")
     first_title = "start-up"
     leftovers = ()
     kept = ("patches.csv", "parts.csv", "flow.csv")

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from bulkwear.postproc.statistics.intervals import estimate
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES
 from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.cases.pin_on_disc import findings
+from bulkwear.workflows.report.predictions import Foreseen, error_of, foreseen, prediction_blocks
 from bulkwear.workflows.report.sections import Block, Cards, Pictures, Section, Table
 from bulkwear.workflows.report.text import range_text
 
@@ -76,7 +78,8 @@ def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a study's page: its key numbers, then those of which the study has the figures."""
-    found = [Section("Key numbers", key_numbers(read_summary(folder / "summary.csv")))]
+    summary, error = read_summary(folder / "summary.csv"), error_of(study["settings"])
+    found = [Section("Key numbers", [*key_numbers(summary), *prediction_blocks(predictions(summary, error), error)])]
     if set(findings.NEEDED_OF_VERDICTS) <= set(study["figures"]):
         found.append(Section("Findings of the source", findings.verdict_blocks(folder)))
     for title, figures, blocks in SECTIONS:
@@ -90,6 +93,18 @@ def key_numbers(summary: pd.DataFrame) -> list[Block]:
     results = result_table(summary)
     table = Table(results, "key_numbers", KEY_NOTE, KEY_DIGITS, KEY_HEADS)
     return [*([Cards(found)] if (found := cards(results)) else []), table]
+
+
+def predictions(summary: pd.DataFrame, error: float) -> list[Foreseen]:
+    """Return what discs lose with the error (-) of the coefficient; no run is repeated, so scatter is unknown. Discs
+    that keep their shape lose nothing.
+    """
+    found = []
+    for row in summary[summary["removed_volume_m3"] > 0.0].itertuples():
+        removed, whose = CUBIC_MILLIMETRES * row.removed_volume_m3, {"run": row.run}
+        for what, volume in (("removed volume", removed), ("per revolution", removed / row.revolutions)):
+            found.append(foreseen(whose, what, "mm³", estimate([volume], log=True), error))
+    return found
 
 
 def result_table(summary: pd.DataFrame) -> pd.DataFrame:

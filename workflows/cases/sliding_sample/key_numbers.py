@@ -9,11 +9,13 @@ from typing import Any
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
-from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, estimates
-from bulkwear.postproc.tables.display import in_display_units
+from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, estimate, estimates
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, in_display_units
 from bulkwear.postproc.tables.packings import BY, over_packings
 from bulkwear.postproc.tables.summary import read_summary
+from bulkwear.postproc.wear.prediction import Prediction, predicted, shares_words
 from bulkwear.workflows.engine.job import duration_text
+from bulkwear.workflows.report.predictions import Foreseen, error_of, foreseen, prediction_blocks
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
 from bulkwear.workflows.report.sentences import INTERVAL, less_or_more, side
 from bulkwear.workflows.report.text import number
@@ -22,6 +24,7 @@ ROUNDING_DIGITS = 9  # of a percentage: below is what sums leave of zero
 DIGITS = 2  # significant ones of a ratio in words
 PERCENT = 100.0
 SECONDS_PER_HOUR, MICROMETRES_PER_MM = 3600.0, 1000.0
+DEPTH_RATES = ("largest_depth", "depth_of_99_percent")  # of the table of depths
 PER_METRE = "worn_volume_per_metre_m3_per_m"
 
 
@@ -47,6 +50,7 @@ def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
         *([Cards(found)] if (found := cards(summary, acceleration)) else []),
         Table(shown, "key_numbers"),
         Text(note(settings, results["packings"])),
+        *prediction_blocks(predictions(summary, depths, acceleration, error_of(settings)), error_of(settings)),
     ]
 
 
@@ -79,27 +83,67 @@ def answers(summary: pd.DataFrame) -> list[str]:
     return [counts, f"Lowest: {said[0].lower()}{said[1:]}"]
 
 
-def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float) -> list[str]:
+def facts(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float, error: float = 0.0) -> list[str]:
     """Return how fast the deepest places of the lowest setting wear, and for how long its runs stand.
 
-    depths: of every run, as from `depths.depth_summary`
+    depths: of every run, as from `depths.depth_summary`; error: -, of the wear coefficient
     """
-    settings = [setting for setting, _ in wear_over_plain(summary)] or summary["setting"].tolist()
-    shown = summary[summary["setting"] == settings[0]].merge(depths, on="run")
-    shown = shown.assign(hours=shown["time_s"] * acceleration / SECONDS_PER_HOUR)
+    shown = lowest_runs(summary, depths, acceleration)
     said = []
     for surface, runs in shown.groupby("surface", sort=False):
-        deepest, hundredth = (
-            float((runs[name] / MICROMETRES_PER_MM / runs["hours"]).mean())
-            for name in ("largest_depth_um", "depth_of_99_percent_um")
-        )
+        deepest, hundredth = (estimate(runs[f"{name}_mm_per_h"]) for name in DEPTH_RATES)
+        ends = _ends_in_words(predicted(deepest, error))
         said.append(
-            f"The deepest place of the {surface} sample of {settings[0]} wears {number(deepest, DIGITS)} mm per hour, a"
-            f" hundredth of its area at least {number(hundredth, DIGITS)} mm."
+            f"The deepest place of the {surface} sample of {shown['setting'].iloc[0]} wears"
+            f" {number(deepest.value, DIGITS)} mm per hour{ends}, a hundredth of its area at least"
+            f" {number(hundredth.value, DIGITS)} mm."
         )
     time, hours = float(shown["time_s"].mean()), float(shown["hours"].mean())
     stands = f", which stand for {duration_text(SECONDS_PER_HOUR * hours)} of wear" if acceleration != 1.0 else ""
     return [*said, f"Its runs slide for {time:.3g} s{stands}."]
+
+
+def _ends_in_words(found: Prediction) -> str:
+    """Return the interval of a rate in mm per hour and what makes it wide, in brackets; "" where neither is known."""
+    if found.known:
+        low, high = (number(end, DIGITS) for end in (found.low, found.high))
+        shares = f"; {shares_words(found.scatter_share)}" if found.coefficient_reach > 0.0 else ""
+        return f" ({INTERVAL} {low} to {high} mm, {found.packings} packings{shares})"
+    if not found.coefficient_reach > 0.0:
+        return ""
+    low, high = (number(end, DIGITS) for end in (found.coefficient_low, found.coefficient_high))
+    return f" ({UNKNOWN}; the wear coefficient alone gives {low} to {high} mm)"
+
+
+def lowest_runs(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float) -> pd.DataFrame:
+    """Return the runs of the setting with the lowest wear over plain, else of the first one, with the hours that they
+    stand for and DEPTH_RATES in mm per hour; arguments as for `facts`.
+    """
+    settings = [setting for setting, _ in wear_over_plain(summary)] or summary["setting"].tolist()
+    shown = summary[summary["setting"] == settings[0]].merge(depths, on="run")
+    hours = shown["time_s"] * acceleration / SECONDS_PER_HOUR
+    rates = {f"{name}_mm_per_h": shown[f"{name}_um"] / MICROMETRES_PER_MM / hours for name in DEPTH_RATES}
+    return shown.assign(hours=hours, **rates)
+
+
+def predictions(summary: pd.DataFrame, depths: pd.DataFrame, acceleration: float, error: float) -> list[Foreseen]:
+    """Return what the samples of the lowest setting lose by the true coefficient, per metre and hour, and in how many
+    hours their deepest place loses a millimetre; arguments as for `facts`.
+    """
+    shown, found = lowest_runs(summary, depths, acceleration), []
+    for (setting, surface), runs in shown.groupby(list(BY), sort=False):
+        whose = {"setting": setting, "surface": surface}
+        volume = CUBIC_MILLIMETRES * runs["worn_volume_m3"]
+        deepest = runs[f"{DEPTH_RATES[0]}_mm_per_h"]
+        rows = (
+            ("worn volume per metre of travel", "mm³/m", estimate(volume / runs["travel_m"] / acceleration, log=True)),
+            ("worn volume per hour", "mm³/h", estimate(volume / runs["hours"], log=True)),
+            ("depth of the deepest place per hour", "mm/h", estimate(deepest)),
+        )
+        found += [foreseen(whose, what, unit, each, error) for what, unit, each in rows]
+        hours = estimate(1.0 / deepest[deepest > 0.0], log=True)
+        found.append(foreseen(whose, "until the deepest place has lost 1 mm", "h", hours, error, inverse=True))
+    return found
 
 
 def note(settings: Mapping[str, Any], packings: pd.Series) -> str:

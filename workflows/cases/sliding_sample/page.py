@@ -13,6 +13,7 @@ from bulkwear.workflows.cases.sliding_sample import key_numbers
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
 from bulkwear.workflows.report.beds import blocks_of_beds
+from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.sections import Pictures, Section
 from bulkwear.workflows.report.text import range_text
 
@@ -80,8 +81,8 @@ def answers(folder: Path) -> list[str]:
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
     """Return in sentences how deep the samples wear per hour, and for how long the runs stand."""
-    acceleration = study["settings"]["wear"]["acceleration"]
-    return key_numbers.facts(read_summary(folder / "summary.csv"), key_numbers.depths_of(folder), acceleration)
+    acceleration, error = study["settings"]["wear"]["acceleration"], error_of(study["settings"])
+    return key_numbers.facts(read_summary(folder / "summary.csv"), key_numbers.depths_of(folder), acceleration, error)
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:

@@ -27,7 +27,10 @@ from bulkwear.workflows.report.verdict import verdict
 from tests import REPOSITORY
 from tests.support.calibration_study import study
 
-FIGURES = ["heaps", "response_maps", "family", "pairs_against_bands", "box_sizes", "calibration_progress"]
+FIGURES = [
+    *("heaps", "response_maps", "calibration_sensitivity", "family"),
+    *("pairs_against_bands", "box_sizes", "calibration_progress"),
+]
 
 
 def make(product, folder):
@@ -72,7 +75,7 @@ def sections(folder):
 
 
 def test_figures_are_those_of_the_case():
-    """Six figures, and a job that writes the statements as the study's summary and the materials file."""
+    """Seven figures, and a job that writes the statements as the study's summary and the materials file."""
     products = products_of_study(study())
     assert [name for name, product in products.items() if product.is_figure] == FIGURES
     assert set(products["statements"].tables.values()) == {"summary.csv", "materials.yaml"}

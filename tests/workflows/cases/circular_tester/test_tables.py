@@ -1,5 +1,6 @@
 """Experiment, thesis and runs of the circular wear tester side by side: every number stands in its place."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.cases.circular_tester.hours import predictions, time_scale
+from bulkwear.workflows.cases.circular_tester.key_numbers import predicted_rates
 from bulkwear.workflows.cases.circular_tester.tables import (
     BEYOND,
     LABORATORY,
@@ -68,3 +70,15 @@ def test_losses_stand_beside_the_scanned_ones():
     assert (table["hours"] == 184.0).all() and table[THESIS].isna().all() and (table["packings"] == 2).all()
     short = loss_rows(losses.head(2), study.PUBLISHED, 4.0, 6.57)
     assert short["note"].iloc[0] == f"ours after 4 revolutions, 184 h are 6.57; {ONE_PACKING}"
+
+
+def test_rates_with_the_error_of_the_coefficient():
+    """Per revolution 10 (9 to 11) mm3 and a fifth of the coefficient; without an error nothing more is told."""
+    row = {"surface": "plain", "shape": "channel", "particle_scale": 6.0, "packings": 3}
+    ends = {"rate_mm3_per_revolution": 10.0, "rate_mm3_per_revolution_low": 9.0, "rate_mm3_per_revolution_high": 11.0}
+    assert predicted_rates(pd.DataFrame([row | ends]), 0.0) == []
+    (table,) = predicted_rates(pd.DataFrame([row | ends]), 0.2)
+    found = table.data.iloc[0]
+    assert found["high"] == pytest.approx(10.0 * math.exp(math.hypot(0.1, math.log(1.2))))
+    assert found["low"] == pytest.approx(10.0 * math.exp(-math.hypot(0.1, math.log(0.8))))
+    assert "the plain sample's measured volume sets them" in table.note

@@ -9,6 +9,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import written
 from bulkwear.workflows.report.page import write_page
 from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.predictions import error_of, prediction_note, prediction_table
 from bulkwear.workflows.report.sections import Cards, Pictures, Table
 from tests.support import pin_study
 
@@ -41,8 +42,8 @@ def summarised(tmp_path):
 def test_key_numbers_are_those_of_the_summary(summarised):
     """Ratios to alpha F L by hand, the scale of each pin; cards of the first run of each scheme."""
     study, folder = summarised
-    (section,) = page.sections({"figures": {}}, folder)
-    cards, table = section.blocks
+    (section,) = page.sections({"figures": {}, "settings": study.settings}, folder)
+    cards, table, *_ = section.blocks
     assert isinstance(cards, Cards) and isinstance(table, Table)
     results = table.data.set_index("run")
     np.testing.assert_allclose(results["law_over_alpha_F_L"], 1.0, rtol=RELATIVE)
@@ -51,6 +52,19 @@ def test_key_numbers_are_those_of_the_summary(summarised):
     assert results.loc["s4", "particle_scale"] == 4.0 and len(results) == len(study.runs)
     assert [value for value, _ in cards.cards] == ["1", "1"] * 2
     assert cards.cards[2][1].startswith("volume removed over coefficient x load x distance, by the per-triangle rule, ")
+
+
+def test_predictions_have_the_error_of_the_coefficient(summarised):
+    """No run is repeated: no interval, and 0.84 to 1.16 times the volume by the coefficient alone; rigid discs none."""
+    study, folder = summarised
+    summary = pd.read_csv(folder / "summary.csv").assign(removed_volume_m3=lambda rows: rows["worn_volume_m3"])
+    summary.loc[summary.index[0], "removed_volume_m3"] = 0.0
+    rows = page.predictions(summary, error_of(study.settings))
+    table = prediction_table(rows)
+    assert len(table) == 2 * (len(summary) - 1) and table["low"].isna().all()
+    np.testing.assert_allclose(table["coefficient_low"] / table["value"], 0.84, rtol=RELATIVE)
+    np.testing.assert_allclose(table["coefficient_high"] / table["value"], 1.16, rtol=RELATIVE)
+    assert "One packing, scatter unknown: the coefficient's part alone." in prediction_note(rows, 0.16)
 
 
 def test_a_scheme_without_runs_has_no_card(summarised):
@@ -67,7 +81,7 @@ def test_only_sections_with_a_figure_are_there(pins, tmp_path):
     figures = pin_study.drawn(folder)
     write_summary(load_study("pin_on_disc"), tmp_path / "figures")
     (tmp_path / "figures" / "summary.csv").rename(tmp_path / "summary.csv")
-    found = page.sections({"figures": figures}, folder)
+    found = page.sections({"figures": figures, "settings": {"wear": {}}}, folder)
     titles = [section.title for section in found]
     assert titles[:3] == ["Key numbers", "Findings of the source", "Depth, width and volume"]
     assert {"Dependence on the mesh", "Size invariance"}.isdisjoint(titles) and "Run-in" in titles

@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.workflows.cases.sliding_sample.key_numbers import answers, cards, facts
+from bulkwear.workflows.cases.sliding_sample.key_numbers import answers, cards, facts, predictions
 from bulkwear.workflows.cases.sliding_sample.study import published_rows, replicate_settings
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.page_parameters import answers_of_study, page_parameters
+from bulkwear.workflows.report.predictions import prediction_table
 from bulkwear.workflows.report.products import figures_of
 from tests.support.finished_samples import CYCLES, embedded, finished_page
 
@@ -82,6 +83,33 @@ def test_depths_are_told_per_hour_that_a_run_stands_for():
     assert "plain sample of A" in plain
     assert hours == "Its runs slide for 1 s, which stand for 2 h 0 min of wear."
     assert facts(summary, depths, 1.0)[-1] == "Its runs slide for 1 s."
+
+
+def test_rates_join_packings_and_coefficient():
+    """Depth per hour in a sentence, the joined interval wider than either; volumes and hours in a table."""
+    depths = pd.DataFrame({"run": list("abcdef"), "largest_depth_um": [19.0, 20, 20, 20, 21, 20]})
+    summary = summary_of(A=[0.5, 0.52, 0.54]).assign(time_s=1.0, travel_m=2.0, run=depths["run"])
+    depths = depths.assign(depth_of_99_percent_um=10.0)
+    convex, *_ = facts(summary, depths, 7200.0, 0.16)
+    assert "wears 0.01 mm per hour (95 % interval 0.0081 to 0.012 mm, 3 packings; scatter makes" in convex
+    assert "coefficient" not in facts(summary, depths, 7200.0)[0]
+    table = prediction_table(predictions(summary, depths, 7200.0, 0.16)).set_index(["surface", "quantity"])
+    per_hour, hours = (table.loc[("convex", name)] for name in table.loc["convex"].index[[1, 3]])
+    assert per_hour["value"] == pytest.approx(1e9 * (0.5 * 0.52 * 0.54) ** (1 / 3) / 2.0, rel=RELATIVE)
+    assert per_hour["low"] < 0.84 * per_hour["value"] < 1.16 * per_hour["value"] < per_hour["high"]
+    assert per_hour["scatter_percent"] + per_hour["coefficient_percent"] == pytest.approx(100.0)
+    assert hours["low"] < hours["value"] / 1.16 < hours["value"] / 0.84 < hours["high"]
+    alone = prediction_table(predictions(summary[:2], depths, 7200.0, 0.16))
+    assert alone["low"].isna().all() and alone["coefficient_low"].notna().all()
+
+
+def test_the_page_predicts_with_both(config, page, tmp_path):
+    """A table of predictions, and what its intervals join; without the coefficient's error that none is given."""
+    assert "no wear_coefficient_error is given" in page
+    study = load_study("small", config.project, {"wear": {"wear_coefficient_error": 0.16}})
+    told = finished_page(tmp_path / "told", study)
+    assert len(embedded(told, "small_predictions.csv")) == 8
+    assert "16 % of it, as given) joined as squares in the logarithm" in told
 
 
 def test_less_is_said_only_where_the_interval_leaves_out_one():

@@ -17,6 +17,7 @@ from bulkwear.postproc.tables.summary import patterned_name, read_summary
 from bulkwear.workflows.cases.sliding_sample.study import has_findings
 from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
+from bulkwear.workflows.report.sensitivity import read_indices, sensitivity_blocks
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
@@ -27,6 +28,7 @@ TEXTS = (  # columns of words, which may be empty
 )
 HEADS = {"row": ("regime", "")}  # of tables whose rows are the best designs of the regimes
 OF_RUNS = {"setting": ("regime", "")}  # of tables whose rows are runs of these
+SENSITIVITY = "figures/regression_sensitivity.csv"
 SIMULATED = "figures/confirmation.csv"
 
 
@@ -142,6 +144,8 @@ def regression(folder: Path) -> Section:
         Table(methods, "regression_methods"),
         Table(coefficients),
         Pictures(figures),
+        *sensitivity_blocks(read_indices(folder / SENSITIVITY)),
+        Pictures(["regression_sensitivity"]),
     ]
     return Section("Regression of the wear", blocks)
 

@@ -9,6 +9,7 @@ from PIL import Image
 from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.cases.sliding_sample.page import sections
 from bulkwear.workflows.cases.sliding_sample.screening import page as screening
+from bulkwear.workflows.cases.sliding_sample.screening.regression_sensitivity import sensitivity_table
 from bulkwear.workflows.cases.sliding_sample.screening.regression_tables import regression_tables, screen_summary
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report import markdown
@@ -25,6 +26,7 @@ from tests.support.finished_samples import (
     write_results,
 )
 
+DRAWN = ("coefficients", "residuals", "half_normal", "contours")  # figures of its tables
 CONVEX, PLAIN = 1.5e-9, 2.0e-9  # m3 over 0.06 m of travel
 
 
@@ -106,7 +108,7 @@ def test_a_study_with_factors_has_figures_and_tables_of_them(study):
     products = products_of_study(study)
     assert {"wear_gradient", "wear_by_regime", "velocity_profiles", "flow_views_second"} <= set(products)
     drawn = [name for name, product in products.items() if name.startswith("regression_") and product.is_figure]
-    assert drawn == [f"regression_{name}" for name in ("coefficients", "residuals", "half_normal", "contours")]
+    assert drawn == [f"regression_{name}" for name in (*DRAWN, "sensitivity")]
     assert "confirmation" not in products
     jobs = page_parameters(study)["jobs"]
     assert {"tables_regression", "tables_best_designs", "tables_findings", "tables_profiles"} <= set(jobs)
@@ -125,6 +127,8 @@ def results(study, tmp_path):
         (folder / name).mkdir()
     for name, table in tables.items():
         table.to_csv(folder / "regression" / f"{name}.csv", index=False)
+    indices = sensitivity_table(read_summary(folder / "summary.csv"), study.factors)
+    indices.to_csv(folder / screening.SENSITIVITY, index=False)
     row = {"row": "continuous", "major_radius_mm": 2.0, "minor_radius_mm": 4.0, "not_in_model": "a"}
     volumes = dict.fromkeys(("predicted_m3_per_m", "run_low_m3_per_m", "run_high_m3_per_m"), 1e-9)
     pd.DataFrame([row | volumes]).to_csv(folder / "confirmation" / "prediction.csv", index=False)
@@ -142,6 +146,7 @@ def test_a_study_with_factors_has_a_regression(study, results):
     assert "Regression of the wear" in text and tables["models"]["model"][0] in text
     assert "The target small_confirmation simulates these designs" in text and "<td>continuous</td>" in text
     assert "Not simulated." in text
+    assert "Of ln wear per metre no index is told: the best model has no term" in text
     for warning in tables["warnings"]["warning"]:
         assert f"Mind: {warning}." in text
 
