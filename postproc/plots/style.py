@@ -31,6 +31,7 @@ SMALLEST_PLAIN, LARGEST_PLAIN = 0.01, 1e4  # numbers on an axis without a power 
 COARSER, THOUSAND = {"µm": "mm"}, 3  # unit of a thousand of another one; its power of ten
 CHARACTER = 0.073  # inches, of a letter of a label, on average
 AXES_ROOM = 0.9  # inches, of a figure's height for its legend, titles and the axis below
+WHOLE = (0.0, 0.0, 1.0, 1.0)  # of a figure: left, bottom, width, height
 FOLDED = 0.6  # -, of a label's letters in the longer of its two lines, at most
 TOP_ROOM = 0.04  # inches above the topmost text
 MOST_FACET_COLUMNS = 5
@@ -153,12 +154,13 @@ def save(figure: Figure, path: str | Path) -> None:
 
 def fold_labels(figure: Figure) -> None:
     """Write labels of vertical axes in two lines where they would be longer than their axes are high, by far."""
-    _, _, _, share = figure.get_layout_engine().get().get("rect", (0.0, 0.0, 1.0, 1.0))
+    engine = figure.get_layout_engine()
+    share = engine.get().get("rect", WHOLE)[3] if engine else 1.0
     for axes in figure.axes:
         text, place = axes.get_ylabel(), axes.get_subplotspec()
         if place is None or "\n" in text or " " not in text:
             continue
-        ratios = place.get_gridspec().get_height_ratios() or [1.0] * place.get_gridspec().nrows
+        ratios = list(place.get_gridspec().get_height_ratios())
         rows = sum(ratios[place.rowspan.start : place.rowspan.stop]) / sum(ratios)
         room = (share * figure.get_figheight() - AXES_ROOM) * rows
         lines = textwrap.wrap(text, math.ceil(FOLDED * len(text)))

@@ -72,6 +72,7 @@ solver:
   rolling_radius: full
   sampling_interval_steps: 20
   search: ours
+  kept_restarts: few
 ledger: solver
 remeshing: {smallest_angle_deg: 15, largest_aspect: 10, smallest_edge: 0.3, largest_edge: 2.5}
 packings: 1

@@ -1,10 +1,22 @@
 """The look that figures share: labels that would be longer than their axes stand in two lines."""
 
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from bulkwear.postproc.plots.style import new_figure, save
 
 LONG = "Wear volume over that of the plain sample (-)"
+
+
+def test_a_figure_of_any_layout_is_saved(tmp_path):
+    """Without an engine of its own, and with rows of different heights."""
+    figure = Figure(figsize=(4.0, 2.0))
+    upper, lower = figure.subplots(2, 1, height_ratios=np.array([9.0, 1.0]))
+    for axes in (upper, lower):
+        axes.set_ylabel("a label of words")
+    save(figure, tmp_path / "figure.png")
+    assert (upper.get_ylabel().count("\n"), lower.get_ylabel().count("\n")) == (1, 1)
 
 
 @pytest.mark.parametrize(

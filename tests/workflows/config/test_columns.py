@@ -70,7 +70,7 @@ def test_a_column_that_is_no_such_setting_is_named(tmp_path, column, said):
         ("parts.liner.role", "moves", "parts.liner.role is 'moves', allowed is one of wears, rigid."),
         ("parts.plate.material", "stel", "parts.plate.material is 'stel', allowed is one of"),
         ("bulk.material", "or", "bulk.material is 'or', allowed is one of"),
-        ("parts.linr.edge_mm", "30", "parts.linr.file is missing, allowed is a file in meshes."),
+        ("parts.linr.edge_mm", "30", "parts.linr.file is missing, allowed is a file in meshes (or was parts.liner"),
     ],
 )
 def test_a_wrong_cell_of_such_a_column_is_named_with_its_row(tmp_path, column, cell, said):
