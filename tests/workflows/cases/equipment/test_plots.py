@@ -386,6 +386,15 @@ def test_bars_end_where_lives_do():
     assert (bar.get_x(), bar.get_width()) == (0.0, 5200.0)
 
 
+def test_an_interval_that_tells_nothing_is_not_drawn():
+    """A few packings that scatter by decades: the bar stands without it, the axis is not stretched, a line says why."""
+    rows = [("A", "liner", 5200.0, 4300.0, 6500.0), ("B", "liner", 1.4e4, 1.8e2, 1e10)]
+    figure = curves.life_bars(lives(*rows), {}, REMARKS)
+    assert faults_of(figure) == [] and figure.axes[0].get_xlim()[1] < 1e5
+    assert "14,000 h" in words_of(figure) and "do not tell the life within a factor of 100" in words_of(figure)
+    assert "do not tell" not in words_of(curves.life_bars(lives(rows[0]), {}, REMARKS))
+
+
 def test_a_recession_that_is_not_drawn_to_its_end():
     """A life beyond the drawn hours has no mark, and the axis does not reach to it."""
     rows = [("A", "liner", 1, h, 1e-3 * h, True) for h in (0.0, 500.0, 1000.0)]

@@ -23,6 +23,7 @@ from bulkwear.postproc.plots.style import (
     new_figure,
 )
 from bulkwear.postproc.tables.display import few_digits
+from bulkwear.workflows.cases.equipment.findings import TOO_WIDE
 
 PHASES = {  # phase: what it is called, and its shade
     "start_up": ("start-up", "#d9d9d9"),
@@ -140,10 +141,15 @@ _LINES = {"flow": _flow_lines, "held": _held_line, "power": _power_lines}
 def life_bars(lives: pd.DataFrame, hours_per_mt: Mapping[str, float], remarks: Sequence[str]) -> Figure:
     """Draw the life (h) of each part and setting with its 95 % interval, Mt on the upper axis.
 
-    lives: setting, part, life_h, life_low_h, life_high_h (infinite or NaN where there is no end), rule
+    lives: setting, part, life_h, life_low_h, life_high_h (infinite or NaN where there is no end), rule; an interval
+        that tells nothing is not drawn
     hours_per_mt: {setting: hours}; where settings differ, or without an inlet, there is no upper axis, and bars say Mt
     """
     parts, settings = (list(dict.fromkeys(lives[name])) for name in ("part", "setting"))
+    untold = (lives["life_high_h"] > TOO_WIDE * lives["life_low_h"]) & np.isfinite(lives["life_high_h"])
+    if untold.any():
+        lives = lives.assign(**{name: lives[name].mask(untold) for name in ("life_low_h", "life_high_h")})
+        remarks = [*remarks, f"no interval: packings do not tell the life within a factor of {TOO_WIDE:g}"]
     figure = new_figure(remarks, min(1.3 + BAR_INCHES * len(lives) + 0.16 * len(remarks), LARGEST_HEIGHT))
     axes = figure.subplots()
     factors = {hours_per_mt.get(setting, np.nan) for setting in settings}
