@@ -139,6 +139,7 @@ def differences(grooves):
     return table.max(axis=0) / table.min(axis=0) - 1.0
 
 
+@pytest.mark.verify
 def test_a_groove_under_a_constant_patch_converges():
     """Contact patch 1.2 mm, 0.3 mm deep: depth and width agree within 5 % at 5, 10 and 20 edges per width."""
     area = 4.0 / 3.0 * PATCH * PATCH_DEPTH  # of the parabola that the Hertz pressure itself leaves along its path

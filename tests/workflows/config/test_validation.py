@@ -262,7 +262,7 @@ BAD_VALUES = [
         SETTINGS,
         "ledger: solver",
         "ledger: dump",
-        "config/default.yaml, line 21: ledger is 'dump', allowed is one of solver, dumps.",
+        "config/default.yaml, line 22: ledger is 'dump', allowed is one of solver, dumps.",
     ),
     (
         SETTINGS,
