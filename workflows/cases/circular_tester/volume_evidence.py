@@ -73,7 +73,7 @@ def _worn_out_words(worn_out: pd.DataFrame | None) -> str:
     if rows.empty:
         return "worn right off, never faster"
     told = [
-        f"{row.faster_revolution:.3g} ({PERCENT * row.faster_share:.2g} % of the pattern left)"
+        f"{row.faster_revolution:.3g} ({PERCENT * row.faster_share:.3g} % of the pattern left)"
         for row in rows.itertuples()
     ]
     return f"worn right off, first faster at revolution {', '.join(told)}"
