@@ -2,6 +2,7 @@
 under each of our four models: the responses that it prints beside ours.
 
     python -m benchmarks.rolling_models --cores 2    # in the root of the repository
+    python -m benchmarks.rolling_models --models own_spin epsd2    # these before the others
     python -m benchmarks.rolling_models --finished   # while it runs, or after it was stopped: of the simulations so far
     python -m benchmarks.rolling_models --redraw
 
@@ -44,21 +45,23 @@ KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN), "calibrated"  # the pair of Table 3.
 FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
 
 
-def wanted(packings: int) -> list[dict[str, Any]]:
+def wanted(packings: int, models: Sequence[str] = MODELS) -> list[dict[str, Any]]:
     """Return what is to be simulated: model, test, pair, packing, frictions; `asked` is the test itself.
 
-    In an order in which models stand beside one another early: a packing of all before the next, a pair under all
-    models before the next pair.
+    In an order in which models stand beside one another early: a packing of all before the next, the calibrated pair in
+    all tests before the other pairs, a pair under all models before the next pair.
     """
     rows = []
     studies = {
         name: load_study("calibration", overrides={"fidelity": FIDELITY, "solver": dict(solver)})
         for name, solver in SETTINGS.items()
+        if name in models
     }
     published = pd.read_csv(pairs_file(next(iter(studies.values()))))
     asked = [
         (packing, kind, pair) for packing in range(packings) for kind in KINDS for pair in pairs_of(published, kind)
     ]
+    asked.sort(key=lambda each: (each[0], each[2] != CALIBRATED))
     for packing, kind, pair in asked:
         for model, study in studies.items():
             run = study.all_runs[0].parameters
@@ -121,6 +124,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}")
+    parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/rolling_models"))
     parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take what is finished")
@@ -128,7 +132,7 @@ def main() -> None:
     given = parser.parse_args()
     file = given.output / FILE
     if not given.redraw:
-        rows = wanted(given.packings)
+        rows = wanted(given.packings, given.models)
         rows = finished(rows, given.folder) if given.finished else rows
         simulated(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
     published = pd.read_csv(pairs_file(load_study("calibration")))
