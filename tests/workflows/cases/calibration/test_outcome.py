@@ -56,12 +56,12 @@ def test_charts_of_boxes_and_looks():
 
 
 def test_another_study_uses_the_calibrated_materials(done, tmp_path):
-    """With its rolling model set alike another study takes the calibrated values; otherwise it is refused."""
+    """With the rolling model of the calibration another study takes the calibrated values; otherwise it is refused."""
     path = tmp_path / "materials.yaml"
     path.write_text(calibrated_materials(done, study().materials, "calibration"))
-    with pytest.raises(ConfigError, match=r"solver\.rolling_friction is 'cdt', allowed is epsd2, in which"):
-        load_study("demo", overrides={"materials": str(path)})
-    demo = load_study("demo", overrides={"materials": str(path), "solver": {"rolling_friction": "epsd2"}})
+    with pytest.raises(ConfigError, match=r"solver\.rolling_friction is 'cdt', allowed is own_spin, in which"):
+        load_study("demo", overrides={"materials": str(path), "solver": {"rolling_friction": "cdt"}})
+    demo = load_study("demo", overrides={"materials": str(path)})
     contact = yaml.safe_load(path.read_text())["particles"]["river_gravel"]["contact"]
     assert demo.runs[0].parameters["particle"]["contact"] == contact
     assert "calibrated" not in demo.runs[0].parameters["particle"]

@@ -182,7 +182,7 @@ def test_a_design_of_which_no_figures_can_be_made_is_refused(config, table, word
 
 
 @pytest.mark.parametrize("fidelity", ["quick", "standard", "paper"])
-@pytest.mark.parametrize("rolling_friction", ["cdt", "epsd2"])
+@pytest.mark.parametrize("rolling_friction", ["cdt", "own_spin"])
 def test_every_deck_of_every_pin_renders(fidelity, rolling_friction, tmp_path):
     """No deck has an open word, a missing or an unused parameter, or a tab."""
     study = load_study(

@@ -27,7 +27,7 @@ def run_and_bed(study, name="R9_convex"):
 
 
 @pytest.mark.parametrize("name", SLIDING)
-@pytest.mark.parametrize("rolling_friction", ["cdt", "epsd2"])
+@pytest.mark.parametrize("rolling_friction", ["cdt", "own_spin"])
 @pytest.mark.parametrize(
     ("ledger", "ends"),
     [("solver", "walls"), ("dumps", "walls"), ("solver", "periodic"), ("solver", "window"), ("dumps", "window")],
