@@ -45,19 +45,19 @@ CANDIDATES: dict[str, Candidate] = {
         OPEN,
         "the source prints a curve; the study assumes 0.8, 1 and 1.2 of the median with 25, 50 and 25 % of the mass",
     ),
-    "rolling on own spin": Candidate(
-        {"solver": {"rolling_friction": "own_spin"}},
+    "rolling on relative spin": Candidate(
+        {"solver": {"rolling_friction": "cdt"}},
         OPEN,
-        "rolling friction against each particle's own spin, the standard model of the source's code, which does not say"
-        " which of its models ran; the study's `cdt` acts on the relative spin",
+        "rolling friction against the spin of a particle relative to its neighbour (`cdt`, type A), instead of its own"
+        " (`own_spin`), the standard model of the source's code, which does not say which of its models ran",
     ),
     "rolling as rvd": Candidate(
         {"solver": {"rolling_friction": "rvd"}},
         OPEN,
         "rolling friction against the velocity of the surfaces over the contact, the other model of the source's code",
     ),
-    "one size, rolling on own spin": Candidate(
-        {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}, "solver": {"rolling_friction": "own_spin"}},
+    "one size, rolling on relative spin": Candidate(
+        {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}, "solver": {"rolling_friction": "cdt"}},
         OPEN,
         "both",
     ),

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from benchmarks.rolling_models import CALIBRATED, KINDS, SETTINGS, finished, pairs_of, publish, wanted
-from benchmarks.rolling_page import MODELS, by_pair, differences, nearest, results_page, summary
+from benchmarks.rolling_page import MODELS, by_pair, differences, nearest, of_shared_pairs, results_page, summary
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.config.design import load_study
@@ -72,6 +72,15 @@ def test_a_packing_without_all_pairs_does_not_count(published):
     short = runs.drop(runs[(runs["packing"] == 2) & (runs["pair"] == "first_1")].index)
     table = summary(differences(short, published))
     assert (table["packings"] == 1).all() and table["low"].isna().all()
+
+
+def test_models_are_compared_by_the_same_pairs(published):
+    """A pair that one of them lacks is left out for all, else a model would win by easier pairs."""
+    found = differences(runs_off_by(published), published)
+    lacks = found.drop(found[(found["model"] == "rvd") & (found["pair"] == "first_3")].index)
+    shared = of_shared_pairs(lacks)
+    assert set(shared["pair"]) == set(found["pair"]) - {"first_3"} and set(shared["model"]) == set(MODELS)
+    assert len(of_shared_pairs(found)) == len(found)
 
 
 def test_the_nearest_model_is_named(published):

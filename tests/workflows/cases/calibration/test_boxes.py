@@ -24,10 +24,10 @@ EXACT = 1e-12  # relative: the same formula
 @pytest.mark.parametrize("kind", ["shear_box", "draw_down", "wall_shear"])
 @pytest.mark.parametrize("front_and_back", ["periodic", "walls"])
 def test_decks_render_with_what_they_say(kind, front_and_back):
-    """The friction asked for stands in the deck, doubled for the solver's radius where it rolls; so do its walls."""
+    """The friction asked for stands in the deck, and so do its walls."""
     text = deck_text(asked(kind, draw_down={"front_and_back": front_and_back}))
     table = text[text.index("coefficientRollingFriction") :].splitlines()[1]
-    assert float(table.split()[0]) == pytest.approx(2.0 * PAIR[ROLLING], rel=EXACT)
+    assert float(table.split()[0]) == pytest.approx(PAIR[ROLLING], rel=EXACT)
     assert ("front_wall" in text) == (kind == "draw_down" and front_and_back == "walls")
     loops = 1 if kind == "wall_shear" else 2  # until rest, each with a beginning and an end; a drag needs none
     assert text.count("label ") == 2 * loops
@@ -45,11 +45,15 @@ def test_a_plate_is_drawn_as_far_and_as_fast_as_asked():
     assert [float(line.split()[0]) for line in table] == pytest.approx([0.3, 0.77, 0.36], rel=EXACT)
 
 
-def test_reduced_convention_is_not_converted():
-    """A coefficient for the reduced radius is the solver's own."""
-    text = deck_text(asked(solver={"rolling_radius": "reduced"}))
+@pytest.mark.parametrize(
+    ("model", "convention", "factor"),
+    [("own_spin", "full", 1.0), ("own_spin", "reduced", 0.5), ("cdt", "full", 2.0), ("cdt", "reduced", 1.0)],
+)
+def test_a_coefficient_is_converted_to_the_radius_of_its_model(model, convention, factor):
+    """own_spin acts on the full radius, cdt on the reduced one, half of it between equal spheres."""
+    text = deck_text(asked(solver={"rolling_friction": model, "rolling_radius": convention}))
     table = text[text.index("coefficientRollingFriction") :].splitlines()[1]
-    assert float(table.split()[0]) == pytest.approx(PAIR[ROLLING], rel=EXACT)
+    assert float(table.split()[0]) == pytest.approx(factor * PAIR[ROLLING], rel=EXACT)
 
 
 @pytest.mark.parametrize(
