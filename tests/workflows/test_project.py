@@ -22,6 +22,7 @@ from tests.workflows.test_snakemake import finish, planned_jobs, snakemake
 CLEAN = multiprocessing.get_context("forkserver")
 CLEAN.set_forkserver_preload([load_project.__module__])
 ROUNDING = 1e-12  # relative; of a sum over triangles
+WITHOUT_LIBRARIES = 100.0  # MB, of a process with Snakemake alone, 60 of them; with pandas and matplotlib 170
 PROFILE = ("--workflow-profile", str(PACKAGE / "workflows/profiles/default"))
 
 
@@ -74,6 +75,14 @@ def test_a_project_runs_to_its_page(finished):
     wear = pd.read_csv(folder / "A_plain/wear.csv")
     archard = 6.3e-13 * wear["sliding_work_J"].sum()
     assert wear["worn_volume_m3"].sum() == pytest.approx(archard / 3.0, rel=ROUNDING)
+
+
+@pytest.mark.solver
+def test_figures_are_made_by_one_process(finished):
+    """Their own processes import nothing of what draws."""
+    logs = finished["mine"] / "results" / STUDY / "logs"
+    memory = pd.concat(pd.read_csv(path, sep="\t", na_values="-") for path in logs.glob("figure_*.benchmark.tsv"))
+    assert len(memory) > 1 and memory["max_rss"].max() < WITHOUT_LIBRARIES
 
 
 @pytest.mark.solver
