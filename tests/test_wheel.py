@@ -15,6 +15,7 @@ import bulkwear
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.mesh import areas, write_surface
 from tests import REPOSITORY
+from tests.support.compiled import share_compiled
 from tests.test_house import name_of, tracked
 
 UV = Path(sys.executable).with_name("uv")
@@ -42,6 +43,9 @@ def python(wheel, tmp_path_factory):
     python = folder / "bin" / "python"
     install = [UV, "pip", "install", "--quiet", "--python", python, wheel, "--constraint", "requirements.txt"]
     subprocess.run(install, cwd=REPOSITORY, check=True, env=environment)
+    (package,) = folder.glob("lib/*/site-packages/bulkwear")
+    for name in ("bulkwear", "postproc", "meshes"):
+        share_compiled(package / name.removeprefix("bulkwear"), REPOSITORY / name)
     return python
 
 

@@ -30,6 +30,7 @@ from bulkwear.workflows.engine.study_folder import StudyFolderError, date_back, 
 from bulkwear.workflows.engine.templates import DeckError, templates_digest
 from bulkwear.workflows.engine.terminal import Terminal, listen
 from bulkwear.workflows.forecast.rates import rates_file
+from bulkwear.workflows.report import figure_process
 from bulkwear.workflows.report.products import looked_up, paths_of, told_to
 
 min_version("9.0")
@@ -105,6 +106,8 @@ BEFORE_TABLES = {"surface_mesh", "cost_rates", "forecast_table", "further_packin
 
 
 HELD = []  # locks of studies' folders, until Snakemake ends
+if GIVEN.target_jobs:  # on a node of a cluster, where nothing is called at the start
+    figure_process.start()
 
 
 onstart:
@@ -119,6 +122,8 @@ onstart:
         for study in STUDIES:
             if fault := beyond_machine(study, needed.get(study, ()), workflow.dag.needrun_jobs()):
                 raise WorkflowError(fault)
+    if workflow.local_exec:
+        figure_process.start()
     for study in sorted({job.wildcards.get("study", "") for job in workflow.dag.needrun_jobs()} & set(STUDIES)):
         HELD.append(prepared(Path("results") / study))
     for study, jobs in needed.items():

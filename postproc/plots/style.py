@@ -144,12 +144,16 @@ def scaled(unit: str, largest: float) -> tuple[str, FuncFormatter]:
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as its name ends: PNG, SVG or PDF; without the date, so that equal figures are equal files."""
+    """Write a figure as its name ends: PNG, SVG or PDF; without the date, so that equal figures are equal files.
+
+    It is laid out the first time: all its forms have the same places.
+    """
     fold_labels(figure)
     kind = Path(path).suffix[1:]
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind)
     with mpl.rc_context({"svg.hashsalt": "bulkwear"}):
         figure.savefig(path, dpi=RESOLUTION, metadata=undated)
+    figure.set_layout_engine("none")
 
 
 def fold_labels(figure: Figure) -> None:

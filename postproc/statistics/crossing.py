@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import special  # scipy.stats is slow to import
 
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimates, students_t
 
@@ -130,6 +129,8 @@ def lack_of_fit(place: np.ndarray, y: np.ndarray, fitted: np.ndarray, coefficien
         return found
     lack, pure = float(((means - fitted) ** 2).sum()) / of_lack, pure_error(place, y) ** 2
     f_value = lack / pure if pure > 0.0 else (math.inf if lack > 0.0 else 0.0)
+    from scipy import special  # slow to import, and every start of Snakemake reads this module
+
     return found | {"lack_of_fit_F": f_value, "p_value": float(special.fdtrc(of_lack, of_error, f_value))}
 
 

@@ -5,6 +5,7 @@ import importlib.resources
 import json
 import re
 import subprocess
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -36,7 +37,9 @@ addEventListener("message", ({{ data }}) => {{
 }});</script>"""
 
 
-def axe_findings(page: str, folder: Path, ready: str = "true", use: str = "") -> dict[tuple[int, str], dict]:
+def axe_findings(
+    page: str, folder: Path, ready: str = "true", use: str = "", schemes: Iterable[str] = SCHEMES
+) -> dict[tuple[int, str], dict]:
     """Return by width and scheme what axe-core finds in the text of a page: `faults` that are grave, how many rules
     `passed`, and `paper`, the colour behind the text. Folded parts are opened first.
 
@@ -48,7 +51,7 @@ def axe_findings(page: str, folder: Path, ready: str = "true", use: str = "") ->
     (folder / "probed.html").write_text(f"{head}{probe}{end}{tail}", encoding="utf-8")
     frames = "".join(f'<iframe src="probed.html" style="width: {width}px"></iframe>' for width in WIDTHS)
     (folder / "frames.html").write_text(FRAMES.format(frames=frames, count=len(WIDTHS)), encoding="utf-8")
-    return {(each["width"], scheme): each for scheme in SCHEMES for each in _asked(folder, scheme)}
+    return {(each["width"], scheme): each for scheme in schemes for each in _asked(folder, scheme)}
 
 
 def _asked(folder: Path, scheme: str) -> list[dict]:

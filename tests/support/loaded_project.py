@@ -1,7 +1,9 @@
-"""A project loaded in a process of its own, as a start of Snakemake does it."""
+"""A project loaded, or planned by Snakemake, in a process of its own."""
 
 import os
+import runpy
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from bulkwear.workflows.config.design import load_study
@@ -19,3 +21,13 @@ def load_project(folder: Path, study: str, said: Path) -> None:
         load_study(study)
     except ValueError as fault:
         sys.exit(str(fault))
+
+
+def plan(folder: Path, arguments: Sequence[str], said: Path) -> None:
+    """Do in a folder what `python -m snakemake` does there; said: file that gets all that it says."""
+    stream = os.open(said, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    for of_process in (sys.stdout, sys.stderr):
+        os.dup2(stream, of_process.fileno())
+    os.chdir(folder)
+    sys.argv = ["snakemake", *arguments]
+    runpy.run_module("snakemake", run_name="__main__")

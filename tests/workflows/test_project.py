@@ -14,14 +14,15 @@ from bulkwear.__main__ import main
 from bulkwear.workflows.config.targets import Naming, naming, requested_studies
 from bulkwear.workflows.engine.project import PACKAGE, Project
 from bulkwear.workflows.report.printed import PDF, browser
-from tests.support.loaded_project import load_project
+from tests.support.loaded_project import load_project, plan
 from tests.support.own_project import STUDY, TEMPLATE, WORD, own_project
 from tests.workflows.test_snakemake import finish, planned_jobs, snakemake
 
-# Each process is forked from one that has read our modules and entered no project: starting Python costs a second.
+# Each process is forked from one that has read modules and entered no project: starting Snakemake costs 1.5 seconds.
 CLEAN = multiprocessing.get_context("forkserver")
-CLEAN.set_forkserver_preload([load_project.__module__])
+CLEAN.set_forkserver_preload([load_project.__module__, "snakemake.cli"])
 ROUNDING = 1e-12  # relative; of a sum over triangles
+WITHOUT_LIBRARIES = 80.0  # MB, of a process that imports no library, 25 of them; with pandas and matplotlib 170
 PROFILE = ("--workflow-profile", str(PACKAGE / "workflows/profiles/default"))
 
 
@@ -77,6 +78,14 @@ def test_a_project_runs_to_its_page(finished):
 
 
 @pytest.mark.solver
+def test_figures_are_made_by_one_process(finished):
+    """Their own processes import nothing of what draws."""
+    logs = finished["mine"] / "results" / STUDY / "logs"
+    memory = pd.concat(pd.read_csv(path, sep="\t", na_values="-") for path in logs.glob("figure_*.benchmark.tsv"))
+    assert len(memory) > 1 and memory["max_rss"].max() < WITHOUT_LIBRARIES
+
+
+@pytest.mark.solver
 def test_a_finished_study_has_further_reports(finished):
     """Its page as PDF, where there is a browser; and Snakemake's own report with a description, its tables by name and
     each figure by its title."""
@@ -114,7 +123,7 @@ def test_rules_on_top_take_results_on(finished):
     assert (finished["other"] / path).read_bytes() == (finished["mine"] / path).read_bytes()
     assert "Wear cycles of A_plain" in finished["said"]["module"]
     assert "Forecast of mine" in finished["said"]["module"]
-    left = planned_jobs(finish(snakemake(finished["other"], *PROFILE, f"bw_{STUDY}", "--dry-run")))
+    left = planned_jobs(said_of(finished["other"], *PROFILE, f"bw_{STUDY}", "--dry-run"))
     assert left.pop(f"bw_{STUDY}") == left.pop("bw_report") == 1 and left, left
     assert (
         all(rule.startswith(("bw_figure_", "bw_tables_")) for rule in left)
@@ -136,16 +145,16 @@ def test_a_changed_line_is_told_before_a_run_is_done_again(finished, tmp_path):
     """What differs in a deck and a law stands in a sentence; Snakemake's own reason is a line."""
     mine = shutil.copytree(finished["mine"], tmp_path / "mine", symlinks=True)
     arguments = (*PROFILE, "--snakefile", str(PACKAGE / "Snakefile"), "--dry-run", f"results/{STUDY}/summary.csv")
-    assert "differs" not in finish(snakemake(mine, *arguments))
+    assert "differs" not in said_of(mine, *arguments)
     study = mine / "config/studies/mine.yaml"
     study.write_text(study.read_text().replace(WORD, "something else"))
-    said = finish(snakemake(mine, *arguments))
+    said = said_of(mine, *arguments)
     assert f"its deck of a wear cycle changed, line 119: 'print \"something else\"', it was 'print \"{WORD}\"'" in said
     assert max(len(line) for line in said.splitlines() if line.startswith("Reason:")) < 400
     study.write_text(study.read_text().replace("something else", WORD))
     law = mine / "laws/hardened.py"
     law.write_text(law.read_text().replace("/ parameters", "/ 2.0 / parameters"))
-    assert "A_plain of mine differs from what was simulated: law.hardened.py is " in finish(snakemake(mine, *arguments))
+    assert "A_plain of mine differs from what was simulated: law.hardened.py is " in said_of(mine, *arguments)
 
 
 def test_a_project_is_planned_on_a_cluster(tmp_path):
@@ -153,7 +162,7 @@ def test_a_project_is_planned_on_a_cluster(tmp_path):
     mine = own_project(tmp_path / "my project")
     outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(mine), "--dry-run", STUDY)
     profiles = (str(PACKAGE / "workflows/profiles" / name) for name in ("default", "slurm"))
-    planned = [planned_jobs(finish(snakemake(tmp_path, *outside, "--workflow-profile", each))) for each in profiles]
+    planned = [planned_jobs(said_of(tmp_path, *outside, "--workflow-profile", each)) for each in profiles]
     assert planned[0] == planned[1] and planned[0]["worn_run"] == 1
 
 
@@ -163,10 +172,9 @@ def test_one_command_makes_a_project(tmp_path, capsys):
     assert main(["project", str(folder)]) == 0
     assert f"cd '{folder}' && snakemake" in capsys.readouterr().out
     outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(folder))
-    ways = (snakemake(folder, "--dry-run"), snakemake(tmp_path, *outside, "--dry-run"))
-    planned = [planned_jobs(finish(process)) for process in ways]
+    planned = [planned_jobs(said) for said in (said_of(folder, "--dry-run"), said_of(tmp_path, *outside, "--dry-run"))]
     assert planned[0] == planned[1] and planned[0]["worn_run"] == 2 * 3 and planned[0]["report"] == 1
-    assert {"demo", "screening", "first"} <= set(finish(snakemake(folder, "--list-target-rules")).split())
+    assert {"demo", "screening", "first"} <= set(said_of(folder, "--list-target-rules").split())
     assert main(["project", str(folder)]) == 1
     assert "there is something in it, allowed is a new or an empty folder" in capsys.readouterr().err
 
@@ -275,7 +283,7 @@ def test_studies_of_the_package_are_planned_in_a_project(tmp_path):
     folder = own_project(tmp_path / "my project")
     shutil.rmtree(folder / "templates")
     outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(folder), "--dry-run")
-    planned = planned_jobs(finish(snakemake(tmp_path, *outside, "calibration", "particle_size")))
+    planned = planned_jobs(said_of(tmp_path, *outside, "calibration", "particle_size"))
     assert planned["calibrated_parameters"] == 1 and planned["report"] == 2
 
 
@@ -294,11 +302,10 @@ use rule * from {name} as {name}_*
         for name, studies in (("a", ["mine"]), ("b", ["second"]))
     ]
     (folder / "Snakefile").write_text("".join(texts))
-    planned = planned_jobs(finish(snakemake(folder, *PROFILE, "a_mine", "b_second_decks", "--dry-run")))
+    planned = planned_jobs(said_of(folder, *PROFILE, "a_mine", "b_second_decks", "--dry-run"))
     assert planned["a_worn_run"] == 1 and planned["b_run_decks"] == 1
     (folder / "Snakefile").write_text(texts[0].replace("['mine']", "'mine'"))
-    output, _ = (process := snakemake(folder, *PROFILE, "--dry-run")).communicate()
-    assert process.returncode != 0
+    output = said_of(folder, *PROFILE, "--dry-run", code=1)
     assert "config of the module: studies is 'mine', allowed is a list of names of studies." in output
 
 
@@ -307,6 +314,17 @@ def test_a_study_of_the_package_s_name_is_refused(tmp_path):
     folder = own_project(tmp_path / "my project")
     shutil.copy(folder / MINE, folder / "config/studies/demo.yaml")
     assert "config/studies/demo.yaml: a study demo is in the package too" in told_of(folder, "demo")
+
+
+def said_of(folder: Path, *arguments: str, code: int = 0) -> str:
+    """What Snakemake says in a folder where it makes nothing; code: with which it ends."""
+    said = folder.parent / "plan.txt"
+    process = CLEAN.Process(target=plan, args=(folder, arguments, said))
+    process.start()
+    process.join()
+    output = said.read_text(encoding="utf-8")
+    assert process.exitcode == code, output
+    return output
 
 
 def told_of(folder: Path, study: str = STUDY) -> str:
@@ -323,7 +341,5 @@ def told_of(folder: Path, study: str = STUDY) -> str:
 
 def test_a_bad_project_ends_snakemake(tmp_path):
     """With that sentence, before any job."""
-    process = snakemake(tmp_path, "--snakefile", str(PACKAGE / "Snakefile"), "--dry-run", STUDY)
-    output, _ = process.communicate()
-    assert process.returncode != 0
+    output = said_of(tmp_path, "--snakefile", str(PACKAGE / "Snakefile"), "--dry-run", STUDY, code=1)
     assert f"{tmp_path}: there is no folder config in it" in output and "Traceback" not in output

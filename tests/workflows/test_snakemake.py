@@ -17,7 +17,7 @@ from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.targets import requested_studies
 from bulkwear.workflows.engine.job import STOPPED
 from tests import REPOSITORY
-from tests.support.compiled import take_compiled
+from tests.support.compiled import share_compiled
 
 PARTS = ("bulkwear", "workflows", "templates", "meshes", "postproc", "config", "profiles", "Snakefile")
 TIMEOUT = 1800.0  # s, for a study that takes about 20 s on an idle machine
@@ -63,7 +63,7 @@ def workspace(folder: Path) -> Path:
         source = REPOSITORY / name
         if source.is_dir():
             shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
-            take_compiled(folder / name, source)
+            share_compiled(folder / name, source)
         else:
             shutil.copy(source, folder / name)
     (folder / "solver").symlink_to(REPOSITORY / "solver")

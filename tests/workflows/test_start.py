@@ -20,6 +20,7 @@ from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.report.products import products_of
 assert products_of(find_case("sliding_sample"))
 """,
+    "samples": "from bulkwear.workflows.report.page_parameters import page_of; assert page_of('sliding_sample')",
     "page": "import bulkwear.workflows.report.page",
     "forecast": "import bulkwear.workflows.forecast.forecast, bulkwear.workflows.forecast.limits",
 }

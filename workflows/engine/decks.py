@@ -9,6 +9,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.derived import neighbour_skin, run_kernels
 from bulkwear.workflows.engine.templates import SOLVER, whole_sections
@@ -51,7 +53,7 @@ def primes(above: int, count: int) -> list[int]:
     candidate = max(above, SMALLEST_SEED)
     while len(found) < count:
         candidate += 1
-        if all(candidate % divisor for divisor in range(2, math.isqrt(candidate) + 1)):
+        if (candidate % np.arange(2, math.isqrt(candidate) + 1)).all():
             found.append(candidate)
     return found
 

@@ -60,22 +60,28 @@ def forecast_table(work: Sequence[Work], rates: Rates) -> pd.DataFrame:
     particles, triangles: most that the solver has at once; steps, cycles: in all. Wall time is that of the job alone;
     ranks and simulations side by side are taken to share the solver's work evenly.
     """
-    return pd.DataFrame([_row(job, rates) for job in work])
+    amounts = [_amounts(job) for job in work]
+    terms = pd.DataFrame(amounts, columns=list(TERMS))
+    solver, outside = (seconds(terms, rates, of).tolist() for of in (SOLVER_TERMS, OUTSIDE_TERMS))
+    return pd.DataFrame([_row(*of_job) for of_job in zip(work, amounts, solver, outside, strict=True)])
 
 
-def _row(job: Work, rates: Rates) -> dict[str, float | str]:
-    """Return a row of `forecast_table`."""
+def _amounts(job: Work) -> dict[str, float]:
+    """Return how much of each of `TERMS` a job has."""
     meshed = job.surface_triangles
     around = {"jobs": 2 if meshed else 1, "meshed_triangles": meshed}  # the job itself, and that of its mesh
-    amounts = [*(stage.terms() for stage in job.stages), around]
-    terms = pd.DataFrame([[float(each.get(term, 0.0)) for term in TERMS] for each in amounts], columns=list(TERMS))
-    solver, outside = (float(seconds(terms, rates, of).sum()) for of in (SOLVER_TERMS, OUTSIDE_TERMS))
+    found = [*(stage.terms() for stage in job.stages), around]
+    return {term: float(sum(each.get(term, 0.0) for each in found)) for term in TERMS}
+
+
+def _row(job: Work, amounts: Mapping[str, float], solver: float, outside: float) -> dict[str, float | str]:
+    """Return a row of `forecast_table`; solver, outside: s."""
     return {
         "job": job.name,
         "particles": round(max((stage.particles for stage in job.stages), default=0)),
         "triangles": round(max((stage.triangles for stage in job.stages), default=0)),
-        "steps": round(float(terms["steps"].sum())),
-        "cycles": round(float(terms["cycles"].sum())),
+        "steps": round(amounts["steps"]),
+        "cycles": round(amounts["cycles"]),
         "solver_s": solver,
         "outside_s": outside,
         "core_h": (solver + outside) / SECONDS_PER_HOUR,

@@ -23,7 +23,7 @@ from types import ModuleType, SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.engine.case import Case
-from bulkwear.workflows.engine.cases import case_module
+from bulkwear.workflows.engine.cases import case_module, find_case
 from bulkwear.workflows.engine.own_code import code_of_pages
 from bulkwear.workflows.engine.project import CONFIG, current_project
 from bulkwear.workflows.engine.provenance import simulating_code
@@ -246,6 +246,25 @@ def _write_figure(drawn: Any, path: str) -> None:
 def job_of(files: Mapping[str, Any], told: Mapping[str, Any], remarks: Sequence[str]) -> Job:
     """Return a job from what a rule has."""
     return Job(SimpleNamespace(**files), SimpleNamespace(**told), list(filter(None, remarks)))
+
+
+def make_product(
+    study: str,
+    case: str,
+    name: str,
+    files: Mapping[str, Any],
+    told: Mapping[str, Any],
+    remarks: Sequence[str],
+    runs: Sequence[str],
+    outputs: Mapping[str, str],
+) -> None:
+    """Make a product of a study, both by name, as its rule asks; outputs: as in `write_product`, all else as in `Job`.
+
+    runs: names of those of the study, whose versions are remarked on
+    """
+    of_case = find_case(case)
+    simulated = simulated_remark(of_case, Path("results", study), runs)
+    write_product(products_of(of_case)[name], job_of(files, told, [*remarks, simulated]), outputs)
 
 
 def simulated_remark(case: Case, folder: Path, runs: Sequence[str]) -> str:

@@ -1,14 +1,18 @@
 """Make a figure or tables of a study."""
 
-from pathlib import Path
+from bulkwear.workflows.report.figure_process import hand_over
 
-from bulkwear.workflows.engine.cases import find_case
-from bulkwear.workflows.engine.job import project_job
-from bulkwear.workflows.report.products import job_of, products_of, simulated_remark, write_product
-
-with project_job(snakemake.log[0]):
-    asked = snakemake.params
-    case = find_case(asked.case)
-    product = products_of(case)[asked.product]
-    simulated = simulated_remark(case, Path("results", snakemake.wildcards.study), asked.runs)
-    write_product(product, job_of(snakemake.input, asked.told, [*asked.remarks, simulated]), snakemake.output)
+asked = snakemake.params
+hand_over(
+    snakemake.log[0],
+    {
+        "study": snakemake.wildcards.study,
+        "case": asked.case,
+        "name": asked.product,
+        "files": {name: paths if isinstance(paths, str) else list(paths) for name, paths in snakemake.input.items()},
+        "told": asked.told,
+        "remarks": asked.remarks,
+        "runs": asked.runs,
+        "outputs": dict(snakemake.output.items()),
+    },
+)

@@ -108,7 +108,7 @@ def test_every_study_at_every_fidelity(forecasts):
 def test_no_surface_is_meshed_and_nothing_simulated_for_it(forecasts):
     """But the tester's block, a few triangles; CAD is drawn and its areas are read, and no other program starts."""
     _, triangles, read, commands = forecasts
-    assert max(triangles) <= OF_BLOCK
+    assert max(triangles, default=0) <= OF_BLOCK  # none where the block is known already
     assert set(read) == {"areas"}
     others = [command for command in commands if cad.PROGRAM not in command]
     assert len(commands) - len(others) == len(read)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -230,10 +231,15 @@ def pose(tester: Parameters) -> np.ndarray:
 
 def block_mesh(bed: Parameters) -> SurfaceMesh:
     """Return the block in the sample's place, as high as the highest sample of the study and a little more."""
-    width, length, above = bed["sample_width_m"], bed["sample_length_m"], bed["headroom_m"]
-    mesh = sample_block(width, length, bed["thickness_m"] + above, max(width, length) / 4.0, None)
+    above = bed["headroom_m"]
+    mesh = _level_block(bed["sample_width_m"], bed["sample_length_m"], bed["thickness_m"] + above)
     raised = placed(mesh, np.eye(3), np.array([0.0, 0.0, above]))
     return placed(raised, pose(bed), np.zeros(3))
+
+
+@cache  # a deck asks for it many times, and a forecast for the decks of all beds
+def _level_block(width: float, length: float, thickness: float) -> SurfaceMesh:
+    return sample_block(width, length, thickness, max(width, length) / 4.0, None)
 
 
 def consolidator_mesh(bed: Parameters) -> SurfaceMesh:

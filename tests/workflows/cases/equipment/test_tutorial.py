@@ -19,7 +19,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.readme import readme
 from bulkwear.workflows.engine.project import enter_project, leave_project
 from tests import REPOSITORY
-from tests.support.compiled import take_compiled
+from tests.support.compiled import share_compiled
 
 TUTORIAL = (REPOSITORY / "docs/tutorial_chute.md").read_text(encoding="utf-8")
 REFERENCE = (REPOSITORY / "docs/equipment.md").read_text(encoding="utf-8")
@@ -51,7 +51,7 @@ def home(tmp_path_factory):
     with zipfile.ZipFile(wheel) as opened:
         opened.extractall(folder / "site")
     for name in ("bulkwear", "postproc", "meshes", "workflows"):
-        take_compiled(folder / "site/bulkwear" / name.removeprefix("bulkwear"), REPOSITORY / name)
+        share_compiled(folder / "site/bulkwear" / name.removeprefix("bulkwear"), REPOSITORY / name)
     (folder / "tiny.yaml").write_text(yaml.safe_dump(TINY))
     return folder
 
