@@ -23,7 +23,7 @@ from typing import Any
 
 import pandas as pd
 
-from benchmarks.plots.figures import Panel, deviation_figure
+from benchmarks.plots.time_step_limits import changes_by_model
 from benchmarks.rolling_page import MODELS
 from benchmarks.runs import FIRST_SEED, changed, simulated_run
 from benchmarks.time_step_and_stiffness import (
@@ -177,17 +177,12 @@ def publish(output: Path, table: pd.DataFrame) -> str:
     """Write figure and page of the runs; return the page. table: as from `table_of`."""
     page = results_page(table)
     (output / PAGE).write_text(page, encoding="utf-8")
-    panels = [
-        Panel(f"{model}, {surface}", found)
-        for (model, surface, response), found in answers(table).items()
-        if response == next(iter(RESPONSES))
-    ]
     remarks = [
-        f"time step over Rayleigh time (-); {table['seed'].nunique()} packings; bars: 95 % intervals; grey: up to"
+        f"against the shortest time step; {table['seed'].nunique()} packings; bars: 95 % intervals; grey: up to"
         f" {PERCENT * LIMIT:g} %",
         f"made by benchmarks/time_step_limits.py, {date.today():%Y-%m-%d}",
     ]
-    save(deviation_figure(panels, "sliding work", LIMIT, remarks), output / FIGURE)
+    save(changes_by_model(answers(table), RESPONSES, LIMIT, remarks), output / FIGURE)
     return page
 
 

@@ -85,7 +85,7 @@ def results_page(table: pd.DataFrame) -> str:
             f" where every time step ran with {ENOUGH} packings at least."
         ),
         markdown(told),
-        "![Change of the sliding work with the time step](time_step_limits.png)",
+        "![Change of sliding work and impact energy with the time step](time_step_limits.png)",
     ]
     for (model, surface, response), of in found.items():
         parts += [f"## {model}, {surface} sample, {RESPONSES[response]}", markdown(shown(of))]
