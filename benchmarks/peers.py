@@ -15,8 +15,10 @@ from __future__ import annotations
 import argparse
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import date
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -84,12 +86,22 @@ def version(screen: str) -> str:
     return next((each[1].replace('"', "") for each in found if each), "")
 
 
-def rounds(folder: Path, run: PeerRun, particles: np.ndarray, count: int, known: list[Code]) -> pd.DataFrame:
-    """Return a row per round and code, all codes in every round, in an order that turns."""
+def rounds(
+    folder: Path,
+    run: PeerRun,
+    particles: np.ndarray,
+    count: int,
+    known: list[Code],
+    each: Callable[[pd.DataFrame], None],
+) -> None:
+    """Run all codes in every round, in an order that turns; hand the table so far, a row per round and code, to `each`
+    after every run.
+    """
     moved = particles.copy()
     moved[0, 0] += BY
     chaos = replace(known[0], name=MOVED, wear=None)
     entries, rows = [(known[0], particles), (chaos, moved), *((code, particles) for code in known[1:])], []
+    names = [code.name for code, _ in entries]
     for number in range(count):
         shift = number % len(entries)
         for code, given in entries[shift:] + entries[:shift]:
@@ -98,13 +110,8 @@ def rounds(folder: Path, run: PeerRun, particles: np.ndarray, count: int, known:
             except SolverError as fault:
                 print(f"{code.name} is left out: {fault}", flush=True)
                 continue
-            print(
-                f"round {number + 1}, {code.name}: {rows[-1]['particle_steps_per_s']:.3g} particle-steps/s", flush=True
-            )
-    order = [code.name for code, _ in entries]
-    return pd.DataFrame(rows).sort_values(
-        ["round", "code"], key=lambda of: of.map(order.index) if of.name == "code" else of
-    )
+            print(f"round {number + 1}, {code.name}: {rows[-1]['particle_steps_per_s']:.3g} 1/s", flush=True)
+            each(pd.DataFrame(sorted(rows, key=lambda told: (told["round"], names.index(told["code"])))))
 
 
 def available(known: list[Code]) -> list[Code]:
@@ -144,8 +151,8 @@ def main() -> None:
             (QUICK_PARTICLES, QUICK_STEPS, QUICK_FILLING_STEPS) if given.quick else (PARTICLES, STEPS, FILLING_STEPS)
         )
         particles = bed(given.folder / f"bed_{count}", count, filling)
-        found = rounds(given.folder, PeerRun(steps, SAMPLES), particles, given.rounds, available(known))
-        found.to_csv(output / FILE, index=False, float_format="%.6g")
+        write = partial(pd.DataFrame.to_csv, path_or_buf=output / FILE, index=False, float_format="%.6g")
+        rounds(given.folder, PeerRun(steps, SAMPLES), particles, given.rounds, available(known), write)
     print(publish(output, pd.read_csv(output / FILE), known), flush=True)
 
 

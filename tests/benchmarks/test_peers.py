@@ -22,7 +22,9 @@ from benchmarks.peer_case import (
 from benchmarks.peer_codes import KRATOS, LAMMPS, OURS, PROGRAMS, STOCK, WITHOUT, YADE, codes, run_code
 from benchmarks.peer_decks import lammps_deck, liggghts_deck
 from benchmarks.peer_page import MOST_APART, QUANTITIES, agreement, results_page, speeds
-from benchmarks.peers import available, bed, publish, version
+from benchmarks.peers import MOVED, available, bed, publish, version
+from benchmarks.peers import rounds as take_turns
+from bulkwear.workflows.engine.solver import SolverError
 
 RUN = PeerRun(steps=200, samples=2)
 MACHINE = {"processor": "a processor", "system": "a system"}
@@ -104,6 +106,25 @@ def test_a_peer_that_is_not_there_is_named_and_left_out(tmp_path, monkeypatch, c
     assert all(f"{name} was not found and is left out: " in said for name in left)
     page = results_page(rounds([(1.0, 2.0)]), known, MACHINE)
     assert page.count("* Kratos DEM: pip install KratosDEMApplication") == 1
+
+
+def test_every_round_has_every_code_and_keeps_what_there_is(tmp_path, monkeypatch):
+    """Codes in another order in each round; one that stops is left out; the table so far is handed on."""
+    known, asked, tables = codes(tmp_path)[:3], [], []
+
+    def made_up(code, folder, run, particles):
+        asked.append((code.name, float(particles[0, 0])))
+        if code.name == STOCK:
+            raise SolverError("it stopped")
+        return {"code": code.name, "particle_steps_per_s": 1.0}
+
+    monkeypatch.setattr("benchmarks.peers.row", made_up)
+    take_turns(tmp_path, RUN, one_sphere(), 2, known, tables.append)
+    assert [name for name, _ in asked] == [OURS, MOVED, WITHOUT, STOCK, MOVED, WITHOUT, STOCK, OURS]
+    places = {name: place for name, place in asked}
+    assert places[MOVED] - places[OURS] == pytest.approx(1e-9, rel=1e-6) and places[WITHOUT] == places[OURS]
+    assert [len(table) for table in tables] == [1, 2, 3, 4, 5, 6]
+    assert tables[-1]["code"].tolist() == [OURS, MOVED, WITHOUT] * 2
 
 
 def test_versions_are_those_that_programs_say():
