@@ -108,7 +108,7 @@ def write_case(folder: Path, mesh: SurfaceMesh, particles, motion, mesh_lines=()
 def command(ranks: int = 1, solver: Path | str = SOLVER, **variables) -> list[str]:
     """Command that runs a deck in the present folder, variables of the deck overriding what it sets."""
     # a process that waits yields its core: there may be fewer cores than processes
-    waiting = ["--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+    waiting = ["--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
     launcher = ["mpirun", *waiting, "-n", str(ranks)] if ranks > 1 else []
     overriding = [word for name, value in variables.items() for word in ("-var", name, str(value))]
     return [*launcher, str(solver), "-in", "deck.in", "-log", "log.liggghts", *overriding]

@@ -1,4 +1,4 @@
-"""The solver's load ledger on one and two processes and across periodic boundaries: each contact once."""
+"""The solver's load ledger on one, two and four processes and across periodic boundaries: each contact once."""
 
 import numpy as np
 import pytest
@@ -64,6 +64,15 @@ def test_two_processes_give_the_ledger_of_one(tmp_path, processors, place, direc
     two = dragged(tmp_path / "two", 2, processors, place, direction, domain=CENTRED)
     assert two.header["ranks"] == 2
     assert_same_ledger(two, one)
+
+
+def test_four_processes_give_the_ledger_of_one(tmp_path):
+    """A drag along the border between two and on through the place where all four meet: the same ledger."""
+    place, short = (-0.000500712, 1.1e-8), {"domain": CENTRED, "steps": 500}
+    one = dragged(tmp_path / "one", 1, "1 1 1", place, (1, 0), **short)
+    four = dragged(tmp_path / "four", 4, "2 2 1", place, (1, 0), **short)
+    assert four.header["ranks"] == 4
+    assert_same_ledger(four, one)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
