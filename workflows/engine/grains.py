@@ -55,7 +55,9 @@ def grain_words(particle: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "clump_name": clump["name"],
         "clump_sphere_count": len(clump["spheres"]),
-        "clump_sizes": [_clump_size(clump, diameter, particle["density_kg_per_m3"]) for diameter in particle["diameters_m"]],
+        "clump_sizes": [
+            _clump_size(clump, diameter, particle["density_kg_per_m3"]) for diameter in particle["diameters_m"]
+        ],
     }
 
 
