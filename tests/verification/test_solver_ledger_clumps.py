@@ -23,15 +23,14 @@ FRICTION = 0.5  # -
 # there down again. Measured: 0.13
 WALLS_CARRY = FRICTION**2
 ROUNDING = 1e-9  # relative; the dump has twelve digits
-# Of the total: a sphere over an edge between triangles has its force shared, the dump knows it as a whole. Measured: 2e-5
+# Of the total: the force of a sphere over an edge is shared, the dump knows it as a whole. Measured: 2e-5
 SHARED = 2e-4
 
 
 def poured():
     """Deck lines of a bed of clumps, as the template has them."""
-    particle = with_clump(
-        {"diameters_m": DIAMETERS, "density_kg_per_m3": DENSITY}, "tetrahedron", find_clump("tetrahedron")
-    )
+    name, sizes = "tetrahedron", {"diameters_m": DIAMETERS, "density_kg_per_m3": DENSITY}
+    particle = with_clump(sizes, name, find_clump(name))
     words = {"size_distribution": size_distribution(SHARES), "size_count": 2, "seeds": primes(15485863, 3)}
     source = " ".join(f"{-HALF + 2.5e-3} {HALF - 2.5e-3}" for _ in "xy")
     return [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from bulkwear.postproc.tables.summary import read_summary
 from bulkwear.workflows.cases.sliding_sample import key_numbers
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
+from bulkwear.workflows.engine.grains import CLUMP
 from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.sections import Pictures, Section
@@ -249,10 +250,27 @@ def _particles(study: Mapping[str, Any]) -> str:
     scale = range_text([particle["scale"] for particle in particles])
     moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
     return (
-        f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real ones, in "
-        f"{len(particles[0]['diameters_m'])} sizes. Shape that is not round is represented by rolling friction "
-        f"({study['settings']['solver']['rolling_friction']}) alone. Contacts are softened: shear modulus {moduli} Pa."
+        f"{_shapes(particles)} of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real "
+        f"ones, in {len(particles[0]['diameters_m'])} sizes. {_stands_for_shape(particles, study)} Contacts are "
+        f"softened: shear modulus {moduli} Pa."
     )
+
+
+def _shapes(particles: Sequence[Mapping[str, Any]]) -> str:
+    """Return what the particles of all runs are."""
+    names = list(dict.fromkeys(particle[CLUMP]["name"] for particle in particles if CLUMP in particle))
+    if not names:
+        return "Spheres"
+    clumps = f"lumps of spheres ({', '.join(names)}) as large as spheres"
+    return f"C{clumps}" if all(CLUMP in particle for particle in particles) else f"Spheres, and c{clumps},"
+
+
+def _stands_for_shape(particles: Sequence[Mapping[str, Any]], study: Mapping[str, Any]) -> str:
+    """Return what is told of shape that is not round."""
+    model = study["settings"]["solver"]["rolling_friction"]
+    if any(CLUMP in particle for particle in particles):
+        return f"Rolling friction ({model}) stands for shape where particles are round."
+    return f"Shape that is not round is represented by rolling friction ({model}) alone."
 
 
 def _sampled_travel(study: Mapping[str, Any]) -> str:

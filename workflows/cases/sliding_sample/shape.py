@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from bulkwear.workflows.cases.sliding_sample.study import PARTICLE_SCALE
 from bulkwear.workflows.config.clumps import find_clump
 from bulkwear.workflows.config.run_checks import CheckedRun, Fault
 from bulkwear.workflows.engine.derived import WINDOW
@@ -33,6 +34,8 @@ def clumps_stay_whole(run: CheckedRun) -> Fault | None:
     if run.parameters["solver"]["rolling_friction"] in OWN_ROLLING_MODELS:
         own = " and ".join(OWN_ROLLING_MODELS)
         return "solver.rolling_friction", f"a model of LIGGGHTS with clumps, because {own} act on spheres alone"
+    if PARTICLE_SCALE in run.row.values:
+        return "bed.shape", "sphere in a study of particle size, whose packings count the contacts of spheres"
     if run.parameters["ledger"] != "solver":
         return "ledger", "solver with clumps, because sampled contacts do not tell which spheres are one body"
     return None
