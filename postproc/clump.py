@@ -1,4 +1,4 @@
-"""A clump: spheres fixed to each other, which may overlap, as one body. Volume, centre of mass, inertia of their union."""
+"""A clump: spheres fixed to each other, which may overlap, as one body. Volume and inertia of their union."""
 
 from __future__ import annotations
 

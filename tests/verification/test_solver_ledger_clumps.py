@@ -23,7 +23,7 @@ FRICTION = 0.5  # -
 # there down again. Measured: 0.13
 WALLS_CARRY = FRICTION**2
 ROUNDING = 1e-9  # relative; the dump has twelve digits
-# Of the total: the force of a sphere over an edge is shared, the dump knows it as a whole. Measured: 2e-5
+# Of the total: the force of a sphere over an edge is shared, the dump knows it as a whole. Measured 2e-5
 SHARED = 2e-4
 
 

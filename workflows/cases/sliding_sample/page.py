@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.postproc.reference.size_ratios import LARGEST_RATIO
 from bulkwear.postproc.tables.summary import read_summary
-from bulkwear.workflows.cases.sliding_sample import key_numbers
+from bulkwear.workflows.cases.sliding_sample import grain_shape, key_numbers
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
 from bulkwear.workflows.engine.grains import CLUMP
@@ -66,6 +66,7 @@ def told(study: Study) -> dict[str, Any]:
         "replicates": replicate_settings(study),
         "finds_regimes": by_regime,
         "varies_scale": by_scale,
+        "compares_shapes": grain_shape.compares_shapes(study),
         **(screening.told(study) if by_regime else {}),
         **(particle_size.told(study) if by_scale else {}),
     }
@@ -77,7 +78,7 @@ def answers(folder: Path) -> list[str]:
 
     said = key_numbers.answers(read_summary(folder / "summary.csv"))
     by_scale = particle_size.answers(folder)
-    return [*by_scale, *said[-1:]] if by_scale else said
+    return [*grain_shape.answers(folder), *([*by_scale, *said[-1:]] if by_scale else said)]
 
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
@@ -98,6 +99,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
             Section(
                 "Key numbers", [*key_numbers.key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]
             ),
+            *([Section("Shape of grains", grain_shape.blocks(folder))] if of_study["compares_shapes"] else []),
             *(screening.sections(study, folder) if of_study["finds_regimes"] else []),
             *(Section(title, [Pictures(names)]) for title, names in FIGURES_OF_ALL.items()),
             Section("Beds", blocks_of_beds(folder)),
