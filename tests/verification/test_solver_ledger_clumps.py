@@ -19,8 +19,8 @@ SETTLING, TIME_STEP, STEPS = 9000, 2e-5, 1500  # steps, s, steps
 SPEED = 0.2  # m/s, of the plate that is pulled away under the bed
 HALF = 0.01  # m, half the side of the box
 FRICTION = 0.5  # -
-# Of the weight, at most: the drag, FRICTION of it, presses the bed on a side wall whose friction pushes clumps that rise
-# there down again. Measured: 0.13
+# Of the weight, at most: the drag, FRICTION of it, presses the bed on a side wall, whose friction holds down what
+# rises there. Measured: 0.13
 WALLS_CARRY = FRICTION**2
 ROUNDING = 1e-9  # relative; the dump has twelve digits
 # Of the total: the force of a sphere over an edge is shared, the dump knows it as a whole. Measured 2e-5

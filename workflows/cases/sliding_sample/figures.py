@@ -109,8 +109,8 @@ def depth_distribution(job: Job) -> Any:
     inputs={"summary": SUMMARY},
     caption="""
     Wear per metre of travel of each surface, and of the patterned over the plain sample: of spheres against their
-    rolling friction, over that of the materials (line, with 95 % intervals over packings), and of clumps (levels). Where
-    a level crosses the line, spheres with that rolling friction wear like the clumps.
+    rolling friction, over that of the materials (line, with 95 % intervals over packings), and of clumps (levels).
+    Where a level crosses the line, spheres with that rolling friction wear like the clumps.
     """,
 )
 def wear_by_grain_shape(job: Job) -> Any:
