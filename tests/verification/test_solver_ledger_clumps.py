@@ -1,15 +1,20 @@
 """The solver's load ledger under a bed of clumps that are poured as decks pour them."""
 
+import shutil
+import subprocess
+
 import numpy as np
 import pytest
 
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.readers.contacts import read_contact_batches
+from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.workflows.config.clumps import find_clump
 from bulkwear.workflows.engine.decks import primes, size_distribution
 from bulkwear.workflows.engine.grains import grain_words, with_clump
+from bulkwear.workflows.engine.solver import solver_environment
 from bulkwear.workflows.engine.templates import render
-from tests.verification.ledger_cases import DUMP_LINES, GRAVITY, run_case, total
+from tests.verification.ledger_cases import DUMP_LINES, GRAVITY, command, run_case, total
 
 pytestmark = pytest.mark.solver
 
@@ -105,3 +110,17 @@ def test_ledger_is_the_sum_of_the_contacts(dragged):
     assert total(ledger, "normal_impulse_N_s") == pytest.approx(impulse, rel=SHARED)
     assert ledger.columns["contact_time_s"] == pytest.approx(time, rel=ROUNDING)
     assert np.count_nonzero(time) > CLUMPS
+
+
+def test_both_searches_find_the_same_contacts(dragged, tmp_path):
+    """The wall search of this program and the solver's own: every column of the ledger, to the last bit."""
+    folder, ledger, plate = dragged
+    for path in folder.glob("*.in"):
+        shutil.copy(path, tmp_path)
+    shutil.copy(folder / "sample.stl", tmp_path)
+    words = [*command(), "-search", "stock"]
+    done = subprocess.run(words, cwd=tmp_path, env=solver_environment(), capture_output=True)
+    assert done.returncode == 0 and b"stock, as asked" in done.stdout
+    stock = read_load_ledger(tmp_path / "load_ledger.bin", "sample", len(plate.triangles))
+    for name, found in stock.columns.items():
+        np.testing.assert_array_equal(found, ledger.columns[name], err_msg=name)  # NaN where nothing touched

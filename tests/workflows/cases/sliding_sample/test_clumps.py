@@ -10,6 +10,7 @@ import pytest
 from bulkwear.postproc.flow.bed import last_snapshot, read_snapshot
 from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.workflows.cases.sliding_sample.decks import bed_mass, settled_bed
+from bulkwear.workflows.cases.sliding_sample.work import single_spheres
 from bulkwear.workflows.config.clumps import find_clump, read_clump
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import read_csv_rows
@@ -92,6 +93,8 @@ def test_time_step_and_cost_are_those_of_the_spheres_of_a_clump(shape):
     assert steps[0] / steps[1] == pytest.approx(ratio, rel=ROUNDING)
     count = len(find_clump(shape).radii)
     assert angular["derived"]["bed_particles"] == count * round_["derived"]["bed_particles"]
+    assert single_spheres(round_) == round_["derived"]["bed_particles"]
+    assert single_spheres(angular) == pytest.approx((count + 1) * round_["derived"]["bed_particles"], rel=ROUNDING)
 
 
 def test_rolling_friction_factor_scales_every_coefficient_of_the_particles():
