@@ -219,3 +219,54 @@ def test_clumps_wear_the_sample(chain):
     assert wear["worn_volume_m3"].sum() == pytest.approx(coefficient * work, rel=ROUNDING)
     force, travel = wear["mean_normal_force_N"].mean(), wear["travel_m"].iloc[-1]
     assert 0.1 * force * travel < work < force * travel
+
+
+DRIFTING = """\
+units si
+atom_style granular
+atom_modify map array
+boundary p f f
+newton off
+communicate single vel yes
+region room block -0.05 0.05 -0.05 0.05 -0.05 0.05 units box
+create_box 2 room
+neighbor 0.002 bin
+pair_style gran model hertz
+fix youngs_modulus all property/global youngsModulus peratomtype 1e7 1e7
+fix poissons_ratio all property/global poissonsRatio peratomtype 0.3 0.3
+fix restitution all property/global coefficientRestitution peratomtypepair 2 0.5 0.5 0.5 0.5
+pair_coeff * *
+timestep 1e-5
+"""
+INSERTED = """\
+fix pair all particletemplate/multisphere 15485863 atom_type 1 density constant 2500 nspheres 2 ntry 1000 spheres &
+    0 -0.004 0 0.003 0 0.004 0 0.003 type 1 mass 5.65e-4 inertia_tensor 1.1e-8 0 0 2.0e-9 0 1.1e-8 use_density
+fix pairs all particledistribution/discrete 32452843 1 pair 1.0
+region source block 0.04699 0.046991 0 1e-6 0 1e-6 units box volume_limit 1e-30
+fix motion all multisphere allow_group_and_set yes
+fix fill all insert/pack seed 49979687 distributiontemplate pairs vel constant 1.0 0 0 orientation constant 1 0 0 0 &
+    insert_every once overlapcheck no all_in no particles_in_region 1 region source
+run 1
+unfix fill
+run 290
+neigh_modify delay 1000 every 1000 check no
+run 20
+"""
+
+
+@pytest.mark.solver
+@pytest.mark.parametrize(("inside", "spheres"), [(True, 2), (False, 0)])
+def test_a_clump_that_crosses_the_periodic_face_is_in_the_restart_file(tmp_path, inside, spheres):
+    """A pair drifts 0.1 mm through the face since the last lists were made: what decks say before a restart file is
+    written keeps it, without that it is lost.
+    """
+    before = render("_shared/clumps_inside", {"grains": "clump"}) if inside else ""
+    (tmp_path / "deck.in").write_text(f"{DRIFTING}{INSERTED}{before}write_restart pair.restart\n")
+    again = DRIFTING.replace("region room block -0.05 0.05 -0.05 0.05 -0.05 0.05 units box\ncreate_box 2 room\n", "")
+    read = again.replace("neighbor", "read_restart pair.restart\nneighbor", 1)
+    told = 'variable spheres equal count(all)\nrun 300\nprint "spheres ${spheres}" file found.txt\n'
+    (tmp_path / "again.in").write_text(f"{read}fix motion all multisphere allow_group_and_set yes\n{told}")
+    for deck in ("deck.in", "again.in"):
+        done = subprocess.run(["liggghts", "-in", deck], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout[-500:]
+    assert (tmp_path / "found.txt").read_text().split() == ["spheres", str(spheres)]
