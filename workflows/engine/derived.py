@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bulkwear.postproc.wear.laws import law_kernels, worn_volume
+from bulkwear.workflows.engine.grains import smallest_radius
 
 HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
@@ -111,7 +112,7 @@ def derived_materials(parameters: dict[str, Any]) -> dict[str, Any]:
 
 def neighbour_skin(particle: Mapping[str, Any]) -> float:
     """Return the skin (m) of the neighbour lists."""
-    return SKIN_OVER_RADIUS * min(particle["diameters_m"]) / 2.0
+    return SKIN_OVER_RADIUS * smallest_radius(particle)
 
 
 def window_lengths(particle: Mapping[str, Any]) -> tuple[float, float]:
@@ -124,9 +125,9 @@ def window_lengths(particle: Mapping[str, Any]) -> tuple[float, float]:
 
 
 def smallest_rayleigh_time(particle: Mapping[str, Any]) -> float:
-    """Return the Rayleigh time (s) of the smallest particle."""
+    """Return the Rayleigh time (s) of the smallest particle, of clumps that of their smallest sphere."""
     return rayleigh_time(
-        min(particle["diameters_m"]) / 2.0,
+        smallest_radius(particle),
         particle["density_kg_per_m3"],
         particle["shear_modulus_pa"],
         particle["poissons_ratio"],

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from bulkwear.workflows.engine.decks import primes, size_distribution
+from bulkwear.workflows.engine.grains import grain_words, largest_extent
 
 FILL_FRACTION = 0.34  # -, solid fraction at insertion; random placement becomes slow above 0.38
 FALL_SPEED = 0.3  # m/s, of poured particles at insertion; shortens the fall without bouncing them
@@ -31,12 +32,12 @@ def particles_of_mass(particle: Mapping[str, Any], mass: float) -> float:
 
 def fill_gap(particle: Mapping[str, Any]) -> float:
     """Return how far (m) the centres of poured particles keep off walls."""
-    return FILL_GAP_DIAMETERS * max(particle["diameters_m"])
+    return FILL_GAP_DIAMETERS * largest_extent(particle)
 
 
 def periodic_gap(particle: Mapping[str, Any]) -> float:
     """Return how far (m) the centres of poured particles are kept off periodic faces by the solver."""
-    return PERIODIC_GAP_DIAMETERS * max(particle["diameters_m"])
+    return PERIODIC_GAP_DIAMETERS * largest_extent(particle)
 
 
 def fill_height(particle: Mapping[str, Any], mass: float, area: float, blocked: float = 0.0) -> float:
@@ -53,7 +54,7 @@ def poured_particles(particle: Mapping[str, Any], seed: int, mass: float) -> dic
         "poured_mass_kg": mass,
         "fall_speed_m_per_s": FALL_SPEED,
         "density_kg_per_m3": particle["density_kg_per_m3"],
-        "particle_diameter_m": particle["diameters_m"],
+        **grain_words(particle),
         "size_distribution": size_distribution(particle["mass_fractions"]),
         "size_count": len(particle["mass_fractions"]),
         "seeds": primes(seed, len(particle["diameters_m"]) + 2),

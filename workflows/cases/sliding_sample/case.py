@@ -23,6 +23,7 @@ from bulkwear.workflows.cases.sliding_sample.decks import (
     wear_interval_steps,
 )
 from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters, flow_measures
+from bulkwear.workflows.cases.sliding_sample.shape import rolling, shaped
 from bulkwear.workflows.cases.sliding_sample.study import varies_scale
 from bulkwear.workflows.config.patterns import dimension_columns, option_keys, pattern_section, sample_surface
 from bulkwear.workflows.config.units import to_si
@@ -98,6 +99,12 @@ class SlidingSample(SampleCase):
     ) -> dict[str, Any]:
         """Return the parameters of a run, derived ones included."""
         scale = row_particle_scale(settings, materials, factors["bed_thickness_m"])
+        grains = particle_section(settings["bed"]["material"], materials, scale)
+        bodies = {
+            "particle": shaped(grains, settings["bed"]["shape"]),
+            "sample_material": wall_section(settings["sample"]["material"], materials),
+            "floor_material": wall_section(settings["bed"]["floor_material"], materials),
+        }
         parameters = {
             "ledger": settings["ledger"],
             "sample": settings["sample"],
@@ -107,9 +114,7 @@ class SlidingSample(SampleCase):
             "wear": wear_section(settings["wear"], materials["particles"][settings["bed"]["material"]]),
             "remeshing": settings["remeshing"],
             **template_sections(settings),
-            "particle": particle_section(settings["bed"]["material"], materials, scale),
-            "sample_material": wall_section(settings["sample"]["material"], materials),
-            "floor_material": wall_section(settings["bed"]["floor_material"], materials),
+            **{name: rolling(body, settings["bed"]["rolling_friction_factor"]) for name, body in bodies.items()},
         }
         return {**parameters, "derived": derived_parameters(parameters)}
 
@@ -313,8 +318,11 @@ def _sliding(sliding: Mapping[str, Any], velocity: float, acceleration: float) -
 
 
 def _bed(bed: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the section without the travel between exchanges where there are none: it then changes nothing."""
-    return {key: value for key, value in bed.items() if bed["ends"] == WINDOW or key != "exchange_m"}
+    """Return the section without what the materials of the run hold, and without the travel between exchanges where
+    there are none: it then changes nothing.
+    """
+    elsewhere = {"shape", "rolling_friction_factor"} | (set() if bed["ends"] == WINDOW else {"exchange_m"})
+    return {key: value for key, value in bed.items() if key not in elsewhere}
 
 
 def bed_parameters(run: Run) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import math
 
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
+from bulkwear.workflows.cases.sliding_sample.shape import clumps_stay_whole
 from bulkwear.workflows.config.patterns import highest_point
 from bulkwear.workflows.config.run_checks import (
     Check,
@@ -19,6 +20,7 @@ from bulkwear.workflows.config.run_checks import (
     physical_modulus_known,
 )
 from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, WINDOW, window_lengths
+from bulkwear.workflows.engine.grains import smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
 TINY_FRICTION = 1e-3  # -, of a floor that drives nothing
@@ -107,8 +109,8 @@ def enough_layers(run: CheckedRun) -> Fault | None:
 
 
 def no_particle_between(run: CheckedRun) -> Fault | None:
-    """The sample's top is less than a particle's radius above the floor."""
-    radius = min(run.parameters["particle"]["diameters_m"]) / 2.0
+    """The sample's top is less than a particle's radius above the floor, of clumps that of their smallest sphere."""
+    radius = smallest_radius(run.parameters["particle"])
     if run.parameters["sample"]["height_above_floor_m"] < radius:
         return None
     return (
@@ -194,6 +196,7 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     ramp_holds_bed,
     floor_drives_bed,
     exchange_holds,
+    clumps_stay_whole,
     element_resolves_sample,
     element_resolves_pattern,
     travel_within_reason,

@@ -20,6 +20,7 @@ from bulkwear.workflows.engine.decks import (
     travelled,
 )
 from bulkwear.workflows.engine.derived import ROUNDING, WALLS, WINDOW, neighbour_skin, window_lengths
+from bulkwear.workflows.engine.grains import largest_extent
 from bulkwear.workflows.engine.pouring import bulk_density, fill_gap, fill_height, periodic_gap, poured_particles
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.templates import whole_sections
@@ -146,7 +147,7 @@ LEDGERS = {"solver": _exact_ledger_of_sample, "dumps": _sampled_contacts}
 
 def _domain(bed: Mapping[str, Any]) -> dict[str, float]:
     """Return the box of a bed, long enough for its whole travel and high enough for bulk piling up at a sample."""
-    margin = DOMAIN_MARGIN_DIAMETERS * max(bed["particle"]["diameters_m"])
+    margin = DOMAIN_MARGIN_DIAMETERS * largest_extent(bed["particle"])
     beyond = margin if bed["ends"] == WALLS else 0.0
     return {
         "ends": bed["ends"],

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.sliding_sample import charts
+from bulkwear.workflows.cases.sliding_sample.grain_shape import compares_shapes, shape_finding
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, plain_runs, published_rows
 from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.page_parameters import is_deformed
@@ -98,6 +99,29 @@ def depth_distribution(job: Job) -> Any:
     table = runs_of(job.files.design).merge(shares, on="run")
     remarks = [*job.remarks, *shown_remark(table)]
     return curves.depth_distribution(first_packings(table), depths.depth_quantity(job.told.deformed), remarks), table
+
+
+@figure(
+    "Wear",
+    "Wear and the shape of grains",
+    when=compares_shapes,
+    finding=shape_finding,
+    inputs={"summary": SUMMARY},
+    caption="""
+    Wear per metre of travel of each surface, and of the patterned over the plain sample: of spheres against their
+    rolling friction, over that of the materials (line, with 95 % intervals over packings), and of clumps (levels).
+    Where a level crosses the line, spheres with that rolling friction wear like the clumps.
+    """,
+)
+def wear_by_grain_shape(job: Job) -> Any:
+    """Draw wear against the rolling friction of spheres, with the level of clumps."""
+    from bulkwear.postproc.tables.packings import packings_remark
+    from bulkwear.postproc.tables.summary import read_summary
+    from bulkwear.workflows.cases.sliding_sample.grain_shape import shape_table
+    from bulkwear.workflows.cases.sliding_sample.plots import grain_shape
+
+    table = shape_table(read_summary(job.files.summary))
+    return grain_shape.wear_by_grain_shape(table, [*job.remarks, packings_remark(table["packings"])]), table
 
 
 @figure(

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.postproc.reference.size_ratios import LARGEST_RATIO
 from bulkwear.postproc.tables.summary import read_summary
-from bulkwear.workflows.cases.sliding_sample import key_numbers
+from bulkwear.workflows.cases.sliding_sample import grain_shape, key_numbers
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes, replicate_settings, varies_scale
 from bulkwear.workflows.engine.derived import PERIODIC, WINDOW
+from bulkwear.workflows.engine.grains import CLUMP
 from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.sections import Pictures, Section
@@ -65,6 +66,7 @@ def told(study: Study) -> dict[str, Any]:
         "replicates": replicate_settings(study),
         "finds_regimes": by_regime,
         "varies_scale": by_scale,
+        "compares_shapes": grain_shape.compares_shapes(study),
         **(screening.told(study) if by_regime else {}),
         **(particle_size.told(study) if by_scale else {}),
     }
@@ -76,7 +78,7 @@ def answers(folder: Path) -> list[str]:
 
     said = key_numbers.answers(read_summary(folder / "summary.csv"))
     by_scale = particle_size.answers(folder)
-    return [*by_scale, *said[-1:]] if by_scale else said
+    return [*grain_shape.answers(folder), *([*by_scale, *said[-1:]] if by_scale else said)]
 
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
@@ -97,6 +99,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
             Section(
                 "Key numbers", [*key_numbers.key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]
             ),
+            *([Section("Shape of grains", grain_shape.blocks(folder))] if of_study["compares_shapes"] else []),
             *(screening.sections(study, folder) if of_study["finds_regimes"] else []),
             *(Section(title, [Pictures(names)]) for title, names in FIGURES_OF_ALL.items()),
             Section("Beds", blocks_of_beds(folder)),
@@ -249,10 +252,27 @@ def _particles(study: Mapping[str, Any]) -> str:
     scale = range_text([particle["scale"] for particle in particles])
     moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
     return (
-        f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real ones, in "
-        f"{len(particles[0]['diameters_m'])} sizes. Shape that is not round is represented by rolling friction "
-        f"({study['settings']['solver']['rolling_friction']}) alone. Contacts are softened: shear modulus {moduli} Pa."
+        f"{_shapes(particles)} of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real "
+        f"ones, in {len(particles[0]['diameters_m'])} sizes. {_stands_for_shape(particles, study)} Contacts are "
+        f"softened: shear modulus {moduli} Pa."
     )
+
+
+def _shapes(particles: Sequence[Mapping[str, Any]]) -> str:
+    """Return what the particles of all runs are."""
+    names = list(dict.fromkeys(particle[CLUMP]["name"] for particle in particles if CLUMP in particle))
+    if not names:
+        return "Spheres"
+    clumps = f"lumps of spheres ({', '.join(names)}) as large as spheres"
+    return f"C{clumps}" if all(CLUMP in particle for particle in particles) else f"Spheres, and c{clumps},"
+
+
+def _stands_for_shape(particles: Sequence[Mapping[str, Any]], study: Mapping[str, Any]) -> str:
+    """Return what is told of shape that is not round."""
+    model = study["settings"]["solver"]["rolling_friction"]
+    if any(CLUMP in particle for particle in particles):
+        return f"Rolling friction ({model}) stands for shape where particles are round."
+    return f"Shape that is not round is represented by rolling friction ({model}) alone."
 
 
 def _sampled_travel(study: Mapping[str, Any]) -> str:

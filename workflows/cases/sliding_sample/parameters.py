@@ -21,6 +21,7 @@ from bulkwear.workflows.engine.derived import (
     whole_steps,
     window_lengths,
 )
+from bulkwear.workflows.engine.grains import largest_extent, spheres_per_grain
 from bulkwear.workflows.engine.pouring import bulk_density, particles_of_mass
 
 THIN_BED_LAYERS = 3.0  # below three layers of particles a bed is no bed
@@ -89,9 +90,9 @@ def _derived_geometry(parameters: dict[str, Any]) -> dict[str, float]:
         "bed_travel_m": travel,
         "highest_point_m": sample["height_above_floor_m"]
         + highest_point(parameters["pattern"])
-        + HEADROOM_DIAMETERS * max(particle["diameters_m"]),
+        + HEADROOM_DIAMETERS * largest_extent(particle),
         "bed_mass_kg": mass,
-        "bed_particles": round(particles_of_mass(particle, mass)),
+        "bed_particles": spheres_per_grain(particle) * round(particles_of_mass(particle, mass)),
     }
 
 

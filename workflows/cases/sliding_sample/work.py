@@ -13,6 +13,7 @@ from bulkwear.workflows.cases.sliding_sample.parameters import RAMP
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.derived import ADAPTIVE, WINDOW
+from bulkwear.workflows.engine.grains import spheres_per_grain
 from bulkwear.workflows.engine.pouring import bulk_density
 from bulkwear.workflows.engine.work import Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
@@ -35,7 +36,7 @@ def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
 
     In a window that travels it falls to the true floor once more.
     """
-    parameters, particles = settled_bed(bed), run["derived"]["bed_particles"]
+    parameters, particles = settled_bed(bed), single_spheres(run)
     return (
         Stage(1, parameters["settling_steps"], particles),
         Stage(0, parameters.get("packing_steps", 0), particles),
@@ -45,7 +46,7 @@ def bed_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
 def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
     """Return the stages of a run: lowering, run-in, wear cycles."""
     derived, triangles = run["derived"], surface_triangles(run)
-    particles = derived["bed_particles"]
+    particles = single_spheres(run)
     lowering = lowered_bed(run, bed, "")["lowering_steps"]
     travel, run_in = derived["travel_steps"], derived["run_in_steps"]
     often = builds_per_step(run) + exchanges_per_step(run)
@@ -54,6 +55,15 @@ def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
         Stage(0, run_in, particles, triangles, often * run_in, True),
         Stage(cycles(run), travel, particles, triangles, often * travel, True, triangles),
     )
+
+
+def single_spheres(run: Parameters) -> float:
+    """Return how many spheres cost the solver as much as a bed's particles: the body of a clump costs one more.
+
+    Measured: 1.65 times as much per sphere in pairs, 1.2 times in fours.
+    """
+    spheres, of_grain = run["derived"]["bed_particles"], spheres_per_grain(run["particle"])
+    return spheres if of_grain == 1 else spheres * (1.0 + 1.0 / of_grain)
 
 
 def exchanges_per_step(run: Parameters) -> float:

@@ -1,0 +1,60 @@
+"""Clumps of spheres that a bed's particles may be: tables config/clumps/<name>.csv of a project or the package."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from bulkwear.postproc.clump import Clump, unit_clump
+from bulkwear.workflows.config.layers import ConfigError, Layer, display_name, read_csv_rows
+from bulkwear.workflows.config.schema import load_schema
+from bulkwear.workflows.config.validation import cell_value, check_columns, check_layer, show
+from bulkwear.workflows.engine.project import current_project
+
+CLUMPS = "config/clumps"  # folder of project and package
+ROUND = "sphere"  # the shape that needs no table
+SCHEMA = "clump"
+SETTING = "bed.shape"
+
+
+def find_clump(shape: str) -> Clump | None:
+    """Return the clump that a bed's particles are, None for spheres. Raises ConfigError."""
+    project = current_project()
+    shapes = [ROUND, *(name.removesuffix(".csv") for name in project.names(CLUMPS, ".csv"))]
+    if shape not in shapes:
+        raise ConfigError(f"{SETTING} is {show(shape)}, allowed is one of {', '.join(shapes)}.")
+    return None if shape == ROUND else read_clump(project.file(f"{CLUMPS}/{shape}.csv"), project.folder)
+
+
+def read_clump(path: Path, root: Path) -> Clump:
+    """Return the clump of a table; root: folder from which it is named. Raises ConfigError."""
+    return _clump(path, root, path.stat().st_mtime_ns)
+
+
+@cache
+def _clump(path: Path, root: Path, _written: int) -> Clump:
+    """Read a table once for all runs of a study; written: when, in ns."""
+    header, rows = read_csv_rows(path, root)
+    schema, source = load_schema(SCHEMA), display_name(path, root)
+    check_columns(header, schema, source)
+    spheres = []
+    for line, cells in rows:
+        values = {name: cell_value(text, schema["properties"][name]) for name, text in cells.items()}
+        check_layer(Layer(source, values, {(): line}), schema)
+        spheres.append([float(values[name]) for name in schema["required"]])
+    if len(spheres) < 2:
+        raise ConfigError(f"{source}: found one sphere, allowed are two or more; a sphere is {SETTING}: {ROUND}.")
+    table = np.array(spheres)
+    if not _hangs_together(table[:, :3], table[:, 3]):
+        raise ConfigError(f"{source}: found spheres apart from the others, allowed are spheres that touch or overlap.")
+    return unit_clump(table[:, :3], table[:, 3])
+
+
+def _hangs_together(centres: np.ndarray, radii: np.ndarray) -> bool:
+    """Return whether every sphere can be reached from the first one over spheres that touch or overlap."""
+    apart = np.linalg.norm(centres[:, None] - centres[None], axis=2)
+    touching = apart <= radii[:, None] + radii[None]
+    reached = np.linalg.matrix_power(touching.astype(float), len(radii))[0] > 0.0
+    return bool(reached.all())
