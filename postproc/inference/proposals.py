@@ -5,19 +5,24 @@ The same tables give the same proposals, however often a search was interrupted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from bulkwear.postproc.inference.improvement import Tried, best_of, next_designs
-from bulkwear.postproc.inference.ranges import Range, each_once, points_of, spread_values, values_near, without
+from bulkwear.postproc.inference.ranges import (
+    SPREAD,
+    Allowed,
+    Range,
+    each_once,
+    points_of,
+    spread_values,
+    values_near,
+    without,
+)
 
-SPREAD_POWER = 9  # 512 candidates over the whole ranges
 NEAR, NEAR_COUNT = (0.05, 0.15), 32  # -, of the range: how far candidates lie about the best ones; of each, how many
 BEST_KEPT = 3  # tried designs that candidates lie about
-
-Allowed = Callable[[np.ndarray], np.ndarray]  # (n, p) values -> (n,) whether each can be simulated
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +45,7 @@ class Search:
         best = self.values[np.lexsort((mean, late))[:BEST_KEPT]]
         seed = self.tried.seed + len(self.values)
         near = [values_near(self.ranges, best, reach, NEAR_COUNT, seed) for reach in NEAR]
-        every = each_once(np.vstack([spread_values(self.ranges, SPREAD_POWER, seed), *near]))
+        every = each_once(np.vstack([spread_values(self.ranges, SPREAD, seed), *near]))
         fresh = without(every, self.values)
         return fresh[self.allowed(fresh)]
 
@@ -53,20 +58,3 @@ class Search:
         """Return the values (p,) of the least predicted mean, tried or not, that keep to the limit with that chance."""
         every = np.vstack([self.values, self.candidates()])
         return every[best_of(self.tried, points_of(self.ranges, every), chance)]
-
-
-def first_values(ranges: Sequence[Range], allowed: Allowed, count: int, seed: int) -> np.ndarray:
-    """Return `count` values (count, p) to begin with, which fill what is allowed of the ranges evenly.
-
-    Raises ValueError where the ranges have fewer that are allowed.
-    """
-    found = spread_values(ranges, SPREAD_POWER, seed)
-    kept: list[np.ndarray] = []
-    for values in found:
-        if len(kept) == count:
-            break
-        if allowed(values[None])[0]:
-            kept.append(values)
-    if len(kept) < count:
-        raise ValueError(f"found {len(kept)} designs that can be simulated within the ranges, allowed are {count} or more")
-    return np.array(kept)

@@ -1,14 +1,16 @@
-"""Ranges of the factors of a design, in steps: the unit cube that a search works in, and the values that it stands for."""
+"""Ranges of the factors of a design, in steps: the unit cube that a search works in, and the values it stands for."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
+SPREAD = 256  # values over the whole ranges
 DIGITS = 9  # significant ones of a value: below is what counting steps leaves
+
+Allowed = Callable[[np.ndarray], np.ndarray]  # (n, p) values -> (n,) whether each can be simulated
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,16 @@ def points_of(ranges: Sequence[Range], values: np.ndarray) -> np.ndarray:
     return ((np.asarray(values, float) - low) / step + 0.5) / (steps + 1)
 
 
-def spread_values(ranges: Sequence[Range], power: int, seed: int) -> np.ndarray:
-    """Return up to 2^power values (n, p) that fill the ranges evenly, each once (scrambled Sobol sequence, seeded).
+def spread_values(ranges: Sequence[Range], count: int, seed: int) -> np.ndarray:
+    """Return up to `count` values (n, p) that fill the ranges evenly, each once.
 
-    The first ones of a longer sequence are those of a shorter one.
+    The additive sequence of irrational steps g^-1, g^-2, ... with g^(p+1) = g + 1, p = 1 that of the golden ratio, from
+    a start that the seed gives. The first ones of a longer sequence are those of a shorter one.
     """
-    return each_once(values_of(ranges, qmc.Sobol(len(ranges), scramble=True, seed=seed).random_base2(power)))
+    roots = np.roots([1.0, *[0.0] * (len(ranges) - 1), -1.0, -1.0])
+    steps = roots[np.isreal(roots)].real.max() ** -np.arange(1.0, len(ranges) + 1.0)
+    start = np.random.default_rng(seed).random(len(ranges))
+    return each_once(values_of(ranges, (start + np.arange(count)[:, None] * steps) % 1.0))
 
 
 def values_near(ranges: Sequence[Range], centres: np.ndarray, reach: float, count: int, seed: int) -> np.ndarray:
@@ -69,3 +75,20 @@ def each_once(values: np.ndarray) -> np.ndarray:
 def without(values: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return the rows (n, p) that are none of the others (m, p)."""
     return values[~(values[:, None] == np.asarray(others)[None]).all(axis=2).any(axis=1)]
+
+
+def first_values(ranges: Sequence[Range], allowed: Allowed, count: int, seed: int) -> np.ndarray:
+    """Return `count` values (count, p) to begin with, which fill what is allowed of the ranges evenly.
+
+    Raises ValueError where the ranges have fewer that are allowed.
+    """
+    found = spread_values(ranges, SPREAD, seed)
+    kept: list[np.ndarray] = []
+    for values in found:
+        if len(kept) == count:
+            break
+        if allowed(values[None])[0]:
+            kept.append(values)
+    if len(kept) < count:
+        raise ValueError(f"found {len(kept)} designs that can be simulated within ranges, allowed are {count} or more")
+    return np.array(kept)

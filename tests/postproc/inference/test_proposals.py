@@ -4,15 +4,24 @@ import numpy as np
 import pytest
 
 from bulkwear.postproc.inference.improvement import Tried, best_of
-from bulkwear.postproc.inference.proposals import Search, first_values
-from bulkwear.postproc.inference.ranges import Range, each_once, points_of, spread_values, values_near, values_of, without
+from bulkwear.postproc.inference.proposals import Search
+from bulkwear.postproc.inference.ranges import (
+    Range,
+    each_once,
+    first_values,
+    points_of,
+    spread_values,
+    values_near,
+    values_of,
+    without,
+)
 
 RANGES = (Range("height", 1.0, 6.0, 0.25), Range("radius", 2.0, 10.0, 0.5), Range("rows", 2, 8, 1))
-INITIAL, OF_ROUND, MOST, SEEDS = 8, 2, 20, range(1, 9)
+INITIAL, OF_ROUND, MOST, SEEDS = 8, 2, 20, range(1, 7)
 NOISE, LIMITED_NOISE, LIMIT = 0.04, 0.02, 0.0
 CHANCE = 0.8  # of keeping to the limit, asked of the best design
-FOUND = 0.05  # of the response, whose range is 0.8: as near as twenty simulations that scatter by 0.04 get to the least
-IN_MOST = 0.75  # of the seeds; twenty designs at random come as near in none or one of eight
+FOUND = 0.02  # of the response, whose range is 0.8; twenty designs at random come within 0.03 to 0.10
+IN_MOST = 0.8  # of the seeds
 
 
 def response(values):
@@ -67,19 +76,19 @@ def searches():
 @pytest.fixture(scope="module")
 def least():
     """The least of the response that is allowed and keeps to the limit, over all values there are."""
-    every = spread_values(RANGES, 14, 1)
+    every = spread_values(RANGES, 16384, 1)
     every = every[allowed(every) & (limited(every) <= LIMIT)]
     return response(every).min()
 
 
 def test_most_searches_find_the_least_that_keeps_to_the_limit(searches, least):
-    """In twenty simulations; the best of as many at random is farther off."""
+    """In twenty simulations; the best of as many at random is farther off in each."""
     best = np.array([search.best_predicted(CHANCE) for search in searches])
     hits = (response(best) - least <= FOUND) & (limited(best) <= LIMIT + LIMITED_NOISE)
     assert hits.mean() >= IN_MOST
-    at_random = [spread_values(RANGES, 6, 100 + seed) for seed in SEEDS]
+    at_random = [spread_values(RANGES, 64, 100 + seed) for seed in SEEDS]
     sound = [values[allowed(values) & (limited(values) <= LIMIT)][:MOST] for values in at_random]
-    assert np.mean([response(values).min() - least <= FOUND for values in sound]) < IN_MOST
+    assert not any(response(values).min() - least <= FOUND for values in sound)
 
 
 def test_proposals_are_values_within_the_ranges_each_once(searches):
@@ -132,9 +141,9 @@ def test_ranges_that_hold_too_few_designs_are_refused():
 
 def test_values_and_points_are_each_others_inverse():
     """A point is the middle of its value's part of the unit interval, so that both ends are as likely as the others."""
-    values = spread_values(RANGES, 8, 3)
+    values = spread_values(RANGES, 256, 3)
     assert np.array_equal(values_of(RANGES, points_of(RANGES, values)), values)
-    rows = spread_values((Range("rows", 1, 4, 1),), 3, 3)
+    rows = spread_values((Range("rows", 1, 4, 1),), 8, 3)
     assert sorted(rows[:, 0]) == [1.0, 2.0, 3.0, 4.0]
     assert points_of((Range("rows", 1, 4, 1),), np.array([[1.0], [4.0]]))[:, 0] == pytest.approx([0.125, 0.875])
 
@@ -146,4 +155,6 @@ def test_values_near_others_stay_within_the_ranges():
     for column, middle, each in zip(near.T, centre[0], RANGES, strict=True):
         assert each.low <= column.min() and column.max() <= each.high
         assert np.abs(column - middle).max() <= 4 * 0.05 * (each.high - each.low) + 2 * each.step
-    assert len(without(near, near)) == 0 and len(without(near, centre)) == len(near) - (near == centre).all(axis=1).sum()
+    assert (
+        len(without(near, near)) == 0 and len(without(near, centre)) == len(near) - (near == centre).all(axis=1).sum()
+    )
