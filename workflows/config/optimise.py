@@ -138,9 +138,7 @@ def with_search(
     if fault := fault_of_search(asked, settings, head):
         raise ConfigError(f"{fault}.")
     if taken := next((row for row in written if row.values["row"] in asked.rows), None):
-        raise ConfigError(
-            f"{taken.where()}: rows {ROW}1, {ROW}2, ... are those of the search, allowed is another name."
-        )
+        raise ConfigError(f"{taken.where()}: rows {ROW}1, {ROW}2, ... are the search's, allowed is another name.")
     if missing := next((name for name in asked.names if any(name not in row.values for row in written)), None):
         raise ConfigError(f"{where}column {missing} is a factor of the search, allowed is a design that gives it.")
     found = found_rows(folder, search_digest(settings, written))

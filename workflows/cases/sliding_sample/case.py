@@ -304,7 +304,7 @@ def exchanged_particles(folder: Path) -> dict[str, int]:
 
 
 def searched_height(settings: Mapping[str, Any], factors: Mapping[str, Any], surface: str) -> float:
-    """Return the height (m) of the highest pattern that the study's search may propose for a row, 0 without a search."""
+    """Return the height (m) of the highest pattern that the study's search may propose, 0 without a search."""
     if OPTIMISE not in settings:
         return 0.0
     ends = to_si({each["name"]: each["high"] for each in settings[OPTIMISE]["factors"]})

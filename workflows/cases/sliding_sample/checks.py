@@ -134,7 +134,8 @@ def bump_not_too_steep(run: CheckedRun) -> Fault | None:
     most = run.settings[OPTIMISE]["largest_height_over_radius"] * min(pattern.half_width, pattern.half_length)
     if pattern.highest_point <= most * (1.0 + ROUNDING):
         return None
-    return "", f"a {pattern.noun} is {millimetres(pattern.highest_point)} high, allowed is at most {millimetres(most)}"
+    found = millimetres(pattern.highest_point)
+    return "", f"{pattern.noun} too high for its foot: {found}, allowed is at most {millimetres(most)}"
 
 
 def pattern_above_floor(run: CheckedRun) -> Fault | None:

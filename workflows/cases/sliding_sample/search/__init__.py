@@ -1,1 +1,1 @@
-"""Searches for the pattern of least wear: what comes next, the record of what was tried, the best pattern beside others."""
+"""Searches for the pattern of least wear: what comes next, what was tried, the best pattern beside others."""

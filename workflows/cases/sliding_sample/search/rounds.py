@@ -27,7 +27,7 @@ from bulkwear.workflows.config.optimise import CONFIRMED, Optimise, after_round,
 from bulkwear.workflows.config.until import core_hours
 
 CHANCE = 0.9  # -, of enough being left of a pattern, asked of the best one
-SEPARATES = (":", " is ", " stand", " needs")  # what a reason is told before, and numbers after
+SEPARATES = (":", " is ")  # what a reason is told before, and numbers after
 
 Fault = Callable[[Sequence[float]], str | None]  # of the values of a pattern: why it cannot be simulated
 
@@ -95,8 +95,8 @@ def decide_round(
 
 def decide(now: Round) -> dict[str, Any]:
     """Return what a round decides, JSON-able: `rows`, those found so far with their values, `packings` by setting,
-    whether they are `enough`, `predicted` by setting, how many patterns were `excluded` by reason, the settings that are
-    `confirmed`, and a sentence.
+    whether they are `enough`, `predicted` by setting, how many patterns were `excluded` by reason, the settings that
+    are `confirmed`, and a sentence.
     """
     found = Search(now.search.factors, now.values, tried_of(now.table, now.search), _Allowed(now.fault))
     count = now.search.rows_of_round
@@ -127,8 +127,8 @@ def decide(now: Round) -> dict[str, Any]:
 
 
 def _confirmation(now: Round, found: Search) -> tuple[list[str], np.ndarray, list[str]]:
-    """Return the name and the values (k, p) of the best predicted pattern, none where it was simulated, and the settings
-    to confirm: that one, the best of those simulated, the reference.
+    """Return the name and the values (k, p) of the best predicted pattern, none where it was simulated, and the
+    settings to confirm: that one, the best of those simulated, the reference.
     """
     settings = list(now.table[SETTING])
     best = found.best_predicted(CHANCE)
