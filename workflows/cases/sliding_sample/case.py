@@ -77,7 +77,7 @@ class SlidingSample(SampleCase):
     more_templates = ("packed_container", "bed_contacts", "collision")
     seed_setting = "bed.seed"
     figure_modules = (
-        *("particle_size.figures", "particle_size.packing_figures"),
+        *("search.figures", "particle_size.figures", "particle_size.packing_figures"),
         *("screening.figures", "screening.regression_figures", "figures"),
     )
     shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "worn_film", *LAW_FIGURES)

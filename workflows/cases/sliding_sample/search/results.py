@@ -11,7 +11,7 @@ import pandas as pd
 from bulkwear.postproc.inference.improvement import Tried
 from bulkwear.postproc.inference.ranges import points_of
 from bulkwear.postproc.mesh import PLAIN, read_surface
-from bulkwear.postproc.tables.packings import SETTING
+from bulkwear.postproc.tables.packings import PACKING, SETTING
 from bulkwear.postproc.wear.pattern_left import pattern_volume
 from bulkwear.workflows.config.optimise import Optimise
 
@@ -40,7 +40,7 @@ def left_after(ln_loss: np.ndarray | float, search: Optimise) -> np.ndarray | fl
 def run_results(
     summary: pd.DataFrame, volumes: Mapping[str, float], search: Optimise, acceleration: float
 ) -> pd.DataFrame:
-    """Return a line per patterned run with a plain twin: setting, the factors, OF_RUNS.
+    """Return a line per patterned run with a plain twin: setting, packing, the factors, OF_RUNS.
 
     summary: as from `summary.summary_table`; volumes: as from `volumes_of`; acceleration: -, of the wear
     """
@@ -48,7 +48,7 @@ def run_results(
     hours = runs["time_s"] * acceleration / SECONDS_PER_HOUR
     loss = runs["pattern_worn_volume_m3"] / hours / runs["run"].map(volumes)
     least = LEAST_LOSS * np.exp(loss_limit(search))
-    return runs[[SETTING, *search.names]].assign(
+    return runs[[SETTING, PACKING, *search.names]].assign(
         ln_wear_over_plain=np.log(runs["wear_over_plain"]), ln_loss_per_h=np.log(np.maximum(loss, least))
     )
 
@@ -96,3 +96,17 @@ def predictions(tried: Tried, values: np.ndarray, search: Optimise) -> pd.DataFr
             "chance_enough_left": tried.chance_within(points),
         }
     )
+
+
+def slices(tried: Tried, best: Mapping[str, float], search: Optimise) -> pd.DataFrame:
+    """Return the `predictions` along each factor, others held at a pattern: factor, value and best, that of the
+    pattern, in the factor's unit.
+    """
+    tables = []
+    for column, each in enumerate(search.factors):
+        along = each.low + each.step * np.arange(each.steps + 1)
+        values = np.tile([float(best[name]) for name in search.names], (len(along), 1))
+        values[:, column] = along
+        head = pd.DataFrame({"factor": each.name, "value": along, "best": float(best[each.name])})
+        tables.append(pd.concat([head, predictions(tried, values, search)], axis=1))
+    return pd.concat(tables, ignore_index=True)
