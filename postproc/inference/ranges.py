@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -77,18 +78,17 @@ def without(values: np.ndarray, others: np.ndarray) -> np.ndarray:
     return values[~(values[:, None] == np.asarray(others)[None]).all(axis=2).any(axis=1)]
 
 
-def first_values(ranges: Sequence[Range], allowed: Allowed, count: int, seed: int) -> np.ndarray:
-    """Return `count` values (count, p) to begin with, which fill what is allowed of the ranges evenly.
+def first_values(
+    ranges: Sequence[Range], allowed: Allowed, count: int, seed: int, others: Sequence[Sequence[float]] = ()
+) -> np.ndarray:
+    """Return `count` values (count, p) to begin with, which fill what is allowed of the ranges evenly,
+    none of the others.
 
     Raises ValueError where the ranges have fewer that are allowed.
     """
     found = spread_values(ranges, SPREAD, seed)
-    kept: list[np.ndarray] = []
-    for values in found:
-        if len(kept) == count:
-            break
-        if allowed(values[None])[0]:
-            kept.append(values)
+    fresh = without(found, np.array(others)) if len(others) else found
+    kept = list(itertools.islice((values for values in fresh if allowed(values[None])[0]), count))
     if len(kept) < count:
         raise ValueError(f"found {len(kept)} designs that can be simulated within ranges, allowed are {count} or more")
-    return np.array(kept)
+    return np.array(kept).reshape(count, len(ranges))

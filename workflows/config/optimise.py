@@ -142,25 +142,34 @@ def with_search(
     if missing := next((name for name in asked.names if any(name not in row.values for row in written)), None):
         raise ConfigError(f"{where}column {missing} is a factor of the search, allowed is a design that gives it.")
     found = found_rows(folder, search_digest(settings, written))
-    rows = _evenly_filled(asked, written[0], runs)
-    return [*written, *(_row(written[0], name, found.get(name, values)) for name, values in rows.items())]
+    rows = _rows(asked, written, runs, found)
+    return [*written, *(_row(written[0], name, values) for name, values in rows.items())]
 
 
 def _row(reference: Layer, name: str, values: Mapping[str, float]) -> Layer:
     return replace(reference, values={**reference.values, **values, "row": name}, lines={}, block=f"row {name}")
 
 
-def _evenly_filled(asked: Optimise, reference: Layer, runs: Runs) -> dict[str, dict[str, float]]:
-    """Return {row: {column: value}} of all rows of the search, as they fill the ranges. Raises ConfigError."""
+def _rows(
+    asked: Optimise, written: Sequence[Layer], runs: Runs, found: Mapping[str, Mapping[str, float]]
+) -> dict[str, Mapping[str, float]]:
+    """Return {row: {column: value}} of all rows of a search: the first ones, those that rounds found, and for others
+    values by which their cost is forecast; each pattern once. Raises ConfigError.
+    """
 
     def allowed(values: np.ndarray) -> np.ndarray:
-        return np.array([fault_of(asked, reference, runs, row) is None for row in values], dtype=bool)
+        return np.array([fault_of(asked, written[0], runs, row) is None for row in values], dtype=bool)
 
+    known = [[row.values[name] for name in asked.names] for row in written]
     try:
-        found = first_values(asked.factors, allowed, asked.most_rows, asked.seed)
+        first = first_values(asked.factors, allowed, asked.first_rows, asked.seed, known)
+        known += [*first.tolist(), *([values[name] for name in asked.names] for values in found.values())]
+        missing = asked.most_rows - asked.first_rows - len(found)
+        rest = first_values(asked.factors, allowed, missing, asked.seed, known)
     except ValueError as fault:
         raise ConfigError(f"{OPTIMISE}: {fault}.") from None
-    return {name: named(asked, row) for name, row in zip(asked.rows, found, strict=True)}
+    values = [*(named(asked, row) for row in first), *found.values(), *(named(asked, row) for row in rest)]
+    return dict(zip(asked.rows, values, strict=True))
 
 
 def named(asked: Optimise, values: Sequence[float]) -> dict[str, float]:
@@ -174,7 +183,7 @@ def fault_of(asked: Optimise, reference: Layer, runs: Runs, values: Sequence[flo
     try:
         runs(row)
     except ConfigError as fault:
-        return str(fault).removeprefix(row.where()).lstrip(": ").rstrip(".")
+        return str(fault).partition(": ")[2].rstrip(".")
     return None
 
 
