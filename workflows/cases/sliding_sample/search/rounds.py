@@ -107,13 +107,13 @@ def decide(now: Round) -> dict[str, Any]:
     if len(now.free) > count and len(next_ones) and not too_dear:
         names, values = now.free[:count], next_ones
         packings = dict.fromkeys(names[: len(values)], now.search.packings)
-        decided = {"enough": False, "confirmed": [], "said": f"{said}; {', '.join(packings)} come next"}
+        decided = {"enough": False, "confirmed": [], "said": f"{said}; next: {', '.join(packings)}"}
     else:
         names, values, confirmed = _confirmation(now, found)
         packings = dict.fromkeys(confirmed, now.search.confirming_packings)
         why = f"the budget ends here, {now.hours:.2g} core hours are used" if too_dear else "no further round"
         listed = ", ".join(confirmed)
-        decided = {"enough": True, "confirmed": confirmed, "said": f"{said}; {why}; {listed} are confirmed"}
+        decided = {"enough": True, "confirmed": confirmed, "said": f"{said}; {why}; confirmed: {listed}"}
     rows = {name: named(now.search, row) for name, row in zip(names, values, strict=False)}
     every = [*now.table[SETTING], *rows]
     told = predictions(found.tried, np.vstack([now.values, values]) if len(values) else now.values, now.search)
