@@ -1,5 +1,7 @@
 """The record of a search, what its figures and its page say of it."""
 
+import shutil
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,17 +11,19 @@ from bulkwear.workflows.cases.sliding_sample.search import page
 from bulkwear.workflows.cases.sliding_sample.search.findings import lowest_tried, strongest_factor
 from bulkwear.workflows.cases.sliding_sample.search.record import best_confirmed
 from bulkwear.workflows.report.products import job_of, outputs_of, paths_of, products_of_study, told_to, write_product
-from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, search_to_its_end, small_search, write_runs
+from tests.support.finished_samples import embedded, page_of_results, write_results
+from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, small_search, write_runs
 
 WITHIN = 0.03  # -, of wear over plain: scatter of packings, 0.01
 FIGURES = ("search_record", "search_slices")
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    """The folder of a finished search, with the tables of its figures."""
-    root = tmp_path_factory.mktemp("search")
-    decided = search_to_its_end(root)
+def results(finished, tmp_path_factory):
+    """The study, the folder of its finished search with the tables of its figures, and what its rounds decided."""
+    before, decided = finished
+    root = tmp_path_factory.mktemp("record")
+    shutil.copytree(before, root, dirs_exist_ok=True)
     study = small_search(root).with_packings(decided[-1]["packings"])
     folder = root / "results" / STUDY
     write_runs(study, folder)
@@ -103,3 +107,18 @@ def test_the_page_answers_which_pattern_is_best(results):
     assert first.startswith(f"The best pattern, {best['setting']} (height {best['height_mm']:g} mm, minor radius")
     assert first.endswith("of that of R5.") and "% of it are left after its hours, enough" in second
     assert page.answers(folder / "figures") == []
+
+
+def test_a_whole_page_has_the_search(results, tmp_path):
+    """Beside all that any study of samples has: the confirmed patterns for download, reasons, figures."""
+    study, folder, decided = results
+    made_up = tmp_path / "results" / STUDY
+    write_results(made_up, study)
+    for name in ("rounds", "search"):
+        shutil.copytree(folder / name, made_up / name)
+    for name in FIGURES:
+        shutil.copy(folder / "figures" / f"{name}.csv", made_up / "figures")
+    text = page_of_results(made_up, study)
+    assert embedded(text, f"{STUDY}_confirmed.csv")["setting"].tolist() == decided[-1]["confirmed"]
+    assert all(f'id="{name}"' in text for name in FIGURES)
+    assert "bump too high for its foot" in text and text.count(decided[-1]["said"]) == 1

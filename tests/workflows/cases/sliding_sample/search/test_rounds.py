@@ -15,17 +15,10 @@ from bulkwear.workflows.cases.sliding_sample.search.results import (
 )
 from bulkwear.workflows.cases.sliding_sample.search.rounds import short_reason
 from bulkwear.workflows.forecast.limits import fault_of_budget
-from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, decided_round, search_to_its_end, small_search
+from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, decided_round, small_search
 
 STEP_MM = 0.5  # of the searched heights
 WITHIN = 0.03  # -, of the least wear over plain: scatter of packings, 0.01, and the surrogate's error
-
-
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory):
-    """A root with the results of a whole search, and what its rounds decided."""
-    root = tmp_path_factory.mktemp("search")
-    return root, search_to_its_end(root)
 
 
 def test_a_search_finds_the_best_height(finished):
