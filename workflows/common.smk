@@ -57,14 +57,12 @@ def entered_project():
     return project
 
 
-def checked_studies():
+def checked_studies(settings, named):
     """The studies that are asked for by name. A fault ends here, in one sentence, before a job starts.
 
     Where nothing is made, as with --list and --lint, all that have no fault. A Snakefile that takes this workflow as a
     module may name them: config of the module, `studies`.
     """
-    settings = dict(config)
-    named = settings.pop("studies", [])
     if not (isinstance(named, list) and all(isinstance(name, str) for name in named)):
         raise WorkflowError(f"config of the module: studies is {named!r}, allowed is a list of names of studies.")
     if GIVEN.lint or GIVEN.list_rules or GIVEN.list_target_rules:
@@ -90,7 +88,8 @@ def sound_study(name, settings):
 
 
 PROJECT = entered_project()
-STUDIES = checked_studies()
+SETTINGS = {key: value for key, value in config.items() if key != "studies"}  # of the command line
+STUDIES = checked_studies(SETTINGS, config.get("studies", []))
 
 
 wildcard_constraints:
@@ -102,7 +101,7 @@ wildcard_constraints:
 CASES = {study.case.name: study.case for study in STUDIES.values()}
 SOLVER_RULES = {rule for case in CASES.values() for rule in case.solver_rules}
 # What comes before the tables of a study: on a cluster all that is not named here is one submission.
-BEFORE_TABLES = {"surface_mesh", "cost_rates", "forecast_table", "further_packings", *SOLVER_RULES}
+BEFORE_TABLES = {"surface_mesh", "cost_rates", "forecast_table", "further_packings", "proposed_rows", *SOLVER_RULES}
 
 
 HELD = []  # locks of studies' folders, until Snakemake ends
@@ -122,14 +121,17 @@ onstart:
         for study in STUDIES:
             if fault := beyond_machine(study, needed.get(study, ()), workflow.dag.needrun_jobs()):
                 raise WorkflowError(fault)
+    for study in needed:
+        if fault := beyond_budget(study):
+            raise WorkflowError(fault)
     if workflow.local_exec:
         figure_process.start()
     for study in sorted({job.wildcards.get("study", "") for job in workflow.dag.needrun_jobs()} & set(STUDIES)):
         HELD.append(prepared(Path("results") / study))
     for study, jobs in needed.items():
         announce_cost(study, jobs)
-        if STUDIES[study].until:
-            logger.info(STUDIES[study].until.said(study))
+        if in_rounds(STUDIES[study]):
+            logger.info((STUDIES[study].until or STUDIES[study].optimise).said(study))
     tell_time_left(needed, workflow.dag.needrun_jobs())
 
 
@@ -196,6 +198,15 @@ def beyond_machine(study, jobs, all_jobs):
     return fault_here(STUDIES[study], jobs, meshed)
 
 
+def beyond_budget(study):
+    """Why the budget of a study's search does not hold a round; None where it does."""
+    if STUDIES[study].optimise is None:
+        return None
+    from bulkwear.workflows.forecast.limits import fault_of_budget  # slow to import, and jobs need none
+
+    return fault_of_budget(STUDIES[study])
+
+
 def announce_cost(study, jobs):
     """Say in one line what those jobs of a study will cost."""
     from bulkwear.workflows.forecast.forecast import announcement  # slow to import, and jobs need none
@@ -228,28 +239,50 @@ def study_of(wildcards):
 
 
 def study_so_far(wildcards):
-    """The study with the packings that were found to be needed; which are, is not known before its runs are done."""
-    study, decided = study_of(wildcards), last_round(wildcards)
-    return study.with_packings(read_round(decided[0])["packings"]) if decided else study
+    """The study with the packings, and rows, that were found to be needed; which are, is not known before its runs are
+    done.
+    """
+    decided = last_round(wildcards)
+    return study_of(wildcards).with_packings(read_round(decided[0])["packings"]) if decided else study_of(wildcards)
 
 
 def last_round(wildcards):
-    """What says how many packings are enough, which tables depend on; nothing where their number is given."""
-    if study_of(wildcards).until is None:
+    """What says which packings and rows are enough, which tables depend on; nothing where their number is given."""
+    if not in_rounds(study_of(wildcards)):
         return []
     for number in itertools.count(1):
-        decided = checkpoints.further_packings.get(study=wildcards.study, round=number).output.decided
+        decided = round_of(wildcards.study, number)
         if read_round(decided)["enough"]:
             return [decided]
 
 
+def in_rounds(study):
+    """Whether rounds say which packings or rows a study has."""
+    return bool(study.until or study.optimise)
+
+
+def round_of(study, number):
+    """What a round decided; the rows of the study are those of that round from now on."""
+    rounds = checkpoints.proposed_rows if STUDIES[study].optimise else checkpoints.further_packings
+    decided = rounds.get(study=study, round=number).output.decided
+    if STUDIES[study].optimise and not known_rows(study, decided):
+        STUDIES[study] = load_study(study, overrides=SETTINGS)
+    return decided
+
+
+def known_rows(study, decided):
+    """Whether the study has the rows that a round found, as it found them."""
+    rows = {row["row"]: row for row in STUDIES[study].design_rows}
+    return all(rows[name] == rows[name] | values for name, values in read_round(decided)["rows"].items())
+
+
 def study_of_round(wildcards):
-    """The study with the packings that a round of `further_packings` looks at."""
+    """The study with the packings that a round looks at."""
     study, number = study_of(wildcards), int(wildcards.round)
     if number == 1:
         return study.with_packings(study.first_packings)
-    before = checkpoints.further_packings.get(study=study.name, round=number - 1).output.decided
-    return study.with_packings(read_round(before)["packings"])
+    packings = read_round(round_of(study.name, number - 1))["packings"]
+    return study_of(wildcards).with_packings(packings)
 
 
 def of_round(pattern):
@@ -390,7 +423,7 @@ def solver_work(study):
     def work(wildcards):
         from bulkwear.workflows.forecast.forecast import work_of  # slow to import, and most jobs ask for no forecast
 
-        return work_of(STUDIES[study])
+        return work_of(STUDIES[study].foreseen)
 
     return work
 

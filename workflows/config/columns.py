@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, display_name, merge, overridden, read_csv_rows
+from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.schema import case_schema, leaves, subschema
 from bulkwear.workflows.config.until import UNTIL
 from bulkwear.workflows.config.validation import check_alternatives, unknown_key
 from bulkwear.workflows.engine.project import Project
 
 ANY_SETTING = "x-any-setting"  # key of the schema of a design table
-OF_STUDY = (UNTIL,)  # sections that are the whole study's
+OF_STUDY = (UNTIL, OPTIMISE)  # sections that are the whole study's
 
 
 def setting_columns(schema: dict[str, Any]) -> dict[str, str]:

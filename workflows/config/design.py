@@ -10,8 +10,8 @@ Configuration faults raise ConfigError, one sentence each.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial, reduce
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from bulkwear.workflows.config.coefficients import (
     with_coefficients,
 )
 from bulkwear.workflows.config.columns import as_settings, opened, row_overrides, setting_columns, with_row
+from bulkwear.workflows.config.factors import FACTORS, can_tell, factors_of
 from bulkwear.workflows.config.law_settings import check_law, check_volume
 from bulkwear.workflows.config.layers import (
     ConfigError,
@@ -31,6 +32,7 @@ from bulkwear.workflows.config.layers import (
     display_name,
 )
 from bulkwear.workflows.config.materials import check_calibrated_for, check_material_names, check_materials
+from bulkwear.workflows.config.optimise import Optimise, optimise_of, search_digest, with_search
 from bulkwear.workflows.config.packings import PACKINGS, Packings, with_packings, without_packings
 from bulkwear.workflows.config.run_checks import (
     COMMON_CHECKS,
@@ -66,8 +68,6 @@ from bulkwear.workflows.engine.project import Project, current_project
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 
 TARGETS = ("_decks", "_forecast")  # endings of targets that each study has besides its own name
-FACTORS = "factors"  # key of a study
-FEWEST_SETTINGS = 5  # for which a regression is made: AICc needs four more than a model has terms
 CONFIRMATION = "_confirmation"  # ends the name of the study that simulates what a study's regression found best
 STUDY_NAME = re.compile(r"[a-z][a-z0-9_]*")
 RULE_NAMES = frozenset(
@@ -87,7 +87,10 @@ class Study:
     factors: {short name: column of the design} of the regression of its results; empty without one
     head: the keys of its file that are the study's own, no settings
     confirms: the study whose best designs this one simulates, "" for all others
-    first_packings: {setting: packings that are simulated first}; with `until` runs are all that there may be
+    first_packings: {setting: packings that are simulated first}; with `until` and `optimise` runs are all that there
+        may be
+    search_digest: of what proposals of its search depend on besides results
+    runs_of: the checked runs of any further row of its design
     until: how narrow intervals shall be, None where packings are a fixed number
     """
 
@@ -108,6 +111,13 @@ class Study:
     head: dict[str, Any]
     first_packings: dict[str, int]
     confirms: str = ""
+    search_digest: str = ""
+    runs_of: Callable[[Layer], list[Run]] | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def optimise(self) -> Optimise | None:
+        """Return what the study asks of a search for the best pattern; None where nothing is looked for."""
+        return optimise_of(self.settings)
 
     @property
     def until(self) -> Until | None:
@@ -125,6 +135,13 @@ class Study:
             runs=tuple(run for run in self.runs if there(run.row)),
             design_rows=tuple(row for row in self.design_rows if there(str(row["row"]))),
         )
+
+    @property
+    def foreseen(self) -> Study:
+        """Return the study by which its cost is forecast: with as many rows and packings as it may need."""
+        if (search := self.optimise) is None:
+            return self
+        return self.with_packings(search.foreseen([name for name in self.first_packings if name not in search.rows]))
 
     @property
     def chosen_settings(self) -> list[str]:
@@ -218,10 +235,13 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     written = (
         _rows_to_confirm(sources, confirms, project) if confirms else _design_rows(sources, fidelity, project, wanted)
     )
+    checked_runs = partial(_checked_runs, sources, layers, settings, materials)
+    digest = search_digest(settings, written)
+    written = with_search(written, settings, head, checked_runs, project.folder / "results" / name)
     designed = _packings(sources, layers, settings, written)
     rows = list(designed.rows) if confirms else chosen_rows(layers, settings, designed)
-    runs_of = runs_of_rows(designed.added_last(), rows, partial(_checked_runs, sources, layers, settings, materials))
-    factors = {} if confirms else _factors(sources, designed, wanted)
+    runs_of = runs_of_rows(designed.added_last(), rows, checked_runs)
+    factors = {} if confirms else factors_of(sources, designed, wanted)
     paper = sources.stack("paper")[:-1]
     study = Study(
         name=name,
@@ -235,12 +255,14 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         design_rows=tuple(row.values for row in rows),
         setting_of=designed.setting_of,
         packing_of=designed.packing_of,
-        factors=factors if _can_tell(factors, designed, rows) else {},
+        factors=factors if can_tell(factors, designed, rows) else {},
         paper_settings=_told(sources, paper, sources.merged(paper), materials),
         materials=materials,
         head=head,
         first_packings=designed.first(settings),
         confirms=confirms,
+        search_digest=digest,
+        runs_of=checked_runs,
     )
     _check_own_code(study, layers)
     return study
@@ -316,43 +338,6 @@ def _packings(sources: Sources, layers: tuple[Layer, ...], settings: dict[str, A
             f" {case.name}: {case.one_packing}."
         )
     return without_packings(rows)
-
-
-def _can_tell(factors: dict[str, str], designed: Packings, rows: list[Layer]) -> bool:
-    """Return whether the chosen rows are enough for a regression on the factors."""
-    settings = {designed.setting_of[row.values["row"]] for row in rows}
-    told = all(len({row.values[name] for row in rows}) > 1 for name in factors.values())
-    return len(settings) >= FEWEST_SETTINGS and told
-
-
-def _factors(sources: Sources, designed: Packings, chosen: list[str]) -> dict[str, str]:
-    """Return the factors of the study's regression; the rows must be able to tell of each. Raises ConfigError.
-
-    Where rows are chosen, those that have a fault are left out, and nothing is asked of the others together.
-    """
-    factors, rows = sources.study.values.get(FACTORS, {}), designed.rows
-    if chosen:
-        told = all(column in row.values for column in factors.values() for row in rows)
-        return dict(factors) if told else {}
-    settings = set(designed.setting_of.values())
-    for name, column in factors.items():
-        if any(column not in row.values for row in rows):
-            raise ConfigError(
-                f"{sources.study.where((FACTORS, name))}: {FACTORS}.{name} is {column}, allowed are columns that the"
-                " design gives in every row."
-            )
-        levels = {row.values[column] for row in rows}
-        if len(levels) < 2:
-            raise ConfigError(
-                f"{sources.study.where((FACTORS, name))}: {FACTORS}.{name} is {column}, which is"
-                f" {levels.pop():g} in every row of the design, allowed are columns with two levels or more."
-            )
-    if factors and len(settings) < FEWEST_SETTINGS:
-        raise ConfigError(
-            f"{sources.study.where((FACTORS,))}: {FACTORS} ask for a regression, found a design of {len(settings)}"
-            f" settings, allowed are {FEWEST_SETTINGS} or more."
-        )
-    return dict(factors)
 
 
 def _checked_runs(

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from bulkwear.workflows.config.layers import ConfigError, Layer
+from bulkwear.workflows.config.optimise import optimise_of
 from bulkwear.workflows.config.until import first_packings, until_of
 from bulkwear.workflows.engine.decks import SMALLEST_SEED, primes
 
@@ -35,7 +36,7 @@ class Packings:
     added: frozenset[str] = frozenset()
 
     def first(self, settings: Mapping[str, Any]) -> dict[str, int]:
-        """Return how many packings of each setting are simulated first; `until` adds the others, see `until`."""
+        """Return how many packings of each setting are simulated first; `until` and `optimise` add the others."""
         found: dict[str, list[Layer]] = {}
         for row in self.rows:
             found.setdefault(self.setting_of[_name(row)], []).append(row)
@@ -44,6 +45,8 @@ class Packings:
         given = {
             name: len(rows) if own[name] else max(written[name], settings[PACKINGS]) for name, rows in found.items()
         }
+        if (search := optimise_of(settings)) is not None:
+            return search.first_packings([name for name in given if name not in search.rows])
         return first_packings(until_of(settings), given, own)
 
     def added_last(self) -> list[Layer]:
@@ -53,8 +56,9 @@ class Packings:
 
 def wanted_packings(rows: Sequence[Layer], settings: Mapping[str, Any]) -> int:
     """Return how many packings a setting may have; rows: those of the design that are of it."""
-    until = until_of(settings)
-    most = settings[PACKINGS] if until is None else max(settings[PACKINGS], until.most_packings)
+    until, search = until_of(settings), optimise_of(settings)
+    further = [until.most_packings] if until else [search.confirming_packings] if search else []
+    most = max(settings[PACKINGS], *further) if further else settings[PACKINGS]
     return max(row.values.get(PACKINGS, most) for row in rows)
 
 

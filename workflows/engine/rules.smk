@@ -121,6 +121,7 @@ checkpoint further_packings:
         "results/{study}/logs/further_packings_{round}.log",
     wildcard_constraints:
         round=r"\d+",
+        study="|".join(name for name in STUDIES if STUDIES[name].optimise is None) or "no_study",
     localrule: True
     params:
         until=lambda wildcards: study_of(wildcards).until,

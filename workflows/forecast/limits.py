@@ -106,3 +106,24 @@ def _too_much(jobs: list[Work], rates: Rates, cores: int, memory_gb: float, free
     if (hours := wall_hours(table, cores)) > HOURS_PER_YEAR:
         return f"its jobs take about {hours_text(hours)} on {cores} cores, which is more than a year"
     return None
+
+
+def fault_of_budget(study: Study) -> str | None:
+    """Return why the budget of a study's search does not hold its first rows, one round and what confirms the best, a
+    sentence; None where it does, or rates cannot be read, which is told.
+    """
+    try:
+        rates = read_rates(rates_file()).rates
+    except RatesError:
+        return None
+    search = study.optimise
+    written = [name for name in study.first_packings if name not in search.rows]
+    least = study.with_packings(search.foreseen(written, search.first_rows + search.rows_of_round + 1))
+    hours = float(forecast_table(work_of(least), rates)["core_h"].sum())
+    if hours <= search.most_core_h:
+        return None
+    return (
+        f"{study.name}: optimise.most_core_h is {search.most_core_h:g}, allowed are about {number_text(hours)} or more:"
+        f" the forecast of {search.first_rows} first rows, a round of {search.rows_of_round}, and what confirms the"
+        " best."
+    )

@@ -33,7 +33,7 @@ def shipped_forecasts() -> Forecasts:
     """Return the forecast of every study of the package at every fidelity."""
     rates = read_rates(PACKAGE / DEFAULT).rates
     return {
-        (name, fidelity): forecast_table(work_of(load_study(name, overrides={"fidelity": fidelity})), rates)
+        (name, fidelity): forecast_table(work_of(load_study(name, overrides={"fidelity": fidelity}).foreseen), rates)
         for name in list_studies(Project(PACKAGE))
         for fidelity in FIDELITIES
     }

@@ -21,7 +21,7 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import NAMES, read_summary
-from bulkwear.workflows.config.until import last_round
+from bulkwear.workflows.config.until import UNTIL, last_round
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.project import PACKAGE, current_project
 from bulkwear.workflows.engine.provenance import commit_of, git, package_cases, package_commit, simulating_code
@@ -114,7 +114,7 @@ def page_context(study: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         "simplified": simplifications(study, summary, page),
         "versions": versions(study, folder),
         **simulated(study, folder),
-        "packings": last_round(folder),
+        "packings": last_round(folder) if UNTIL in study["settings"] else "",
         "parameters": {run: json.dumps(values, indent=1) for run, values in study["parameters"].items()},
         "decks": decks_of(study, folder, page.DECKS),
         "warnings": solver_warnings(study, folder),

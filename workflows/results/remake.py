@@ -69,9 +69,9 @@ def missing_work(study: Study, pending: Sequence[tuple[str, str]] | None) -> lis
 
     A job is named after its rule and what stands for its wildcards, which is a part of its files' paths.
     """
-    work = list(work_of(study))
     if pending is None:
-        return work
+        return list(work_of(study.foreseen))
+    work = work_of(study)
     return [job for job in work if any(_makes(job.name, rule, file) for rule, file in pending)]
 
 

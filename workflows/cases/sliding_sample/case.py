@@ -25,7 +25,14 @@ from bulkwear.workflows.cases.sliding_sample.decks import (
 from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters, flow_measures
 from bulkwear.workflows.cases.sliding_sample.shape import rolling, shaped
 from bulkwear.workflows.cases.sliding_sample.study import varies_scale
-from bulkwear.workflows.config.patterns import dimension_columns, option_keys, pattern_section, sample_surface
+from bulkwear.workflows.config.optimise import OPTIMISE
+from bulkwear.workflows.config.patterns import (
+    dimension_columns,
+    highest_point,
+    option_keys,
+    pattern_section,
+    sample_surface,
+)
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.beds import BedMeasure, level_measure, mass_measure
@@ -71,7 +78,7 @@ class SlidingSample(SampleCase):
     more_templates = ("packed_container", "bed_contacts", "collision")
     seed_setting = "bed.seed"
     figure_modules = (
-        *("particle_size.figures", "particle_size.packing_figures"),
+        *("search.figures", "particle_size.figures", "particle_size.packing_figures"),
         *("screening.figures", "screening.regression_figures", "figures"),
     )
     shared_figures = ("beds", "worn_surface", "worn_surface_3d", "wear_updates", "worn_film", *LAW_FIGURES)
@@ -116,12 +123,15 @@ class SlidingSample(SampleCase):
             **template_sections(settings),
             **{name: rolling(body, settings["bed"]["rolling_friction_factor"]) for name, body in bodies.items()},
         }
-        return {**parameters, "derived": derived_parameters(parameters)}
+        derived = derived_parameters(parameters)
+        rise = searched_height(settings, factors, surface) - highest_point(parameters["pattern"])
+        return {**parameters, "derived": derived | {"highest_point_m": derived["highest_point_m"] + max(rise, 0.0)}}
 
     def beds(self, runs: Sequence[Run]) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
         """Return the beds of a study; runs with equal parameters share one.
 
-        Beds settle on a temporary floor (`temporary_floor_m`) above the highest point of the whole study's samples.
+        Beds settle on a temporary floor (`temporary_floor_m`) above the highest point of the whole study's samples, of
+        those that a search may still propose as well.
         """
         beds: dict[str, dict[str, Any]] = {}
         bed_of = {}
@@ -296,6 +306,14 @@ def exchanged_particles(folder: Path) -> dict[str, int]:
         "entered_particles": int(told["entered"].sum()),
         "missing_particles": int(max(missing, uncounted)),
     }
+
+
+def searched_height(settings: Mapping[str, Any], factors: Mapping[str, Any], surface: str) -> float:
+    """Return the height (m) of the highest pattern that the study's search may propose, 0 without a search."""
+    if OPTIMISE not in settings:
+        return 0.0
+    ends = to_si({each["name"]: each["high"] for each in settings[OPTIMISE]["factors"]})
+    return highest_point(pattern_section(surface, {**settings["pattern"], **factors, **ends}))
 
 
 def row_particle_scale(settings: Mapping[str, Any], materials: Mapping[str, Any], thickness: float) -> float:

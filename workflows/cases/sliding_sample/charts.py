@@ -42,6 +42,21 @@ RELATIVE_WEAR = one_panel(
     levels=PLAIN_SAMPLE,
     names=RELATIONS,
 )
+PREDICTED = {"low": "predicted_low", "high": "predicted_high"}
+SEARCH_RECORD = one_panel(
+    Axis("Pattern"),
+    Axis("Wear over plain", "-"),
+    Layer(POINTS, "wear_over_plain", "setting", **INTERVAL, group=("enough_left",), said="Simulated"),
+    Layer(POINTS, "predicted", "setting", **PREDICTED, name="predicted before", said="Predicted before"),
+    levels=PLAIN_SAMPLE,
+    names={"yes": "enough is left", "no": "too little is left"},
+)
+SEARCH_SLICES = one_panel(
+    Axis("Value of the factor", "mm"),
+    Axis("Wear over plain", "-"),
+    Layer(LINES, "predicted", "value", **PREDICTED, band=True),
+    split="factor",
+)
 DEPTHS = one_panel(
     Axis("Depth", "µm", log=True),
     Axis("Area worn deeper", "% of the sample"),

@@ -7,7 +7,8 @@ import math
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.sliding_sample.parameters import THIN_BED_LAYERS
 from bulkwear.workflows.cases.sliding_sample.shape import clumps_stay_whole
-from bulkwear.workflows.config.patterns import highest_point
+from bulkwear.workflows.config.optimise import OPTIMISE
+from bulkwear.workflows.config.patterns import highest_point, pattern_of
 from bulkwear.workflows.config.run_checks import (
     Check,
     CheckedRun,
@@ -19,7 +20,7 @@ from bulkwear.workflows.config.run_checks import (
     pattern_fits,
     physical_modulus_known,
 )
-from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, WINDOW, window_lengths
+from bulkwear.workflows.engine.derived import ADAPTIVE, PERIODIC, ROUNDING, WINDOW, window_lengths
 from bulkwear.workflows.engine.grains import smallest_radius
 from bulkwear.workflows.engine.schedule import LEAST_CYCLE_STEPS
 
@@ -127,6 +128,18 @@ def pattern_in_bed(run: CheckedRun) -> Fault | None:
     return "bed_thickness_mm", f"above {millimetres(highest)}, the height of the pattern"
 
 
+def bump_not_too_steep(run: CheckedRun) -> Fault | None:
+    """In a search, a bump is no higher than a stated multiple of the smaller radius of its foot."""
+    pattern = pattern_of(run.parameters["pattern"])
+    if pattern is None or OPTIMISE not in run.settings:
+        return None
+    most = run.settings[OPTIMISE]["largest_height_over_radius"] * min(pattern.half_width, pattern.half_length)
+    if pattern.highest_point <= most * (1.0 + ROUNDING):
+        return None
+    found = millimetres(pattern.highest_point)
+    return "", f"{pattern.noun} too high for its foot: {found}, allowed is at most {millimetres(most)}"
+
+
 def pattern_above_floor(run: CheckedRun) -> Fault | None:
     """A pattern is less deep than the sample's top is above the floor."""
     return deeper_than(run, "height_above_floor")
@@ -189,6 +202,7 @@ SLIDING_CHECKS: tuple[Check, ...] = (
     enough_layers,
     pattern_in_bed,
     pattern_fits,
+    bump_not_too_steep,
     pattern_above_floor,
     no_particle_between,
     sample_in_bed,

@@ -60,6 +60,7 @@ def told(study: Study) -> dict[str, Any]:
     """Return what the page is told besides what every page is."""
     from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size
     from bulkwear.workflows.cases.sliding_sample.screening import page as screening
+    from bulkwear.workflows.cases.sliding_sample.search import page as search
 
     by_regime, by_scale = finds_regimes(study), varies_scale(study)
     return {
@@ -67,6 +68,7 @@ def told(study: Study) -> dict[str, Any]:
         "finds_regimes": by_regime,
         "varies_scale": by_scale,
         "compares_shapes": grain_shape.compares_shapes(study),
+        **search.told(study),
         **(screening.told(study) if by_regime else {}),
         **(particle_size.told(study) if by_scale else {}),
     }
@@ -75,10 +77,12 @@ def told(study: Study) -> dict[str, Any]:
 def answers(folder: Path) -> list[str]:
     """Return in sentences what the patterns of a study do to the wear."""
     from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size
+    from bulkwear.workflows.cases.sliding_sample.search import page as search
 
     said = key_numbers.answers(read_summary(folder / "summary.csv"))
     by_scale = particle_size.answers(folder)
-    return [*grain_shape.answers(folder), *([*by_scale, *said[-1:]] if by_scale else said)]
+    of_study = [*by_scale, *said[-1:]] if by_scale else search.answers(folder) or said
+    return [*grain_shape.answers(folder), *of_study]
 
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
@@ -91,10 +95,12 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     """Return the sections of a page: what particle size asks, key numbers, screening, then wear and bed of any."""
     from bulkwear.workflows.cases.sliding_sample.particle_size import page as particle_size
     from bulkwear.workflows.cases.sliding_sample.screening import page as screening
+    from bulkwear.workflows.cases.sliding_sample.search import page as search
 
     of_study = study["told"]
     return _each_figure_once(
         [
+            *(search.sections(study, folder) if "search" in of_study else []),
             *(particle_size.sections(study, folder) if of_study["varies_scale"] else []),
             Section(
                 "Key numbers", [*key_numbers.key_numbers(study, folder), Pictures(["relative_wear", "worn_surface"])]

@@ -7,7 +7,8 @@ from typing import Any
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
-from bulkwear.workflows.config.design import FACTORS, Study
+from bulkwear.workflows.config.design import Study
+from bulkwear.workflows.config.factors import FACTORS
 from bulkwear.workflows.engine.case import Run
 from bulkwear.workflows.engine.pouring import bulk_density
 from bulkwear.workflows.engine.project import PACKAGE

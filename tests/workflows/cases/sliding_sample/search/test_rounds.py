@@ -1,0 +1,105 @@
+"""Rounds of a search on made-up runs: they find the best pattern, keep to the budget, and go on after a stop."""
+
+import json
+import shutil
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bulkwear.workflows.cases.sliding_sample.search.results import (
+    left_after,
+    loss_limit,
+    run_results,
+    setting_results,
+)
+from bulkwear.workflows.cases.sliding_sample.search.rounds import short_reason
+from bulkwear.workflows.forecast.limits import fault_of_budget
+from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, decided_round, small_search
+
+STEP_MM = 0.5  # of the searched heights
+WITHIN = 0.03  # -, of the least wear over plain: scatter of packings, 0.01, and the surrogate's error
+
+
+def test_a_search_finds_the_best_height(finished):
+    """To a step of it, and predicts what it wears; it is confirmed beside the reference, in more packings."""
+    _, decided = finished
+    last = decided[-1]
+    best = last["confirmed"][0]
+    assert abs(last["rows"].get(best, {"height_mm": BEST_HEIGHT_MM})["height_mm"] - BEST_HEIGHT_MM) <= STEP_MM
+    assert last["predicted"][best]["predicted"] == pytest.approx(LEAST, abs=WITHIN)
+    assert last["confirmed"][-1] == "R5" and {last["packings"][name] for name in last["confirmed"]} == {3}
+    assert [each["enough"] for each in decided] == [False, False, True]
+
+
+def test_patterns_that_cannot_be_made_are_counted_by_reason(finished):
+    """Before anything of them is meshed."""
+    _, decided = finished
+    assert set(decided[0]["excluded"]) == {"bump too high for its foot", "sample.element_size_mm"}
+    assert short_reason("bumps overlap: minor radius 8 mm needs 3 mm") == "bumps overlap"
+    assert short_reason("sample.element_size_mm is 4, allowed is at most 2 mm") == "sample.element_size_mm"
+
+
+def test_a_stopped_search_goes_on_as_if_it_had_not_been(finished, tmp_path):
+    """The rounds that are left decide what they decided; those before are not asked for."""
+    root, decided = finished
+    shutil.copytree(root, tmp_path / "again")
+    rounds = tmp_path / "again" / "results" / STUDY / "rounds"
+    for number in (2, 3):
+        (rounds / f"round_{number}.json").unlink()
+    for number in (2, 3):
+        assert decided_round(tmp_path / "again", number, decided[number - 2]["packings"]) == decided[number - 1]
+    assert json.loads((rounds / "round_1.json").read_text()) == json.loads(json.dumps(decided[0]))
+
+
+def test_a_round_that_the_budget_does_not_hold_is_not_begun(tmp_path):
+    """Twenty runs of 36 s are done; a round and the confirmation would exceed the quarter of an hour asked for."""
+    packings = small_search(tmp_path).first_packings
+    decided = decided_round(tmp_path, 1, packings, most_core_h=0.25)
+    assert decided["enough"] and "the budget ends here, 0.2 core hours are used" in decided["said"]
+    assert len(decided["rows"]) <= 1 and decided["confirmed"][-1] == "R5"  # a round has two
+
+
+def test_a_budget_that_does_not_hold_one_round_is_refused(tmp_path):
+    """Before anything is simulated, in one sentence with what it must be."""
+    assert fault_of_budget(small_search(tmp_path)) is None
+    fault = fault_of_budget(small_search(tmp_path, most_core_h=1e-4))
+    assert fault.startswith(f"{STUDY}: optimise.most_core_h is 0.0001, allowed are about 0.") and fault.count(".") > 1
+
+
+def summary(ratios, worn=1e-9, hours=0.5):
+    """A summary of a convex and a plain run of each packing of these settings."""
+    rows = []
+    for setting, values in ratios.items():
+        for packing, ratio in enumerate(values, 1):
+            for surface, over in (("convex", ratio), ("plain", 1.0)):
+                told = {"run": f"{setting}-{packing}_{surface}", "setting": setting, "packing": packing}
+                told |= {"surface": surface, "wear_over_plain": over, "pattern_worn_volume_m3": worn}
+                rows.append({**told, "time_s": 3600.0 * hours, "height_mm": 4.0, "minor_radius_mm": 6.0})
+    return pd.DataFrame(rows)
+
+
+def test_what_is_left_follows_from_the_loss_per_hour(tmp_path):
+    """0.5 of 1000 mm3 in half an hour that stands for a whole one: 0.005 of it in ten hours."""
+    search = small_search(tmp_path, after_h=10.0).optimise
+    table = summary({"A": [0.5]}, worn=0.5e-9)
+    volumes = dict.fromkeys(table["run"], 1e-6)
+    loss = run_results(table, volumes, search, acceleration=2.0)["ln_loss_per_h"]
+    assert np.exp(loss.to_numpy()) == pytest.approx([5e-4])
+    assert left_after(loss.to_numpy(), search) == pytest.approx([0.995])
+    assert left_after(loss_limit(search), search) == pytest.approx(search.least_left)
+    assert left_after(np.log(1.0), search) == 0.0
+
+
+def test_the_scatter_of_packings_is_that_of_all_settings_together(tmp_path):
+    """Of ln wear over plain: two settings of two packings that differ by 0.2 and 0.1, and one of one."""
+    search = small_search(tmp_path).optimise
+    ratios = {"A": np.exp([-0.1, 0.1]), "B": np.exp([0.3, 0.4]), "C": [1.0]}
+    table = summary(ratios)
+    runs = run_results(table, dict.fromkeys(table["run"], 1e-6), search, acceleration=1.0)
+    found = setting_results(runs, search).set_index("setting")
+    assert found["ln_wear_over_plain"].to_numpy() == pytest.approx([0.0, 0.35, 0.0])
+    scatter = np.sqrt((0.2**2 / 2 + 0.1**2 / 2) / 2)
+    assert found["ln_wear_over_plain_error"].to_numpy() == pytest.approx(scatter / np.sqrt([2, 2, 1]))
+    alone = setting_results(runs[runs["setting"] == "C"], search)
+    assert alone["ln_wear_over_plain_error"].tolist() == [0.0]

@@ -1,0 +1,164 @@
+"""What a round of a search decides: patterns to simulate next, or that the best one is confirmed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bulkwear.postproc.inference.improvement import best_of
+from bulkwear.postproc.inference.proposals import Search
+from bulkwear.postproc.tables.packings import SETTING
+from bulkwear.postproc.tables.summary import summary_table
+from bulkwear.workflows.cases.sliding_sample.search.results import (
+    predictions,
+    run_results,
+    setting_results,
+    tried_of,
+    volumes_of,
+)
+from bulkwear.workflows.config.layers import Layer
+from bulkwear.workflows.config.optimise import CONFIRMED, Optimise, after_round, fault_of, found_rows, named
+from bulkwear.workflows.config.until import core_hours
+
+CHANCE = 0.9  # -, of enough being left of a pattern, asked of the best one
+SEPARATES = (":", " is ")  # what a reason is told before, and numbers after
+
+Fault = Callable[[Sequence[float]], str | None]  # of the values of a pattern: why it cannot be simulated
+
+
+@dataclass(frozen=True, eq=False)
+class Round:
+    """What a round knows.
+
+    search: that is asked for; table: as from `results.setting_results`; reference: the first setting of it
+    packings: that there are, by setting, of all rows of the search too; rows: {row: values} that rounds before found
+    hours: core hours that the solver has taken; fault: why a pattern cannot be simulated
+    """
+
+    search: Optimise
+    table: pd.DataFrame
+    packings: Mapping[str, int]
+    rows: Mapping[str, Mapping[str, float]]
+    hours: float
+    fault: Fault
+
+    @property
+    def values(self) -> np.ndarray:
+        """Values (n, p) of the patterns that were simulated."""
+        return self.table[self.search.names].to_numpy(float)
+
+    @property
+    def free(self) -> list[str]:
+        """Names of the rows that have no values yet."""
+        return [name for name in self.search.rows if not self.packings[name]]
+
+    def held_hours(self, rows: int) -> float:
+        """Return the core hours of so many further patterns and of the confirmation, at what a packing has taken."""
+        share = self.hours / max(sum(self.packings.values()), 1)
+        more = CONFIRMED * (self.search.confirming_packings - self.search.packings)
+        return share * ((rows + 1) * self.search.packings + more)
+
+
+def decide_round(
+    study: Any,
+    number: int,
+    design: str | Path,
+    wear: Sequence[str],
+    surfaces: Sequence[str],
+    costs: Sequence[str],
+) -> dict[str, Any]:
+    """Return what round `number` of a study's search decides, and `after` which it was made.
+
+    design: table of the runs that it looks at; wear, surfaces: their files in its order; costs: of runs and beds
+    """
+    summary = summary_table(design, wear)
+    folder, search = Path(design).parents[1], study.optimise
+    runs = run_results(summary, volumes_of(summary["run"], surfaces), search, study.settings["wear"]["acceleration"])
+    counts = summary.groupby(SETTING)["packing"].max()
+    packings = dict.fromkeys(study.first_packings, 0) | {name: int(count) for name, count in counts.items()}
+    now = Round(
+        search,
+        setting_results(runs, search),
+        packings,
+        found_rows(folder, study.search_digest, before=number),
+        core_hours(list(costs)),
+        fault_of_study(study),
+    )
+    return decide(now) | {"after": after_round(folder, number - 1, study.search_digest)}
+
+
+def decide(now: Round) -> dict[str, Any]:
+    """Return what a round decides, JSON-able: `rows`, those found so far with their values, `packings` by setting,
+    whether they are `enough`, `predicted` by setting, how many patterns were `excluded` by reason, the settings that
+    are `confirmed`, and a sentence.
+    """
+    found = Search(now.search.factors, now.values, tried_of(now.table, now.search), _Allowed(now.fault))
+    count = now.search.rows_of_round
+    next_ones = found.proposed(count)
+    known = found.tried.interval(found.tried.points)[0]
+    said = f"lowest predicted wear over plain of {len(known)} patterns: {np.exp(known.min()):.3g}"
+    too_dear = now.hours + now.held_hours(count) > now.search.most_core_h
+    if len(now.free) > count and len(next_ones) and not too_dear:
+        names, values = now.free[:count], next_ones
+        packings = dict.fromkeys(names[: len(values)], now.search.packings)
+        decided = {"enough": False, "confirmed": [], "said": f"{said}; next: {', '.join(packings)}"}
+    else:
+        names, values, confirmed = _confirmation(now, found)
+        packings = dict.fromkeys(confirmed, now.search.confirming_packings)
+        why = f"the budget ends here, {now.hours:.2g} core hours are used" if too_dear else "no further round"
+        listed = ", ".join(confirmed)
+        decided = {"enough": True, "confirmed": confirmed, "said": f"{said}; {why}; confirmed: {listed}"}
+    rows = {name: named(now.search, row) for name, row in zip(names, values, strict=False)}
+    every = [*now.table[SETTING], *rows]
+    told = predictions(found.tried, np.vstack([now.values, values]) if len(values) else now.values, now.search)
+    return {
+        "rows": {**now.rows, **rows},
+        "packings": {**now.packings, **packings},
+        **decided,
+        "predicted": {name: line for name, line in zip(every, told.to_dict("records"), strict=True)},
+        "excluded": dict(found.allowed.reasons),
+    }
+
+
+def _confirmation(now: Round, found: Search) -> tuple[list[str], np.ndarray, list[str]]:
+    """Return the name and the values (k, p) of the best predicted pattern, none where it was simulated, and the
+    settings to confirm: that one, the best of those simulated, the reference.
+    """
+    settings = list(now.table[SETTING])
+    best = found.best_predicted(CHANCE)
+    simulated = settings[best_of(found.tried, found.tried.points, CHANCE)]
+    same = np.flatnonzero((now.values == best).all(axis=1))
+    if len(same):
+        return [], np.empty((0, len(best))), list(dict.fromkeys([settings[same[0]], simulated, settings[0]]))
+    name = now.free[0]
+    return [name], best[None], list(dict.fromkeys([name, simulated, settings[0]]))
+
+
+class _Allowed:
+    """Says which values can be simulated, and counts why the others cannot."""
+
+    def __init__(self, fault: Fault):
+        self.fault, self.reasons = fault, Counter()
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        faults = [self.fault(row) for row in values]
+        self.reasons = Counter(short_reason(fault) for fault in faults if fault)
+        return np.array([fault is None for fault in faults], dtype=bool)
+
+
+def short_reason(fault: str) -> str:
+    """Return a fault of a pattern without its numbers: bumps overlap, not which and by how much."""
+    ends = [fault.index(word) for word in SEPARATES if word in fault]
+    return fault[: min(ends)] if ends else fault
+
+
+def fault_of_study(study: Any) -> Fault:
+    """Return what says why a pattern of a study's search cannot be simulated."""
+    reference = Layer("", study.design_rows[0])
+    return lambda values: fault_of(study.optimise, reference, study.runs_of, values)
