@@ -180,9 +180,13 @@ def said_when_refused(folder, solver=None, ledger=LEDGER_LINE, without=()):
 
 
 def build(folder, edit=None, **settings):
-    """Build the solver from a copy of its sources; edit: (file, old, new). Returns the executable."""
+    """Build the solver from a copy of its sources; edit: (file, old, new). Returns the executable.
+
+    What the edit does not concern is taken as it is built, unless there are other settings than flags.
+    """
     sources = folder / "solver"
-    shutil.copytree(REPOSITORY / "solver", sources, ignore=shutil.ignore_patterns("build"))
+    ignored = () if settings.keys() <= {"CXXFLAGS"} else ("build",)
+    shutil.copytree(REPOSITORY / "solver", sources, ignore=shutil.ignore_patterns(*ignored))
     if edit is not None:
         name, old, new = edit
         text = (sources / name).read_text()
