@@ -29,9 +29,10 @@ LOG_NUMBER = r"([-+.\de]+)"
 
 
 def clumps(shape="pair", **changes):
-    """The tiny study with a bed of clumps."""
+    """The tiny study with a bed of clumps, and a rolling model that bodies may have."""
     bed = {**TINY["bed"], **NO_ROLLING, "shape": shape, **changes.pop("bed", {})}
-    return tiny_study(bed=bed, **changes)
+    solver = {"rolling_friction": "cdt", **changes.pop("solver", {})}
+    return tiny_study(bed=bed, solver=solver, **changes)
 
 
 def decks_of(study):
@@ -129,7 +130,10 @@ def test_what_clumps_cannot_do_is_refused_in_a_sentence(changes, message):
 def test_a_study_of_particle_size_has_spheres():
     """Its packings count contacts by spheres."""
     with pytest.raises(ConfigError, match=r"bed.shape is 'pair'.*sphere in a study of particle size"):
-        load_study("particle_size", overrides={"bed": {"shape": "pair", "ends": "walls"}})
+        load_study(
+            "particle_size",
+            overrides={"bed": {"shape": "pair", "ends": "walls"}, "solver": {"rolling_friction": "cdt"}},
+        )
 
 
 @pytest.mark.parametrize("study", ["calibration", "circular_tester", "chute"])
