@@ -85,8 +85,8 @@ def results_page(table: pd.DataFrame, known: Sequence[Code], machine: Mapping[st
         "## Wear",
         prose(
             "A sphere dragged over the floor at constant overlap; Archard's volume is coefficient times force times"
-            " distance. Volume told over that, with the same coefficient. LIGGGHTS' `wear finnie` is a law of impacts and"
-            " sees none here."
+            " distance. Volume told over that, with the same coefficient. LIGGGHTS' `wear finnie` is a law of impacts"
+            " and sees none here."
         ),
         markdown(wear_table(table, known)),
         "## What differs",
