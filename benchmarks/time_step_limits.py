@@ -143,7 +143,7 @@ def row_of(case: Case, folder: Path) -> dict[str, Any]:
     if (place / FAILED).exists():
         return row | dict.fromkeys((*RESPONSES, "processor_s"), math.nan)
     ledger, cost = read_ledger(state.cycle_folder(place, 1)), pd.read_csv(place / "cost.csv")
-    found = {name: ledger[name].sum() / travel for name in RESPONSES}
+    found = {name: ledger[name.removesuffix("_per_m")].sum() / travel for name in RESPONSES}
     return row | found | {"processor_s": cost["processor_s"].sum()}
 
 

@@ -11,7 +11,7 @@ from benchmarks.changes import FAILED, UNDECIDED, WITHIN, changes
 from benchmarks.time_step_and_stiffness import LIMIT, PERCENT
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
-RESPONSES = {"sliding_work_J": "sliding work", "impact_energy_J": "impact energy"}  # what wear laws are proportional to
+RESPONSES = {"sliding_work_J_per_m": "sliding work", "impact_energy_J_per_m": "impact energy"}  # that wear follows
 ENOUGH = 3  # packings of a model and surface before a limit is told
 
 Answers = Mapping[tuple[str, str, str], pd.DataFrame]

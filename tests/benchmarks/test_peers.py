@@ -25,6 +25,7 @@ from benchmarks.peer_page import MOST_APART, QUANTITIES, agreement, results_page
 from benchmarks.peers import MOVED, available, bed, publish, version
 from benchmarks.peers import rounds as take_turns
 from bulkwear.workflows.engine.solver import SolverError
+from tests import REPOSITORY
 
 RUN = PeerRun(steps=200, samples=2)
 MACHINE = {"processor": "a processor", "system": "a system"}
@@ -158,3 +159,10 @@ def test_a_bed_comes_to_rest_in_its_box(tmp_path):
     assert found.shape == (30, 4) and (np.abs(found[:, :2]) <= RUN.half_width).all() and (found[:, 2] > 0.0).all()
     written = (tmp_path / "deck.in").stat().st_mtime_ns
     assert np.array_equal(bed(tmp_path, 30, 4000), found) and (tmp_path / "deck.in").stat().st_mtime_ns == written
+
+
+def test_the_published_page_is_that_of_its_table(tmp_path):
+    """All but the machine, which is where it was made."""
+    docs = REPOSITORY / "docs"
+    made = results_page(pd.read_csv(docs / "peers.csv"), codes(tmp_path), MACHINE)
+    assert (docs / "peers.md").read_text().partition("## Speed")[2] == made.partition("## Speed")[2] != ""

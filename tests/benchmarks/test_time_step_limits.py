@@ -68,7 +68,7 @@ def test_limits_are_the_last_step_within_for_all():
     """Each response and surface has its own, the shortest counts; changes are those made up."""
     found = answers(made_up())
     for model, up_to in UP_TO.items():
-        told = found[model, CONVEX, "sliding_work_J"].set_index("value")
+        told = found[model, CONVEX, "sliding_work_J_per_m"].set_index("value")
         assert (told["verdict"] == WITHIN).to_dict() == {each: each <= up_to for each in FRACTIONS}
         assert told.loc[max(FRACTIONS), "change"] == pytest.approx(-0.1, abs=5.0 * NOISE)
     table = limits(found).set_index("model")
