@@ -25,6 +25,7 @@ PER_METRE, OVER_PLAIN = "worn_volume_per_metre_m3_per_m", "wear_over_plain"
 FIGURE = "wear_by_grain_shape"
 FEWEST_FACTORS = 2  # of spheres, between which clumps can be placed
 ROUND_DIGITS = 2  # significant ones of factors and ratios in words
+NONE = "none"
 NOTE = (
     "Same as: the rolling friction of spheres, over that of the materials, with which straight lines between the means"
     " of the spheres' rows pass this value; none where no row of spheres lies beyond it. Over round: over the value of"
@@ -100,7 +101,7 @@ def equal_factors(factors: np.ndarray, values: np.ndarray, value: float) -> list
 def factors_text(found: Sequence[float], factors: np.ndarray) -> str:
     """Return the factors that were found in words; factors: (k,) of the spheres."""
     if not found:
-        return f"none from {factors[0]:g} to {factors[-1]:g}"
+        return f"{NONE} from {factors[0]:g} to {factors[-1]:g}"
     return " and ".join(number(factor, ROUND_DIGITS) for factor in found)
 
 
@@ -116,7 +117,7 @@ def shape_sentences(table: pd.DataFrame) -> list[str]:
     for measure, rows in table.groupby("measure", sort=False):
         clumps = rows[rows[SHAPE] != ROUND]
         least = rows.loc[rows[SHAPE] == ROUND, FACTOR].min()
-        told = [f"{row.shape_} {_ratio_text(row)}" for row in clumps.rename(columns={SHAPE: "shape_"}).itertuples()]
+        told = [f"{row.setting} {_ratio_text(row)}" for row in clumps.itertuples()]
         said.append(f"{measure.capitalize()}, over spheres with {least:g} of the rolling friction: {'; '.join(told)}.")
     return [*said, f"{UNKNOWN.capitalize()}."] if (table["packings"] < 2).all() else said
 
@@ -129,8 +130,9 @@ def shape_finding(table: pd.DataFrame) -> str:
 
 def _ratio_text(row) -> str:
     """Return the ratio of a clump and the rolling friction of spheres that is like it."""
-    like = row.same_as if str(row.same_as).startswith("none") else f"{row.same_as} of it"
-    return f"{number(row.over_round, ROUND_DIGITS)} (spheres with {like} wear the same)"
+    none = str(row.same_as).startswith(NONE)
+    like = f"no spheres{row.same_as.removeprefix(NONE)} of it" if none else f"spheres with {row.same_as} of it"
+    return f"{number(row.over_round, ROUND_DIGITS)} ({like} wear the same)"
 
 
 def blocks(folder: Path) -> list[Block]:

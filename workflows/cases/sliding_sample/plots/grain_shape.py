@@ -36,7 +36,7 @@ def wear_by_grain_shape(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
             look = {"color": CLUMPS[index % len(CLUMPS)], "linestyle": DASHES[index % len(DASHES)]}
             axes.axhline(row["value"], label=row["setting"], **look)
             axes.axhspan(row["interval_low"], row["interval_high"], color=look["color"], alpha=0.15, linewidth=0)
-        axes.set(title=measure, xlabel="Rolling friction (-)", ylabel=RATIO if "over" in measure else PER_METRE)
+        axes.set(title=measure, xlabel="Rolling friction factor (-)", ylabel=RATIO if "over" in measure else PER_METRE)
         axes.set_ylim(bottom=0.0)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
