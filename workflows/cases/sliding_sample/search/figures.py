@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.figures import DESIGN, SUMMARY
 from bulkwear.workflows.cases.sliding_sample.search import findings
+from bulkwear.workflows.config.optimise import OPTIMISE, Optimise, optimise_of, rounds_of
+from bulkwear.workflows.config.packings import PACKINGS
 from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.products import Job, every_run, figure
 
@@ -30,7 +32,7 @@ def reference_of(study: Study) -> str:
 
 
 TOLD = {
-    "search": lambda study: study.optimise,
+    "asked": lambda study: {key: study.settings[key] for key in (OPTIMISE, PACKINGS)},
     "digest": lambda study: study.search_digest,
     "reference": reference_of,
     "acceleration": lambda study: study.settings["wear"]["acceleration"],
@@ -38,16 +40,15 @@ TOLD = {
 }
 
 
-def _runs(job: Job) -> tuple[pd.DataFrame, pd.DataFrame, list[dict[str, Any]]]:
-    """Return the summary, the `run_results` of a search, and what its rounds decided."""
+def _runs(job: Job) -> tuple[Optimise, pd.DataFrame, pd.DataFrame, list[dict[str, Any]]]:
+    """Return a search, the summary of its study, the `run_results` of it, and what its rounds decided."""
     from bulkwear.postproc.tables.summary import read_summary
     from bulkwear.workflows.cases.sliding_sample.search.results import run_results, volumes_of
-    from bulkwear.workflows.config.optimise import rounds_of
 
-    summary = read_summary(job.files.summary)
+    search, summary = optimise_of(job.told.asked), read_summary(job.files.summary)
     volumes = volumes_of(summary["run"], job.files.surfaces)
-    runs = run_results(summary, volumes, job.told.search, job.told.acceleration)
-    return summary, runs, list(rounds_of(Path(job.files.summary).parent, job.told.digest))
+    runs = run_results(summary, volumes, search, job.told.acceleration)
+    return search, summary, runs, list(rounds_of(Path(job.files.summary).parent, job.told.digest))
 
 
 @figure(
@@ -71,10 +72,10 @@ def search_record(job: Job) -> Any:
     from bulkwear.workflows.cases.sliding_sample.search.plots import tried
     from bulkwear.workflows.cases.sliding_sample.search.record import confirmed_table, excluded_table, record_table
 
-    (summary, runs, rounds), told = _runs(job), job.told
-    record = record_table(summary, runs, rounds, told.search)
+    (search, summary, runs, rounds), told = _runs(job), job.told
+    record = record_table(summary, runs, rounds, search)
     further = {
-        "confirmed": confirmed_table(runs, rounds[-1], told.reference, told.search, told.error),
+        "confirmed": confirmed_table(runs, rounds[-1], told.reference, search, told.error),
         "excluded": excluded_table(rounds),
     }
     return tried.record(record, job.remarks), record, further
@@ -103,7 +104,7 @@ def search_slices(job: Job) -> Any:
     from bulkwear.workflows.cases.sliding_sample.search.record import best_confirmed
     from bulkwear.workflows.cases.sliding_sample.search.results import setting_results, slices, tried_of
 
-    _, runs, _ = _runs(job)
+    search, _, runs, _ = _runs(job)
     best = best_confirmed(pd.read_csv(job.files.confirmed, dtype={"setting": str}))
-    table = slices(tried_of(setting_results(runs, job.told.search), job.told.search), best, job.told.search)
+    table = slices(tried_of(setting_results(runs, search), search), best, search)
     return tried.slices(table, job.remarks), table
