@@ -98,6 +98,8 @@ bed:
   least_layers: 0
   allow_thin_bed: false
   seed: 20220317
+  shape: sphere
+  rolling_friction_factor: 1.0
 sliding: {run_in_mm: 300, travel_mm: 1000, cycles: 4, first_cycle_mm: 10}
 wear: {gap_closing_fraction: 0.01}
 solver: {picture_interval_mm: 20, wear_interval_mm: 10, checkpoint_interval_steps: 50000}

@@ -223,21 +223,21 @@ BAD_VALUES = [
         OWN_SETTINGS,
         "cycles: 4",
         "cycles: 4.0",
-        "config/cases/sliding_sample.yaml, line 21: sliding.cycles is 4.0,"
+        "config/cases/sliding_sample.yaml, line 23: sliding.cycles is 4.0,"
         " allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         OWN_SETTINGS,
         "cycles: 4",
         "cycles: 0",
-        "config/cases/sliding_sample.yaml, line 21: sliding.cycles is 0,"
+        "config/cases/sliding_sample.yaml, line 23: sliding.cycles is 0,"
         " allowed is a whole number from 1 to 10000 or adaptive.",
     ),
     (
         OWN_SETTINGS,
         "travel_mm: 1000",
         "travel_mm: 0",
-        "config/cases/sliding_sample.yaml, line 21: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
+        "config/cases/sliding_sample.yaml, line 23: sliding.travel_mm is 0, allowed is a number from 1 to 100000 mm.",
     ),
     (
         SETTINGS,
@@ -554,12 +554,12 @@ def test_a_table_from_a_spreadsheet_is_read(config):
         ),
         (
             [(OWN_SETTINGS, " travel_mm: 1000,", "")],
-            "config/cases/sliding_sample.yaml, line 21: sliding.travel_mm and sliding.test_duration_h are both missing,"
+            "config/cases/sliding_sample.yaml, line 23: sliding.travel_mm and sliding.test_duration_h are both missing,"
             " allowed is one of them.",
         ),
         (
             [(OWN_SETTINGS, "travel_mm: 1000", "test_duration_min: 2")],
-            "config/cases/sliding_sample.yaml, line 21: unit min is not allowed for sliding.test_duration, write"
+            "config/cases/sliding_sample.yaml, line 23: unit min is not allowed for sliding.test_duration, write"
             " sliding.test_duration_h (found test_duration_min: 2).",
         ),
     ],
