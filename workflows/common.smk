@@ -267,6 +267,11 @@ def round_of(study, number):
     decided = rounds.get(study=study, round=number).output.decided
     if STUDIES[study].optimise and not known_rows(study, decided):
         STUDIES[study] = load_study(study, overrides=SETTINGS)
+        if not known_rows(study, decided):
+            raise WorkflowError(
+                f"{decided}: found a round of other settings, allowed are those of the study; move the folder away to"
+                " search anew"
+            )
     return decided
 
 

@@ -16,6 +16,7 @@ from bulkwear.workflows.engine.project import current_project
 CLUMPS = "config/clumps"  # folder of project and package
 ROUND = "sphere"  # the shape that needs no table
 SCHEMA = "clump"
+ROUND_OFF = 1e-9  # relative; spheres that touch as written
 SETTING = "bed.shape"
 
 
@@ -47,6 +48,8 @@ def _clump(path: Path, root: Path, _written: int) -> Clump:
     if len(spheres) < 2:
         raise ConfigError(f"{source}: found one sphere, allowed are two or more; a sphere is {SETTING}: {ROUND}.")
     table = np.array(spheres)
+    if len(np.unique(table, axis=0)) < len(table):
+        raise ConfigError(f"{source}: found a sphere twice, allowed is each once.")
     if not _hangs_together(table[:, :3], table[:, 3]):
         raise ConfigError(f"{source}: found spheres apart from the others, allowed are spheres that touch or overlap.")
     return unit_clump(table[:, :3], table[:, 3])
@@ -55,6 +58,8 @@ def _clump(path: Path, root: Path, _written: int) -> Clump:
 def _hangs_together(centres: np.ndarray, radii: np.ndarray) -> bool:
     """Return whether every sphere can be reached from the first one over spheres that touch or overlap."""
     apart = np.linalg.norm(centres[:, None] - centres[None], axis=2)
-    touching = apart <= radii[:, None] + radii[None]
-    reached = np.linalg.matrix_power(touching.astype(float), len(radii))[0] > 0.0
+    touching = apart <= (1.0 + ROUND_OFF) * (radii[:, None] + radii[None])
+    reached = np.arange(len(radii)) == 0
+    for _ in radii:
+        reached = touching[reached].any(axis=0)
     return bool(reached.all())

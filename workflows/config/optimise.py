@@ -161,6 +161,11 @@ def _rows(
         return np.array([fault_of(asked, written[0], runs, row) is None for row in values], dtype=bool)
 
     known = [[row.values[name] for name in asked.names] for row in written]
+    if asked.most_rows < asked.first_rows + len(found):
+        raise ConfigError(
+            f"{OPTIMISE}.most_rows is {asked.most_rows}, allowed are {asked.first_rows + len(found)} or more, the rows"
+            " that rounds have found"
+        )
     try:
         first = first_values(asked.factors, allowed, asked.first_rows, asked.seed, known)
         known += [*first.tolist(), *([values[name] for name in asked.names] for values in found.values())]

@@ -26,22 +26,35 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import bulkwear
+
 VARIABLE = "BULKWEAR_FIGURES"  # in the environment of jobs: path of the socket
 STREAMS = (1, 2)  # standard output and error
+INTERRUPTED = 130  # exit code of a program that Ctrl-C ended
 PRELOADED = ("bulkwear.postproc.plots", "bulkwear.postproc.tables", "bulkwear.workflows.report", "matplotlib.backends")
 BACKENDS = {"backend_agg", "backend_svg", "backend_pdf"}  # of figures; others need what a machine may not have
 
 
-def start() -> subprocess.Popen:
-    """Start the process, which ends with its standard input, so with this one; name its socket in the environment."""
+def start() -> subprocess.Popen | None:
+    """Start the process, which ends with its standard input, so with this one; name its socket in the environment.
+
+    Return None where the folder of temporary files takes no socket: jobs then do their work themselves.
+    """
+    os.environ.pop(VARIABLE, None)
     folder = tempfile.mkdtemp(prefix="bulkwear_figures_")  # this user's alone: what comes by the socket is run
     path = f"{folder}/socket"
     with socket.socket(socket.AF_UNIX) as waiting:
-        waiting.bind(path)
+        try:
+            waiting.bind(path)
+        except OSError:  # a path of more than a hundred letters
+            shutil.rmtree(folder, ignore_errors=True)
+            return None
         waiting.listen(os.cpu_count() or 1)
         number = waiting.fileno()
-        command = [sys.executable, "-m", __name__, str(number), folder]
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, pass_fds=[number])
+        command = [sys.executable, "-P", "-m", __name__, str(number), folder]  # -P: no module of the working folder
+        beside = [str(Path(bulkwear.__file__).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(beside)}
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, pass_fds=[number], env=environment)
     os.environ[VARIABLE] = path
     atexit.register(process.communicate)  # closes its standard input and waits for its end
     return process
@@ -73,6 +86,8 @@ def _asked_for(asked: socket.socket, log: str, product: Mapping[str, Any]) -> in
         answer = asked.recv(1)
     except ConnectionError:
         answer = b""
+    except KeyboardInterrupt:  # the process that was forked has it too, and writes it into the log
+        return INTERRUPTED
     if answer:
         return answer[0]
     print(f"\n{product['name']}: its process was ended by the machine, or by somebody.\n", file=sys.stderr)
@@ -82,9 +97,12 @@ def _asked_for(asked: socket.socket, log: str, product: Mapping[str, Any]) -> in
 def serve(waiting: socket.socket) -> None:
     """Fork for whoever asks, until standard input ends: with Snakemake, however that ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of Ctrl-C the jobs speak
+    for ending in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(ending, lambda *_: sys.exit(1))
     while sys.stdin not in select.select([waiting, sys.stdin], [], [])[0]:
         asked, _ = waiting.accept()
-        _preload()
+        with contextlib.suppress(Exception):  # what fails here fails in the job that needs it, which tells
+            _preload()
         if os.fork() == 0:
             try:
                 _answer(asked)
@@ -108,6 +126,8 @@ def _preload() -> None:
 def _answer(asked: socket.socket) -> None:
     """Do what is asked with the streams of who asks, send the exit code, and end."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    for ending in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(ending, signal.SIG_DFL)
     _, streams, _, _ = socket.recv_fds(asked, 1, len(STREAMS))
     for own, given in zip(STREAMS, streams, strict=True):
         os.dup2(given, own)
@@ -137,6 +157,8 @@ def _make(log: str, product: Mapping[str, Any]) -> int:
 
 
 if __name__ == "__main__":
-    with socket.socket(fileno=int(sys.argv[1])) as given:
-        serve(given)
-    shutil.rmtree(Path(sys.argv[2]), ignore_errors=True)
+    try:
+        with socket.socket(fileno=int(sys.argv[1])) as given:
+            serve(given)
+    finally:
+        shutil.rmtree(Path(sys.argv[2]), ignore_errors=True)

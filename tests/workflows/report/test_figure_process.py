@@ -103,6 +103,27 @@ def test_a_killed_one_is_one_sentence(process, project):
     assert waiting.returncode == 1 and SENTENCE in said
 
 
+def test_without_room_for_a_socket_jobs_work_by_themselves(tmp_path, monkeypatch):
+    """A path of a socket has about a hundred letters; nothing stays behind, and no other process is named."""
+    folder = tmp_path / ("long" * 30)
+    folder.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(folder))
+    monkeypatch.setenv(VARIABLE, "another")
+    assert figure_process.start() is None
+    assert VARIABLE not in os.environ and not list(folder.iterdir())
+
+
+def test_a_module_of_the_project_is_not_taken_for_pythons(project, monkeypatch):
+    """The process starts in the user's folder, whose files are not its own."""
+    (project / "random.py").write_text("raise SystemExit('a module of the project ran')")
+    monkeypatch.chdir(project)
+    monkeypatch.setenv(VARIABLE, "")
+    started = figure_process.start()
+    assert job(project, {**os.environ, "PYTHONSAFEPATH": "1"}).wait(TIMEOUT) == 0 and made(project)
+    started.communicate(timeout=TIMEOUT)
+    assert started.returncode == 0
+
+
 def test_it_ends_with_who_started_it():
     """However that ends, and leaves nothing in the temporary folder."""
     code = (

@@ -150,6 +150,7 @@ def test_other_cases_know_no_shape(study):
         ("x,y,z\n0,0,0\n", "column radius is missing"),
         ("x,y,z,radius\n0,0,0,1\n", "found one sphere, allowed are two or more"),
         ("x,y,z,radius\n0,0,0,1\n2.1,0,0,1\n", "found spheres apart from the others"),
+        ("x,y,z,radius\n0,0,0,1\n1,0,0,1\n0,0,0,1\n", "found a sphere twice"),
         ("x,y,z,radius\n0,0,0,1\n1,0,0,0\n", "line 3: radius is 0"),
         ("x,y,z,radius\n0,0,0,1\n1,wide,0,1\n", "line 3: y is 'wide'"),
     ],

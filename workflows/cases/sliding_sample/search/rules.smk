@@ -18,6 +18,7 @@ checkpoint proposed_rows:
     localrule: True
     params:
         search=lambda wildcards: study_of(wildcards).optimise,
+        digest=lambda wildcards: study_of(wildcards).search_digest,
         rows=lambda wildcards: study_of_round(wildcards).design_table(),
         settings=SETTINGS,
     message:
