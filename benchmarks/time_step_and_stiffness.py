@@ -52,7 +52,7 @@ CASE = {
     "bed": {"ends": "periodic", "width_mm": 80, "ahead_mm": 50, "behind_mm": 30},
     "sliding": {"run_in_mm": 200, "travel_mm": 1000, "cycles": 2},
     "wear": {"acceleration": 1.0, "deform": False},
-    "solver": {"picture_interval_mm": 100, "wear_interval_mm": 50},
+    "solver": {"rolling_friction": "cdt", "picture_interval_mm": 100, "wear_interval_mm": 50},
 }
 FRACTIONS = (
     0.07,
