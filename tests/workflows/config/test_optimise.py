@@ -85,7 +85,7 @@ def test_fewer_rows_than_were_found_are_refused(tmp_path, study):
     """Lowering the goal keeps rounds, so it cannot go below them."""
     rows = {f"O{5 + k}": {"height_mm": 3.0 + 0.5 * k, "minor_radius_mm": 6.5} for k in range(4)}
     write_round(tmp_path, 1, study, rows)
-    with pytest.raises(ConfigError, match=r"optimise\.most_rows is 7, allowed are 8 or more, the rows that rounds have"):
+    with pytest.raises(ConfigError, match=r"optimise\.most_rows is 7, allowed are 8 or more, the rows"):
         small_search(tmp_path, most_rows=7)
 
 
