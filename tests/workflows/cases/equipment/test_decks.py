@@ -19,7 +19,7 @@ from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.chain import Chain, deck_text, write_decks
 from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.schedule import first_span
-from bulkwear.workflows.engine.solver import EXECUTABLE, LEDGER_EXECUTABLE, solver_command, solver_environment
+from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, solver_command, solver_environment
 from tests.support.own_machine_project import machine_study
 
 FILLING = {"fraction": 0.1, "axis": "y", "centre_mm": [-60, 0, -250], "radius_mm": 60, "length_mm": 100}
@@ -312,10 +312,10 @@ def test_decks_run_by_hand(tmp_path, machine):
         chain = Chain("A", tmp_path / "A", case, run, tmp_path / "surface.vtu")
         write_surface(chain.surface, machine_surface(run["parts"]))
         write_decks(chain)
-    for cycle, program in enumerate((EXECUTABLE, LEDGER_EXECUTABLE)):
+    for cycle in range(2):
         folder = chain.folder / f"cycle_{cycle:03d}"
         done = subprocess.run(
-            solver_command(1, program), cwd=folder, env=solver_environment(), capture_output=True, text=True
+            solver_command(1, LEDGER_EXECUTABLE), cwd=folder, env=solver_environment(), capture_output=True, text=True
         )
         assert done.returncode == 0, done.stdout[-2000:]
         table = flow_table(run, folder)

@@ -111,12 +111,20 @@ def test_the_exact_ledger_stands_where_the_solver_wants_it():
 
 def test_sampled_contacts_run_with_any_liggghts():
     """With ledger: dumps no trace of the fix is left, and spins stand before contacts, after the steps are reset."""
-    text = cycle_deck(ledger="dumps")
+    text = cycle_deck(ledger="dumps", solver={"rolling_friction": "cdt"})
     order = (RESET, "compute wall_contact", "dump spins", "dump contacts", "run ", "write_restart")
     places = [position(text, start) for start in order]
     assert places == sorted(places)
     assert "# Runs by hand: liggghts -in deck.in" in text.split("\n\n")[0]
     assert "ledger" not in text
+
+
+@pytest.mark.parametrize(("rolling", "program"), [("own_spin", "build/liggghts-ledger"), ("cdt", "hand: liggghts")])
+def test_a_bed_says_which_program_runs_it(rolling, program):
+    """LIGGGHTS itself lacks some rolling models."""
+    _, bed = run_and_bed(tiny_study(solver={"rolling_friction": rolling}))
+    (line,) = re.findall("# Runs by hand: .*", render("settled_bed", settled_bed(bed)))
+    assert f"{program} -in deck.in" in line
 
 
 def test_a_law_with_a_kernel_asks_the_solver_for_it():

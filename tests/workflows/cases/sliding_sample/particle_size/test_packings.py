@@ -26,7 +26,7 @@ from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.bulk_simulations import FILLED, simulated
 from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
 from bulkwear.workflows.engine.derived import PERIODIC
-from bulkwear.workflows.engine.solver import DECK, run_deck
+from bulkwear.workflows.engine.solver import DECK, LEDGER_EXECUTABLE, run_deck
 from bulkwear.workflows.engine.templates import render, used_sections
 from tests.support.tiny import tiny_chain, tiny_study
 
@@ -132,7 +132,7 @@ def test_contacts_of_a_bed_come_from_its_restart_file(tmp_path):
     folder.mkdir()
     text = render("bed_contacts", bed_contacts(chain.parameters, str(chain.bed_restart)))
     (folder / DECK).write_text(text)
-    run_deck(folder)
+    run_deck(folder, executable=LEDGER_EXECUTABLE)
     bed, width = read_snapshot(folder / "bed.dump"), chain.bed["width_m"]
     places, radius = bed[["x_m", "y_m", "z_m"]].to_numpy(), bed["radius_m"].to_numpy()
     assert bed["contacts"].sum() == pytest.approx(contacts_of(places, radius, (width, 0.0, 0.0)).sum(), rel=DIGITS)
