@@ -61,6 +61,7 @@ def test_model_time_step_and_packing_reach_the_run(model, tmp_path):
     assert parameters["derived"]["largest_time_step_s"] == pytest.approx(2.0 * step)
     bed = chain_of(case, tmp_path).bed
     assert bed["solver"]["rayleigh_fraction"] == FRACTION
+    assert bed["temporary_floor_m"] >= parameters["derived"]["highest_point_m"]  # no particle begins in a bump
     assert bed == chain_of(Case(model, 7, PLAIN, 0.1), tmp_path).bed
 
 
