@@ -15,6 +15,7 @@ from bulkwear.postproc.inference.improvement import best_of
 from bulkwear.postproc.inference.proposals import Search
 from bulkwear.postproc.tables.packings import SETTING
 from bulkwear.postproc.tables.summary import summary_table
+from bulkwear.workflows.cases.sliding_sample.search.budget import Spent, spent_on
 from bulkwear.workflows.cases.sliding_sample.search.results import (
     predictions,
     run_results,
@@ -23,8 +24,7 @@ from bulkwear.workflows.cases.sliding_sample.search.results import (
     volumes_of,
 )
 from bulkwear.workflows.config.layers import Layer
-from bulkwear.workflows.config.optimise import CONFIRMED, Optimise, after_round, fault_of, found_rows, named
-from bulkwear.workflows.config.until import core_hours
+from bulkwear.workflows.config.optimise import Optimise, after_round, fault_of, found_rows, named
 
 CHANCE = 0.9  # -, of enough being left of a pattern, asked of the best one
 SEPARATES = (":", " is ")  # what a reason is told before, and numbers after
@@ -38,14 +38,14 @@ class Round:
 
     search: that is asked for; table: as from `results.setting_results`; reference: the first setting of it
     packings: that there are, by setting, of all rows of the search too; rows: {row: values} that rounds before found
-    hours: core hours that the solver has taken; fault: why a pattern cannot be simulated
+    spent: core hours that the solver has taken; fault: why a pattern cannot be simulated
     """
 
     search: Optimise
     table: pd.DataFrame
     packings: Mapping[str, int]
     rows: Mapping[str, Mapping[str, float]]
-    hours: float
+    spent: Spent
     fault: Fault
 
     @property
@@ -57,12 +57,6 @@ class Round:
     def free(self) -> list[str]:
         """Names of the rows that have no values yet."""
         return [name for name in self.search.rows if not self.packings[name]]
-
-    def held_hours(self, rows: int) -> float:
-        """Return the core hours of so many further patterns and of the confirmation, at what a packing has taken."""
-        share = self.hours / max(sum(self.packings.values()), 1)
-        more = CONFIRMED * (self.search.confirming_packings - self.search.packings)
-        return share * ((rows + 1) * self.search.packings + more)
 
 
 def decide_round(
@@ -87,7 +81,7 @@ def decide_round(
         setting_results(runs, search),
         packings,
         found_rows(folder, study.search_digest, before=number),
-        core_hours(list(costs)),
+        spent_on(summary, costs),
         fault_of_study(study),
     )
     return decide(now) | {"after": after_round(folder, number - 1, study.search_digest)}
@@ -103,7 +97,7 @@ def decide(now: Round) -> dict[str, Any]:
     next_ones = found.proposed(count)
     known = found.tried.interval(found.tried.points)[0]
     said = f"lowest predicted wear over plain of {len(known)} patterns: {np.exp(known.min()):.3g}"
-    too_dear = now.hours + now.held_hours(count) > now.search.most_core_h
+    too_dear = now.spent.total + now.spent.kept(now.search, count) > now.search.most_core_h
     if len(now.free) > count and len(next_ones) and not too_dear:
         names, values = now.free[:count], next_ones
         packings = dict.fromkeys(names[: len(values)], now.search.packings)
@@ -111,7 +105,7 @@ def decide(now: Round) -> dict[str, Any]:
     else:
         names, values, confirmed = _confirmation(now, found)
         packings = dict.fromkeys(confirmed, now.search.confirming_packings)
-        why = f"the budget ends here, {now.hours:.2g} core hours are used" if too_dear else "no further round"
+        why = f"the budget ends here, {now.spent.total:.2g} core hours are used" if too_dear else "no further round"
         listed = ", ".join(confirmed)
         decided = {"enough": True, "confirmed": confirmed, "said": f"{said}; {why}; confirmed: {listed}"}
     rows = {name: named(now.search, row) for name, row in zip(names, values, strict=False)}

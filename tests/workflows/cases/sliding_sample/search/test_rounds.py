@@ -14,9 +14,11 @@ from bulkwear.workflows.cases.sliding_sample.search.results import (
     setting_results,
 )
 from bulkwear.workflows.cases.sliding_sample.search.rounds import short_reason
+from bulkwear.workflows.config.until import core_hours
 from bulkwear.workflows.forecast.limits import fault_of_budget
-from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, decided_round, small_search
+from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, costs_of, decided_round, small_search, write_runs
 
+BUDGET_H = 0.25
 STEP_MM = 0.5  # of the searched heights
 WITHIN = 0.03  # -, of the least wear over plain: scatter of packings, 0.01, and the surrogate's error
 
@@ -53,11 +55,17 @@ def test_a_stopped_search_goes_on_as_if_it_had_not_been(finished, tmp_path):
 
 
 def test_a_round_that_the_budget_does_not_hold_is_not_begun(tmp_path):
-    """Twenty runs of 36 s are done; a round and the confirmation would exceed the quarter of an hour asked for."""
+    """Ten runs of patterns, two plain twins and two beds are done; a round and the confirmation would exceed the
+    quarter of an hour asked for, the confirmation alone does not.
+    """
     packings = small_search(tmp_path).first_packings
-    decided = decided_round(tmp_path, 1, packings, most_core_h=0.25)
-    assert decided["enough"] and "the budget ends here, 0.2 core hours are used" in decided["said"]
+    decided = decided_round(tmp_path, 1, packings, most_core_h=BUDGET_H)
+    assert decided["enough"] and "the budget ends here, 0.16 core hours are used" in decided["said"]
     assert len(decided["rows"]) <= 1 and decided["confirmed"][-1] == "R5"  # a round has two
+    folder = tmp_path / "results" / STUDY
+    confirmed = small_search(tmp_path, most_core_h=BUDGET_H).with_packings(decided["packings"])
+    write_runs(confirmed, folder)
+    assert core_hours(costs_of(confirmed, folder)) <= BUDGET_H
 
 
 def test_a_budget_that_does_not_hold_one_round_is_refused(tmp_path):
