@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.inference.improvement import best_of
+from bulkwear.postproc.inference.improvement import Tried, best_of
 from bulkwear.postproc.inference.proposals import Search
 from bulkwear.postproc.tables.packings import SETTING
 from bulkwear.postproc.tables.summary import summary_table
@@ -95,8 +95,7 @@ def decide(now: Round) -> dict[str, Any]:
     found = Search(now.search.factors, now.values, tried_of(now.table, now.search), _Allowed(now.fault))
     count = now.search.rows_of_round
     next_ones = found.proposed(count)
-    known = found.tried.interval(found.tried.points)[0]
-    said = f"lowest predicted wear over plain of {len(known)} patterns: {np.exp(known.min()):.3g}"
+    said = lowest_predicted(found.tried)
     too_dear = now.spent.total + now.spent.kept(now.search, count) > now.search.most_core_h
     if len(now.free) > count and len(next_ones) and not too_dear:
         names, values = now.free[:count], next_ones
@@ -118,6 +117,16 @@ def decide(now: Round) -> dict[str, Any]:
         "predicted": {name: line for name, line in zip(every, told.to_dict("records"), strict=True)},
         "excluded": dict(found.allowed.reasons),
     }
+
+
+def lowest_predicted(tried: Tried) -> str:
+    """Return in words the lowest predicted wear over plain of the tried patterns of which enough is left by CHANCE."""
+    sure = tried.chance_within(tried.points)
+    of = f"of {(sure >= CHANCE).sum()} of {len(sure)} patterns enough is left with a chance of {CHANCE:g} or more"
+    if not (sure >= CHANCE).any():
+        return f"{of}, the most likely one has {sure.max():.2g}"
+    best = tried.points[[best_of(tried, tried.points, CHANCE)]]
+    return f"{of}, their lowest predicted wear over plain is {np.exp(tried.interval(best)[0][0]):.3g}"
 
 
 def _confirmation(now: Round, found: Search) -> tuple[list[str], np.ndarray, list[str]]:

@@ -7,13 +7,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.inference.improvement import Tried
 from bulkwear.workflows.cases.sliding_sample.search.results import (
     left_after,
     loss_limit,
     run_results,
     setting_results,
 )
-from bulkwear.workflows.cases.sliding_sample.search.rounds import short_reason
+from bulkwear.workflows.cases.sliding_sample.search.rounds import lowest_predicted, short_reason
 from bulkwear.workflows.config.until import core_hours
 from bulkwear.workflows.forecast.limits import fault_of_budget
 from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, costs_of, decided_round, small_search, write_runs
@@ -73,6 +74,26 @@ def test_a_budget_that_does_not_hold_one_round_is_refused(tmp_path):
     assert fault_of_budget(small_search(tmp_path)) is None
     fault = fault_of_budget(small_search(tmp_path, most_core_h=1e-4))
     assert fault.startswith(f"{STUDY}: optimise.most_core_h is 0.0001, allowed are about 0.") and fault.count(".") > 1
+
+
+def tried_in_a_row(limit):
+    """Nine patterns in a row: the less one wears over plain, the more of it goes per hour; the middle one loses 1."""
+    places = np.linspace(0.0, 1.0, 9)
+    exact = np.full(9, 1e-3)
+    return Tried(places[:, None], np.log(1.0 + places), exact, 1.5 - places, exact, limit)
+
+
+def test_the_lowest_pattern_is_one_of_which_enough_is_left():
+    """Those to the right of the middle keep to a limit half a step below it; the lowest of all, 1, is told of none."""
+    step = 1.0 / 8.0
+    said = lowest_predicted(tried_in_a_row(limit=1.0 - step / 2))
+    begin, _, lowest = said.rpartition(" ")
+    assert begin == (
+        "of 4 of 9 patterns enough is left with a chance of 0.9 or more, their lowest predicted wear over plain is"
+    )
+    assert float(lowest) == pytest.approx(1.5 + step, abs=WITHIN)
+    none = lowest_predicted(tried_in_a_row(limit=0.0))
+    assert none.startswith("of 0 of 9 patterns enough is left with a chance of 0.9 or more, the most likely one has ")
 
 
 def summary(ratios, worn=1e-9, hours=0.5):
