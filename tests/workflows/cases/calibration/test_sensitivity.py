@@ -16,7 +16,7 @@ SAMPLED = 0.1  # -, of 256 points and of a surrogate of twelve simulations
 def surrogate(values, count=12):
     """A surrogate of simulations that are spread over the square."""
     points = np.random.default_rng(1).random((count, 2))
-    return fit_surrogate(points, values(points), np.full(count, 0.01), seed=1)
+    return fit_surrogate(points, values(points), 1e-4 * np.eye(count), seed=1)
 
 
 def calibrated(of):

@@ -102,9 +102,9 @@ def search_slices(job: Job) -> Any:
 
     from bulkwear.workflows.cases.sliding_sample.search.plots import tried
     from bulkwear.workflows.cases.sliding_sample.search.record import best_confirmed
-    from bulkwear.workflows.cases.sliding_sample.search.results import setting_results, slices, tried_of
+    from bulkwear.workflows.cases.sliding_sample.search.results import slices, tried_of
 
     search, _, runs, _ = _runs(job)
     best = best_confirmed(pd.read_csv(job.files.confirmed, dtype={"setting": str}))
-    table = slices(tried_of(setting_results(runs, search), search), best, search)
+    table = slices(tried_of(runs, search), best, search)
     return tried.slices(table, job.remarks), table

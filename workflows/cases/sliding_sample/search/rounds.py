@@ -19,8 +19,8 @@ from bulkwear.workflows.cases.sliding_sample.search.budget import Spent, spent_o
 from bulkwear.workflows.cases.sliding_sample.search.results import (
     predictions,
     run_results,
-    setting_results,
     tried_of,
+    tried_patterns,
     volumes_of,
 )
 from bulkwear.workflows.config.layers import Layer
@@ -36,22 +36,27 @@ Fault = Callable[[Sequence[float]], str | None]  # of the values of a pattern: w
 class Round:
     """What a round knows.
 
-    search: that is asked for; table: as from `results.setting_results`; reference: the first setting of it
+    search: that is asked for; runs: as from `results.run_results`, the reference first
     packings: that there are, by setting, of all rows of the search too; rows: {row: values} that rounds before found
     spent: core hours that the solver has taken; fault: why a pattern cannot be simulated
     """
 
     search: Optimise
-    table: pd.DataFrame
+    runs: pd.DataFrame
     packings: Mapping[str, int]
     rows: Mapping[str, Mapping[str, float]]
     spent: Spent
     fault: Fault
 
     @property
+    def settings(self) -> list[str]:
+        """Names of the patterns that were simulated."""
+        return list(tried_patterns(self.runs, self.search)[SETTING])
+
+    @property
     def values(self) -> np.ndarray:
-        """Values (n, p) of the patterns that were simulated."""
-        return self.table[self.search.names].to_numpy(float)
+        """Their values (n, p)."""
+        return tried_patterns(self.runs, self.search)[self.search.names].to_numpy(float)
 
     @property
     def free(self) -> list[str]:
@@ -78,7 +83,7 @@ def decide_round(
     packings = dict.fromkeys(study.first_packings, 0) | {name: int(count) for name, count in counts.items()}
     now = Round(
         search,
-        setting_results(runs, search),
+        runs,
         packings,
         found_rows(folder, study.search_digest, before=number),
         spent_on(summary, costs),
@@ -92,7 +97,7 @@ def decide(now: Round) -> dict[str, Any]:
     whether they are `enough`, `predicted` by setting, how many patterns were `excluded` by reason, the settings that
     are `confirmed`, and a sentence.
     """
-    found = Search(now.search.factors, now.values, tried_of(now.table, now.search), _Allowed(now.fault))
+    found = Search(now.search.factors, now.values, tried_of(now.runs, now.search), _Allowed(now.fault))
     count = now.search.rows_of_round
     next_ones = found.proposed(count)
     said = lowest_predicted(found.tried)
@@ -108,7 +113,7 @@ def decide(now: Round) -> dict[str, Any]:
         listed = ", ".join(confirmed)
         decided = {"enough": True, "confirmed": confirmed, "said": f"{said}; {why}; confirmed: {listed}"}
     rows = {name: named(now.search, row) for name, row in zip(names, values, strict=False)}
-    every = [*now.table[SETTING], *rows]
+    every = [*now.settings, *rows]
     told = predictions(found.tried, np.vstack([now.values, values]) if len(values) else now.values, now.search)
     return {
         "rows": {**now.rows, **rows},
@@ -133,7 +138,7 @@ def _confirmation(now: Round, found: Search) -> tuple[list[str], np.ndarray, lis
     """Return the name and the values (k, p) of the best predicted pattern, none where it was simulated, and the
     settings to confirm: that one, the best of those simulated, the reference.
     """
-    settings = list(now.table[SETTING])
+    settings = now.settings
     best = found.best_predicted(CHANCE)
     simulated = settings[best_of(found.tried, found.tried.points, CHANCE)]
     same = np.flatnonzero((now.values == best).all(axis=1))

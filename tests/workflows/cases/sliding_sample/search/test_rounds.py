@@ -12,7 +12,8 @@ from bulkwear.workflows.cases.sliding_sample.search.results import (
     left_after,
     loss_limit,
     run_results,
-    setting_results,
+    tried_of,
+    tried_patterns,
 )
 from bulkwear.workflows.cases.sliding_sample.search.rounds import lowest_predicted, short_reason
 from bulkwear.workflows.config.until import core_hours
@@ -79,7 +80,7 @@ def test_a_budget_that_does_not_hold_one_round_is_refused(tmp_path):
 def tried_in_a_row(limit):
     """Nine patterns in a row: the less one wears over plain, the more of it goes per hour; the middle one loses 1."""
     places = np.linspace(0.0, 1.0, 9)
-    exact = np.full(9, 1e-3)
+    exact = 1e-6 * np.eye(9)
     return Tried(places[:, None], np.log(1.0 + places), exact, 1.5 - places, exact, limit)
 
 
@@ -120,15 +121,22 @@ def test_what_is_left_follows_from_the_loss_per_hour(tmp_path):
     assert left_after(np.log(1.0), search) == 0.0
 
 
-def test_the_scatter_of_packings_is_that_of_all_settings_together(tmp_path):
-    """Of ln wear over plain: two settings of two packings that differ by 0.2 and 0.1, and one of one."""
+def test_patterns_of_a_packing_share_its_plain_twin(tmp_path):
+    """The twin of one packing wears twice as much as that of the other: all ratios over it halve, in A, B and C alike.
+
+    Patterns differ by their own scatter, +-0.01 of A, which a noise of each pattern's own would hide.
+    """
     search = small_search(tmp_path).optimise
-    ratios = {"A": np.exp([-0.1, 0.1]), "B": np.exp([0.3, 0.4]), "C": [1.0]}
-    table = summary(ratios)
+    twin, own = np.log([1.0, 2.0]), np.array([0.01, -0.01])
+    ratios = {"A": np.exp(-twin + own), "B": np.exp(0.05 - twin), "C": np.exp(0.3 - twin)}
+    table = summary(ratios).assign(height_mm=np.repeat([3.0, 4.0, 5.0], 4))
     runs = run_results(table, dict.fromkeys(table["run"], 1e-6), search, acceleration=1.0)
-    found = setting_results(runs, search).set_index("setting")
-    assert found["ln_wear_over_plain"].to_numpy() == pytest.approx([0.0, 0.35, 0.0])
-    scatter = np.sqrt((0.2**2 / 2 + 0.1**2 / 2) / 2)
-    assert found["ln_wear_over_plain_error"].to_numpy() == pytest.approx(scatter / np.sqrt([2, 2, 1]))
-    alone = setting_results(runs[runs["setting"] == "C"], search)
-    assert alone["ln_wear_over_plain_error"].tolist() == [0.0]
+    assert tried_patterns(runs, search)["setting"].tolist() == ["A", "B", "C"]
+    tried = tried_of(runs, search)
+    assert tried.values - tried.values[0] == pytest.approx([0.0, 0.05, 0.3])
+    own_square = (2 * own[0] ** 2 - (2 * own[0]) ** 2 / 6) / 2.0  # of the rest, of 2 degrees of freedom
+    apart = np.array([1.0, -1.0, 0.0])
+    assert apart @ tried.noise @ apart == pytest.approx(own_square, rel=1e-6)
+    assert np.sqrt(tried.noise.diagonal().min()) > 0.2
+    alone = tried_of(runs[runs["packing"] == 1], search)
+    assert not alone.noise.any()
