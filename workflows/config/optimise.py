@@ -28,7 +28,11 @@ OPTIMISE, ROUNDS = "optimise", "rounds"  # key of the settings; folder below res
 ROWS, SURFACES, FACTORS = "rows", "surfaces", "factors"  # other keys of a study
 ROW = "O"  # begins the names of rows that a search adds
 CONFIRMED = 3  # settings that get more packings at the end: best predicted, best simulated, reference
-ENDS = ("most_core_h", "most_rows", "confirming_packings")  # goals on which no proposal depends
+NO_PROPOSAL_CHANGES = (  # with these settings: goals of the search, and what nothing is simulated again for
+    *(f"{OPTIMISE}.{goal}" for goal in ("most_core_h", "most_rows", "confirming_packings")),
+    *("solver.ranks", "solver.search", "solver.kept_restarts"),
+    *("wear.wear_coefficient_error", "beyond_machine"),
+)
 
 Runs = Callable[[Layer], Sequence[Any]]  # the checked runs of a row; raises ConfigError
 
@@ -201,9 +205,14 @@ def search_digest(settings: Mapping[str, Any], written: Sequence[Layer]) -> str:
     """
     if OPTIMISE not in settings:
         return ""
-    asked = {key: value for key, value in settings[OPTIMISE].items() if key not in ENDS}
-    told = {**settings, OPTIMISE: asked, "rows": [row.values for row in written]}
+    told = {**_that_count(settings), "rows": [row.values for row in written]}
     return _hash(json.dumps(told, sort_keys=True, default=str))
+
+
+def _that_count(settings: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    """Return settings without those of NO_PROPOSAL_CHANGES; before: the section they stand in, with a point."""
+    found = {key: value for key, value in settings.items() if f"{before}{key}" not in NO_PROPOSAL_CHANGES}
+    return {k: _that_count(v, f"{before}{k}.") if isinstance(v, Mapping) else v for k, v in found.items()}
 
 
 def after_round(folder: Path, number: int, digest: str) -> str:
