@@ -6,7 +6,8 @@ import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import Layer
-from bulkwear.workflows.config.optimise import NO_PROPOSAL_CHANGES, after_round, fault_of, found_rows
+from bulkwear.workflows.config.optimise import NO_PROPOSAL_CHANGES, fault_of, found_rows
+from bulkwear.workflows.config.rounds import after_round
 from bulkwear.workflows.engine.inputs import run_digest
 from bulkwear.workflows.engine.project import Project
 from tests.support.searched import SMALL, STUDY, small_search

@@ -11,7 +11,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.tables.packings import PACKING, SETTING
 from bulkwear.workflows.config.optimise import CONFIRMED, Optimise
-from bulkwear.workflows.config.until import core_hours
+from bulkwear.workflows.config.rounds import core_hours
 
 
 @dataclass(frozen=True)

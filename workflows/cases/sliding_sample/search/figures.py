@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.figures import DESIGN, SUMMARY
 from bulkwear.workflows.cases.sliding_sample.search import findings
-from bulkwear.workflows.config.optimise import OPTIMISE, Optimise, optimise_of, rounds_of
+from bulkwear.workflows.config.optimise import OPTIMISE, Optimise, optimise_of
 from bulkwear.workflows.config.packings import PACKINGS
+from bulkwear.workflows.config.rounds import rounds_of
 from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.products import Job, every_run, figure
 

@@ -24,7 +24,8 @@ from bulkwear.workflows.cases.sliding_sample.search.results import (
     volumes_of,
 )
 from bulkwear.workflows.config.layers import Layer
-from bulkwear.workflows.config.optimise import Optimise, after_round, fault_of, found_rows, named
+from bulkwear.workflows.config.optimise import Optimise, fault_of, found_rows, named
+from bulkwear.workflows.config.rounds import after_round
 
 CHANCE = 0.9  # -, of enough being left of a pattern, asked of the best one
 SEPARATES = (":", " is ")  # what a reason is told before, and numbers after

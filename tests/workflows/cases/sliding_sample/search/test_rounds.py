@@ -16,7 +16,7 @@ from bulkwear.workflows.cases.sliding_sample.search.results import (
     tried_patterns,
 )
 from bulkwear.workflows.cases.sliding_sample.search.rounds import lowest_predicted, short_reason
-from bulkwear.workflows.config.until import core_hours
+from bulkwear.workflows.config.rounds import core_hours
 from bulkwear.workflows.forecast.limits import fault_of_budget
 from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, costs_of, decided_round, small_search, write_runs
 
