@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.inference.improvement import Tried
 from bulkwear.postproc.inference.ranges import points_of
 from bulkwear.postproc.mesh import PLAIN, read_surface
 from bulkwear.postproc.tables.packings import PACKING, SETTING
 from bulkwear.postproc.wear.pattern_left import pattern_volume
 from bulkwear.workflows.config.optimise import Optimise
+
+if TYPE_CHECKING:
+    from bulkwear.postproc.inference.improvement import Tried
 
 SECONDS_PER_HOUR = 3600.0
 LEAST_LOSS = 1e-3  # -, of the loss per hour that just leaves enough: a pattern that hardly wears has no logarithm else
@@ -71,6 +74,8 @@ def setting_results(runs: pd.DataFrame, search: Optimise) -> pd.DataFrame:
 
 def tried_of(table: pd.DataFrame, search: Optimise) -> Tried:
     """Return what a search knows; table: as from `setting_results`."""
+    from bulkwear.postproc.inference.improvement import Tried  # slow to import, and every start of Snakemake reads this
+
     wear, loss = OF_RUNS
     return Tried(
         points_of(search.factors, table[search.names].to_numpy(float)),
