@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.inference.improvement import Tried
 from bulkwear.postproc.inference.ranges import points_of
 from bulkwear.postproc.mesh import PLAIN, read_surface
 from bulkwear.postproc.statistics.shared_scatter import means_and_covariance
 from bulkwear.postproc.tables.packings import PACKING, SETTING
 from bulkwear.postproc.wear.pattern_left import pattern_volume
 from bulkwear.workflows.config.optimise import Optimise
+
+if TYPE_CHECKING:
+    from bulkwear.postproc.inference.improvement import Tried
 
 SECONDS_PER_HOUR = 3600.0
 LEAST_LOSS = 1e-3  # -, of the loss per hour that just leaves enough: a pattern that hardly wears has no logarithm else
@@ -65,6 +68,8 @@ def tried_of(runs: pd.DataFrame, search: Optimise) -> Tried:
     What a packing shifts, its bed and its plain twin, is an error that all its patterns share. Scatter is taken to be
     that of all settings together; without a setting of two packings it is 0, and the surrogate finds it.
     """
+    from bulkwear.postproc.inference.improvement import Tried  # slow to import, and every start of Snakemake reads this
+
     wear, loss = (means_and_covariance(runs[SETTING], runs[PACKING], runs[name].to_numpy(float)) for name in OF_RUNS)
     points = points_of(search.factors, tried_patterns(runs, search)[search.names].to_numpy(float))
     return Tried(points, *wear, *loss, loss_limit(search), search.seed)
