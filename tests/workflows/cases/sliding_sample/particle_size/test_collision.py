@@ -196,7 +196,7 @@ def test_collisions_of_the_study_are_alike_and_thinned_out(tmp_path):
 def test_collisions_are_of_the_studys_particles():
     """Each rolling model collides at each scale, and the deck says which; on any LIGGGHTS its own ones do."""
     scales = [4.0, 6.0, 8.0, 9.0, 10.0, 12.0]
-    creeping = {"solver": {"rolling_friction": "cdt"}, "bed": {"material": "river_gravel_published"}}
+    creeping = {"solver": {"rolling_friction": "cdt"}}
     for overrides, models in ({}, MODELS), (creeping, ("cdt", "epsd2")):
         tests = collision_tests(packed_runs(load_study("particle_size", overrides=overrides)))
         assert [each["particle"]["scale"] for each in tests] == len(models) * scales
