@@ -87,6 +87,17 @@ def test_nothing_is_told_of_too_few_packings():
     assert "`cdt`: not known" in results_page(lacking)
 
 
+def test_a_limit_at_the_shortest_step_is_told_as_none():
+    """What scatters too much to be decided is told with its interval, beside what is shown."""
+    table = made_up()
+    loud = (table["model"] == "cdt") & (table["surface"] == CONVEX)
+    name = next(iter(RESPONSES))
+    table.loc[loud, name] *= np.exp(np.random.default_rng(1).normal(0.0, 0.05, loud.sum()))
+    page = " ".join(results_page(table).split())
+    assert "`cdt`: that all stays within 2 % is shown of no step longer than 0.1 of the Rayleigh time" in page
+    assert f"of {PLAIN}, sliding work up to {max(FRACTIONS):g}" in page and "`epsd2`: within 2 %" in page
+
+
 def test_a_run_that_failed_ends_the_limit():
     table = made_up()
     of = (table["model"] == "epsd2") & (table["surface"] == PLAIN) & (table["rayleigh_fraction"] == 0.4)
