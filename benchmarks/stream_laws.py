@@ -1,22 +1,29 @@
-"""Ratios of wear between the plates of the study which_law, by each law, for the table of docs/wear.md.
+"""Ratios of wear between the plates of the study which_law, by each law, and what reaches them, for docs/wear.md.
 
-    python -m benchmarks.stream_laws                # in the root of the repository, after `snakemake which_law`
+    python -m benchmarks.stream_laws                # in the root of the repository, after the study and its page
 
-Reads results/which_law/figures/wear_by_law.csv and writes the table anew between its marks.
+Reads results/which_law/figures/wear_by_law.csv and the page's table of loads, writes anew what is between the marks.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from benchmarks.impact_angle import OVER, TESTED
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.markdown import prose
 
 PAGE = Path("docs") / "wear.md"
 RESULTS = Path("results") / "which_law" / "figures" / "wear_by_law.csv"
+LOADS = Path("docs") / "tables" / "which_law_quick_loads.csv"
+KG_PER_S = 1.0 / 3.6  # of a t/h
 BEGIN, END = "<!-- by benchmarks.stream_laws -->", "<!-- end -->"
 PART = "plate"
 LAWS = {  # in the order of the page
@@ -49,8 +56,25 @@ def table(found: pd.DataFrame) -> str:
     return "".join([head, "|---" * len(heads), "|\n", *rest])
 
 
+def arriving(loads: pd.DataFrame, inlet: Mapping[str, Any]) -> dict[int, float]:
+    """Return by angle (degrees) which share (-) of the stream's kinetic energy along its normal a plate is hit with.
+
+    loads: columns setting, part, quantity and pristine (W), of the page of the study; inlet: of the study's settings
+    """
+    speed = math.hypot(*inlet["velocity_m_per_s"])
+    power = loads[(loads["part"] == PART) & (loads["quantity"] == "impact power")].set_index("setting")["pristine"]
+    stream = 0.5 * inlet["rate_t_per_h"] * KG_PER_S * speed**2
+    return {angle: power[f"A{angle}"] / (stream * math.sin(math.radians(angle)) ** 2) for angle in TESTED}
+
+
+def sentence(shares: Mapping[int, float]) -> str:
+    """Return what is said of them; shares: as from `arriving`."""
+    each = ", ".join(f"{100.0 * share:.0f} % at {angle}°" for angle, share in shares.items())
+    return prose(f"Of the stream's energy along the plate's normal impacts bring {each}.") + "\n"
+
+
 def with_table(text: str, new: str) -> str:
-    """Return the page with a table in the place of the one between the marks. Raises ValueError without these."""
+    """Return the page with what is new in the place of what is between the marks. Raises ValueError without these."""
     between = re.compile(f"(?<={re.escape(BEGIN)}\n\n)[^<]*(?=\n{re.escape(END)})")
     if not between.search(text):
         raise ValueError(f"found no table between {BEGIN} and {END}, allowed is a page with one")
@@ -58,12 +82,14 @@ def with_table(text: str, new: str) -> str:
 
 
 def main() -> None:
-    """Write the table into the page."""
+    """Write table and sentence into the page."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--results", type=Path, default=RESULTS)
+    parser.add_argument("--loads", type=Path, default=LOADS)
     parser.add_argument("--page", type=Path, default=PAGE)
     given = parser.parse_args()
-    new = table(ratios(pd.read_csv(given.results)))
+    shares = arriving(pd.read_csv(given.loads), load_study("which_law").settings["inlet"])
+    new = f"{table(ratios(pd.read_csv(given.results)))}\n{sentence(shares)}"
     given.page.write_text(with_table(given.page.read_text(encoding="utf-8"), new), encoding="utf-8")
 
 
