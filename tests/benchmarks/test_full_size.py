@@ -9,6 +9,7 @@ from benchmarks.full_size import (
     STEPS_OF_PYTHON,
     Size,
     simulated,
+    step_cost,
     with_sheets,
 )
 from bulkwear.postproc.flow.bed import read_snapshot
@@ -36,4 +37,6 @@ def test_the_solver_leaves_a_lattice_that_presses_on_its_floor(folder):
 
 @pytest.mark.parametrize("name", STEPS_OF_PYTHON)
 def test_every_step_runs(folder, name):
-    STEPS_OF_PYTHON[name](folder)
+    """And costs something."""
+    spent, memory = step_cost(name, folder, folder)
+    assert spent > 0.0 and memory > 0.0
