@@ -177,9 +177,10 @@ def publish(output: Path, table: pd.DataFrame) -> str:
     """Write figure and page of the runs; return the page. table: as from `table_of`."""
     page = results_page(table)
     (output / PAGE).write_text(page, encoding="utf-8")
+    packings = table.groupby("model")["seed"].nunique()
+    counted = ", ".join(f"{model} {number}" for model, number in packings.items())
     remarks = [
-        f"against the shortest time step; {table['seed'].nunique()} packings; bars: 95 % intervals; grey: up to"
-        f" {PERCENT * LIMIT:g} %",
+        f"against the shortest time step; packings: {counted}; bars: 95 % intervals; grey: up to {PERCENT * LIMIT:g} %",
         f"made by benchmarks/time_step_limits.py, {date.today():%Y-%m-%d}",
     ]
     save(changes_by_model(answers(table), RESPONSES, LIMIT, remarks), output / FIGURE)
