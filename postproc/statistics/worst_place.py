@@ -6,6 +6,9 @@ of the place which they name the worst. What named the place knows nothing of th
 place as its mean (M. Stone, J. R. Stat. Soc. B 36, 1974, 111). Where places are not alike, a lesser one is named now
 and then: the mean is then the truth of what one names with so many blocks, a little below that of the very worst place.
 
+The mean over packings is geometric, as is that of the values: a place where one packing alone has a great load, as of a
+grain that jams there, is not the worst of all.
+
 The others are all other packings. Of one packing they are the other half of its blocks, of the earlier or the later
 ones, not all blocks but one: those name the same place again and again, by what is in most of the means, and the mean
 of such values scatters twice as much as its blocks tell: of many alike places its interval held the truth in half of
@@ -39,7 +42,8 @@ ALIKE = 0.5  # -, of the largest load: places above tell how much loads scatter
 class WorstPlace:
     """The place with the largest load, and what blocks say of it that did not name it. b blocks.
 
-    place: index among the places, from all blocks; load: its mean load over all blocks, lifted by the choice
+    place: index among the places, from all blocks; load: its mean load over all blocks, geometric over packings,
+    lifted by the choice
     named: (b,) place that the others of each block name, -1 without others; values: (b,) the block's value there, in
     the unit of the values, NaN without; loads: (b,) the same over what is allowed there
     packings: (b,) labels; clear: whether the place is the worst beyond doubt
@@ -98,8 +102,8 @@ def worst_place(
     loads = values / np.where(np.isfinite(limits), limits, math.nan)
     groups = pd.factorize(labels)[0]
     means = _group_means(loads, groups)
-    overall = means.mean(axis=0)
-    place = int(_worst(overall[None])[0])
+    overall = geometric_mean(means)
+    place = _worst(means)
     if place < 0:
         raise ValueError("no place has a load in all packings, allowed is one place or more")
     if len(means) == 1:
@@ -135,25 +139,47 @@ def _named_by_others(means: np.ndarray) -> np.ndarray:
     """Return for each group (g,) the place that the means of all other groups name; -1 without others."""
     if len(means) == 1:
         return np.array([-1])
-    return np.concatenate([_worst(np.delete(means, group, axis=0).mean(axis=0)[None]) for group in range(len(means))])
+    return np.array([_worst(np.delete(means, group, axis=0)) for group in range(len(means))])
 
 
-def _worst(means: np.ndarray) -> np.ndarray:
-    """Return the place (k,) of the largest of each row (k, p), the first of equal ones; -1 of a row without values."""
-    found = np.argmax(np.where(np.isnan(means), -math.inf, means), axis=1)
-    return np.where(np.isnan(means).all(axis=1), -1, found)
+def geometric_mean(means: np.ndarray) -> np.ndarray:
+    """Return the geometric mean (p,) over packings (g, p); NaN of a place without a value in one, 0 without a load."""
+    if len(means) == 1:
+        return means[0]
+    return np.exp(_logarithm(means).mean(axis=0))
+
+
+def _logarithm(means: np.ndarray) -> np.ndarray:
+    with np.errstate(divide="ignore"):
+        return np.log(np.maximum(means, 0.0))
+
+
+def _worst(means: np.ndarray) -> int:
+    """Return the place of the largest mean over groups (g, p), the first of equal ones; -1 without any value.
+
+    Where no place has a load in every group, the arithmetic mean names it.
+    """
+    overall = geometric_mean(means)
+    if np.isnan(overall).all():
+        return -1
+    return int(np.nanargmax(overall if np.nanmax(overall) > 0.0 else means.mean(axis=0)))
 
 
 def _clear(loads: np.ndarray, labels: np.ndarray) -> bool:
     """Return whether the largest mean is above the next one by more than chance: by CLEAR errors of a difference.
 
-    The scatter between packings, or between the blocks of one, is taken from all places above ALIKE together.
+    The scatter between packings, of the logarithm, or between the blocks of one, is taken from all places above ALIKE
+    together.
     """
     groups = pd.factorize(labels)[0]
-    means = _group_means(loads, groups if groups.max() > 0 else np.arange(len(loads)))
+    several = groups.max() > 0
+    means = _group_means(loads, groups if several else np.arange(len(loads)))
+    if several:
+        means = _logarithm(means)
     overall = means.mean(axis=0)
     largest = np.sort(overall[np.isfinite(overall)])[::-1]
     if len(largest) < 2 or len(means) < 2:
         return len(largest) == 1
-    squares = means.var(axis=0, ddof=1)[overall > ALIKE * largest[0]]
+    alike = overall > (largest[0] + math.log(ALIKE) if several else ALIKE * largest[0])
+    squares = means[:, alike].var(axis=0, ddof=1)
     return bool(largest[0] - largest[1] > CLEAR * math.sqrt(2.0 * squares.mean() / len(means)))

@@ -47,13 +47,31 @@ def test_the_allowed_value_counts():
 
 
 def test_whole_packings_are_left_out():
-    """A packing's blocks have no voice in its own place, and packings count alike however many blocks they have."""
+    """A packing's blocks have no voice in its own place, and packings count alike, geometrically, however many blocks
+    they have.
+    """
     values = [[9.0, 1.0], [9.0, 1.0], [9.0, 1.0], [1.0, 2.0], [1.0, 2.5]]
     found = worst_place(values, packings=["a", "a", "a", "b", "b"])
     assert found.named.tolist() == [1, 1, 1, 0, 0]
     assert found.values.tolist() == [1.0, 1.0, 1.0, 1.0, 1.0]
-    assert (found.place, found.load) == (0, pytest.approx(5.0))
+    assert (found.place, found.load) == (0, pytest.approx(3.0))
     assert (found.value().packings, worst_place(values, packings=["a"] * 5).value().packings) == (2, 1)
+
+
+def test_a_place_that_one_packing_loads_alone_does_not_decide():
+    """A grain that jams once in one packing: no packing is judged by that place, of which the others know nothing."""
+    jammed = np.array([[1.0, 10.0], [1.1, 0.01], [0.9, 0.02]])
+    found = worst_place(jammed, packings=["a", "b", "c"])
+    assert (found.place, found.agreement) == (0, 1.0)
+    assert found.values.tolist() == [1.0, 1.1, 0.9]
+    assert found.load == pytest.approx(np.prod(found.values) ** (1.0 / 3.0), rel=EXACT)
+    assert jammed.mean(axis=0).argmax() == 1  # the arithmetic mean would let it decide
+
+
+def test_where_no_place_has_a_load_in_every_packing_the_arithmetic_mean_decides():
+    """A geometric mean is 0 everywhere and names none."""
+    found = worst_place([[0.0, 3.0], [1.0, 0.0]], packings=["a", "b"])
+    assert (found.place, found.load) == (1, 0.0)
 
 
 def test_one_block_has_no_others():
@@ -96,7 +114,7 @@ def test_one_clearly_worst_place_is_found(packings):
         assert found.place == 17
         assert found.agreement == 1.0
         assert found.clear
-        assert found.value(log=False).value == pytest.approx(found.load, rel=EXACT)
+        assert found.value().value == pytest.approx(found.load, rel=EXACT)
 
 
 def test_a_lesser_place_is_never_above_the_worst():

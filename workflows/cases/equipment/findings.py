@@ -88,6 +88,7 @@ def life_sentence(row: pd.Series, several: bool) -> str:
     further = [f"{rounded(row[f'life_{unit}'])} {unit}" for unit in ("Mt", "years") if np.isfinite(row[f"life_{unit}"])]
     after = ", ".join([f"{rounded(row.life_h)} h ({interval_words(row)})", *further])
     said = [f"{who} has to be changed after {after}; {place_words(row)}.", how_words(row), asked_words(row)]
+    said.append(earlier_words(row))
     return " ".join(filter(None, said))
 
 
@@ -110,10 +111,25 @@ def place_words(row: pd.Series) -> str:
     """Return where the worst place is and how fast it wears; by its mass the whole part decides."""
     if row.patch == WHOLE_PART:
         return "its whole mass decides"
-    place = ", ".join(f"{round(row[f'{axis}_mm']):,}" for axis in "xyz")
+    place = coordinates(row)
     worn = f", {rounded(row.worn_mm_per_1000h)} mm as worn" if row.how != AS_BUILT else ""
     rate = f"{rounded(row.pristine_mm_per_1000h)} mm per 1,000 h as built{worn}"
     return f"its worst place is at ({place}) mm of its drawing and loses {rate}"
+
+
+def coordinates(row: pd.Series, which: str = "") -> str:
+    """Return the coordinates of a place in mm, of the columns <which>x_mm and so on."""
+    return ", ".join(f"{round(row[f'{which}{axis}_mm']):,}" for axis in "xyz")
+
+
+def earlier_words(row: pd.Series) -> str:
+    """Return what one packing alone would have changed much earlier; nothing where there is no such place."""
+    if not np.isfinite(row.earlier_h):
+        return ""
+    return (
+        f"In packing {row.earlier_packing:g} alone the place at ({coordinates(row, 'earlier_')}) mm would be changed "
+        f"after {rounded(row.earlier_h)} h: how often that happens, so few blocks cannot tell."
+    )
 
 
 def how_words(row: pd.Series) -> str:

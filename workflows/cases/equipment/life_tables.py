@@ -12,6 +12,7 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import area_vectors, boundary_edges, read_surface
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
+from bulkwear.postproc.statistics.worst_place import geometric_mean
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.workflows.cases.equipment.life import (
@@ -95,6 +96,7 @@ def life_table(runs: Runs, lives: Lives) -> pd.DataFrame:
         row |= _lives_in_hours(life) | _in_other_units(life, run)
         row |= {"how": life.how, "simulated_h": life.simulated_h, "packings": runs_of(runs, setting)}
         row |= {"blocks": life.blocks, "agreement": life.agreement, "reason": life.reason}
+        row |= _earlier(runs, setting, part, life)
         rows.append(row)
     return pd.DataFrame(rows)
 
@@ -111,6 +113,15 @@ def _place(runs: Runs, setting: str, part: str, patch: int) -> dict[str, float]:
     found = places.loc[patch]
     place = {f"{axis}_mm": found[f"{axis}_m"] * MILLIMETRES for axis in PLACE}
     return place | {"thickness_mm": found["thickness_m"] * MILLIMETRES}
+
+
+def _earlier(runs: Runs, setting: str, part: str, life: PartLife) -> dict[str, Any]:
+    """Return the place that one packing alone would have changed much earlier, NaN where there is none."""
+    found = life.earlier
+    where = _place(runs, setting, part, found.patch if found else WHOLE_PART)
+    place = {f"earlier_{axis}_mm": where[f"{axis}_mm"] for axis in PLACE}
+    packing, hours = (found.packing, found.hours) if found else (math.nan, math.nan)
+    return {"earlier_h": hours, "earlier_packing": packing, **place}
 
 
 def _lives_in_hours(life: PartLife) -> dict[str, float]:
@@ -153,7 +164,7 @@ def worst_places(runs: Runs, rates: pd.DataFrame, lives: Lives) -> pd.DataFrame:
         allowed = allowed_depths(places["thickness_m"].to_numpy(), runs.first(setting)["operation"])
         last = np.array([course.last.mean(axis=0) for course in courses])
         hours = np.array([course.until(allowed, rate) for course, rate in zip(courses, last, strict=True)])
-        load = (1.0 / hours).mean(axis=0)
+        load = geometric_mean(1.0 / hours)
         order = np.argsort(-np.where(np.isnan(load), 0.0, load), kind="stable")
         if np.isnan(load).all():
             order = np.argsort(-last.mean(axis=0), kind="stable")

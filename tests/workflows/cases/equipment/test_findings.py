@@ -72,6 +72,17 @@ def test_answer_on_life(found):
     assert said.endswith("It does not last the 8,000 h that are asked for.")
 
 
+def test_what_happens_in_one_packing_alone_is_said(found):
+    """With its place and its hours, at the end; of alike packings nothing is said."""
+    jam = replace(LINER, recession=(2e-5, 5e-6))
+    first, *others = packings("plain", (0.98, 1.0, 1.02))
+    (said,) = findings.answers_on_life(found([replace(first, parts=(jam,)), *others])["life"])
+    place = "In packing 1 alone the place at (50, 50, 0) mm would be changed after 1,500 h"
+    assert place in said and said.startswith("The back liner has to be changed after 6,000 h (")
+    (said,) = findings.answers_on_life(found([first, *others])["life"])
+    assert "alone" not in said
+
+
 def test_one_packing_is_unknown(found):
     """Its scatter is, whatever its own blocks and the coefficient give."""
     few = replace(RUN, pristine=1, updates=1, worn=1)

@@ -267,6 +267,20 @@ def test_interval_of_three_packings(lives):
     assert [row["life_low_h"], row["life_high_h"]] == pytest.approx(middle * np.exp(reaches * [-1.0, 1.0]))
 
 
+def test_what_one_packing_alone_would_have_changed_is_told_beside(lives):
+    """A jam in the first packing does not decide the life; its place and hours stand in the table."""
+    steady, jam = SyntheticPart("liner", (RATE, 1e-3 * RATE)), SyntheticPart("liner", (RATE, 10.0 * RATE))
+    first, *others = packings(ONE, (1.0, 1.0, 1.0))
+    table = lives(replace(first, parts=(jam,)), *(replace(each, parts=(steady,)) for each in others))[2]
+    row = table.iloc[0]
+    assert (row["patch"], row["agreement"]) == (0, 1.0)
+    assert row["life_h"] == pytest.approx(THICKNESS / RATE, rel=RELATIVE)
+    assert (row["earlier_packing"], row["earlier_h"]) == (1, pytest.approx(0.1 * THICKNESS / RATE, rel=RELATIVE))
+    assert row["earlier_x_mm"] == pytest.approx(150.0)
+    same = lives(*packings(replace(ONE, parts=(steady,)), (0.9, 1.0, 1.1)))[2]
+    assert np.isnan(same["earlier_h"].iloc[0])
+
+
 def test_one_packing_knows_its_own_blocks_alone(lives):
     """Of four blocks or more there is an interval of this run, of fewer the coefficient's alone; packings is 1."""
     part = replace(UNIFORM, error=0.2)
