@@ -31,9 +31,7 @@ NO_THICKNESS, NO_VOLUME = "its thickness is not known", "its mass is not known: 
 NO_WEAR = "nothing wears it in the time simulated"
 LATEST = 4  # blocks at least whose mean rate goes on: where fewer are on the worn shape, those of updates before too
 WORST = 5  # patches of a part that are listed
-MUCH_EARLIER = (
-    0.5  # -, of a life: the shortest of many alike places in one packing is above it (their scatter: 5 to 20 %)
-)
+MUCH_EARLIER = 0.5  # -, of a life: the shortest in one packing of alike places, which scatter by 5 to 20 %, is above it
 
 
 @dataclass(frozen=True)
