@@ -18,6 +18,7 @@ TAIL_BYTES = 65536
 _ERROR = re.compile(r"^ERROR(?: on proc \d+)?: (.*)$", re.MULTILINE)
 _SOURCE = re.compile(r"\s*\(\./src/[^)]*\)")
 _LOST = re.compile(r"^(?:ERROR|WARNING): (Lost atoms: .*)$", re.MULTILINE)
+_FORCED = "Forced restart written"
 _EXCHANGE = re.compile(r"^Exchange at step (\d+): (\d+) particles left, (\d+) entered, (\d+) are here\.$")
 _TRIANGLES = "Import and parallelization of mesh {} containing (\\d+) triangle"
 _LOOP = re.compile(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
@@ -151,6 +152,14 @@ def failure(source: Path | str) -> str | None:
     cause = next((cause for pattern, cause in KNOWN_CAUSES if re.search(pattern, raw)), None)
     said = _SOURCE.sub("", raw).strip()
     return f"LIGGGHTS stopped: {said}" if cause is None else f"LIGGGHTS stopped: {said} ({cause})"
+
+
+def ended_by_signal(source: Path) -> bool:
+    """Whether a signal ended the solver: it then writes a restart file of its own, and its exit code is 0 all the same.
+
+    source: of the screen file
+    """
+    return _FORCED in source.read_text("utf-8", "replace")
 
 
 def solver_version(path: Path | str) -> str | None:

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.postproc.readers.solver_log import SolverLogError, failure, last_step, reported_triangles
+from bulkwear.postproc.readers.solver_log import SolverLogError, ended_by_signal, failure, last_step, reported_triangles
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
 from bulkwear.workflows.engine.disk import RESERVE_BYTES, free_bytes, full_sentence
 from bulkwear.workflows.engine.own_kernels import own_library, python_fault
@@ -225,8 +225,9 @@ def run_deck(
             _watch(process, folder, on_step, unchecked, Watch(patience))
         finally:
             _stop(process)
-    if process.returncode != 0:
-        raise SolverError(_last_words(folder, process.returncode))
+    code = process.returncode or (-signal.SIGTERM if ended_by_signal(folder / SCREEN) else 0)
+    if code != 0:
+        raise SolverError(_last_words(folder, code))
     if unchecked:
         raise SolverError(f"{folder / SCREEN}: LIGGGHTS did not report the triangles of mesh {', '.join(unchecked)}.")
     return time.monotonic() - started

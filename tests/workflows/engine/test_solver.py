@@ -82,6 +82,14 @@ def test_a_crash_is_said_in_words(tmp_path, ends, said):
     assert exit_words(128 + ends) == exit_words(-ends)
 
 
+def test_a_solver_that_a_signal_ends_says_so_although_its_exit_code_is_0(tmp_path):
+    """It writes a restart file of its own and reports no error: what it left is not the whole of its run."""
+    ended = program(tmp_path, "print('WARNING: Forced restart written (./src/output.cpp:427)')")
+    with pytest.raises(SolverError, match=r"deck.in: LIGGGHTS was ended by SIGTERM \(signal 15\)"):
+        run_deck(tmp_path, executable=ended)
+    run_deck(tmp_path, executable=program(tmp_path, "print('Loop time')"))
+
+
 def test_other_exit_codes_are_numbers():
     """What is no signal stays a number."""
     assert exit_words(3) == "stopped with exit code 3"

@@ -3,8 +3,8 @@
 A place is an area patch, or the whole part where the rule speaks of its mass. What it loses is followed as long as the
 shape was worn, and goes on from there at the mean rate of the last blocks. The load of a place is one over
 its life; the place that decides has the largest. Each packing's value is that of the place which all others name, so
-that it is not lifted by being chosen (`postproc.statistics.worst_place`); of one packing see `_of_one`. A place that a single
-packing would have changed much earlier is told beside.
+that it is not lifted by being chosen (`postproc.statistics.worst_place`); of one packing see `_of_one`. A place that a
+single packing would have changed much earlier is told beside.
 """
 
 from __future__ import annotations
