@@ -15,17 +15,16 @@ from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain, total_steps
 from bulkwear.workflows.engine.derived import WALLS, WINDOW
+from bulkwear.workflows.engine.solver import SEARCHES
 
 STUDY, ROW, SURFACES = "demo", "R9", ("plain", "convex")
 # -, of the Rayleigh time: the source's 5e-6 s, between, and what the screening takes
 SOURCE_FRACTION, MIDDLE_FRACTION, FRACTION = 0.23, 0.3, 0.4
-FULL = "bed of 2 m"
-BEDS: dict[str, dict[str, Any]] = {  # the first, with the source's time step, is what others are compared with
-    FULL: {"bed": {"ends": WALLS, "ahead_mm": 300, "behind_mm": 100}, "fraction": SOURCE_FRACTION},
-    "window 150 + 200": {
-        "bed": {"ends": WINDOW, "ahead_mm": 150, "behind_mm": 200},
-        "fraction": SOURCE_FRACTION,
-    },
+FULL, OWN_SEARCH = "bed of 2 m, stock search", "bed of 2 m"
+WHOLE = {"ends": WALLS, "ahead_mm": 300, "behind_mm": 100}
+BEDS: dict[str, dict[str, Any]] = {  # the first, as the source ran it, is what others are compared with
+    FULL: {"bed": WHOLE, "fraction": SOURCE_FRACTION, "search": SEARCHES[1]},
+    OWN_SEARCH: {"bed": WHOLE, "fraction": SOURCE_FRACTION},
     "window 100 + 50": {
         "bed": {"ends": WINDOW, "ahead_mm": 100, "behind_mm": 50},
         "fraction": SOURCE_FRACTION,
@@ -33,6 +32,10 @@ BEDS: dict[str, dict[str, Any]] = {  # the first, with the source's time step, i
     f"window 100 + 50, time step {MIDDLE_FRACTION:g}": {
         "bed": {"ends": WINDOW, "ahead_mm": 100, "behind_mm": 50},
         "fraction": MIDDLE_FRACTION,
+    },
+    f"window 100 + 50, time step {FRACTION:g}": {
+        "bed": {"ends": WINDOW, "ahead_mm": 100, "behind_mm": 50},
+        "fraction": FRACTION,
     },
     f"window 150 + 200, time step {FRACTION:g}": {
         "bed": {"ends": WINDOW, "ahead_mm": 150, "behind_mm": 200},
@@ -89,7 +92,8 @@ def chain_of(case: Case, folder: Path, settings: Mapping[str, Any]) -> Chain:
     """Return a run as the driver sees it, its folder made. Both samples start from beds that settle equally high."""
     given = BEDS[case.bed]
     bed = {**settings["bed"], **given["bed"], "seed": case.seed}
-    solver = {**settings["solver"], "rayleigh_fraction": given["fraction"]}
+    search = given.get("search", SEARCHES[0])
+    solver = {**settings["solver"], "rayleigh_fraction": given["fraction"], "search": search}
     study = load_study(STUDY, overrides={**settings, "bed": bed, "solver": solver})
     runs = [coarser(run) for run in study.runs]
     beds, bed_of = study.case.beds(runs)
