@@ -19,6 +19,10 @@ RUNS_NOTE = (
 )
 WEIGHTIEST = "Discrepancy of the model"
 DECKS = ()  # `snakemake <study>_decks` renders them
+CREEPS = (
+    " A constant torque cannot hold a grain at rest: it changes sign at every step, and slopes creep, the faster the "
+    "larger the time step."
+)
 OPENINGS = {
     boxes.SLOT: "slot of {:g} mm across the whole width",
     boxes.SQUARE: "square of {:g} mm in the middle of the floor",
@@ -106,8 +110,8 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "Rolling friction stands for shape",
             f"Model {solver['rolling_friction']}; coefficients are for the {solver['rolling_radius']} radius of the "
-            "particle and valid in this model and convention only. A constant torque (cdt, type A) cannot hold a grain "
-            "at rest: it changes sign at every step, and slopes creep, the faster the larger the time step.",
+            "particle and valid in this model and convention only."
+            + (CREEPS if solver["rolling_friction"] == "cdt" else ""),
         ),
         (
             "Opening of the draw-down test",

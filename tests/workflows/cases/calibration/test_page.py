@@ -140,3 +140,11 @@ def test_the_page_in_docs_has_the_same_sections(folder, tmp_path):
     assert "no response measured here is made to tell it. A wall shear test is" in told
     assert [line[3:] for line in page.splitlines() if line.startswith("## ")] == ["Verdict", *sections(folder)]
     assert {found.name for found in tmp_path.glob("*.png")} == {f"calibration_quick_{name}.png" for name in FIGURES}
+
+
+@pytest.mark.parametrize("model", ["own_spin", "epsd2", "cdt"])
+def test_slopes_are_told_to_creep_under_a_constant_torque_alone(model):
+    """Other models hold a grain at rest."""
+    told = page_parameters(study(solver={"rolling_friction": model}))
+    said = dict(page_of("calibration").simplifications(told))["Rolling friction stands for shape"]
+    assert f"Model {model};" in said and ("creep" in said) == (model == "cdt")
