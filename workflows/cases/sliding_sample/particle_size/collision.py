@@ -25,7 +25,7 @@ from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.bulk_tests import bulk_materials, time_step
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.derived import WALLS, derived_materials, youngs_modulus
-from bulkwear.workflows.engine.solver import DECK, executable_of, run_deck
+from bulkwear.workflows.engine.solver import DECK, OWN_ROLLING_MODELS, executable_of, run_deck
 from bulkwear.workflows.engine.templates import render
 
 DUMP = "collision.dump"
@@ -36,7 +36,7 @@ COLUMNS = (
 # Collision -> its first sphere and the other one, None for the wall, as numbered in its template.
 COLLISIONS = {"pair": (1, 2), "oblique pair": (3, 4), "wall": (5, None), "oblique wall": (6, None)}
 DOWN = np.array([0.0, 0.0, -1.0])  # where the wall is
-MODELS = ("cdt", "epsd2")  # rolling types A and C
+MODELS = ("cdt", "epsd2", *OWN_ROLLING_MODELS)  # rolling types A and C of LIGGGHTS, and those of our program
 SPEEDS = {"speed_m_per_s": 1.0, "sideways_speed_m_per_s": 0.5}  # before contact: of beds at rest and in motion
 EXACT_STEP = 0.002  # -, of the Rayleigh time: collisions are then within 0.1 % of the closed form
 DRAWN_POINTS = 400  # of a collision's history
@@ -257,7 +257,10 @@ def spread_over_scales(measures: pd.DataFrame) -> pd.DataFrame:
 
 
 def collision_tests(runs: Mapping[str, Parameters]) -> list[dict[str, Any]]:
-    """Return collisions of a study's particles with each other and its sample, of all scales and rolling types."""
+    """Return collisions of a study's particles with each other and its sample, of all scales and rolling models; of
+    LIGGGHTS' own ones alone where the study has one of these, for it may run on any LIGGGHTS.
+    """
+    own = {run["solver"]["rolling_friction"] for run in runs.values()} & {*OWN_ROLLING_MODELS}
     return [
         {
             "particle": run["particle"],
@@ -267,6 +270,7 @@ def collision_tests(runs: Mapping[str, Parameters]) -> list[dict[str, Any]]:
             "collision": SPEEDS,
         }
         for model in MODELS
+        if own or model not in OWN_ROLLING_MODELS
         for run in by_scale(runs).values()
     ]
 
