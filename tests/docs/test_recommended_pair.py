@@ -8,10 +8,11 @@ import pytest
 from bulkwear.workflows.config.design import ConfigError, load_study
 from tests import PUBLISHED
 from tests.support.calibration_study import ROLLING, SLIDING
+from tests.support.tiny import OF_ANY_MODEL
 from tests.test_house import text_of
 
 DECIMALS = 2  # of a coefficient of friction: packings do not tell a third
-GRAVEL, OF_SOURCE = "river_gravel", "river_gravel_published"
+GRAVEL, OF_SOURCE = "river_gravel", OF_ANY_MODEL
 
 
 def materials():

@@ -110,7 +110,7 @@ def test_the_figure_shows_every_scale_and_the_closed_form():
     closed = {kind: dimensionless(each, spheres.units(kind)) for kind, each in spheres.closed_forms(1.0).items()}
     figure = collisions(drawn_histories(), closed, ["a remark"])
     panels = figure.axes
-    assert len(panels) == 6 and [len(axes.lines) for axes in panels] == [4, 4, 6, 4, 4, 6]
+    assert len(panels) == 6 and [len(axes.lines) for axes in panels] == 2 * [4, 4, 3 * len(MODELS)]
     assert max(panels[0].lines[0].get_ydata()) == pytest.approx(closed["pair"]["overlap"].max())
     assert panels[0].lines[1].get_linestyle() == "None"  # marks: joined, they would be a line of their own
     assert "a remark" in remarks_of(figure)
