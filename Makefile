@@ -18,8 +18,8 @@ export VTK_DEFAULT_OPENGL_WINDOW ?= vtkOSOpenGLRenderWindow
 
 PROFILE := workflows/profiles/default
 SNAKEMAKE := .venv/bin/snakemake --workflow-profile $(PROFILE) --cores $(CORES)
-# one file's tests stay on one process, so that what they share (a solver run) is made once; one process more than cores,
-# because some tests wait for a cluster
+# one file's tests stay on one process (some folders': tests/conftest.py), so that what they share is made once; one
+# process more than cores, because some tests wait for a cluster
 PYTEST := .venv/bin/pytest --numprocesses $(shell expr $(CORES) + 1) --maxprocesses 8 --dist loadfile --no-loadscope-reorder
 SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed

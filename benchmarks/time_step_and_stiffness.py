@@ -116,8 +116,8 @@ def chain_of(variant: Variant, folder: Path) -> Chain:
     """
     study = load_study(STUDY, overrides=CASE)
     run = with_derived(study.run(f"{ROW}_{variant.surface}"), variant.fraction, variant.modulus, variant.seed)
-    at_rest = with_derived(study.run(f"{ROW}_{PLAIN}"), FRACTION, MODULUS, variant.seed)
-    (bed,) = study.case.beds([at_rest])[0].values()
+    at_rest = [with_derived(study.run(f"{ROW}_{each}"), FRACTION, MODULUS, variant.seed) for each in (PLAIN, CONVEX)]
+    (bed,) = study.case.beds(at_rest)[0].values()  # settled above the bumps
     bed_folder = folder / f"seed_{variant.seed}" / "bed"
     if not (bed_folder / "cost.csv").exists():
         fill_bed(study.case, "bed", bed, bed_folder)

@@ -1,5 +1,16 @@
-"""In which order test files run: those that compile, then those that take longest, so that no process waits for one of
-them at the end."""
+"""In which order test files run, and which of them share a process.
+
+First those that compile, then those that take longest, so that no process waits for one of them at the end. Folders
+whose files read one made-up study stay on one process, which makes it once.
+"""
+
+import os
+
+import pytest
+
+# Each process of the tests computes by one thread, as jobs of a study do: threads of linear algebra that wait for one
+# another on cores that others use spin, forty times as long as the work takes. Set before numpy is imported.
+os.environ["OMP_NUM_THREADS"] = "1"
 
 COMPILE = (  # nearly all that numba compiles, each another part; what comes after them need not do it as well
     "wear/test_remesh.py",
@@ -19,6 +30,11 @@ LONGEST_FIRST = (  # measured on two cores: half a minute to minutes each, most 
     "test_chains.py",
 )
 FIRST = (*COMPILE, *LONGEST_FIRST)
+TOGETHER = (  # folders with a fixture of their own that takes seconds
+    "tests/workflows/cases/calibration/",
+    "tests/workflows/cases/pin_on_disc/",
+    "tests/workflows/cases/sliding_sample/search/",
+)
 
 
 def pytest_collection_modifyitems(items):
@@ -29,3 +45,15 @@ def pytest_collection_modifyitems(items):
         return next((k for k, name in enumerate(FIRST) if path.endswith(name)), len(FIRST))
 
     items.sort(key=place)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Hand out tests by file, or by folder where its files belong together."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class ByFileOrFolder(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return next((folder for folder in TOGETHER if nodeid.startswith(folder)), super()._split_scope(nodeid))
+
+    return ByFileOrFolder(config, log)

@@ -254,7 +254,7 @@ def test_third_party_imports_are_direct_requirements():
     """What is imported is named in pyproject.toml, not there by some other package's grace."""
     project = tomllib.loads(text_of("pyproject.toml"))["project"]
     lines = itertools.chain(project["dependencies"], *project["optional-dependencies"].values())
-    required = {re.sub(r"\[.*", "", line).replace("-", "_") for line in lines} | {"yaml", "PIL", "igl"}
+    required = {re.sub(r"\[.*", "", line).replace("-", "_") for line in lines} | {"yaml", "PIL", "igl", "xdist"}
     ours = {path.name for path in REPOSITORY.iterdir()}
     siblings = {path.stem for path in tracked("*.py")}
     sources = {

@@ -11,9 +11,9 @@ from snakemake.utils import min_version
 
 from bulkwear.workflows.config.design import ConfigError, list_studies, load_study
 from bulkwear.workflows.config.published_tables import check_published
+from bulkwear.workflows.config.rounds import read_round
 from bulkwear.workflows.config.run_checks import check_files
 from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
-from bulkwear.workflows.config.until import read_round
 from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,

@@ -24,28 +24,28 @@ INTERVAL = 1.959964  # standard deviations that 95 % of a normal distribution li
 class Tried:
     """Designs that were simulated.
 
-    points: (n, p) in the unit cube; values, errors: (n,) of the response that shall be least, and its standard error
-    limited, limited_errors: (n,) of the one that shall be at most `limit`
+    points: (n, p) in the unit cube; values: (n,) of the response that shall be least; noise: (n, n), the covariance of
+    their errors; limited, limited_noise: the same of the one that shall be at most `limit`
     seed: of all draws
     """
 
     points: np.ndarray
     values: np.ndarray
-    errors: np.ndarray
+    noise: np.ndarray
     limited: np.ndarray
-    limited_errors: np.ndarray
+    limited_noise: np.ndarray
     limit: float
     seed: int = 1
 
     @cached_property
     def response(self) -> Surrogate:
         """Surrogate of the response that shall be least."""
-        return fit_surrogate(self.points, self.values, self.errors, self.seed)
+        return fit_surrogate(self.points, self.values, self.noise, self.seed)
 
     @cached_property
     def limited_response(self) -> Surrogate:
         """Surrogate of the one that has a limit."""
-        return fit_surrogate(self.points, self.limited, self.limited_errors, self.seed)
+        return fit_surrogate(self.points, self.limited, self.limited_noise, self.seed)
 
     def chance_within(self, points: np.ndarray) -> np.ndarray:
         """Return the probability (m,) that designs (m, p) keep to the limit."""

@@ -34,13 +34,14 @@ JITTER = 1e-9  # -, of the diagonal over the variance of the responses
 class Surrogate:
     """A response of which simulations are known.
 
-    points (n, p) in the unit cube; values, errors (n,), standardised: of the simulations, and the variances of their
-    measurement; kernels (k, p + 2): lengths, amplitude and noise of each draw; centre, scale: of the responses
+    points (n, p) in the unit cube; values (n,), noise (n, n), standardised: of the simulations, and the covariance of
+    their errors; kernels (k, p + 2): lengths, amplitude and scatter between seeds of each draw; centre, scale: of
+    the responses
     """
 
     points: np.ndarray
     values: np.ndarray
-    errors: np.ndarray
+    noise: np.ndarray
     kernels: np.ndarray
     centre: float
     scale: float
@@ -84,8 +85,9 @@ class Surrogate:
     def with_point(self, point: np.ndarray) -> Surrogate:
         """Return the surrogate as if its own mean had been simulated at a point (p,): its doubt shrinks there."""
         mean = (self.predict(point[None])[0] - self.centre) / self.scale
-        points, errors = np.vstack([self.points, point]), np.append(self.errors, np.median(self.errors))
-        return replace(self, points=points, values=np.append(self.values, mean), errors=errors)
+        noise = np.pad(self.noise, (0, 1))
+        noise[-1, -1] = np.median(self.noise.diagonal())
+        return replace(self, points=np.vstack([self.points, point]), values=np.append(self.values, mean), noise=noise)
 
     def _of_kernels(self, points: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """Yield standardised mean and variance (n,) at points by each kernel."""
@@ -97,7 +99,7 @@ class Surrogate:
     @cached_property
     def _solved(self) -> tuple[np.ndarray, np.ndarray]:
         """Cholesky factors (k, n, n) of the simulations' covariance by each kernel; its inverse times the values."""
-        factors = np.linalg.cholesky(_of_simulations(self.points, self.errors, self.kernels))
+        factors = np.linalg.cholesky(_of_simulations(self.points, self.noise, self.kernels))
         return factors, np.array([cho_solve((factor, True), self.values) for factor in factors])
 
 
@@ -110,24 +112,27 @@ def _covariance(first: np.ndarray, second: np.ndarray, kernels: np.ndarray) -> n
     return amplitude * (1.0 + distance + distance**2 / 3.0) * np.exp(-distance) + MEAN_VARIANCE
 
 
-def _of_simulations(points: np.ndarray, errors: np.ndarray, kernels: np.ndarray) -> np.ndarray:
-    """Return the covariance (k, n, n) of simulations: of the response, between seeds, and of the measurement."""
-    noise = kernels[:, -1, None] + errors + JITTER
-    return _covariance(points, points, kernels) + noise[:, :, None] * np.eye(len(points))
+def _of_simulations(points: np.ndarray, noise: np.ndarray, kernels: np.ndarray) -> np.ndarray:
+    """Return the covariance (k, n, n) of simulations: of the response, between seeds, and of the errors."""
+    seeds = (kernels[:, -1] + JITTER)[:, None, None] * np.eye(len(points))
+    return _covariance(points, points, kernels) + seeds + noise
 
 
 # ---------------------------------------------------------------- fit
 
 
-def fit_surrogate(points: np.ndarray, values: np.ndarray, uncertainties: np.ndarray, seed: int) -> Surrogate:
+def fit_surrogate(points: np.ndarray, values: np.ndarray, noise: np.ndarray, seed: int) -> Surrogate:
     """Return the surrogate of a response from simulations.
 
-    points: (n, p) in the unit cube; values, uncertainties: (n,) of the measurement on each simulation. Kernels are
-    drawn from their posterior by importance sampling, first from the prior, then from a normal about what fits; seeded.
+    points: (n, p) in the unit cube; values: (n,) of the simulations; noise: (n, n), the covariance of their errors,
+    diagonal where they share nothing. Kernels are drawn from their posterior by importance sampling, first from the
+    prior, then from a normal about what fits; seeded.
     """
-    centre, doubt = float(np.mean(values)), float(np.sqrt(np.mean(uncertainties**2)))
+    count, centre = len(values), float(np.mean(values))
+    shared = (noise.sum() - noise.trace()) / max(count * (count - 1), 1)  # by it the values do not differ
+    doubt = float(np.sqrt(max(noise.trace() / count - shared, 0.0)))
     scale = max(float(np.std(values)), doubt, np.finfo(float).tiny)
-    standardised, errors = (values - centre) / scale, (uncertainties / scale) ** 2
+    standardised, noise = (values - centre) / scale, noise / scale**2
     dimensions = points.shape[1] + 2
     middle = np.log([*(LENGTH[0] for _ in range(dimensions - 2)), AMPLITUDE[0], NOISE[0]])
     spread = np.diag([*(LENGTH[1] for _ in range(dimensions - 2)), AMPLITUDE[1], NOISE[1]])
@@ -135,7 +140,7 @@ def fit_surrogate(points: np.ndarray, values: np.ndarray, uncertainties: np.ndar
 
     def weighted(draws: np.ndarray, log_proposal: np.ndarray) -> np.ndarray:
         log_prior = -0.5 * (((draws - middle) / spread.diagonal()) ** 2).sum(axis=1)
-        logs = log_prior - log_proposal + _log_evidence(points, standardised, errors, np.exp(draws))
+        logs = log_prior - log_proposal + _log_evidence(points, standardised, noise, np.exp(draws))
         weights = np.exp(logs - logs.max())
         return weights / weights.sum()
 
@@ -146,12 +151,12 @@ def fit_surrogate(points: np.ndarray, values: np.ndarray, uncertainties: np.ndar
     draws = found + normal @ np.linalg.cholesky(covariance).T
     weights = weighted(draws, log_proposal)
     chosen = np.searchsorted(np.cumsum(weights), (np.arange(KERNELS) + 0.5) / KERNELS)
-    return Surrogate(points, standardised, errors, np.exp(draws[np.minimum(chosen, len(draws) - 1)]), centre, scale)
+    return Surrogate(points, standardised, noise, np.exp(draws[np.minimum(chosen, len(draws) - 1)]), centre, scale)
 
 
-def _log_evidence(points: np.ndarray, values: np.ndarray, errors: np.ndarray, kernels: np.ndarray) -> np.ndarray:
+def _log_evidence(points: np.ndarray, values: np.ndarray, noise: np.ndarray, kernels: np.ndarray) -> np.ndarray:
     """Return the logarithm (k,) of the density of standardised values (n,) under each kernel, but for a constant."""
-    factors = np.linalg.cholesky(_of_simulations(points, errors, kernels))
+    factors = np.linalg.cholesky(_of_simulations(points, noise, kernels))
     rest = np.linalg.solve(factors, np.broadcast_to(values[:, None], (len(kernels), len(values), 1)))[..., 0]
     return -0.5 * (rest**2).sum(axis=1) - np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1)
 
@@ -167,8 +172,8 @@ def fit_surrogates(problem: Problem, simulations: pd.DataFrame) -> dict[str, Sur
     for response in (name for test in problem.tests for name in test.responses):
         if response in simulations and (known := simulations[response].notna().to_numpy()).any():
             table = simulations[known]
-            errors = table[f"{response}_uncertainty"].to_numpy(float)
-            found[response] = fit_surrogate(points[known], table[response].to_numpy(float), errors, problem.seed)
+            noise = np.diag(table[f"{response}_uncertainty"].to_numpy(float) ** 2)
+            found[response] = fit_surrogate(points[known], table[response].to_numpy(float), noise, problem.seed)
     return found
 
 

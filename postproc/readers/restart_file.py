@@ -23,6 +23,8 @@ _NO_MORE = -1  # ends header, arrays of types and contact model
 _PAIR_STYLE, _CONTACT_MODEL, _CONTACT_MODEL_BYTES = 0, b"gran", 8
 MOST_GROUPS = 32  # of LIGGGHTS
 LONGEST_WORD = 4096
+BLOCK_NUMBERS = 1 << 22  # of particles' records, read at a time
+_DOUBLE_BYTES = 8
 
 
 class RestartFileError(ValueError):
@@ -158,13 +160,21 @@ def _count(stream: BinaryIO) -> int:
 
 def _count_particles(stream: BinaryIO, ranks: int) -> int:
     """Return the particles of all ranks."""
-    particles = 0
-    for _ in range(ranks):
-        values = memoryview(_take(stream, 8 * _integer(stream))).cast("d")
-        place = 0
-        while place < len(values):
-            length = values[place]
-            if not (1.0 <= length <= len(values) - place and length == int(length)):
+    return sum(_particles_of_rank(stream, _integer(stream)) for _ in range(ranks))
+
+
+def _particles_of_rank(stream: BinaryIO, left: int) -> int:
+    """Return the particles in a rank's record of so many numbers, read block by block: gigabytes are not held."""
+    if left < 0:
+        raise _BrokenError
+    particles, place = 0, 0  # place: of the next particle in the block, it may lie in a later one
+    while left:
+        block = memoryview(_take(stream, _DOUBLE_BYTES * min(left, BLOCK_NUMBERS))).cast("d")
+        left -= len(block)
+        while place < len(block):
+            length = block[place]
+            if not (1.0 <= length <= len(block) - place + left and length == int(length)):
                 raise _BrokenError
             place, particles = place + int(length), particles + 1
+        place -= len(block)
     return particles

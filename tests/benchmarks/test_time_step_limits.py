@@ -61,6 +61,7 @@ def test_model_time_step_and_packing_reach_the_run(model, tmp_path):
     assert parameters["derived"]["largest_time_step_s"] == pytest.approx(2.0 * step)
     bed = chain_of(case, tmp_path).bed
     assert bed["solver"]["rayleigh_fraction"] == FRACTION
+    assert bed["temporary_floor_m"] >= parameters["derived"]["highest_point_m"]  # no particle begins in a bump
     assert bed == chain_of(Case(model, 7, PLAIN, 0.1), tmp_path).bed
 
 
@@ -84,6 +85,17 @@ def test_nothing_is_told_of_too_few_packings():
     found = limits(answers(lacking)).set_index("model")["all of them"]
     assert math.isnan(found["cdt"]) and found["epsd2"] == UP_TO["epsd2"]
     assert "`cdt`: not known" in results_page(lacking)
+
+
+def test_a_limit_at_the_shortest_step_is_told_as_none():
+    """What scatters too much to be decided is told with its interval, beside what is shown."""
+    table = made_up()
+    loud = (table["model"] == "cdt") & (table["surface"] == CONVEX)
+    name = next(iter(RESPONSES))
+    table.loc[loud, name] *= np.exp(np.random.default_rng(1).normal(0.0, 0.05, loud.sum()))
+    page = " ".join(results_page(table).split())
+    assert "`cdt`: that all stays within 2 % is shown of no step longer than 0.1 of the Rayleigh time" in page
+    assert f"of {PLAIN}, sliding work up to {max(FRACTIONS):g}" in page and "`epsd2`: within 2 %" in page
 
 
 def test_a_run_that_failed_ends_the_limit():

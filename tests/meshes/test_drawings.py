@@ -1,5 +1,6 @@
 """The drawings of studies: what their scripts say is in the files, as volumes in closed form, boxes and names."""
 
+import functools
 import math
 import time
 
@@ -48,8 +49,13 @@ def volume_m3(path):
 
 
 def found(drawn, name, edge_m=COARSE_M):
-    """The surface of a drawing, `chute/walls` for one."""
-    return own_mesh(drawn[0] / f"{name}.step", "mm", edge_m)
+    """The surface of a drawing, `chute/walls` for one; meshed once."""
+    return mesh_of(drawn[0] / f"{name}.step", edge_m)
+
+
+@functools.cache
+def mesh_of(path, edge_m):
+    return own_mesh(path, "mm", edge_m)
 
 
 def warnings_of(mesh):

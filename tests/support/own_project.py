@@ -16,6 +16,7 @@ fidelities:
     sample: {width_mm: 40, length_mm: 40, element_size_mm: 2}
     bed: {width_mm: 60, ahead_mm: 20, behind_mm: 20, material: my_ore}
     sliding: {run_in_mm: 10, travel_mm: 20, cycles: 2}
+    solver: {rayleigh_fraction: 0.4}
 """
 FILES = {
     "config/studies/mine.yaml": f"""\

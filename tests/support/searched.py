@@ -15,6 +15,7 @@ from tests.support.finished_samples import wear_table
 STUDY = "optimised_pattern"
 BEST_HEIGHT_MM, LEAST = 4.0, 0.5  # where wear over plain is least, and how much it is there
 PER_MM, NOISE = 0.1, 0.01  # -, of ln wear over plain per mm of height beyond; scatter of packings
+RUN_S, BED_S = 36.0, 72.0  # of the processor; a plain twin that was simulated for another pattern takes none
 SMALL = {  # two factors and few rows, on a sample of which a mesh takes no time
     "packings": 2,
     "particle_scale": 4,
@@ -57,8 +58,19 @@ def write_runs(study: Study, folder: Path) -> None:
         own.mkdir(parents=True)
         ratio = 1.0 if run.surface == "plain" else wear_over_plain(rows[run.row], study.packing_of[run.row])
         wear_table(ratio * 1e-9).to_csv(own / "wear.csv", index=False)
-        pd.DataFrame({"processor_s": [36.0]}).to_csv(own / "cost.csv", index=False)
+        taken = 0.0 if study.same_as(run.name) else RUN_S
+        pd.DataFrame({"processor_s": [taken]}).to_csv(own / "cost.csv", index=False)
         write_surface(own / "surface.vtu", study.case.surface_mesh(run.parameters))
+    for bed in study.beds:
+        (folder / "beds" / bed).mkdir(parents=True, exist_ok=True)
+        pd.DataFrame({"processor_s": [BED_S]}).to_csv(folder / "beds" / bed / "cost.csv", index=False)
+
+
+def costs_of(study: Study, folder: Path) -> list[str]:
+    """Return the tables of what runs and beds of a study have taken, as rounds are given them."""
+    return [
+        str(folder / name / "cost.csv") for name in (*(r.name for r in study.runs), *(f"beds/{b}" for b in study.beds))
+    ]
 
 
 def decided_round(root: Path, number: int, packings: dict[str, int], **asked) -> dict:
@@ -69,10 +81,8 @@ def decided_round(root: Path, number: int, packings: dict[str, int], **asked) ->
     (folder / "rounds").mkdir(exist_ok=True)
     design = folder / "rounds" / f"round_{number}_design.csv"
     pd.DataFrame(looked_at.design_table()).to_csv(design, index=False)
-    wear, surface, cost = (
-        [str(folder / run.name / name) for run in looked_at.runs] for name in ("wear.csv", "surface.vtu", "cost.csv")
-    )
-    decided = decide_round(study, number, design, wear, surface, cost)
+    wear, surface = ([str(folder / run.name / name) for run in looked_at.runs] for name in ("wear.csv", "surface.vtu"))
+    decided = decide_round(study, number, design, wear, surface, costs_of(looked_at, folder))
     (folder / "rounds" / f"round_{number}.json").write_text(json.dumps(decided))
     return decided
 

@@ -20,7 +20,9 @@ from tests.workflows.test_snakemake import finish, planned_jobs, snakemake
 
 # Each process is forked from one that has read modules and entered no project: starting Snakemake costs 1.5 seconds.
 CLEAN = multiprocessing.get_context("forkserver")
-CLEAN.set_forkserver_preload([load_project.__module__, "snakemake.cli"])
+CLEAN.set_forkserver_preload(
+    [load_project.__module__, "snakemake.cli", "snakemake.report", "snakemake.script", "jsonschema"]
+)
 ROUNDING = 1e-12  # relative; of a sum over triangles
 WITHOUT_LIBRARIES = 80.0  # MB, of a process that imports no library, 25 of them; with pandas and matplotlib 170
 PROFILE = ("--workflow-profile", str(PACKAGE / "workflows/profiles/default"))

@@ -11,7 +11,10 @@ SLOW = (
     *("jsonschema", "numba", "scipy.optimize", "scipy.spatial", "scipy.special", "scipy.stats"),
     *("matplotlib", "pyvista"),
 )
-NEEDED = {"page": {"scipy.special"}}  # its verdicts ask for quantiles
+NEEDED = {
+    "page": {"scipy.special"},  # its verdicts ask for quantiles
+    "study of samples": {"jsonschema", "scipy.spatial", "scipy.special"},  # its schema; bumps ask for their nearest
+}
 IMPORTED = "import sys\n{code}\nprint(*(name for name in {names} if name in sys.modules))"
 STARTS = {
     "every start": "import bulkwear.workflows.config.design, bulkwear.workflows.report.page_parameters",
@@ -21,6 +24,11 @@ from bulkwear.workflows.report.products import products_of
 assert products_of(find_case("sliding_sample"))
 """,
     "samples": "from bulkwear.workflows.report.page_parameters import page_of; assert page_of('sliding_sample')",
+    "study of samples": """
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.page_parameters import page_parameters
+assert page_parameters(load_study("demo"))["told"]
+""",
     "page": "import bulkwear.workflows.report.page",
     "forecast": "import bulkwear.workflows.forecast.forecast, bulkwear.workflows.forecast.limits",
 }

@@ -9,10 +9,9 @@ then a row has a value of the even filling, by which its cost is forecast, and n
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -22,13 +21,18 @@ import numpy as np
 from bulkwear.postproc.inference.ranges import Range, first_values
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.config.layers import ConfigError, Layer
-from bulkwear.workflows.config.until import UNTIL, read_round
+from bulkwear.workflows.config.rounds import digest_of_text, rounds_of
+from bulkwear.workflows.config.until import UNTIL
 
-OPTIMISE, ROUNDS = "optimise", "rounds"  # key of the settings; folder below results/<study>
+OPTIMISE = "optimise"  # key of the settings
 ROWS, SURFACES, FACTORS = "rows", "surfaces", "factors"  # other keys of a study
 ROW = "O"  # begins the names of rows that a search adds
 CONFIRMED = 3  # settings that get more packings at the end: best predicted, best simulated, reference
-ENDS = ("most_core_h", "most_rows", "confirming_packings")  # goals on which no proposal depends
+NO_PROPOSAL_CHANGES = (  # with these settings: goals of the search, and what nothing is simulated again for
+    *(f"{OPTIMISE}.{goal}" for goal in ("most_core_h", "most_rows", "confirming_packings")),
+    *("solver.ranks", "solver.search", "solver.kept_restarts"),
+    *("wear.wear_coefficient_error", "beyond_machine"),
+)
 
 Runs = Callable[[Layer], Sequence[Any]]  # the checked runs of a row; raises ConfigError
 
@@ -201,36 +205,17 @@ def search_digest(settings: Mapping[str, Any], written: Sequence[Layer]) -> str:
     """
     if OPTIMISE not in settings:
         return ""
-    asked = {key: value for key, value in settings[OPTIMISE].items() if key not in ENDS}
-    told = {**settings, OPTIMISE: asked, "rows": [row.values for row in written]}
-    return _hash(json.dumps(told, sort_keys=True, default=str))
+    told = {**_that_count(settings), "rows": [row.values for row in written]}
+    return digest_of_text(json.dumps(told, sort_keys=True, default=str))
 
 
-def after_round(folder: Path, number: int, digest: str) -> str:
-    """Return the hash that round `number` + 1 must have been made after; digest: as from `search_digest`."""
-    return _hash(f"{digest}{_path(folder, number).read_text(encoding='utf-8')}") if number else digest
-
-
-def rounds_of(folder: Path, digest: str) -> Iterator[dict[str, Any]]:
-    """Yield what the rounds of a search decided, as long as each was made after the one before it, as it is now."""
-    number = 0
-    while _path(folder, number + 1).is_file():
-        found = read_round(_path(folder, number + 1))
-        if found.get("after") != after_round(folder, number, digest):
-            return
-        yield found
-        number += 1
+def _that_count(settings: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    """Return settings without those of NO_PROPOSAL_CHANGES; before: the section they stand in, with a point."""
+    found = {key: value for key, value in settings.items() if f"{before}{key}" not in NO_PROPOSAL_CHANGES}
+    return {k: _that_count(v, f"{before}{k}.") if isinstance(v, Mapping) else v for k, v in found.items()}
 
 
 def found_rows(folder: Path, digest: str, before: int | None = None) -> dict[str, dict[str, float]]:
     """Return {row: {column: value}} of the rows that rounds have found so far, or before a round of that number."""
     rounds = itertools.islice(rounds_of(folder, digest), None if before is None else before - 1)
     return {name: values for found in rounds for name, values in found["rows"].items()}
-
-
-def _path(folder: Path, number: int) -> Path:
-    return folder / ROUNDS / f"round_{number}.json"
-
-
-def _hash(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()

@@ -8,10 +8,8 @@ Rows of a design with a number of packings of their own keep it.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -23,7 +21,6 @@ from bulkwear.postproc.tables.packings import BY
 
 UNTIL = "until"  # key of the settings
 GOALS = ("width_fraction", "most_packings", "most_core_h")
-SECONDS_PER_HOUR = 3600.0
 
 
 @dataclass(frozen=True)
@@ -109,21 +106,3 @@ def first_packings(until: Until | None, packings: Mapping[str, int], own: Mappin
         return dict(packings)
     least = min(FEWEST, until.most_packings)
     return {name: number if own[name] else max(number, least) for name, number in packings.items()}
-
-
-def core_hours(costs: list[str | Path]) -> float:
-    """Return the core hours of the solver in tables of costs of runs and beds."""
-    tables = [pd.read_csv(path) for path in costs]
-    return float(sum(table["processor_s"].sum() for table in tables)) / SECONDS_PER_HOUR
-
-
-def last_round(folder: Path) -> str:
-    """Return what the last round of a study said; "" where packings were a fixed number. folder: results/<study>"""
-    rounds = sorted((folder / "rounds").glob("round_*.json"), key=lambda path: int(path.stem.partition("_")[2]))
-    found = [read_round(path) for path in rounds]
-    return found[-1]["said"] if found else ""
-
-
-def read_round(path: str | Path) -> dict[str, Any]:
-    """Return what a round of `further_packings` decided."""
-    return json.loads(Path(path).read_text(encoding="utf-8"))

@@ -21,7 +21,8 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import NAMES, read_summary
-from bulkwear.workflows.config.until import UNTIL, last_round
+from bulkwear.workflows.config.rounds import last_round
+from bulkwear.workflows.config.until import UNTIL
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.project import PACKAGE, current_project
 from bulkwear.workflows.engine.provenance import commit_of, git, package_cases, package_commit, simulating_code

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from bulkwear.postproc.plots.chart import BARS, Axis, Layer, one_panel
 from bulkwear.postproc.statistics.sensitivity import COLUMNS
 from bulkwear.workflows.report.sections import Block, Points, Table
 from bulkwear.workflows.report.sentences import PERCENT, capital
@@ -24,6 +25,17 @@ HEADS = {
     "total_low": ("with interactions, from", "-"),
     "total_high": ("to", "-"),
 }
+KINDS = {"first": "alone", "total": "with interactions"}  # of an index: entries of the legend
+CHART = one_panel(
+    Axis("Factor"),
+    Axis("Part of the variance", "-"),
+    *(
+        Layer(BARS, kind, "factor", low=f"{kind}_low", high=f"{kind}_high", name=name, said=f"Index {name}")
+        for kind, name in KINDS.items()
+    ),
+    split=RESPONSE,
+    colours={KINDS["first"]: "BLUE", KINDS["total"]: "ORANGE"},
+)
 NOTE = (
     "Sobol indices: part of the response's variance that a factor makes over the range of the design, alone (first "
     "order) and with all its interactions (total). All factors vary evenly and independently over their ranges; the "

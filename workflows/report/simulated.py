@@ -48,12 +48,15 @@ class Simulated:
     dates: tuple[str, str] = ("", "")
 
 
-def versions_of(folders: Iterable[Path], beds: Iterable[Path] = ()) -> list[Simulated]:
+def versions_of(folders: Iterable[Path], beds: Iterable[Path] = (), within: Path | None = None) -> list[Simulated]:
     """Return the versions that simulated runs, whose folders hold cycles, and beds; those of most simulations first.
+
+    within: a folder that all runs are in, at any depth, and are named from; else they have the names of their folders
 
     A simulation of several versions counts for each of them; what is not there counts for none.
     """
-    records = [(folder.name, _state(path)) for folder in folders for path in cycle_files(folder, STATE)]
+    names = {folder: str(folder.relative_to(within)) if within else folder.name for folder in folders}
+    records = [(name, _state(path)) for folder, name in names.items() for path in cycle_files(folder, STATE)]
     records += [(bed.name, _bed(bed)) for bed in beds if (bed / "bed.restart").is_file()]
     by_version: dict[str, list[tuple[str, Mapping[str, Any] | None]]] = {}
     for name, found in records:

@@ -146,7 +146,7 @@ def origin_of_command(origin: Origin) -> Origin:
         found = [Simulated("", (origin.page,), code_of_cases((origin.case,)), (f"{now:%Y-%m-%d}",) * 2)]
         hours, when = None, (f"{now:%Y-%m-%d %H:%M}",) * 2
     else:
-        found = versions_of(dict.fromkeys(path.parents[1] for path in states))
+        found = versions_of(dict.fromkeys(path.parents[1] for path in states), within=Path(origin.runs))
         costs = [json.loads(path.read_text()).get("cost", {}) for path in states]
         spent = [cost["processor_s"] for cost in costs if "processor_s" in cost]  # bulk tests keep wall time alone
         hours, when = round(sum(spent) / SECONDS_PER_HOUR, 2) if spent else None, simulated_between(states)

@@ -4,7 +4,8 @@ import json
 from pathlib import Path
 
 from bulkwear.postproc.tables.summary import summary_table
-from bulkwear.workflows.config.until import answers, core_hours, next_round, read_round
+from bulkwear.workflows.config.rounds import core_hours, read_round
+from bulkwear.workflows.config.until import answers, next_round
 from bulkwear.workflows.engine.job import project_job, write_table
 
 with project_job(snakemake.log[0]):

@@ -129,7 +129,7 @@ def test_surrogate_of_a_plane_is_the_plane():
     """Responses without scatter come back between the simulated points within 1 % of their range."""
     points = problem(1).spread_points(5)
     values = 3.0 + points @ [2.0, -1.0]
-    surrogate = fit_surrogate(points, values, np.full(len(points), 1e-3), seed=1)
+    surrogate = fit_surrogate(points, values, 1e-6 * np.eye(len(points)), seed=1)
     others = problem(2).spread_points(6)
     mean, variance = surrogate.predict(others)
     np.testing.assert_allclose(mean, 3.0 + others @ [2.0, -1.0], atol=0.03)
@@ -141,7 +141,7 @@ def test_scatter_between_seeds_is_found():
     random = np.random.default_rng(3)
     points = problem(1).spread_points(6)
     values = points @ [2.0, -1.0] + 0.2 * random.standard_normal(len(points))
-    surrogate = fit_surrogate(points, values, np.full(len(points), 1e-6), seed=1)
+    surrogate = fit_surrogate(points, values, 1e-12 * np.eye(len(points)), seed=1)
     assert surrogate.seed_deviation == pytest.approx(0.2, rel=0.3)  # 64 points tell a deviation to a tenth or so
     assert np.sqrt(surrogate.predict(points)[1]).max() < 0.15
 
@@ -152,7 +152,7 @@ def test_unit_of_a_response_does_not_matter():
     angles = 20.0 + 20.0 * points.sum(axis=1)
     weights = []
     for unit in (1.0, math.pi / 180.0):
-        surrogate = fit_surrogate(points, unit * angles, np.full(len(points), 0.3 * unit), seed=1)
+        surrogate = fit_surrogate(points, unit * angles, (0.3 * unit) ** 2 * np.eye(len(points)), seed=1)
         predicted = {"angle": surrogate.predict(problem(2).spread_points(8))}
         weights.append(posterior_weights(predicted, {"angle": Measured(36.0 * unit, 0.4 * unit)}))
     np.testing.assert_allclose(weights[0], weights[1], atol=1e-6)  # the fit of the kernel stops at such a difference

@@ -51,8 +51,8 @@ def simulated(values, chance):
 
 def search_of(values, results, seed):
     found, keeps = results
-    errors = np.full(len(values), NOISE), np.full(len(values), LIMITED_NOISE)
-    tried = Tried(points_of(RANGES, values), found, errors[0], keeps, errors[1], LIMIT, seed)
+    noise, limited_noise = (deviation**2 * np.eye(len(values)) for deviation in (NOISE, LIMITED_NOISE))
+    tried = Tried(points_of(RANGES, values), found, noise, keeps, limited_noise, LIMIT, seed)
     return Search(RANGES, values, tried, allowed)
 
 
@@ -117,8 +117,8 @@ def test_the_same_results_give_the_same_proposals(searches):
 def test_a_limit_that_nothing_keeps_to_is_approached():
     """The best is then what keeps to it most likely."""
     points = np.array([[0.1], [0.4], [0.6], [0.9]])
-    zero = np.full(4, 0.01)
-    tried = Tried(points, np.array([1.0, 2.0, 3.0, 4.0]), zero, np.array([4.0, 3.0, 2.0, 1.0]), zero, 0.0)
+    noise = 1e-4 * np.eye(4)
+    tried = Tried(points, np.array([1.0, 2.0, 3.0, 4.0]), noise, np.array([4.0, 3.0, 2.0, 1.0]), noise, 0.0)
     assert best_of(tried, points, 0.5) == 3
 
 

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from bulkwear.postproc.readers import restart_file
 from bulkwear.postproc.readers.restart_file import RestartFileError, read_restart
 from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.workflows.engine.solver import DECK, LOG, run_deck
@@ -31,6 +32,17 @@ def test_a_whole_restart_file_tells_its_particles(restart):
     """Step, particles, ranks and types of the header; the particles are those of the solver's log."""
     path, particles, ranks = restart
     assert read_restart(path) == (STEPS + 1, particles, ranks, TYPES)
+
+
+def test_records_may_lie_across_blocks(restart, monkeypatch):
+    """Read a few numbers at a time, fewer than a particle has, the file tells the same, and is not whole when cut."""
+    path, particles, _ = restart
+    monkeypatch.setattr(restart_file, "BLOCK_NUMBERS", 7)
+    assert read_restart(path).particles == particles
+    cut = path.with_name("cut.restart")
+    cut.write_bytes(path.read_bytes()[:-8])
+    with pytest.raises(RestartFileError):
+        read_restart(cut)
 
 
 def test_what_lost_a_byte_or_a_page_is_not_whole(restart):

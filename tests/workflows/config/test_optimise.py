@@ -6,16 +6,37 @@ import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import Layer
-from bulkwear.workflows.config.optimise import after_round, fault_of, found_rows
+from bulkwear.workflows.config.optimise import NO_PROPOSAL_CHANGES, fault_of, found_rows
+from bulkwear.workflows.config.rounds import after_round
+from bulkwear.workflows.engine.inputs import run_digest
 from bulkwear.workflows.engine.project import Project
 from tests.support.searched import SMALL, STUDY, small_search
 
+CHANGED = {  # other values than the study's
+    "solver.ranks": 2,
+    "solver.search": "stock",
+    "solver.kept_restarts": "all",
+    "wear.wear_coefficient_error": 0.3,
+    "beyond_machine": True,
+}
 FOUND = {"O5": {"height_mm": 3.0, "minor_radius_mm": 6.5}}
 
 
 @pytest.fixture
 def study(tmp_path):
     return small_search(tmp_path)
+
+
+def nested(path, value):
+    """Settings that give a key, whose path has points, a value."""
+    section, _, key = path.rpartition(".")
+    return {section: {key: value}} if section else {key: value}
+
+
+def merged(settings, changed):
+    """Settings with others in their place, section by section."""
+    found = {key: {**settings.get(key, {}), **value} for key, value in changed.items() if isinstance(value, dict)}
+    return {**settings, **changed, **found}
 
 
 def write_round(root, number, study, rows, after=None):
@@ -79,6 +100,27 @@ def test_rounds_of_another_question_or_another_past_do_not_count(tmp_path, study
     assert not found_rows(folder, small_search(tmp_path, after_h=0.5).search_digest)
     write_round(tmp_path, 1, study, {"O5": {"height_mm": 3.5, "minor_radius_mm": 6.5}})
     assert set(found_rows(folder, study.search_digest)) == {"O5"}
+
+
+@pytest.mark.parametrize("path", [path for path in NO_PROPOSAL_CHANGES if not path.startswith("optimise.")])
+def test_settings_that_simulate_nothing_again_keep_the_rounds(tmp_path, study, path):
+    """Ranks, the search for contacts, kept restart files: no run is simulated again, so no round is lost."""
+    changed = nested(path, CHANGED[path])
+    again = load_study(STUDY, Project(tmp_path), overrides=merged(SMALL, changed))
+    assert again.settings != study.settings
+    assert again.search_digest == study.search_digest
+    run, same = study.runs[0], again.runs[0]
+    beds = [each.beds[each.bed_of(run.name)] for each in (study, again)]
+    assert run_digest(again.case, same.parameters, beds[1]) == run_digest(study.case, run.parameters, beds[0])
+
+
+@pytest.mark.parametrize(
+    ("path", "value"), [("solver.rayleigh_fraction", 0.3), ("wear.wear_coefficient_per_pa", 1e-12), ("packings", 3)]
+)
+def test_settings_that_change_results_begin_anew(tmp_path, study, path, value):
+    """What is simulated, what volumes follow from, and how many packings a pattern has."""
+    again = load_study(STUDY, Project(tmp_path), overrides=merged(SMALL, nested(path, value)))
+    assert again.search_digest != study.search_digest
 
 
 def test_fewer_rows_than_were_found_are_refused(tmp_path, study):

@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
-from bulkwear.workflows.config.until import Until, answers, core_hours, last_round, next_round, until_of
+from bulkwear.workflows.config.until import Until, answers, next_round, until_of
 
 ASKED = {"width_fraction": 0.05, "most_packings": 12, "most_core_h": 3}
 UNTIL = Until(0.05, 12, 3.0)
@@ -71,22 +71,6 @@ def test_a_setting_with_packings_of_its_own_keeps_them():
     """It is not looked at."""
     found = next_round(UNTIL, answers(summary(R9=WIDE)), {"R9": 4, "mesh": 1}, {}, 0.1)
     assert found["packings"] == {"R9": 8, "mesh": 1}
-
-
-def test_the_last_round_is_told(tmp_path):
-    """Of ten and more rounds too; nothing where packings are a fixed number."""
-    assert last_round(tmp_path) == ""
-    (tmp_path / "rounds").mkdir()
-    for number in (1, 2, 10):
-        (tmp_path / "rounds" / f"round_{number}.json").write_text(json.dumps({"said": f"round {number}"}))
-    assert last_round(tmp_path) == "round 10"
-
-
-def test_core_hours_are_the_processors(tmp_path):
-    """Of runs and beds together."""
-    for name, seconds in (("run", [1800.0, 900.0]), ("bed", [900.0])):
-        pd.DataFrame({"processor_s": seconds}).to_csv(tmp_path / f"{name}.csv", index=False)
-    assert core_hours([tmp_path / "run.csv", tmp_path / "bed.csv"]) == pytest.approx(1.0)
 
 
 def test_a_study_has_all_packings_that_it_may_need():

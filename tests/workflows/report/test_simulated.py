@@ -82,6 +82,13 @@ def test_a_run_that_two_versions_worked_on_counts_for_both(tmp_path):
     assert {tuple(newer_parts(version, NOW)) for version in versions} == {("wear",), ()}
 
 
+def test_runs_of_one_name_in_several_folders_are_several(tmp_path):
+    """Packings that have folders of their own; named from the folder that all are in."""
+    folders = [leave(tmp_path / f"seed_{k}" / "plain", record()) for k in (1, 2)]
+    (version,) = versions_of(folders, within=tmp_path)
+    assert version.runs == ("seed_1/plain", "seed_2/plain")
+
+
 def test_runs_without_a_record_say_so(tmp_path):
     """States from before there were records, and a bed without its file."""
     bed = tmp_path / "beds" / "bed_1"

@@ -102,6 +102,7 @@ def response_maps(job: Job) -> Any:
     finding=sensitivity.finding,
     inputs=SIMULATED,
     told=TOLD,
+    charts=(sensitivity.CHART,),
     digits=6,
     caption="""
     Sobol indices with 95 % intervals: the part of the response's variance that a factor makes over the range of the

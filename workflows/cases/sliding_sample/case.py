@@ -23,7 +23,7 @@ from bulkwear.workflows.cases.sliding_sample.decks import (
     wear_interval_steps,
 )
 from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters, flow_measures
-from bulkwear.workflows.cases.sliding_sample.shape import rolling, shaped
+from bulkwear.workflows.cases.sliding_sample.shape import rolling, shaped, solver_for
 from bulkwear.workflows.cases.sliding_sample.study import varies_scale
 from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.patterns import (
@@ -112,6 +112,8 @@ class SlidingSample(SampleCase):
             "sample_material": wall_section(settings["sample"]["material"], materials),
             "floor_material": wall_section(settings["bed"]["floor_material"], materials),
         }
+        sections, factor = template_sections(settings), settings["bed"]["rolling_friction_factor"]
+        sections["solver"] = solver_for(sections["solver"], bodies["particle"], factor)
         parameters = {
             "ledger": settings["ledger"],
             "sample": settings["sample"],
@@ -120,8 +122,8 @@ class SlidingSample(SampleCase):
             "sliding": _sliding(settings["sliding"], factors["velocity_m_per_s"], settings["wear"]["acceleration"]),
             "wear": wear_section(settings["wear"], materials["particles"][settings["bed"]["material"]]),
             "remeshing": settings["remeshing"],
-            **template_sections(settings),
-            **{name: rolling(body, settings["bed"]["rolling_friction_factor"]) for name, body in bodies.items()},
+            **sections,
+            **{name: rolling(body, factor) for name, body in bodies.items()},
         }
         derived = derived_parameters(parameters)
         rise = searched_height(settings, factors, surface) - highest_point(parameters["pattern"])

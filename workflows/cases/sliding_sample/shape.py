@@ -25,6 +25,17 @@ def rolling(body: Mapping[str, Any], factor: float) -> dict[str, Any]:
     return {**body, "contact": contact}
 
 
+def solver_for(solver: Mapping[str, Any], particle: Mapping[str, Any], factor: float) -> dict[str, Any]:
+    """Return the section `solver` of a run: clumps without rolling friction have no model of it where the study's acts
+    on spheres alone.
+
+    factor: -, on the rolling friction of the materials
+    """
+    if factor or grain_kind(particle) == SPHERE or solver["rolling_friction"] not in OWN_ROLLING_MODELS:
+        return dict(solver)
+    return {**solver, "rolling_friction": "none"}
+
+
 def clumps_stay_whole(run: CheckedRun) -> Fault | None:
     """Clumps lie in a bed that keeps its particles; models of rolling friction, and the ledger, know of bodies."""
     if grain_kind(run.parameters["particle"]) == SPHERE:
@@ -33,7 +44,10 @@ def clumps_stay_whole(run: CheckedRun) -> Fault | None:
         return "bed.ends", "walls or periodic with clumps, because a window takes single spheres out and puts them in"
     if run.parameters["solver"]["rolling_friction"] in OWN_ROLLING_MODELS:
         own = " and ".join(OWN_ROLLING_MODELS)
-        return "solver.rolling_friction", f"a model of LIGGGHTS with clumps, because {own} act on spheres alone"
+        allowed = (
+            f"a model of LIGGGHTS, or bed.rolling_friction_factor 0, with clumps, because {own} act on spheres alone"
+        )
+        return "solver.rolling_friction", allowed
     if PARTICLE_SCALE in run.row.values:
         return "bed.shape", "sphere in a study of particle size, whose packings count the contacts of spheres"
     if run.parameters["ledger"] != "solver":

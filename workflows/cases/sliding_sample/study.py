@@ -9,12 +9,21 @@ from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
 from bulkwear.workflows.config.design import Study
 from bulkwear.workflows.config.factors import FACTORS
+from bulkwear.workflows.config.layers import read_yaml
 from bulkwear.workflows.engine.case import Run
 from bulkwear.workflows.engine.pouring import bulk_density
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.text import name_and_unit
 
 PUBLISHED_DESIGN = PACKAGE / "config" / "designs" / "screening.csv"  # Yan 2022, Table 3.8
+PUBLISHED_LAYOUT = (
+    PACKAGE / "config" / "cases" / "sliding_sample.yaml"
+)  # its block `pattern`: of all rows of that table
+LAYOUT = (
+    "major_axis",
+    "row_spacing_mm",
+    "row_offset_fraction",
+)  # keys of it; what a spacing is between is left open there
 PARTICLE_SCALE = "particle_scale"  # column of a design whose study is one of particle size
 CONDITIONS = ("velocity_m_per_s", "bed_thickness_mm")  # columns that are no property of the pattern
 PATTERN = (  # columns that make two rows the same
@@ -103,12 +112,16 @@ def _passing_bed(parameters: dict[str, Any]) -> dict[str, float]:
 
 
 def published_rows(study: Study) -> dict[str, str]:
-    """Return {row: row of Yan 2022, Table 3.8} of the rows, and settings of replicates, that have its bumps."""
+    """Return {row: row of Yan 2022, Table 3.8} of the rows, and settings of replicates, that have its bumps, as far
+    apart and shifted as there.
+    """
     if all(ratio is None for ratio in equivalent_size_ratios(study).values()):
         return {}
     with open(PUBLISHED_DESIGN, encoding="utf-8", newline="") as stream:
         published = {tuple(float(row[name]) for name in PATTERN): row["row"] for row in csv.DictReader(stream)}
-    levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in study.design_rows}
+    layout, own = read_yaml(PUBLISHED_LAYOUT, PACKAGE).values["pattern"], study.settings["pattern"]
+    laid_out_so = [row for row in study.design_rows if all((own | row).get(key) == layout[key] for key in LAYOUT)]
+    levels = {str(row["row"]): tuple(row.get(name) for name in PATTERN) for row in laid_out_so}
     same = {row: published[found] for row, found in levels.items() if found in published}
     settings = replicate_settings(study)
     return same | {settings[row]: theirs for row, theirs in same.items()}

@@ -3,20 +3,26 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from bulkwear.postproc.inference.surrogate import fit_surrogate
 from bulkwear.workflows.cases.calibration.sensitivity import sensitivity_table, why_not
+from bulkwear.workflows.engine.cases import find_case
+from bulkwear.workflows.report.products import products_of
+from bulkwear.workflows.report.sensitivity import refused
 from tests.support.calibration_study import ROLLING, SLIDING
+from tests.support.charts import drawn_chart, names, values
 
 SLOPES = np.array([2.0, 1.0])
+SIX_DIGITS = 1e-5  # relative; what a page keeps of values
 SAMPLED = 0.1  # -, of 256 points and of a surrogate of twelve simulations
 
 
 def surrogate(values, count=12):
     """A surrogate of simulations that are spread over the square."""
     points = np.random.default_rng(1).random((count, 2))
-    return fit_surrogate(points, values(points), np.full(count, 0.01), seed=1)
+    return fit_surrogate(points, values(points), 1e-4 * np.eye(count), seed=1)
 
 
 def calibrated(of):
@@ -58,3 +64,17 @@ def test_left_out_simulations_are_predicted():
     """The share explained of a smooth response is near 1, and that of the fit without the simulation itself."""
     known = surrogate(lambda points: points @ SLOPES)
     assert known.left_out_share == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("case", "name"), [("calibration", "calibration_sensitivity"), ("sliding_sample", "regression_sensitivity")]
+)
+def test_both_figures_of_indices_become_interactive(case, name):
+    """Two bars of each factor with their intervals, a panel per response; one that is refused has none."""
+    known = sensitivity_table(calibrated(surrogate(lambda x: x @ SLOPES)))
+    table = pd.concat([known, refused("discharge_time_s", "too few simulations")], ignore_index=True)
+    drawn = drawn_chart(products_of(find_case(case))[name], table)
+    assert names(drawn) == ["alone", "with interactions"]
+    assert [panel["title"] for panel in drawn["panels"]] == [known["response"].iloc[0].replace("_", " ")]
+    for entry, column in zip(names(drawn), ("first", "total"), strict=True):
+        assert values(drawn, entry) == [pytest.approx(known[column].tolist(), rel=SIX_DIGITS)]

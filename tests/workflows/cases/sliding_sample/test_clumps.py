@@ -16,12 +16,14 @@ from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import read_csv_rows
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.grains import smallest_radius
+from bulkwear.workflows.engine.solver import OWN_ROLLING_MODELS
 from bulkwear.workflows.engine.templates import render
 from tests import REPOSITORY
 from tests.support.tiny import OF_ANY_MODEL, TINY, tiny_chain, tiny_study
 
 SHIPPED = sorted(path.stem for path in (REPOSITORY / "config" / "clumps").glob("*.csv"))
 NO_ROLLING = {"rolling_friction_factor": 0.0}
+NO_MODEL = "# No model of rolling friction: clumps have their shape alone.\n"  # in decks
 ROUNDING = 1e-9  # relative
 TRIES = 0.01  # relative; the solver's own volume and inertia come from 100,000 random points
 DUMPED = 4e-7  # m; dumps have six digits of places up to 0.1 m
@@ -109,6 +111,16 @@ def test_rolling_friction_factor_scales_every_coefficient_of_the_particles():
     assert plain == tiny_study().runs[0].parameters
 
 
+@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+def test_without_rolling_friction_clumps_leave_out_a_model_of_spheres(model):
+    """Their decks, that of the bed too, have no such model and say so; those of spheres beside them keep it."""
+    for text in decks_of(clumps(solver={"rolling_friction": model})):
+        assert NO_MODEL in text and f"rolling_friction {model}" not in text
+    for text in decks_of(tiny_study(bed={**TINY["bed"], **NO_ROLLING}, solver={"rolling_friction": model})):
+        assert f"rolling_friction {model}" in text and NO_MODEL not in text
+    assert all(NO_MODEL not in text for text in decks_of(clumps()))
+
+
 # ---------------------------------------------------------------- refusals
 
 
@@ -116,7 +128,10 @@ def test_rolling_friction_factor_scales_every_coefficient_of_the_particles():
     ("changes", "message"),
     [
         ({"bed": {"ends": "window", "ahead_mm": 60, "exchange_mm": 60}}, r"bed.ends is 'window'.*walls or periodic"),
-        ({"solver": {"rolling_friction": "rvd"}}, r"solver.rolling_friction is 'rvd'.*own_spin and rvd act on spheres"),
+        (
+            {"solver": {"rolling_friction": "rvd"}, "bed": {"rolling_friction_factor": 0.5}},
+            r"solver.rolling_friction is 'rvd'.*rolling_friction_factor 0, with clumps, because own_spin and rvd act",
+        ),
         ({"ledger": "dumps"}, r"ledger is 'dumps'.*solver with clumps"),
         ({"bed": {"shape": "cube"}}, r"bed.shape is 'cube', allowed is one of sphere, pair, tetrahedron\."),
     ],

@@ -190,6 +190,15 @@ R5,4,8,60,6.0,2.0,30,11000
 """
 
 
+def test_rows_that_are_laid_out_otherwise_are_not_published_ones(config):
+    """The same bumps in rows closer together, by a column of the design or by a setting, or not shifted."""
+    columns = f"{REPLICATES.partition(',seed')[0]},row_spacing_mm"
+    config.write("designs/small.csv", f"{columns}\nown,8,2,20,6.0,1.0,40,40\nclose,8,2,20,6.0,1.0,40,30\n")
+    assert published_rows(load_study("small", config.project)) == {"own": "R9"}
+    shifted = {"pattern": {"row_offset_fraction": 0.25}}
+    assert published_rows(load_study("small", config.project, shifted)) == {}
+
+
 def test_rows_that_differ_in_their_seed_are_packings(config, tmp_path):
     """They share a setting, a published row and an interval on the page; one alone says that its scatter is unknown."""
     one = finished_page(tmp_path / "one" / "small", load_study("small", config.project, {"packings": 1}))

@@ -24,11 +24,13 @@ from bulkwear.postproc.tables.summary import patterned_name
 
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY = 6  # settings and surfaces; from here on their names stand upright
+MOST_CHARACTERS = 64  # of all names in one line under an axis; longer ones stand upright
 MOST_ROOM = 3.0  # -, of the highest bar; what intervals have beyond it is cut off
 LIFT = 4  # pt, of a number above its bar
 ERROR_BARS = {"elinewidth": 0.9, "capsize": 3}
 PUBLISHED_MARKS_UPRIGHT = {"about": "D", "below": "v", "above": "^"}
 MEANING = {"about": "", "below": " (at most)", "above": " (at least)"}
+ROOM_ABOVE = 0.05  # -, of an axis that begins at nothing, over its highest mark
 HEADROOM = 1.18  # -, of the highest bar, for the numbers above it
 LAW_COLOUR, FINNIE_COLOUR = "#0072B2", "#CC79A7"
 
@@ -37,7 +39,8 @@ def _axis(axes: Axes, table: pd.DataFrame) -> np.ndarray:
     """Return the places of a table's lines on an axis with their settings and surfaces."""
     places = np.arange(len(table), dtype=float)
     names = [f"{row.setting} {row.surface}".replace("_", " ") for row in table.itertuples()]
-    axes.set_xticks(places, names, rotation=90 if len(names) > MANY else 0)
+    upright = len(names) > MANY or sum(map(len, names)) > MOST_CHARACTERS
+    axes.set_xticks(places, names, rotation=90 if upright else 0)
     axes.set_xlim(-0.6, len(names) - 0.4)
     axes.grid(axis="x", visible=False)
     return places
@@ -183,7 +186,8 @@ def mean_forces(summary: pd.DataFrame, remarks: Sequence[str]) -> Figure:
             axes.plot(places, runs["mean_force_N"], marker(surface), markersize=5, **drawn)
             draw_intervals(axes, places, runs["mean_force_N"], runs, colour(surface))
         axes.set_ylabel(f"{direction.capitalize()} force (N)")
-        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+        low, high = axes.get_ylim()
+        axes.set_ylim(low := min(0.0, low), high + ROOM_ABOVE * (high - low))
     panels[1].set_xticks(range(len(settings)), settings)
     panels[1].set_xlabel("Design row")
     figure.legend(loc="outside upper center", ncols=len(surfaces))

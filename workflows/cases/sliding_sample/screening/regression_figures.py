@@ -203,6 +203,7 @@ def regression_contours(job: Job) -> Any:
     finding=sensitivity.finding,
     inputs={"summary": SUMMARY},
     **OF_REGRESSION,
+    charts=(sensitivity.CHART,),
     digits=6,
     caption="""
     Sobol indices with 95 % intervals: the part of the response's variance that a factor makes over the range of the

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.workflows.cases.sliding_sample import charts
 from bulkwear.workflows.cases.sliding_sample.figures import DESIGN, SUMMARY
 from bulkwear.workflows.cases.sliding_sample.search import findings
-from bulkwear.workflows.config.optimise import OPTIMISE, Optimise, optimise_of, rounds_of
+from bulkwear.workflows.config.optimise import OPTIMISE, Optimise, optimise_of
 from bulkwear.workflows.config.packings import PACKINGS
+from bulkwear.workflows.config.rounds import rounds_of
 from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.products import Job, every_run, figure
 
@@ -102,9 +103,9 @@ def search_slices(job: Job) -> Any:
 
     from bulkwear.workflows.cases.sliding_sample.search.plots import tried
     from bulkwear.workflows.cases.sliding_sample.search.record import best_confirmed
-    from bulkwear.workflows.cases.sliding_sample.search.results import setting_results, slices, tried_of
+    from bulkwear.workflows.cases.sliding_sample.search.results import slices, tried_of
 
     search, _, runs, _ = _runs(job)
     best = best_confirmed(pd.read_csv(job.files.confirmed, dtype={"setting": str}))
-    table = slices(tried_of(setting_results(runs, search), search), best, search)
+    table = slices(tried_of(runs, search), best, search)
     return tried.slices(table, job.remarks), table

@@ -10,7 +10,7 @@ import pandas as pd
 
 from bulkwear.postproc.statistics.intervals import Ends
 from bulkwear.workflows.cases.sliding_sample.search.record import FORESEEN, best_confirmed
-from bulkwear.workflows.config.until import last_round
+from bulkwear.workflows.config.rounds import last_round
 from bulkwear.workflows.report.sections import Cards, Pictures, Section, Table, Text
 from bulkwear.workflows.report.text import name_and_unit
 

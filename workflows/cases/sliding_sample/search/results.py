@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.inference.improvement import Tried
 from bulkwear.postproc.inference.ranges import points_of
 from bulkwear.postproc.mesh import PLAIN, read_surface
+from bulkwear.postproc.statistics.shared_scatter import means_and_covariance
 from bulkwear.postproc.tables.packings import PACKING, SETTING
 from bulkwear.postproc.wear.pattern_left import pattern_volume
 from bulkwear.workflows.config.optimise import Optimise
+
+if TYPE_CHECKING:
+    from bulkwear.postproc.inference.improvement import Tried
 
 SECONDS_PER_HOUR = 3600.0
 LEAST_LOSS = 1e-3  # -, of the loss per hour that just leaves enough: a pattern that hardly wears has no logarithm else
@@ -53,31 +57,22 @@ def run_results(
     )
 
 
-def setting_results(runs: pd.DataFrame, search: Optimise) -> pd.DataFrame:
-    """Return a line per setting, in their order: the factors, packings, mean of OF_RUNS over them and its error.
+def tried_patterns(runs: pd.DataFrame, search: Optimise) -> pd.DataFrame:
+    """Return the setting and the factors of each pattern, in the order of the runs; runs: as from `run_results`."""
+    return runs[[SETTING, *search.names]].drop_duplicates(SETTING, ignore_index=True)
 
-    runs: as from `run_results`. The scatter of packings is taken to be that of all settings together; without a setting
-    of two packings it is 0, and the surrogate finds it.
+
+def tried_of(runs: pd.DataFrame, search: Optimise) -> Tried:
+    """Return what a search knows of its patterns, in the order of `tried_patterns`; runs: as from `run_results`.
+
+    What a packing shifts, its bed and its plain twin, is an error that all its patterns share. Scatter is taken to be
+    that of all settings together; without a setting of two packings it is 0, and the surrogate finds it.
     """
-    groups = runs.groupby(SETTING, sort=False)
-    table = groups[[*search.names, *OF_RUNS]].mean()
-    table.insert(0, "packings", groups.size())
-    freedom = max(len(runs) - len(table), 1)
-    for name in OF_RUNS:
-        scatter = ((runs[name] - groups[name].transform("mean")) ** 2).sum() / freedom
-        table[f"{name}_error"] = np.sqrt(scatter / table["packings"])
-    return table.reset_index()
+    from bulkwear.postproc.inference.improvement import Tried  # slow to import, and every start of Snakemake reads this
 
-
-def tried_of(table: pd.DataFrame, search: Optimise) -> Tried:
-    """Return what a search knows; table: as from `setting_results`."""
-    wear, loss = OF_RUNS
-    return Tried(
-        points_of(search.factors, table[search.names].to_numpy(float)),
-        *(table[name].to_numpy(float) for name in (wear, f"{wear}_error", loss, f"{loss}_error")),
-        loss_limit(search),
-        search.seed,
-    )
+    wear, loss = (means_and_covariance(runs[SETTING], runs[PACKING], runs[name].to_numpy(float)) for name in OF_RUNS)
+    points = points_of(search.factors, tried_patterns(runs, search)[search.names].to_numpy(float))
+    return Tried(points, *wear, *loss, loss_limit(search), search.seed)
 
 
 def predictions(tried: Tried, values: np.ndarray, search: Optimise) -> pd.DataFrame:

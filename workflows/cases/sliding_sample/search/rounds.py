@@ -11,20 +11,21 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.inference.improvement import best_of
+from bulkwear.postproc.inference.improvement import Tried, best_of
 from bulkwear.postproc.inference.proposals import Search
 from bulkwear.postproc.tables.packings import SETTING
 from bulkwear.postproc.tables.summary import summary_table
+from bulkwear.workflows.cases.sliding_sample.search.budget import Spent, spent_on
 from bulkwear.workflows.cases.sliding_sample.search.results import (
     predictions,
     run_results,
-    setting_results,
     tried_of,
+    tried_patterns,
     volumes_of,
 )
 from bulkwear.workflows.config.layers import Layer
-from bulkwear.workflows.config.optimise import CONFIRMED, Optimise, after_round, fault_of, found_rows, named
-from bulkwear.workflows.config.until import core_hours
+from bulkwear.workflows.config.optimise import Optimise, fault_of, found_rows, named
+from bulkwear.workflows.config.rounds import after_round
 
 CHANCE = 0.9  # -, of enough being left of a pattern, asked of the best one
 SEPARATES = (":", " is ")  # what a reason is told before, and numbers after
@@ -36,33 +37,32 @@ Fault = Callable[[Sequence[float]], str | None]  # of the values of a pattern: w
 class Round:
     """What a round knows.
 
-    search: that is asked for; table: as from `results.setting_results`; reference: the first setting of it
+    search: that is asked for; runs: as from `results.run_results`, the reference first
     packings: that there are, by setting, of all rows of the search too; rows: {row: values} that rounds before found
-    hours: core hours that the solver has taken; fault: why a pattern cannot be simulated
+    spent: core hours that the solver has taken; fault: why a pattern cannot be simulated
     """
 
     search: Optimise
-    table: pd.DataFrame
+    runs: pd.DataFrame
     packings: Mapping[str, int]
     rows: Mapping[str, Mapping[str, float]]
-    hours: float
+    spent: Spent
     fault: Fault
 
     @property
+    def settings(self) -> list[str]:
+        """Names of the patterns that were simulated."""
+        return list(tried_patterns(self.runs, self.search)[SETTING])
+
+    @property
     def values(self) -> np.ndarray:
-        """Values (n, p) of the patterns that were simulated."""
-        return self.table[self.search.names].to_numpy(float)
+        """Their values (n, p)."""
+        return tried_patterns(self.runs, self.search)[self.search.names].to_numpy(float)
 
     @property
     def free(self) -> list[str]:
         """Names of the rows that have no values yet."""
         return [name for name in self.search.rows if not self.packings[name]]
-
-    def held_hours(self, rows: int) -> float:
-        """Return the core hours of so many further patterns and of the confirmation, at what a packing has taken."""
-        share = self.hours / max(sum(self.packings.values()), 1)
-        more = CONFIRMED * (self.search.confirming_packings - self.search.packings)
-        return share * ((rows + 1) * self.search.packings + more)
 
 
 def decide_round(
@@ -84,10 +84,10 @@ def decide_round(
     packings = dict.fromkeys(study.first_packings, 0) | {name: int(count) for name, count in counts.items()}
     now = Round(
         search,
-        setting_results(runs, search),
+        runs,
         packings,
         found_rows(folder, study.search_digest, before=number),
-        core_hours(list(costs)),
+        spent_on(summary, costs),
         fault_of_study(study),
     )
     return decide(now) | {"after": after_round(folder, number - 1, study.search_digest)}
@@ -98,12 +98,11 @@ def decide(now: Round) -> dict[str, Any]:
     whether they are `enough`, `predicted` by setting, how many patterns were `excluded` by reason, the settings that
     are `confirmed`, and a sentence.
     """
-    found = Search(now.search.factors, now.values, tried_of(now.table, now.search), _Allowed(now.fault))
+    found = Search(now.search.factors, now.values, tried_of(now.runs, now.search), _Allowed(now.fault))
     count = now.search.rows_of_round
     next_ones = found.proposed(count)
-    known = found.tried.interval(found.tried.points)[0]
-    said = f"lowest predicted wear over plain of {len(known)} patterns: {np.exp(known.min()):.3g}"
-    too_dear = now.hours + now.held_hours(count) > now.search.most_core_h
+    said = lowest_predicted(found.tried)
+    too_dear = now.spent.total + now.spent.kept(now.search, count) > now.search.most_core_h
     if len(now.free) > count and len(next_ones) and not too_dear:
         names, values = now.free[:count], next_ones
         packings = dict.fromkeys(names[: len(values)], now.search.packings)
@@ -111,11 +110,11 @@ def decide(now: Round) -> dict[str, Any]:
     else:
         names, values, confirmed = _confirmation(now, found)
         packings = dict.fromkeys(confirmed, now.search.confirming_packings)
-        why = f"the budget ends here, {now.hours:.2g} core hours are used" if too_dear else "no further round"
+        why = f"the budget ends here, {now.spent.total:.2g} core hours are used" if too_dear else "no further round"
         listed = ", ".join(confirmed)
         decided = {"enough": True, "confirmed": confirmed, "said": f"{said}; {why}; confirmed: {listed}"}
     rows = {name: named(now.search, row) for name, row in zip(names, values, strict=False)}
-    every = [*now.table[SETTING], *rows]
+    every = [*now.settings, *rows]
     told = predictions(found.tried, np.vstack([now.values, values]) if len(values) else now.values, now.search)
     return {
         "rows": {**now.rows, **rows},
@@ -126,11 +125,21 @@ def decide(now: Round) -> dict[str, Any]:
     }
 
 
+def lowest_predicted(tried: Tried) -> str:
+    """Return in words the lowest predicted wear over plain of the tried patterns of which enough is left by CHANCE."""
+    sure = tried.chance_within(tried.points)
+    of = f"of {(sure >= CHANCE).sum()} of {len(sure)} patterns enough is left with a chance of {CHANCE:g} or more"
+    if not (sure >= CHANCE).any():
+        return f"{of}, the most likely one has {sure.max():.2g}"
+    best = tried.points[[best_of(tried, tried.points, CHANCE)]]
+    return f"{of}, their lowest predicted wear over plain is {np.exp(tried.interval(best)[0][0]):.3g}"
+
+
 def _confirmation(now: Round, found: Search) -> tuple[list[str], np.ndarray, list[str]]:
     """Return the name and the values (k, p) of the best predicted pattern, none where it was simulated, and the
     settings to confirm: that one, the best of those simulated, the reference.
     """
-    settings = list(now.table[SETTING])
+    settings = now.settings
     best = found.best_predicted(CHANCE)
     simulated = settings[best_of(found.tried, found.tried.points, CHANCE)]
     same = np.flatnonzero((now.values == best).all(axis=1))

@@ -112,3 +112,13 @@ def test_mean_forces_of_many_settings():
         np.testing.assert_array_equal(convex, [1.0, 3.0, 5.0, 7.0])
         np.testing.assert_array_equal(plain, [2.0, 4.0, 6.0, 8.0])
         np.testing.assert_allclose(ends_of(axes)[0], [0.5, 2.0], rtol=RELATIVE)
+        low, high = axes.get_ylim()
+        assert low == 0.0 and high - 9.0 > bars.ROOM_ABOVE * 9.0  # the highest mark is not cut
+
+
+def test_long_names_stand_upright(split):
+    """Six short names lie in a line; six of twelve characters would run into one another."""
+    table = pd.concat([split.iloc[:1]] * bars.MANY, ignore_index=True)
+    for setting, angle in (("R9", 0.0), ("tetrahedron", 90.0)):
+        axes = bars.wear_split(table.assign(setting=setting), REMARKS).axes[0]
+        assert {label.get_rotation() for label in axes.get_xticklabels()} == {angle}

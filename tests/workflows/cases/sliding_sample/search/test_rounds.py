@@ -7,16 +7,20 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.inference.improvement import Tried
 from bulkwear.workflows.cases.sliding_sample.search.results import (
     left_after,
     loss_limit,
     run_results,
-    setting_results,
+    tried_of,
+    tried_patterns,
 )
-from bulkwear.workflows.cases.sliding_sample.search.rounds import short_reason
+from bulkwear.workflows.cases.sliding_sample.search.rounds import lowest_predicted, short_reason
+from bulkwear.workflows.config.rounds import core_hours
 from bulkwear.workflows.forecast.limits import fault_of_budget
-from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, decided_round, small_search
+from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, costs_of, decided_round, small_search, write_runs
 
+BUDGET_H = 0.25
 STEP_MM = 0.5  # of the searched heights
 WITHIN = 0.03  # -, of the least wear over plain: scatter of packings, 0.01, and the surrogate's error
 
@@ -53,11 +57,17 @@ def test_a_stopped_search_goes_on_as_if_it_had_not_been(finished, tmp_path):
 
 
 def test_a_round_that_the_budget_does_not_hold_is_not_begun(tmp_path):
-    """Twenty runs of 36 s are done; a round and the confirmation would exceed the quarter of an hour asked for."""
+    """Ten runs of patterns, two plain twins and two beds are done; a round and the confirmation would exceed the
+    quarter of an hour asked for, the confirmation alone does not.
+    """
     packings = small_search(tmp_path).first_packings
-    decided = decided_round(tmp_path, 1, packings, most_core_h=0.25)
-    assert decided["enough"] and "the budget ends here, 0.2 core hours are used" in decided["said"]
+    decided = decided_round(tmp_path, 1, packings, most_core_h=BUDGET_H)
+    assert decided["enough"] and "the budget ends here, 0.16 core hours are used" in decided["said"]
     assert len(decided["rows"]) <= 1 and decided["confirmed"][-1] == "R5"  # a round has two
+    folder = tmp_path / "results" / STUDY
+    confirmed = small_search(tmp_path, most_core_h=BUDGET_H).with_packings(decided["packings"])
+    write_runs(confirmed, folder)
+    assert core_hours(costs_of(confirmed, folder)) <= BUDGET_H
 
 
 def test_a_budget_that_does_not_hold_one_round_is_refused(tmp_path):
@@ -65,6 +75,26 @@ def test_a_budget_that_does_not_hold_one_round_is_refused(tmp_path):
     assert fault_of_budget(small_search(tmp_path)) is None
     fault = fault_of_budget(small_search(tmp_path, most_core_h=1e-4))
     assert fault.startswith(f"{STUDY}: optimise.most_core_h is 0.0001, allowed are about 0.") and fault.count(".") > 1
+
+
+def tried_in_a_row(limit):
+    """Nine patterns in a row: the less one wears over plain, the more of it goes per hour; the middle one loses 1."""
+    places = np.linspace(0.0, 1.0, 9)
+    exact = 1e-6 * np.eye(9)
+    return Tried(places[:, None], np.log(1.0 + places), exact, 1.5 - places, exact, limit)
+
+
+def test_the_lowest_pattern_is_one_of_which_enough_is_left():
+    """Those to the right of the middle keep to a limit half a step below it; the lowest of all, 1, is told of none."""
+    step = 1.0 / 8.0
+    said = lowest_predicted(tried_in_a_row(limit=1.0 - step / 2))
+    begin, _, lowest = said.rpartition(" ")
+    assert begin == (
+        "of 4 of 9 patterns enough is left with a chance of 0.9 or more, their lowest predicted wear over plain is"
+    )
+    assert float(lowest) == pytest.approx(1.5 + step, abs=WITHIN)
+    none = lowest_predicted(tried_in_a_row(limit=0.0))
+    assert none.startswith("of 0 of 9 patterns enough is left with a chance of 0.9 or more, the most likely one has ")
 
 
 def summary(ratios, worn=1e-9, hours=0.5):
@@ -91,15 +121,22 @@ def test_what_is_left_follows_from_the_loss_per_hour(tmp_path):
     assert left_after(np.log(1.0), search) == 0.0
 
 
-def test_the_scatter_of_packings_is_that_of_all_settings_together(tmp_path):
-    """Of ln wear over plain: two settings of two packings that differ by 0.2 and 0.1, and one of one."""
+def test_patterns_of_a_packing_share_its_plain_twin(tmp_path):
+    """The twin of one packing wears twice as much as that of the other: all ratios over it halve, in A, B and C alike.
+
+    Patterns differ by their own scatter, +-0.01 of A, which a noise of each pattern's own would hide.
+    """
     search = small_search(tmp_path).optimise
-    ratios = {"A": np.exp([-0.1, 0.1]), "B": np.exp([0.3, 0.4]), "C": [1.0]}
-    table = summary(ratios)
+    twin, own = np.log([1.0, 2.0]), np.array([0.01, -0.01])
+    ratios = {"A": np.exp(-twin + own), "B": np.exp(0.05 - twin), "C": np.exp(0.3 - twin)}
+    table = summary(ratios).assign(height_mm=np.repeat([3.0, 4.0, 5.0], 4))
     runs = run_results(table, dict.fromkeys(table["run"], 1e-6), search, acceleration=1.0)
-    found = setting_results(runs, search).set_index("setting")
-    assert found["ln_wear_over_plain"].to_numpy() == pytest.approx([0.0, 0.35, 0.0])
-    scatter = np.sqrt((0.2**2 / 2 + 0.1**2 / 2) / 2)
-    assert found["ln_wear_over_plain_error"].to_numpy() == pytest.approx(scatter / np.sqrt([2, 2, 1]))
-    alone = setting_results(runs[runs["setting"] == "C"], search)
-    assert alone["ln_wear_over_plain_error"].tolist() == [0.0]
+    assert tried_patterns(runs, search)["setting"].tolist() == ["A", "B", "C"]
+    tried = tried_of(runs, search)
+    assert tried.values - tried.values[0] == pytest.approx([0.0, 0.05, 0.3])
+    own_square = (2 * own[0] ** 2 - (2 * own[0]) ** 2 / 6) / 2.0  # of the rest, of 2 degrees of freedom
+    apart = np.array([1.0, -1.0, 0.0])
+    assert apart @ tried.noise @ apart == pytest.approx(own_square, rel=1e-6)
+    assert np.sqrt(tried.noise.diagonal().min()) > 0.2
+    alone = tried_of(runs[runs["packing"] == 1], search)
+    assert not alone.noise.any()
