@@ -10,7 +10,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
-from benchmarks.runs import FIRST_SEED, changed
+from benchmarks.runs import FIRST_SEED, PUBLISHED_PAIR, changed
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
@@ -19,7 +19,7 @@ from bulkwear.workflows.engine.chain import Chain, total_steps
 from bulkwear.workflows.engine.derived import WALLS
 
 STUDY, SURFACES = "particle_size", (PLAIN, "convex")
-SETTINGS: dict[str, Any] = {"fidelity": "quick"}
+SETTINGS: dict[str, Any] = {"fidelity": "quick", "bed": {"material": PUBLISHED_PAIR}}
 REFERENCE = "as in the study"
 OPEN, PUBLISHED, NUMERICAL = "open", "published", "ours"  # what the source says of a thing
 SIZES = "relative_diameters"  # key of a change; over the median
@@ -39,7 +39,7 @@ def _of_sample(**contact: float) -> dict[str, Any]:
 
 
 CANDIDATES: dict[str, Candidate] = {
-    REFERENCE: Candidate({}, "", "row of the study at quick fidelity"),
+    REFERENCE: Candidate({}, "", "row of the study at quick fidelity, with the source's pair of frictions"),
     "one size of particles": Candidate(
         {"particle": {SIZES: [1.0], "mass_fractions": [1.0]}},
         OPEN,

@@ -7,6 +7,7 @@ from pathlib import Path
 from bulkwear.workflows.config.design import Study, load_study
 from bulkwear.workflows.report.products import job_of, outputs_of, paths_of, products_of, told_to, write_product
 from tests import REPOSITORY
+from tests.support.tiny import OF_ANY_MODEL
 
 TINY = {
     "packings": 1,
@@ -23,6 +24,7 @@ TINY = {
         "consolidator_ramp_mm": 20,
         "consolidator_flat_mm": 10,
     },
+    "bed": {"material": OF_ANY_MODEL},
     "sliding": {
         "angular_speed_deg_per_s": 235,
         "revolution_deg": 30,

@@ -371,7 +371,7 @@ def _checked_run(
     check_given((own, *layers), of_row, schema)
     named = case.named_materials(of_row)
     check_material_names(stack, of_row, materials, named)
-    check_calibrated_for(stack, of_row, materials, named)
+    check_calibrated_for(stack, of_row, materials, named, case.looks_for(of_row))
     of_row = with_coefficients(case, of_row, materials, sources.names_coefficient(stack))
     check_hardness(stack, case, of_row)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import reduce
 from typing import Any
 
@@ -14,6 +14,7 @@ from bulkwear.workflows.config.schema import coerce_numbers, load_schema
 from bulkwear.workflows.config.validation import check_layer, locate, show, unknown_name
 
 CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
+ROLLING = "particle.contact.rolling_friction"  # the parameter that holds for them alone
 MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
 MEDIAN_FACTOR = 2.0  # -, within which the classes of a size distribution have their median diameter
 
@@ -90,18 +91,20 @@ def check_calibrated_for(
     settings: dict[str, Any],
     materials: dict[str, Any],
     keys: tuple[tuple[str, ...], ...],
+    looked_for: Collection[str] = (),
 ) -> None:
     """Raise ConfigError if a bulk material was calibrated in another rolling friction model or convention.
 
     A rolling coefficient is a number of the model and of the radius that it was found with; keys as for
-    `check_material_names`.
+    `check_material_names`. looked_for: parameters that the study itself looks for, whatever they were before
     """
-    for *path, kind in keys:
+    for *path, kind in () if ROLLING in looked_for else keys:
         name = reduce(dict.__getitem__, path, settings)
         found = materials.get(kind, {}).get(name, {}).get("calibrated")
         for word in CALIBRATED_WITH if found and kind == "particles" else ():
             if settings["solver"][word] != found[word]:
                 raise ConfigError(
                     f"{locate(layers, ('solver', word))}: solver.{word} is '{settings['solver'][word]}', allowed is"
-                    f" {found[word]}, in which study {found['study']} calibrated {name}."
+                    f" {found[word]}, in which study {found['study']} calibrated {name}, or another"
+                    f" {dotted(tuple(path))}."
                 )

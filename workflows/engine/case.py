@@ -8,7 +8,7 @@ slow to import and needed in jobs only are imported where they are used: every j
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from bulkwear.postproc.wear.directions import SliceEnds
     from bulkwear.workflows.engine.beds import BedMeasure
-    from bulkwear.workflows.engine.schedule import Span
 
 CASES_PACKAGE = "bulkwear.workflows.cases"  # whose packages are the cases, each registered when it is imported
 DEFAULT_CASE = "sliding_sample"  # of a study that names none
@@ -143,6 +142,10 @@ class Case:
     def named_materials(self, settings: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
         """Return the path of each setting that names a material, and its kind."""
         return self.material_keys
+
+    def looks_for(self, settings: Mapping[str, Any]) -> Collection[str]:
+        """Return the parameters of materials that a study looks for, as `particle.contact.rolling_friction`."""
+        return ()
 
     def worn_pairs(self, settings: Mapping[str, Any]) -> list[WornPair]:
         """Return what wears in a run of these settings; what they do not give yet is left out."""
@@ -339,10 +342,7 @@ class Case:
         return None
 
     def geometry_columns(self, before: SurfaceMesh, worn: SurfaceMesh, touched: np.ndarray) -> dict[str, float]:
-        """Return columns of a cycle's row of wear.csv from the surfaces before and right after its update.
-
-        touched: (m,) bool, triangles that wear by the law
-        """
+        """Return columns of wear.csv from the surfaces before and after an update; touched: (m,) bool, what wears."""
         return {}
 
     def files_to_drop(self, parameters: Parameters, span: Span | None) -> tuple[str, ...]:

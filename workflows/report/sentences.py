@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN
-from bulkwear.workflows.report.text import NO_UNIT, number
+from bulkwear.workflows.report.text import NO_UNIT, number, range_text
 
 DIGITS = 2  # significant ones, as intervals are wide
 PERCENT = 100.0
@@ -89,3 +90,16 @@ def capital(text: str) -> str:
 def sentence(text: str) -> str:
     """Return words as a sentence: a capital first, a full stop at the end."""
     return f"{capital(text)}." if text else ""
+
+
+def friction_between(particles: Sequence[Mapping[str, Any]]) -> str:
+    """Return which material the particles of some runs are of, and the friction between them; ranges where it differs.
+
+    particles: sections of the runs' parameters
+    """
+    names = " and ".join(dict.fromkeys(particle["name"] for particle in particles))
+    sliding, rolling = (
+        range_text([particle["contact"][f"{kind}_friction"] for particle in particles])
+        for kind in ("sliding", "rolling")
+    )
+    return f"Between particles ({names}) sliding friction is {sliding}, rolling friction {rolling}."

@@ -4,7 +4,15 @@ import math
 
 import pytest
 
-from bulkwear.workflows.report.sentences import less_or_more, listed, measured, sentence, side, with_interval
+from bulkwear.workflows.report.sentences import (
+    friction_between,
+    less_or_more,
+    listed,
+    measured,
+    sentence,
+    side,
+    with_interval,
+)
 
 
 @pytest.mark.parametrize(
@@ -46,3 +54,14 @@ def test_words_make_a_sentence():
     """Items with commas and an and, a capital, a full stop; nothing of nothing."""
     assert [listed(items) for items in ([], ["a"], ["a", "b"], ["a", "b", "c"])] == ["", "a", "a and b", "a, b and c"]
     assert sentence("no more") == "No more." and sentence("") == ""
+
+
+def test_the_friction_between_particles_is_told_with_their_material():
+    """A range where runs differ; each material once."""
+    gravel = {"name": "gravel", "contact": {"sliding_friction": 0.24, "rolling_friction": 0.4}}
+    said = "Between particles (gravel) sliding friction is 0.24, rolling friction 0.4."
+    assert friction_between([gravel, gravel]) == said
+    ore = {"name": "ore", "contact": {"sliding_friction": 0.24, "rolling_friction": 0.1}}
+    assert friction_between([gravel, ore]).endswith(
+        "(gravel and ore) sliding friction is 0.24, rolling friction 0.1 to 0.4."
+    )

@@ -197,6 +197,10 @@ class Calibration(Case):
             "varied": factors["varied"],
         }
 
+    def looks_for(self, settings: Mapping[str, Any]) -> list[str]:
+        """Return the parameters that are calibrated."""
+        return [each["name"] for each in settings["calibration"]["parameters"]]
+
     def sample_decks(self, parameters: Parameters, bed: Parameters | None) -> list[str]:
         """Return the decks of the tests."""
         seed = parameters["calibration"]["seed"]

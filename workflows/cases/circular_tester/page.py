@@ -13,6 +13,7 @@ from bulkwear.workflows.cases.circular_tester.runs import has_pairs
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import EFFECTS, SENSITIVITY, SETTINGS_SAID
 from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
+from bulkwear.workflows.report.sentences import friction_between
 from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
@@ -142,7 +143,8 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "Coarse-grained particles",
             f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm. Shape that is not round is represented by "
-            f"rolling friction ({settings['solver']['rolling_friction']}) alone.{over_bump}",
+            f"rolling friction ({settings['solver']['rolling_friction']}) alone. "
+            f"{friction_between([run['particle'] for run in runs])}{over_bump}",
         ),
         (
             "Straight channel",

@@ -18,6 +18,7 @@ from bulkwear.workflows.cases.equipment.surfaces import label_of
 from bulkwear.workflows.cases.equipment.tables import FIRST_WALL
 from bulkwear.workflows.report.figure_findings import laws_on_designs
 from bulkwear.workflows.report.sections import Pictures, Section
+from bulkwear.workflows.report.sentences import friction_between
 from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
@@ -168,7 +169,8 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
             "Coarse-grained particles",
             f"Spheres of {min(diameters):.3g} to {max(diameters):.3g} mm, {scales} times the "
             "real ones, of the same density and feed in t/h. Shape that is not round is represented by rolling "
-            f"friction ({settings['solver']['rolling_friction']}) alone. Impacts are fewer and harder than real ones.",
+            f"friction ({settings['solver']['rolling_friction']}) alone. "
+            f"{friction_between([run['particle'] for run in runs])} Impacts are fewer and harder than real ones.",
         ),
         (
             "Hours from seconds",

@@ -16,6 +16,7 @@ from bulkwear.workflows.engine.grains import CLUMP
 from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.sections import Pictures, Section
+from bulkwear.workflows.report.sentences import friction_between
 from bulkwear.workflows.report.text import range_text
 
 if TYPE_CHECKING:
@@ -259,7 +260,8 @@ def _particles(study: Mapping[str, Any]) -> str:
     moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
     return (
         f"{_shapes(particles)} of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real "
-        f"ones, in {len(particles[0]['diameters_m'])} sizes. {_stands_for_shape(particles, study)} Contacts are "
+        f"ones, in {len(particles[0]['diameters_m'])} sizes. {_stands_for_shape(particles, study)} "
+        f"{friction_between(particles)} Contacts are "
         f"softened: shear modulus {moduli} Pa."
     )
 

@@ -19,7 +19,7 @@ from bulkwear.workflows.engine.grains import smallest_radius
 from bulkwear.workflows.engine.solver import OWN_ROLLING_MODELS
 from bulkwear.workflows.engine.templates import render
 from tests import REPOSITORY
-from tests.support.tiny import TINY, tiny_chain, tiny_study
+from tests.support.tiny import OF_ANY_MODEL, TINY, tiny_chain, tiny_study
 
 SHIPPED = sorted(path.stem for path in (REPOSITORY / "config" / "clumps").glob("*.csv"))
 NO_ROLLING = {"rolling_friction_factor": 0.0}
@@ -147,7 +147,10 @@ def test_a_study_of_particle_size_has_spheres():
     with pytest.raises(ConfigError, match=r"bed.shape is 'pair'.*sphere in a study of particle size"):
         load_study(
             "particle_size",
-            overrides={"bed": {"shape": "pair", "ends": "walls"}, "solver": {"rolling_friction": "cdt"}},
+            overrides={
+                "bed": {"material": OF_ANY_MODEL, "shape": "pair", "ends": "walls"},
+                "solver": {"rolling_friction": "cdt"},
+            },
         )
 
 

@@ -23,6 +23,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.collision import (
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import packed_runs
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.bulk_tests import time_step
+from tests.support.tiny import OF_ANY_MODEL
 
 SCALES = [1.0, 8.0]  # the source's smallest and largest
 SAME = 1e-3  # -, between scales; measured: 6e-10, the digits of a dump
@@ -196,7 +197,7 @@ def test_collisions_of_the_study_are_alike_and_thinned_out(tmp_path):
 def test_collisions_are_of_the_studys_particles():
     """Each rolling model collides at each scale, and the deck says which; on any LIGGGHTS its own ones do."""
     scales = [4.0, 6.0, 8.0, 9.0, 10.0, 12.0]
-    creeping = {"solver": {"rolling_friction": "cdt"}}
+    creeping = {"solver": {"rolling_friction": "cdt"}, "bed": {"material": OF_ANY_MODEL}}
     for overrides, models in ({}, MODELS), (creeping, ("cdt", "epsd2")):
         tests = collision_tests(packed_runs(load_study("particle_size", overrides=overrides)))
         assert [each["particle"]["scale"] for each in tests] == len(models) * scales
