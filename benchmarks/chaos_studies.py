@@ -21,6 +21,7 @@ SETTINGS = """\
 title: A tiny study
 question: Does nothing get lost?
 design: demo.csv
+rows: [R9]
 surfaces: [plain]
 packings: 1
 fidelities:

@@ -7,7 +7,7 @@ from pathlib import Path
 from benchmarks.measure import Measure, measured, processor_times
 from bulkwear.workflows.config.design import load_study
 
-SURFACES = (("demo", "R9_convex"), ("demo", "R9_plain"), ("pin_on_disc", "c17-conserving"))
+SURFACES = (("demo", "R5_convex"), ("demo", "R5_plain"), ("pin_on_disc", "c17-conserving"))
 REPEATS, QUICK_REPEATS = 3, 1
 
 

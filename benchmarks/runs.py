@@ -21,7 +21,8 @@ from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import LOG
 
-STUDY, RUN, TESTER = "demo", "R9_convex", "circular_tester"
+STUDY, RUN, TESTER = "demo", "R5_convex", "circular_tester"
+SMALL_BUMPS = {"rows": ["R9"]}  # a pattern for samples smaller than the demo's
 PUBLISHED_PAIR = "river_gravel_published"  # of all rolling models alike; the recommended one is of own_spin alone
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
 

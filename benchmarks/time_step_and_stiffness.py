@@ -24,7 +24,7 @@ import pandas as pd
 
 from benchmarks.changes import BEYOND, FAILED, WITHIN, changes
 from benchmarks.plots.figures import Panel, deviation_figure
-from benchmarks.runs import FIRST_SEED, PUBLISHED_PAIR, changed
+from benchmarks.runs import FIRST_SEED, PUBLISHED_PAIR, SMALL_BUMPS, changed
 from bulkwear.postproc.mesh import PLAIN, write_surface
 from bulkwear.postproc.plots.style import save
 from bulkwear.workflows.config.design import Run, load_study
@@ -46,9 +46,13 @@ PERCENT = 100.0
 LIMIT = 0.02  # -, change of wear that matters
 SOURCE_STEP = 5e-6  # s (Yan 2022, section 3.4)
 CASE = {
+    **SMALL_BUMPS,
     "fidelity": "quick",
     "particle_scale": 2.0,
-    "sample": {"width_mm": 60, "length_mm": 60, "element_size_mm": 2.0, "height_above_floor_mm": 0.05},
+    "sample": {
+        **{"width_mm": 60, "length_mm": 60, "element_size_mm": 2.0},
+        **{"height_above_floor_mm": 0.05, "skirt_radius_mm": 0},
+    },
     "bed": {"material": PUBLISHED_PAIR, "ends": "periodic", "width_mm": 80, "ahead_mm": 50, "behind_mm": 30},
     "sliding": {"run_in_mm": 200, "travel_mm": 1000, "cycles": 2},
     "wear": {"acceleration": 1.0, "deform": False},

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.runs import FIRST_SEED, changed, simulated_run
+from benchmarks.runs import FIRST_SEED, SMALL_BUMPS, changed, simulated_run
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain, total_steps
@@ -43,6 +43,7 @@ BEDS: dict[str, dict[str, Any]] = {  # the first, as the source ran it, is what 
     },
 }
 SETTINGS: dict[str, Any] = {
+    **SMALL_BUMPS,
     "fidelity": "standard",
     "particle_scale": 4.5,
     "sample": {"width_mm": 100, "length_mm": 100, "element_size_mm": 2},

@@ -112,7 +112,7 @@ def test_importing_costs_nothing(python, tmp_path):
 
 def test_the_notebook_of_the_docs_runs(python, tmp_path):
     """A ledger read, a surface worn and drawn; on a uniformly loaded plate the depth is the law's."""
-    run_folder = tmp_path / "results/demo/R9_convex"
+    run_folder = tmp_path / "results/demo/R5_convex"
     cycle = run_folder / "cycle_001"
     cycle.mkdir(parents=True)
     plate = flat_plate(0.02, 0.02, 0.001)

@@ -75,11 +75,11 @@ def test_the_runs_of_one_packing_of_the_first_row_are_asked_for(monkeypatch, tmp
     called = []
     monkeypatch.setattr(module, "_call", lambda command, where: called.append((command, where)))
     row, runs = module.runs_of_first_row("demo")
-    assert (row, runs) == ("R9", ["R9_convex", "R9_plain"])
+    assert (row, runs) == ("R5", ["R5_convex", "R5_plain"])
     (tmp_path / "before").mkdir()
     assert module.solved("before", "demo", row, runs, tmp_path) == tmp_path / "before/results/demo"
     command, where = called[-1]
     assert where == tmp_path / "before"
-    assert {"results/demo/R9_convex/wear.csv", "results/demo/R9_plain/wear.csv", "packings=1"} <= set(command)
+    assert {"results/demo/R5_convex/wear.csv", "results/demo/R5_plain/wear.csv", "packings=1"} <= set(command)
     with pytest.raises(module.VersionError, match=r"calibration: its runs make no wear\.csv"):
         module.runs_of_first_row("calibration")

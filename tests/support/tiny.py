@@ -10,9 +10,13 @@ from bulkwear.workflows.engine.cycles import fill_bed
 # Gravel with the source's friction: it may have any rolling model, and no calibration moves it.
 OF_ANY_MODEL = "river_gravel_published"
 TINY = {
+    "rows": ["R9"],  # its bumps stand close enough for so small a sample
     "packings": 1,
     "particle_scale": 4,
-    "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 2},
+    "sample": {
+        **{"width_mm": 40, "length_mm": 40, "element_size_mm": 2},
+        **{"height_above_floor_mm": 0.1, "skirt_radius_mm": 0},
+    },
     "bed": {"material": OF_ANY_MODEL, "width_mm": 60, "ahead_mm": 20, "behind_mm": 20},
     "sliding": {"run_in_mm": 10, "travel_mm": 20, "cycles": 2},
     "solver": {"rayleigh_fraction": 0.4},  # half as many steps as in studies

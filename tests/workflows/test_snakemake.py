@@ -25,6 +25,7 @@ TINY = """\
 title: A tiny study
 question: Does the chain hold together?
 design: demo.csv
+rows: [R9]
 surfaces: [convex, plain]
 fidelities:
   quick:

@@ -37,7 +37,7 @@ from bulkwear.workflows.engine.solver import LOG, die_with, processor_seconds
 from bulkwear.workflows.engine.work import Stage
 from bulkwear.workflows.forecast.rates import MachineRates, fitted_rates, machine_facts, seconds
 
-BED_STUDY, BED_RUN = "demo", "R9_plain"
+BED_STUDY, BED_RUN = "demo", "R5_plain"
 PIN_STUDY, PIN_RUN = "pin_on_disc", "c17-conserving"
 SHRUNK = {
     "fidelity": "quick",

@@ -1,7 +1,7 @@
 """Compare a scanned sample with its pristine surface and with simulated worn ones.
 
-python -m bulkwear.workflows.report.scans scan.ply results/demo/R9_convex/surface.vtu \\
-    R9=results/demo/R9_convex/worn_surface.vtu --leading-edge 12.5 -48 3
+python -m bulkwear.workflows.report.scans scan.ply results/demo/R5_convex/surface.vtu \\
+    R5=results/demo/R5_convex/worn_surface.vtu --leading-edge 12.5 -48 3
 
 The scan may lie anywhere and have any axes; it is laid on the holder's features, which did not wear. What comes out,
 in a folder of its own, and what it means: docs/scans.md.

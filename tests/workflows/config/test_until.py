@@ -76,12 +76,12 @@ def test_a_setting_with_packings_of_its_own_keeps_them():
 def test_a_study_has_all_packings_that_it_may_need():
     """Runs of later rounds are known; with the packings of a round it has those alone, as with a number of them."""
     study = load_study("demo", overrides={"until": ASKED})
-    assert study.until == UNTIL and study.first_packings == {"R9": 4}
+    assert study.until == UNTIL and study.first_packings == {"R5": 4, "R9": 4}
     assert len(study.runs) == 2 * 12
     first = study.with_packings(study.first_packings)
     fixed = load_study("demo", overrides={"packings": 4})
     assert first.runs == fixed.runs and first.beds == fixed.beds and fixed.until is None
-    assert [row["row"] for row in first.design_rows] == ["R9", "R9-2", "R9-3", "R9-4"]
+    assert [row["row"] for row in first.design_rows] == ["R5", "R5-2", "R5-3", "R5-4"]
     assert until_of({}) is None
 
 

@@ -27,7 +27,7 @@ from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.solver import run_deck
 from bulkwear.workflows.engine.templates import render, solver_settings, template_variables
 from tests import REPOSITORY
-from tests.support.tiny import tiny_chain, tiny_study
+from tests.support.tiny import OF_ANY_MODEL, tiny_chain, tiny_study
 
 BLOCK, MATERIALS = "_shared/contact_model", "_shared/materials"
 HOOKE, LIQUID = ("contact_model", "hooke"), "washino/capillary/viscous"
@@ -121,14 +121,17 @@ def test_every_setting_that_templates_use_is_in_a_schema():
         assert set(solver_settings(path.name.removesuffix(".in.j2"))) <= known
 
 
+GRAVEL = {key: {"bed": {"material": OF_ANY_MODEL}} for key in ("sliding_sample", "circular_tester")}
+
+
 @pytest.mark.parametrize(("choice", "missing"), [(c, key) for c, keys in NEEDED.items() for key in keys])
 def test_a_property_that_a_model_needs_is_missed_before_the_solver(choice, missing):
     """One sentence names the model, where it stands, and the property with its range."""
     key, model = choice
     given = {name: value for name, value in PROPERTIES.items() if name != missing}
     with pytest.raises(ConfigError) as caught:
-        load_study("demo", overrides={"solver": {key: model, **given}})
-    start = f"command line: solver.{key} is '{model}' for row R9, allowed is one whose properties stand beside it: "
+        load_study("demo", overrides={"solver": {key: model, **given}, **GRAVEL["sliding_sample"]})
+    start = f"command line: solver.{key} is '{model}' for row R5, allowed is one whose properties stand beside it: "
     assert str(caught.value).startswith(f"{start}solver.{missing} (a number ")
     assert str(caught.value).endswith(") is missing.")
 
@@ -141,7 +144,7 @@ def test_a_model_needs_no_property_of_another(choice, needed):
     assert set(studies) == set(case_names())
     for case, name in studies.items():
         if choice[0] != "contact_model" or case != "pin_on_disc":
-            assert load_study(name, overrides={"solver": solver}).runs
+            assert load_study(name, overrides={"solver": solver, **GRAVEL.get(case, {})}).runs
 
 
 def test_a_pin_is_hertzian():

@@ -50,7 +50,7 @@ SHORT = 40  # letters, of what Snakemake shows of jobs
 PROFILES = REPOSITORY / "profiles"
 # Particles that LIGGGHTS 3.8.0 counted in beds at quick fidelity.
 COUNTED = {
-    "demo": {"bed_1": 14406},
+    "demo": {"bed_1": 6911},
     "screening": {"bed_1": 45520, "bed_2": 11380, "bed_3": 22760},
     "particle_size": {"bed_4": 13606, "bed_6": 4119, "bed_8": 1774, "bed_9": 1259, "bed_10": 927, "bed_11": 547},
 }
@@ -268,8 +268,8 @@ def test_the_announcement_counts_what_is_left(repository, tmp_path, monkeypatch)
     monkeypatch.chdir(tmp_path)
     study = load_study("demo")
     table = forecast_table(work_of(study), read_rates(repository / DEFAULT).rates)
-    last = table[table["job"] == "worn_run_R9_plain"]
-    said = announcement(study, {"worn_run_R9_plain"}, 2)
+    last = table[table["job"] == "worn_run_R5_plain"]
+    said = announcement(study, {"worn_run_R5_plain"}, 2)
     assert said.startswith("Forecast of demo: 1 job of the solver") and "\n" not in said
     assert duration_text(3600.0 * totals(last, 2)["wall_h"]) in said
 
@@ -279,7 +279,7 @@ def test_damaged_rates_do_not_stop_a_study(repository, tmp_path, monkeypatch):
     study = load_study("demo")
     (tmp_path / "cost_rates.json").write_text("{")
     monkeypatch.setattr(forecast, "rates_file", lambda: tmp_path / "cost_rates.json")
-    assert announcement(study, {"worn_run_R9_plain"}, 2).startswith(f"No forecast: {tmp_path}/cost_rates.json: no file")
+    assert announcement(study, {"worn_run_R5_plain"}, 2).startswith(f"No forecast: {tmp_path}/cost_rates.json: no file")
 
 
 @pytest.mark.parametrize("name", list_studies())

@@ -146,7 +146,7 @@ def done(monkeypatch, tmp_path):
 
 
 DEMO = Origin("demo_results_quick.md", "sliding_sample", "demo", settings={"packings": 1})
-RUN = ("worn_run", "results/demo/R9_convex/wear.csv")
+RUN = ("worn_run", "results/demo/R5_convex/wear.csv")
 FIGURE = ("figure_forces", "results/demo/figures/forces.png")
 PAGE = "page of results/demo"
 
