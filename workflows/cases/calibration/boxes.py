@@ -39,6 +39,7 @@ SLOT, SQUARE = "slot", "square"  # values of draw_down.opening
 SLOT_FLOW = 0.73  # -, of the flow from a slot, (D - k d)^1.5 sqrt(g); gives the 5.6 s that the slot was chosen for
 SQUARE_FLOW = 0.74  # -, the same of a square, (D - k d)^2.5 sqrt(g): Beverloo's 0.58 of a circle, by area
 OUTFLOW_SHARE = 0.75  # -, of the content that a draw-down test's opening lets out: two slopes of some 30 degrees stay
+REPEATED_PAIRS = 3  # that found first, that it is compared with, and the recommended one
 FORCE_MEANS = 200  # means of a plate's forces over a drag
 STAYING = {
     SHEAR_BOX: 0.54,
@@ -278,9 +279,9 @@ def discharge_time(test: Mapping[str, Any]) -> float:
 
 
 def calibration_stages(parameters: Parameters) -> tuple[Stage, ...]:
-    """Return the stages of a calibration: of each test the most simulations, and the repeats of two pairs."""
+    """Return the stages of a calibration: of each test the most simulations, and the repeats of three pairs."""
     asked = parameters["calibration"]
-    numbers = {kind: asked["most"][kind] + 2 * asked["repeats"] for kind in asked["tests"]}
+    numbers = {kind: asked["most"][kind] + REPEATED_PAIRS * asked["repeats"] for kind in asked["tests"]}
     found = (stages_of(test_of(parameters, kind, {}, 0), number) for kind, number in numbers.items())
     return tuple(stage for stages in found for stage in stages)
 

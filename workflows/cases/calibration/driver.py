@@ -18,7 +18,7 @@ from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import Posterior, Request, calibrate, packing_seed, posterior
 from bulkwear.postproc.inference.problem import Experiment, Parameter, Problem
 from bulkwear.workflows.cases.calibration.boxes import SHEAR_BOX, SIMULATIONS, simulated_width, test_of
-from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, read_measured
+from bulkwear.workflows.cases.calibration.responses import FOUND_FIRST, RECOMMENDED, read_measured
 from bulkwear.workflows.cases.calibration.simulations import answer, simulate_all
 from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine import state
@@ -64,7 +64,8 @@ def _value_at(test: Mapping[str, Any], name: str) -> float:
 def run_calibration(
     parameters: Parameters, measured: Path, pairs: Path, folder: Path, workers: int
 ) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
-    """Calibrate, then simulate the recommended and the compared pair with several seeds.
+    """Calibrate, then simulate the pair found and the compared one with several seeds, and with what that tells the
+    recommended one.
 
     workers: simulations at the same time. Returns the simulations, the looks at the surrogate and the repeats, one row
     each. Raises SolverError; what was simulated is kept in the folder.
@@ -79,22 +80,34 @@ def run_calibration(
 
         result = calibrate(problem, simulate, say)
         compared = compared_pairs(problem, result.posterior, parameters, pd.read_csv(pairs))
+        compared = {FOUND_FIRST: compared.pop(RECOMMENDED), **compared}
         repeats = repeated(parameters, compared, folder, workers, say)
-    for sentence in told_sentences(problem, result.posterior):
+        known = posterior(problem, everything_of(problem, result.simulations, repeats))
+        again = repeated(parameters, {RECOMMENDED: values_at(problem, known)}, folder, workers, say)
+        repeats = pd.concat([repeats, again], ignore_index=True)
+    for sentence in told_sentences(problem, posterior(problem, everything_of(problem, result.simulations, repeats))):
         say(sentence)
     return result.simulations, result.shares, repeats
+
+
+def everything_of(problem: Problem, simulations: pd.DataFrame, repeats: pd.DataFrame) -> pd.DataFrame:
+    """Return all simulations of a calibration, each once, in whichever table it stands."""
+    both = pd.concat([simulations, repeats], ignore_index=True)
+    return both.drop_duplicates(["test", "seed", *problem.names], ignore_index=True)
+
+
+def values_at(problem: Problem, known: Posterior) -> dict[str, float]:
+    """Return {name: value} of the point that a posterior recommends."""
+    values = problem.from_unit(known.points[known.recommended][None])[0]
+    return dict(zip(problem.names, map(float, values), strict=True))
 
 
 def compared_pairs(
     problem: Problem, known: Posterior, parameters: Parameters, pairs: pd.DataFrame
 ) -> dict[str, dict[str, float]]:
     """Return {name: values} of the recommended pair and of the one that it is compared with."""
-    values = problem.from_unit(known.points[known.recommended][None])[0]
     other = parameters["calibration"]["compared_pair"]
-    return {
-        RECOMMENDED: dict(zip(problem.names, map(float, values), strict=True)),
-        other: pair_of(pairs, other, problem.names, parameters),
-    }
+    return {RECOMMENDED: values_at(problem, known), other: pair_of(pairs, other, problem.names, parameters)}
 
 
 def repeated(
@@ -168,9 +181,10 @@ def read_posterior(
 ) -> tuple[Problem, pd.DataFrame, Posterior]:
     """Return the calibration, its simulations and the posterior of all of them, from finished tables.
 
-    The recommended pair is the one that the calibration found and repeated; its repeats then tell as much as any other
-    simulation, above all how far packings scatter.
+    The recommended pair is what the simulations lead to with the repeats of the first pair found and of the compared
+    one; its own repeats then tell as much as any other simulation, above all how far packings scatter.
     """
-    problem, table = problem_of(parameters, measured), pd.read_csv(simulations)
-    everything = pd.concat([table, pd.read_csv(repeats)], ignore_index=True)
-    return problem, table, replace(posterior(problem, everything), chosen=posterior(problem, table).recommended)
+    problem, table, repeated_rows = problem_of(parameters, measured), pd.read_csv(simulations), pd.read_csv(repeats)
+    before = repeated_rows[repeated_rows["pair"] != RECOMMENDED]
+    chosen = posterior(problem, everything_of(problem, table, before)).recommended
+    return problem, table, replace(posterior(problem, everything_of(problem, table, repeated_rows)), chosen=chosen)

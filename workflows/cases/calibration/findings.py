@@ -18,6 +18,7 @@ from bulkwear.workflows.cases.calibration.case import PUBLISHED, published
 from bulkwear.workflows.cases.calibration.checked_pairs import CHECKED, checked_means
 from bulkwear.workflows.cases.calibration.outcome import Calibrated, read_calibrated
 from bulkwear.workflows.cases.calibration.responses import (
+    FOUND_FIRST,
     PARAMETER_NAMES,
     RECOMMENDED,
     information_table,
@@ -143,6 +144,13 @@ def sentences(done: Calibrated) -> list[str]:
         f"{response_name(name)} {surrogate.seed_deviation:.2g}" for name, surrogate in done.known.surrogates.items()
     )
     said = [f"Standard deviation between packings, as the surrogates find it: {scatter}."]
+    first = done.repeats[done.repeats["pair"] == FOUND_FIRST]
+    if len(first):
+        values = ", ".join(f"{first[name].iloc[0]:.2f}" for name in done.problem.names)
+        said.append(
+            f"Before any pair was repeated the simulations led to ({values}); with its repeats and those of the"
+            f" {done.compared} pair they lead to the recommended one."
+        )
     blocked = int(sum(table[BLOCKED].sum() for table in (done.simulations, done.repeats) if BLOCKED in table))
     if blocked:
         said.append(

@@ -15,7 +15,7 @@ from bulkwear.postproc.flow.bulk_test import HEAP, slope_table
 from bulkwear.postproc.inference.loop import Posterior
 from bulkwear.postproc.inference.problem import Problem
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS, test_of, walls_of
-from bulkwear.workflows.cases.calibration.driver import compared_pairs, read_posterior, repeat_seeds
+from bulkwear.workflows.cases.calibration.driver import compared_pairs, everything_of, read_posterior, repeat_seeds
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, interval_table, repeat_table, statement_table
 from bulkwear.workflows.cases.calibration.simulations import flowing
 from bulkwear.workflows.cases.calibration.told import told_sentences
@@ -50,7 +50,7 @@ class Calibrated:
     @property
     def everything(self) -> pd.DataFrame:
         """All simulations of the calibration, those of the pairs that were repeated too."""
-        return pd.concat([self.simulations, self.repeats], ignore_index=True)
+        return everything_of(self.problem, self.simulations, self.repeats)
 
     @property
     def compared(self) -> str:

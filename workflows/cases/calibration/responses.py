@@ -19,6 +19,7 @@ GRID_POINTS = 41  # along each of the two parameters of a map
 PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior
 PICTURE_BINS = 40  # along each parameter
 RECOMMENDED = "recommended"  # name of the pair that a calibration found
+FOUND_FIRST = "found_first"  # of the one that its simulations led to before any pair was repeated
 RESPONSE_NAMES = {name: axis.label for name, axis in RESPONSES.items()}
 PARAMETER_NAMES = {
     "particle.contact.sliding_friction": "Sliding friction, particles (-)",

@@ -18,7 +18,7 @@ def test_a_found_pair_is_checked_in_another_test(done, formula, tmp_path):
     table = check_pair(run, RECOMMENDED, tmp_path, 1)
     assert len(table) == 2 and (table["particle_scale"] == 4.0).all()
     assert table[SLIDING].iloc[0] == pytest.approx(done.pairs[RECOMMENDED][SLIDING])
-    with pytest.raises(ValueError, match="no pair 'nobody', there are recommended, calibrated"):
+    with pytest.raises(ValueError, match="no pair 'nobody', there are found_first, calibrated, recommended"):
         check_pair(run, "nobody", tmp_path, 1)
 
 
