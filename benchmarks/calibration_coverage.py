@@ -8,8 +8,8 @@ Hidden values of two frictions, drawn evenly from their range, give three respon
 Each is measured with its error and, in some cases, with a bias: what the formula is off by. Then all of a calibration
 is done: simulations that scatter between packings, surrogates, acquisition and stopping rule. Coverage is the share of
 calibrations whose region, or whose interval, holds the hidden values. Besides, what the discrepancy makes of the
-example of Yan 2022, from docs/calibration_simulations.csv, and how often a parameter that no response tells is said to
-be one: the friction of a wall, looked for with and without a wall shear test. Writes calibration_coverage.csv,
+example of Yan 2022, from the simulations of the page at standard, and how often a parameter that no response tells is
+said to be one: the friction of a wall, looked for with and without a wall shear test. Writes calibration_coverage.csv,
 calibration_told.csv and calibration_coverage.md.
 """
 
@@ -34,6 +34,7 @@ from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, distanc
 from bulkwear.postproc.inference.problem import MODEL_DISCREPANCY, Experiment, Measured, Parameter, Problem
 from bulkwear.postproc.inference.told import NOT_TOLD, TOGETHER, TOLD, told_table
 from bulkwear.workflows.cases.calibration.responses import (
+    PARAMETER_NAMES,
     interval_table,
     nearest_point,
     parameter_name,
@@ -57,6 +58,7 @@ BIASES = {
 }
 CASES = tuple((bias, discrepancy) for bias in BIASES for discrepancy in (0.0, MODEL_DISCREPANCY))
 SCALES = {"half-normal": stats.halfnorm, "half-Cauchy": stats.halfcauchy}
+SIMULATIONS = "tables/calibration_standard_simulations.csv"  # in docs
 GRAVEL, PUBLISHED_PAIR = Path("config/published/gravel_tests.csv"), (0.21, 0.40)  # Yan 2022, Tables 3.1 and 3.6
 GRAVEL_HEAD = ["discrepancy assumed", "parameter", "recommended", "95 % interval", "left (-)", "told"]
 GRAVEL_HEAD += ["posterior in pairs that fit better than (0.21, 0.40) (%)"]
@@ -182,7 +184,8 @@ def of_gravel(docs: Path, discrepancy: float) -> pd.DataFrame:
     tests = tuple(Experiment(kind, BULK_RESPONSES[kind], 3, 3) for kind in ("shear_box", "draw_down"))
     aims = read_measured(GRAVEL, discrepancy)
     problem = Problem(tuple(Parameter(name, LOW, HIGH) for name in names), tests, aims, seed=20220317)
-    known = posterior(problem, pd.read_csv(docs / "calibration_simulations.csv"))
+    keys = {name: key for key, name in PARAMETER_NAMES.items()}
+    known = posterior(problem, pd.read_csv(docs / SIMULATIONS).rename(columns=keys))
     pair = nearest_point(problem, known, dict(zip(names, PUBLISHED_PAIR, strict=True)))
     share = distance_from(known.weights, known.predicted, aims, pair)["denser_share"]
     table = interval_table(problem, known, {}).merge(told_table(problem, known), on="parameter")
@@ -266,8 +269,8 @@ def page(table: pd.DataFrame, told: pd.DataFrame, gravel: pd.DataFrame) -> str:
                 " what was measured. Without a wall shear test no response depends on the wall's.",
                 markdown(TOLD_HEAD, told_cells(told)),
                 "## The river gravel",
-                "What the discrepancy makes of [calibration_simulations.csv](calibration_simulations.csv), without the"
-                " repeated packings. Left: of the range's 95 % interval.",
+                f"What the discrepancy makes of the [simulations]({SIMULATIONS}) of the [calibration at standard]"
+                "(calibration_results_standard.md), without the repeated packings. Left: of the range's 95 % interval.",
                 markdown(GRAVEL_HEAD, gravel_cells(gravel)),
             ]
         )
