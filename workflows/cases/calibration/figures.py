@@ -138,11 +138,9 @@ def calibration_sensitivity(job: Job) -> Any:
 def family(job: Job) -> Any:
     """Draw which pairs fit what was measured."""
     from bulkwear.workflows.cases.calibration.plots import responses
-    from bulkwear.workflows.cases.calibration.responses import family_table
 
     done = _calibrated(job)
-    table = family_table(done.problem, done.simulations)
-    return responses.family(table, done.simulations, done.pairs, job.remarks), table
+    return responses.family(done.family, done.everything, done.pairs, job.remarks), done.family
 
 
 @figure(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,13 @@ from bulkwear.postproc.inference.loop import Posterior
 from bulkwear.postproc.inference.problem import Problem
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS, test_of, walls_of
 from bulkwear.workflows.cases.calibration.driver import compared_pairs, everything_of, read_posterior, repeat_seeds
-from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, interval_table, repeat_table, statement_table
+from bulkwear.workflows.cases.calibration.responses import (
+    RECOMMENDED,
+    family_table,
+    interval_table,
+    repeat_table,
+    statement_table,
+)
 from bulkwear.workflows.cases.calibration.simulations import flowing
 from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine.case import Parameters
@@ -51,6 +58,11 @@ class Calibrated:
     def everything(self) -> pd.DataFrame:
         """All simulations of the calibration, those of the pairs that were repeated too."""
         return everything_of(self.problem, self.simulations, self.repeats)
+
+    @cached_property
+    def family(self) -> pd.DataFrame:
+        """What all simulations leave of every two parameters, see `responses.family_table`."""
+        return family_table(self.problem, self.everything)
 
     @property
     def compared(self) -> str:
@@ -109,7 +121,7 @@ def calibrated_materials(done: Calibrated, materials: Mapping[str, Any], study: 
     head = (
         f"# Written by the study {study}: contact parameters of {bulk}, calibrated on"
         f" {' and '.join(TITLES[test.name].lower() for test in done.problem.tests)} with"
-        f" {len(done.simulations)} simulations.\n# Everything else is as in the materials file that the study used.\n\n"
+        f" {len(done.everything)} simulations.\n# Everything else is as in the materials file that the study used.\n\n"
     )
     return head + yaml.safe_dump(written, sort_keys=False, allow_unicode=True)
 

@@ -10,8 +10,11 @@ from bulkwear.workflows.cases.calibration.outcome import calibrated_materials
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED, response_name
 from bulkwear.workflows.config.design import ConfigError, load_study
 from tests import REPOSITORY
-from tests.support.calibration_study import SLIDING, study
+from tests.support.calibration_study import ROLLING, SLIDING, study
 from tests.support.charts import drawn_chart, values
+
+AXES = {"first": SLIDING, "second": ROLLING}
+OF_BINS = 0.1  # -, of the posterior: bins are as wide as the family in places
 
 
 def test_statements_and_materials_of_a_calibration(done):
@@ -25,6 +28,14 @@ def test_statements_and_materials_of_a_calibration(done):
     assert set(statements["inside"]) <= {"inside", "within its uncertainty", "outside"}
     at_published = statements.set_index("pair").loc["calibrated"]
     assert at_published["simulated"] == pytest.approx(24.0 + 30.0 * 0.21 + 12.0 * 0.4)
+
+
+def test_the_family_that_is_drawn_is_the_one_that_statements_speak_of(done):
+    """Repeats are in both: the pair that was compared lies as deep in the drawn regions as the statements say."""
+    said = done.statements.set_index("pair").loc[[done.compared], "denser_share"].iloc[0]
+    away = np.hypot(*(done.family[f"{axis}_value"] - done.pairs[done.compared][name] for axis, name in AXES.items()))
+    assert done.family["denser_share"][away.idxmin()] == pytest.approx(said, abs=OF_BINS)
+    assert len(done.everything) > len(done.simulations)
 
 
 def test_charts_show_pairs_beside_the_measured_band(done):
