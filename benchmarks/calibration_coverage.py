@@ -30,15 +30,15 @@ from scipy.special import logsumexp
 from benchmarks.page import markdown
 from bulkwear.postproc.flow.bulk_test import RESPONSES as BULK_RESPONSES
 from bulkwear.postproc.inference.loop import Request, calibrate, posterior
-from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, distance_from, interval
+from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, interval
 from bulkwear.postproc.inference.problem import MODEL_DISCREPANCY, Experiment, Measured, Parameter, Problem
 from bulkwear.postproc.inference.told import NOT_TOLD, TOGETHER, TOLD, told_table
 from bulkwear.workflows.cases.calibration.responses import (
     PARAMETER_NAMES,
     interval_table,
-    nearest_point,
     parameter_name,
     read_measured,
+    shares_at,
 )
 
 NUMBER = 200  # calibrations per case
@@ -186,8 +186,7 @@ def of_gravel(docs: Path, discrepancy: float) -> pd.DataFrame:
     problem = Problem(tuple(Parameter(name, LOW, HIGH) for name in names), tests, aims, seed=20220317)
     keys = {name: key for key, name in PARAMETER_NAMES.items()}
     known = posterior(problem, pd.read_csv(docs / SIMULATIONS).rename(columns=keys))
-    pair = nearest_point(problem, known, dict(zip(names, PUBLISHED_PAIR, strict=True)))
-    share = distance_from(known.weights, known.predicted, aims, pair)["denser_share"]
+    (share,) = shares_at(problem, known, np.array([PUBLISHED_PAIR]))
     table = interval_table(problem, known, {}).merge(told_table(problem, known), on="parameter")
     return table.assign(discrepancy=f"given, {discrepancy:g}", published_denser_share=share)
 

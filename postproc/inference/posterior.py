@@ -73,15 +73,14 @@ def interval(values: np.ndarray, weights: np.ndarray, share: float = FAMILY_SHAR
     return float(low), float(high)
 
 
-def distance_from(weights: np.ndarray, predicted: Predictions, measured: Mapping[str, Measured], index: int) -> dict:
-    """Return how far a point is from what was measured, and from the family.
+def denser_shares(
+    weights: np.ndarray, predicted: Predictions, measured: Mapping[str, Measured], others: Predictions
+) -> np.ndarray:
+    """Return the share (k,) of the posterior in points that are denser than k others, below 0.95 in the family.
 
-    For each response its deviation over the standard deviation of measurement, model and surrogate; and the share of
-    the posterior in points that are denser than it: below 0.95 it belongs to the family.
+    weights: (n,) of the points with the predictions `predicted`; others: predictions at the k, which need not be points
+    of the posterior: the nearest one may be far off where the family is narrow
     """
-    deviations = {
-        name: float((mean[index] - measured[name].value) / np.sqrt(measured[name].variance + variance[index]))
-        for name, (mean, variance) in predicted.items()
-        if name in measured
-    }
-    return {"deviations": deviations, "denser_share": float(weights[weights > weights[index]].sum())}
+    both = {name: tuple(map(np.concatenate, zip(each, others[name], strict=True))) for name, each in predicted.items()}
+    density = posterior_weights(both, measured)
+    return np.array([weights[density[: len(weights)] > value].sum() for value in density[len(weights) :]])

@@ -13,8 +13,8 @@ from bulkwear.postproc.inference.acquisition import (
 )
 from bulkwear.postproc.inference.loop import calibrate, posterior
 from bulkwear.postproc.inference.posterior import (
+    denser_shares,
     densest,
-    distance_from,
     interval,
     log_normal,
     posterior_weights,
@@ -204,11 +204,11 @@ def test_recommendation_lies_in_the_family():
     assert radius[recommended(points, weights)] == pytest.approx(0.3, abs=0.03)
 
 
-def test_distance_of_a_pair():
-    """A pair two deviations off is said to be so, and nearly all of the posterior is denser than it."""
-    mean = np.linspace(30.0, 40.0, 501)
-    predicted, measured = {"angle": (mean, np.zeros(501))}, {"angle": Measured(35.0, 0.3, 0.4)}
+def test_share_that_is_denser_than_a_pair():
+    """Of a normal distribution within one and two deviations; the pairs need not be points of the posterior."""
+    mean = np.linspace(30.0, 40.0, 5001)
+    predicted, measured = {"angle": (mean, np.zeros(5001))}, {"angle": Measured(35.0, 0.3, 0.4)}
     weights = posterior_weights(predicted, measured)
-    away = distance_from(weights, predicted, measured, int(np.argmin(np.abs(mean - 36.0))))
-    assert away["deviations"]["angle"] == pytest.approx(2.0)
-    assert away["denser_share"] == pytest.approx(0.954, abs=0.01)  # of a normal distribution, on this grid
+    pairs = {"angle": (np.array([35.5, 34.0]), np.zeros(2))}  # deviation and discrepancy: 0.5 together
+    shares = denser_shares(weights, predicted, measured, pairs)
+    assert shares == pytest.approx([0.683, 0.954], abs=0.01)  # on this grid

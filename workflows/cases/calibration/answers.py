@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.inference.loop import Posterior
@@ -19,7 +18,7 @@ from bulkwear.workflows.cases.calibration.responses import (
     RECOMMENDED,
     information_table,
     interval_table,
-    nearest_point,
+    shares_at,
 )
 from bulkwear.workflows.report.sections import CARE, SOUND, WEAK, Light
 from bulkwear.workflows.report.sentences import PERCENT, capital, listed, measured, spoken
@@ -93,15 +92,14 @@ def rejected(done: Calibrated) -> list[str]:
     """Return how many of the pairs that others simulated are rejected; nothing where they have other parameters or lie
     outside of the range.
     """
-    names, weights = done.problem.names, done.known.weights
+    names = done.problem.names
     if not set(names) <= set(done.published):
         return []
     points = done.problem.to_unit(done.published[names].to_numpy(float))
     inside = done.published[((points >= 0.0) & (points <= 1.0)).all(axis=1)]
-    places = [nearest_point(done.problem, done.known, row) for row in inside[names].to_dict("records")]
-    shares = np.array([weights[weights > weights[place]].sum() for place in places])
-    if not len(shares):
+    if inside.empty:
         return []
+    shares = shares_at(done.problem, done.known, inside[names].to_numpy(float))
     kept = inside.loc[shares <= FAMILY_SHARE, "row"].map(spoken).tolist()
     rest = f"; {listed(kept)} {'is' if len(kept) == 1 else 'are'} not" if kept else ""
     return [f"Of {len(shares)} pairs that others simulated {int((shares > FAMILY_SHARE).sum())} are rejected{rest}."]

@@ -62,7 +62,7 @@ class Calibrated:
     @cached_property
     def family(self) -> pd.DataFrame:
         """What all simulations leave of every two parameters, see `responses.family_table`."""
-        return family_table(self.problem, self.everything)
+        return family_table(self.problem, self.known)
 
     @property
     def compared(self) -> str:

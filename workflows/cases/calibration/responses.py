@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +11,16 @@ import pandas as pd
 from scipy.ndimage import gaussian_filter
 
 from bulkwear.postproc.inference.acquisition import expected_information
-from bulkwear.postproc.inference.loop import Posterior, posterior
-from bulkwear.postproc.inference.posterior import FAMILY_SHARE, densest, distance_from, interval
+from bulkwear.postproc.inference.loop import Posterior
+from bulkwear.postproc.inference.posterior import FAMILY_SHARE, denser_shares, densest, interval, posterior_weights
 from bulkwear.postproc.inference.problem import Measured, Problem
+from bulkwear.postproc.inference.surrogate import predictions
 from bulkwear.workflows.cases.calibration.charts import RESPONSES
 
 GRID_POINTS = 41  # along each of the two parameters of a map
-PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior
-PICTURE_BINS = 40  # along each parameter
+PICTURE_CELLS = 160  # along each of two parameters: a family is a tenth of the range wide, or less
+PICTURE_POWER = 15  # 32,768 points carry the picture of a posterior of more parameters
+PICTURE_BINS = 40  # along each of these
 RECOMMENDED = "recommended"  # name of the pair that a calibration found
 FOUND_FIRST = "found_first"  # of the one that its simulations led to before any pair was repeated
 RESPONSE_NAMES = {name: axis.label for name, axis in RESPONSES.items()}
@@ -69,33 +72,47 @@ def response_grid(problem: Problem, known: Posterior) -> pd.DataFrame:
     return table
 
 
-def family_table(problem: Problem, simulations: pd.DataFrame) -> pd.DataFrame:
+def family_table(problem: Problem, known: Posterior) -> pd.DataFrame:
     """Return the posterior on bins of every two parameters: first, second, their values, density over its largest, and
-    denser_share, the share of the posterior in denser bins (at most 0.95 in the family)."""
-    fine = posterior(problem, simulations, PICTURE_POWER)
-    values = problem.from_unit(fine.points)
-    names = problem.names
-    tables = []
-    for i in range(len(names)):
-        for j in range(i + 1, len(names)):
-            ranges = [(problem.parameters[k].low, problem.parameters[k].high) for k in (i, j)]
-            counts, *edges = np.histogram2d(values[:, i], values[:, j], PICTURE_BINS, ranges, weights=fine.weights)
-            density = gaussian_filter(counts, 0.7, mode="nearest")
-            middles = [(edge[1:] + edge[:-1]) / 2.0 for edge in edges]
-            x, y = np.meshgrid(*middles, indexing="ij")
-            tables.append(
-                pd.DataFrame(
-                    {
-                        "first": names[i],
-                        "second": names[j],
-                        "first_value": x.ravel(),
-                        "second_value": y.ravel(),
-                        "density": (density / density.max()).ravel(),
-                        "denser_share": _denser_share(density).ravel(),
-                    }
-                )
-            )
+    denser_share, the share of the posterior in denser bins (at most 0.95 in the family).
+
+    Of two parameters it is evaluated in the middle of each bin, of more gathered in wider bins and smoothed.
+    """
+    if len(problem.names) == 2:
+        middles = (np.arange(PICTURE_CELLS) + 0.5) / PICTURE_CELLS
+        density = _density_at(problem, known, np.stack(np.meshgrid(middles, middles, indexing="ij"), -1).reshape(-1, 2))
+        ends = [(each.low, each.high) for each in problem.parameters]
+        values = [low + (high - low) * middles for low, high in ends]
+        return _binned(problem.names, values, density.reshape(PICTURE_CELLS, -1))
+    points = problem.spread_points(PICTURE_POWER)
+    weights, values, tables = _density_at(problem, known, points), problem.from_unit(points), []
+    for i, j in combinations(range(len(problem.names)), 2):
+        ranges = [(problem.parameters[k].low, problem.parameters[k].high) for k in (i, j)]
+        counts, *edges = np.histogram2d(values[:, i], values[:, j], PICTURE_BINS, ranges, weights=weights)
+        density = gaussian_filter(counts, 0.7, mode="nearest")
+        names = [problem.names[k] for k in (i, j)]
+        tables.append(_binned(names, [(edge[1:] + edge[:-1]) / 2.0 for edge in edges], density))
     return pd.concat(tables, ignore_index=True)
+
+
+def _density_at(problem: Problem, known: Posterior, points: np.ndarray) -> np.ndarray:
+    """Return the weights (n,) of points (n, p) of the unit cube by the surrogates of a posterior."""
+    return posterior_weights(predictions(known.surrogates, points), problem.measured)
+
+
+def _binned(names: Sequence[str], middles: Sequence[np.ndarray], density: np.ndarray) -> pd.DataFrame:
+    """Return the rows of two parameters; middles: of the bins along each, density: (bins, bins)."""
+    x, y = np.meshgrid(*middles, indexing="ij")
+    return pd.DataFrame(
+        {
+            "first": names[0],
+            "second": names[1],
+            "first_value": x.ravel(),
+            "second_value": y.ravel(),
+            "density": (density / density.max()).ravel(),
+            "denser_share": _denser_share(density).ravel(),
+        }
+    )
 
 
 def _denser_share(density: np.ndarray) -> np.ndarray:
@@ -140,9 +157,9 @@ def statement_table(
     """
     rows = []
     for pair, values in pairs.items():
-        index = nearest_point(problem, known, values)
-        share = distance_from(known.weights, known.predicted, problem.measured, index)["denser_share"]
-        for name, (mean, variance) in known.predicted.items():
+        point = np.array([[values[name] for name in problem.names]])
+        (share,) = shares_at(problem, known, point)
+        for name, (mean, variance) in predictions(known.surrogates, problem.to_unit(point)).items():
             found = repeats[(repeats["pair"] == pair) & (repeats["response"] == name)]
             aim = problem.measured.get(name)
             simulated = float(found["mean"].iloc[0]) if len(found) else np.nan
@@ -158,8 +175,8 @@ def statement_table(
                     "simulated_uncertainty": uncertainty,
                     "between_seeds": float(found["deviation"].iloc[0]) if len(found) else np.nan,
                     "seeds": int(found["seeds"].iloc[0]) if len(found) else 0,
-                    "predicted": float(mean[index]),
-                    "predicted_deviation": float(np.sqrt(variance[index])),
+                    "predicted": float(mean[0]),
+                    "predicted_deviation": float(np.sqrt(variance[0])),
                     "deviations": (simulated - aim.value) / aim.deviation if aim else np.nan,
                     "inside": _inside(simulated, uncertainty, aim) if aim else "",
                     "denser_share": share,
@@ -178,10 +195,10 @@ def _inside(simulated: float, uncertainty: float, aim: Measured) -> str:
     return "within its uncertainty" if away <= BAND * np.hypot(aim.deviation, uncertainty) else "outside"
 
 
-def nearest_point(problem: Problem, known: Posterior, values: Mapping[str, float]) -> int:
-    """Return which point of a posterior is nearest to values of the parameters."""
-    point = problem.to_unit(np.array([[values[name] for name in problem.names]]))
-    return int(np.argmin(np.linalg.norm(known.points - point, axis=1)))
+def shares_at(problem: Problem, known: Posterior, pairs: np.ndarray) -> np.ndarray:
+    """Return the share (k,) of the posterior in points denser than k pairs; pairs: (k, p) values of the parameters."""
+    at = predictions(known.surrogates, problem.to_unit(pairs))
+    return denser_shares(known.weights, known.predicted, problem.measured, at)
 
 
 def repeat_table(repeats: pd.DataFrame, responses: Sequence[str]) -> pd.DataFrame:

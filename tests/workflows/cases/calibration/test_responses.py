@@ -10,7 +10,6 @@ from bulkwear.workflows.cases.calibration.responses import (
     family_table,
     information_table,
     interval_table,
-    nearest_point,
     repeat_table,
     response_grid,
     statement_table,
@@ -40,8 +39,8 @@ def test_grid_holds_the_response(plane):
 
 def test_family_is_the_band(plane):
     """Pairs that give the measured sum are in the family, pairs four deviations off are not."""
-    problem, table, _ = plane
-    family = family_table(problem, table)
+    problem, _, known = plane
+    family = family_table(problem, known)
     away = (family["first_value"] + family["second_value"] - 0.8).abs()
     assert (family.loc[away < 0.03, "denser_share"] < 0.95).all()
     assert (family.loc[away > 0.2, "denser_share"] > 0.95).all()
@@ -55,13 +54,6 @@ def test_interval_of_one_parameter(plane):
     assert table.loc["sliding", "low"] == pytest.approx(0.02, abs=0.04)  # a fortieth of 0.8, and the band's width
     assert table.loc["sliding", "high"] == pytest.approx(0.80, abs=0.06)
     assert table.loc["sliding", "compared"] == 0.3 and np.isnan(table.loc["rolling", "compared"])
-
-
-def test_nearest_point_is_near(plane):
-    """The point that stands for a pair is within the spacing of 4096 points."""
-    problem, _, known = plane
-    index = nearest_point(problem, known, {"sliding": 0.21, "rolling": 0.4})
-    assert np.linalg.norm(problem.from_unit(known.points)[index] - [0.21, 0.4]) < 0.03
 
 
 def repeats(values):
