@@ -170,6 +170,7 @@ def family(
             part[name].to_numpy().reshape(count, -1) for name in ("first_value", "second_value", "denser_share")
         )
         each.contourf(x, y, share, levels=[-0.01, CORE_SHARE, FAMILY_SHARE], cmap=FAMILY_COLOURS)
+        each.use_sticky_edges = False  # or marks at the ends of the range would be cut
         each.scatter(simulations[first], simulations[second], s=14, c="black", marker="x", linewidths=0.9, zorder=3)
         for name, values in pairs.items():
             look = _pair_look(name)
