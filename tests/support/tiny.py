@@ -12,6 +12,7 @@ OF_ANY_MODEL = "river_gravel_published"
 TINY = {
     "rows": ["R9"],  # its bumps stand close enough for so small a sample
     "packings": 1,
+    "wear": {"acceleration": 4.0e3},
     "particle_scale": 4,
     "sample": {
         **{"width_mm": 40, "length_mm": 40, "element_size_mm": 2},

@@ -163,7 +163,7 @@ def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
     process = snakemake(folder, "tiny")
     output, _ = process.communicate(timeout=TIMEOUT)
     assert process.returncode != 0
-    sentence = "config/studies/tiny.yaml, line 8, fidelity quick: unit cm is not allowed for sample.width"
+    sentence = "config/studies/tiny.yaml, line 9, fidelity quick: unit cm is not allowed for sample.width"
     assert sentence in output
     assert "Traceback" not in output
     assert not (folder / "results").exists()
@@ -175,7 +175,7 @@ def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
     (folder / "config/studies/broken.yaml").write_text(TINY.replace("width_mm: 40", "width_cm: 4"))
     assert "broken" not in finish(snakemake(folder, "tiny", "--dry-run"))
     output = finish(snakemake(folder, "--list-target-rules"))
-    assert "Study broken is left out: config/studies/broken.yaml, line 8" in output
+    assert "Study broken is left out: config/studies/broken.yaml, line 9" in output
     assert {"tiny", "tiny_decks", "tiny_forecast"} <= set(output.split()) and "broken_decks" not in output
 
 
