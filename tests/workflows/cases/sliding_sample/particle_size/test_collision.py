@@ -37,8 +37,9 @@ COARSE = 0.03  # -, of the closed form at that step; measured: 2.7 % of the over
 
 def asked(scale, model="cdt", fraction=EXACT_STEP):
     """A collision at 1 m/s of the study's gravel, coarse-grained, with steel."""
-    parameters = load_study("calibration", overrides={"fidelity": "paper"}).runs[0].parameters
-    real = parameters["particle"]
+    study = load_study("calibration", overrides={"fidelity": "paper"})
+    parameters = study.runs[0].parameters
+    real = {**parameters["particle"], "contact": study.materials["particles"][OF_ANY_MODEL]["contact"]}
     particle = {
         **real,
         "scale": scale,
