@@ -64,6 +64,7 @@ LEVEL = 0.95  # of intervals
 SOURCE_EXCHANGE = 20  # mm of travel, at the source's particles
 LATE = {"ratio": "second_half_over_full", "ratio_low": "second_half_low", "ratio_high": "second_half_high"}
 CHEAPER_COLUMNS = ["cheaper_in_particle_steps", "cheaper_in_processor_time", "cheaper_low", "cheaper_high"]
+CHEAPER_COLUMNS += ["cheaper_with_its_run_in"]
 CHEAPER = {"particle_steps": "particle_steps", "core_hours": "core_hours"}  # column -> what it is the cost in
 
 
@@ -142,14 +143,16 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     surface (`ratio_intervals`). scatter: standard deviation of ln(work) between packings; second_half_...: the same
     ratio over the second half of the travel; force_over_full: mean normal force over the full bed's; cheaper_in_...:
     cost of the full bed over the bed's own, of particle-steps the ratio of means; processor time is that of the run and
-    of its bed, which the plain twin shares but in the full bed, with cheaper_low and cheaper_high
+    of its bed, which the plain twin shares but in the full bed, with cheaper_low and cheaper_high;
+    cheaper_with_its_run_in: per counted metre, the full bed with the source's run-in; second_half_over_whole: sliding
+    work per metre, 1 where the wear is steady after the run-in
     """
     parts = []
     for surface, of in runs.groupby("surface", sort=False):
         found = ratio_intervals(of["bed"].to_numpy(), of["sliding_work_J_per_m"].to_numpy(), FULL, LEVEL)
         late = ratio_intervals(of["bed"].to_numpy(), of["second_half_J_per_m"].to_numpy(), FULL, LEVEL)
         means = of.groupby("bed", sort=False).mean(numeric_only=True).reset_index(names="setting")
-        means = means.drop(columns=["seed", "sliding_work_J_per_m", "second_half_J_per_m"])
+        means = means.drop(columns=["seed", "sliding_work_J_per_m"])
         table = found.merge(late[["setting", *LATE]].rename(columns=LATE), on="setting").merge(means, on="setting")
         full = table[table["setting"] == FULL].iloc[0]
         cost = ratio_intervals(of["bed"].to_numpy(), cost_s(of).to_numpy(), FULL, LEVEL).set_index("setting")
@@ -160,6 +163,8 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
             "cheaper_in_processor_time": 1.0 / cost["ratio"],
             "cheaper_low": 1.0 / cost["ratio_high"],
             "cheaper_high": 1.0 / cost["ratio_low"],
+            "cheaper_with_its_run_in": run_in_factor() / cost["ratio"],
+            "second_half_over_whole": table["second_half_J_per_m"] / table["mean"],
         }
         parts.append(table.assign(surface=surface, **over))
     names = {
@@ -168,6 +173,13 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
         "ratio": "wear_over_full",
     }
     return pd.concat(parts, ignore_index=True).rename(columns=names)
+
+
+def run_in_factor() -> float:
+    """Return how many times as far the source travels for a counted metre, of its run-in and travel and of these."""
+    ours, source = SETTINGS["sliding"], load_study("screening", overrides={"fidelity": "paper"}).settings["sliding"]
+    of_source, of_ours = (1.0 + each["run_in_mm"] / each["travel_mm"] for each in (source, ours))
+    return of_source / of_ours
 
 
 def cost_s(runs: pd.DataFrame) -> pd.Series:
@@ -254,10 +266,13 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
         markdown(table[[*names, *wear]], digits),
         prose(
             "A rate is steady where it no longer changes with the travel: the same ratio over the second half of the"
-            " travel alone; the mean normal force on the sample over that in the full bed; and how many particles a"
-            " metre of settled bed has."
+            " travel alone, and that half over the whole; the mean normal force on the sample over that in the full"
+            " bed; and how many particles a metre of settled bed has."
         ),
-        markdown(table[[*names, *LATE.values(), "force_over_full", "settled_particles_per_m"]], digits),
+        markdown(
+            table[[*names, *LATE.values(), "second_half_over_whole", "force_over_full", "settled_particles_per_m"]],
+            digits,
+        ),
         "![Sliding work along the travel in a full bed and in windows](travelling_window.png)",
         "## Cost",
         prose(
@@ -266,7 +281,8 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
             f" elements resolve ({bumps}), because the triangles weigh more beside few particles than at the source's"
             " size. With one scatter for all beds, each needs as many packings for the same error: the ratios of cost"
             " are those at equal error. Cheaper in processor time: of a run with its bed, which its twin shares but in"
-            " the bed that others are compared with, and the 95 % interval of that ratio. Means over the packings:"
+            " the bed that others are compared with, and the 95 % interval of that ratio; with its run-in: per counted"
+            " metre, where that bed has the source's run-in and travel. Means over the packings:"
         ),
         markdown(table[[*names, *cost, *CHEAPER_COLUMNS]]),
         "## The source's bed",
