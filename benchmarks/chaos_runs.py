@@ -17,7 +17,7 @@ from pathlib import Path
 import psutil
 
 from benchmarks.chaos_files import Outcome
-from benchmarks.runs import SMALL_BUMPS, simulated_run
+from benchmarks.runs import SMALL_BUMPS, STRAIGHT_RAMP, simulated_run
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.patience import Patience
@@ -27,10 +27,7 @@ SETTINGS = {
     "fidelity": "quick",
     "packings": 1,
     "particle_scale": 4,
-    "sample": {
-        **{"width_mm": 40, "length_mm": 40, "element_size_mm": 2},
-        **{"height_above_floor_mm": 0.1, "skirt_radius_mm": 0},
-    },
+    "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 2, **STRAIGHT_RAMP},
     "bed": {"width_mm": 60, "ahead_mm": 20, "behind_mm": 20},
     "sliding": {"run_in_mm": 10, "travel_mm": 20, "cycles": 2},
     "solver": {"rayleigh_fraction": 0.2, "checkpoint_interval_steps": 200},

@@ -23,6 +23,7 @@ from bulkwear.workflows.engine.solver import LOG
 
 STUDY, RUN, TESTER = "demo", "R5_convex", "circular_tester"
 SMALL_BUMPS = {"rows": ["R9"]}  # a pattern for samples smaller than the demo's
+STRAIGHT_RAMP = {"height_above_floor_mm": 0.1, "skirt_radius_mm": 0}  # of a sample that is no faster than 1 m/s
 PUBLISHED_PAIR = "river_gravel_published"  # of all rolling models alike; the recommended one is of own_spin alone
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
 

@@ -152,7 +152,7 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
         found = ratio_intervals(of["bed"].to_numpy(), of["sliding_work_J_per_m"].to_numpy(), FULL, LEVEL)
         late = ratio_intervals(of["bed"].to_numpy(), of["second_half_J_per_m"].to_numpy(), FULL, LEVEL)
         means = of.groupby("bed", sort=False).mean(numeric_only=True).reset_index(names="setting")
-        means = means.drop(columns=["seed", "sliding_work_J_per_m"])
+        means = means.drop(columns="seed")
         table = found.merge(late[["setting", *LATE]].rename(columns=LATE), on="setting").merge(means, on="setting")
         full = table[table["setting"] == FULL].iloc[0]
         cost = ratio_intervals(of["bed"].to_numpy(), cost_s(of).to_numpy(), FULL, LEVEL).set_index("setting")
@@ -164,9 +164,9 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
             "cheaper_low": 1.0 / cost["ratio_high"],
             "cheaper_high": 1.0 / cost["ratio_low"],
             "cheaper_with_its_run_in": run_in_factor() / cost["ratio"],
-            "second_half_over_whole": table["second_half_J_per_m"] / table["mean"],
+            "second_half_over_whole": table["second_half_J_per_m"] / table["sliding_work_J_per_m"],
         }
-        parts.append(table.assign(surface=surface, **over))
+        parts.append(table.drop(columns="sliding_work_J_per_m").assign(surface=surface, **over))
     names = {
         "setting": "bed",
         "mean": "sliding_work_J_per_m",

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.runs import FIRST_SEED, SMALL_BUMPS, changed, simulated_run
+from benchmarks.runs import FIRST_SEED, SMALL_BUMPS, STRAIGHT_RAMP, changed, simulated_run
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain, total_steps
@@ -46,7 +46,7 @@ SETTINGS: dict[str, Any] = {
     **SMALL_BUMPS,
     "fidelity": "standard",
     "particle_scale": 4.5,
-    "sample": {"width_mm": 100, "length_mm": 100, "element_size_mm": 2},
+    "sample": {"width_mm": 100, "length_mm": 100, "element_size_mm": 2, **STRAIGHT_RAMP},
     "bed": {"width_mm": 150, "exchange_mm": 35},
     "sliding": {"run_in_mm": 300, "travel_mm": 1200, "cycles": 4},
     "wear": {"deform": False},
@@ -58,7 +58,7 @@ BUMPS = {"major_radius_m": 0.008, "minor_radius_m": 0.008, "column_spacing_m": 0
 QUICK: dict[str, Any] = {
     **SETTINGS,
     "particle_scale": 8.0,
-    "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 2},
+    "sample": {"width_mm": 40, "length_mm": 40, "element_size_mm": 2, **STRAIGHT_RAMP},
     "bed": {"width_mm": 60, "exchange_mm": 55, "allow_thin_bed": True},
     "sliding": {"run_in_mm": 50, "travel_mm": 200, "cycles": 2},
 }

@@ -564,7 +564,8 @@ def test_a_ramp_curved_by_v_squared_over_g_ends_the_hop():
     assert not any(remark.startswith("particles hop") for remark in figure_remarks(study))
     with pytest.raises(ConfigError, match=r"skirt_radius_mm is 400 for row R3, allowed is at least 407.747 mm"):
         load_study("screening", overrides={"sample": {"skirt_radius_mm": 400}})
-    assert not any("hop" in remark for remark in figure_remarks(load_study("demo")))
+    for fidelity in ("quick", "standard", "paper"):
+        assert not any("hop" in each for each in figure_remarks(load_study("demo", overrides={"fidelity": fidelity})))
 
 
 # ---------------------------------------------------------------- regression and replicates
