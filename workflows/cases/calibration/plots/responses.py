@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 from bulkwear.postproc.inference.posterior import CORE_SHARE, FAMILY_SHARE
 from bulkwear.postproc.inference.problem import Measured
@@ -33,6 +34,7 @@ from bulkwear.workflows.cases.calibration.responses import BAND, RECOMMENDED, pa
 OURS, OTHERS = BLUE, ORANGE
 MAPS_BESIDE = 2  # maps in a line: of more their numbers are too small to read
 LABEL_FONT = 8.0  # pt, of numbers within maps
+CLEAR_OF_MARKS = (0.10, 0.09)  # of a map's width and height, by which a contour's number keeps away from marks' numbers
 BAND_COLOUR = "#000000"
 FAMILY_COLOURS = ListedColormap(["#0072B2", "#9ecbe6"])
 
@@ -90,15 +92,17 @@ def _draw_map(
 
     Colours reach as far as our values; published ones stand beside their marks, because some lie far outside.
     """
+    inside = [published[column].between(grid[column].min(), grid[column].max()) for column in pair]
     points = {
-        marker: table[table[name].notna()] for marker, table in (("o", simulations), ("D", _with(published, name)))
+        marker: table[table[name].notna()]
+        for marker, table in (("o", simulations), ("D", _with(published[np.logical_and(*inside)], name)))
     }
     values = np.concatenate([grid[name], points["o"][name]])
     levels = np.linspace(values.min(), values.max(), 15)
     x, y, z = _as_grid(grid, pair, name)
     filled = axes.contourf(x, y, z, levels=levels, cmap=MAP)
     lines = axes.contour(x, y, z, levels=levels[1:-1:2], colors="white", linewidths=0.5)
-    axes.clabel(lines, fmt="%.3g", fontsize=LABEL_FONT)
+    numbers = axes.clabel(lines, fmt="%.3g", fontsize=LABEL_FONT)
     for marker, table in points.items():
         axes.scatter(
             *(table[column] for column in pair),
@@ -111,9 +115,12 @@ def _draw_map(
             linewidths=0.9 if marker == "o" else 1.6,
             s=28,
             zorder=3,
+            clip_on=False,  # marks at the ends of the range are whole
         )
+    least, most = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
+    _hide_numbers_near(numbers, pd.concat(points.values())[pair].to_numpy(), CLEAR_OF_MARKS * (most - least))
     for _, row in points["D"].iterrows():
-        place = np.clip([row[column] for column in pair], [x.min(), y.min()], [x.max(), y.max()])
+        place = row[pair].to_numpy(float)
         right = place[0] > (x.min() + x.max()) / 2.0
         value = axes.annotate(
             f"{row[name]:.3g}",
@@ -127,6 +134,13 @@ def _draw_map(
         )
         value.set_in_layout(False)
     figure.colorbar(filled, ax=axes, format="%.3g")
+
+
+def _hide_numbers_near(numbers: Sequence[Text], places: np.ndarray, distances: np.ndarray) -> None:
+    """Hide contours' numbers that lie nearer to a place, (n, 2), than the two distances."""
+    for number in numbers:
+        apart = np.abs(places - number.get_position())
+        number.set_visible(not (apart < distances).all(axis=1).any())
 
 
 def _with(table: pd.DataFrame, column: str) -> pd.DataFrame:

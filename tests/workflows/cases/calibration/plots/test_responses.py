@@ -3,6 +3,8 @@
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.collections import PathCollection
+from matplotlib.text import Annotation
 
 from bulkwear.postproc.inference.problem import Measured
 from bulkwear.postproc.plots.style import remarks_of
@@ -100,3 +102,21 @@ def test_progress_shows_the_stopping_rule():
     np.testing.assert_allclose(figure.axes[0].lines[0].get_ydata(), [0.8, 0.4])
     assert figure.axes[0].lines[1].get_ydata()[0] == 0.5
     assert "(bit)" in figure.axes[1].get_xlabel()
+
+
+def test_marks_at_the_ends_of_the_range_are_whole_and_clear_of_numbers():
+    """A mark on the border is not cut, one outside the range is not drawn, no contour's number lies on a mark."""
+    simulations = grid().iloc[[0, 3, 12]]
+    published = pd.DataFrame({NAMES[0]: [0.7, 0.9], NAMES[1]: [0.1, 0.4], "shear_angle_deg": [35.7, 30.0]})
+    figure = plots.response_maps(grid(), simulations, {}, published, NAMES, REMARKS)
+    drawn = figure.axes[0].collections
+    marks = [each for each in drawn if isinstance(each, PathCollection)]
+    assert all(not each.get_clip_on() for each in marks)
+    places = np.vstack([each.get_offsets() for each in marks])
+    assert len(places) == 4 and places[:, 0].max() == 0.7
+    numbers = [text for text in figure.axes[0].texts if text.get_visible() and not isinstance(text, Annotation)]
+    everything = [text for text in figure.axes[0].texts if not isinstance(text, Annotation)]
+    distances = np.multiply(plots.CLEAR_OF_MARKS, np.ptp(grid()[NAMES].to_numpy(), axis=0))
+    for text in numbers:
+        assert not (np.abs(places - text.get_position()) < distances).all(axis=1).any()
+    assert 0 < len(numbers) <= len(everything)
