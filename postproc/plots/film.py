@@ -88,7 +88,7 @@ def film_pictures(
         line.set_segments(lines)
         title.set_text(frame_title(run, frame))
         canvas.draw()
-        figure.set_layout_engine("none")  # the first frame's layout is that of all
+        figure.set_layout_engine(None)  # the first frame's layout is that of all
         drawn.append(np.asarray(canvas.buffer_rgba())[..., :3].copy())
     return drawn
 

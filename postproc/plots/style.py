@@ -146,14 +146,14 @@ def scaled(unit: str, largest: float) -> tuple[str, FuncFormatter]:
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as its name ends: PNG, SVG or PDF; without the date, so that equal figures are equal files.
 
-    It is laid out the first time: all its forms have the same places.
+    It is laid out the first time: all its forms have the same places, and are drawn once each.
     """
     fold_labels(figure)
     kind = Path(path).suffix[1:]
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind)
     with mpl.rc_context({"svg.hashsalt": "bulkwear"}):
         figure.savefig(path, dpi=RESOLUTION, metadata=undated)
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)
 
 
 def fold_labels(figure: Figure) -> None:

@@ -6,8 +6,7 @@ Comments, docstrings and blank lines of Python do not count, nor does what only 
 from __future__ import annotations
 
 import ast
-import io
-import tokenize
+import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -37,6 +36,10 @@ ASIDE = {  # files that change no number of a run
 ASIDE_OF_CASES = {"checks.py", "evaluation.py", "machine_checks.py", "study.py", "volume.py", "work.py"}
 ROOTS = ("case.py", "decks.py", "driver.py", "simulations.py")  # of a case's folder, whence its code is found
 PACKAGE_NAME = "bulkwear"
+# of Python: texts, within which a # begins no comment, and comments
+TEXT_OR_COMMENT = re.compile(
+    r"""("{3}|'{3})(?:\\.|(?!\1).)*\1|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|\#[^\n]*""", re.DOTALL
+)
 
 
 def part_hashes(cases: Iterable[str], root: Path = PACKAGE) -> dict[str, str]:
@@ -109,24 +112,10 @@ def _kept_essence(path: Path, changed_ns: int) -> str:
 
 def essence(text: str) -> str:
     """Return Python without comments, docstrings, blank lines and spaces at the ends of lines."""
-    lines = text.splitlines()
-    if any("#" in line and ("'" in line or '"' in line) for line in lines):
-        lines = _without_comments(text)
-    else:
-        lines = [line.partition("#")[0] for line in lines]
+    lines = TEXT_OR_COMMENT.sub(lambda found: "" if found[0].startswith("#") else found[0], text).splitlines()
     for said in _docstrings(ast.parse(text)):
         lines[said.lineno - 1 : said.end_lineno] = [""] * (said.end_lineno - said.lineno + 1)
     return "\n".join(line.rstrip() for line in lines if line.strip())
-
-
-def _without_comments(text: str) -> list[str]:
-    """Return the lines of Python without comments, where a # may be part of a text; slower than to cut at each #."""
-    lines = text.splitlines()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type == tokenize.COMMENT:
-            row, column = token.start
-            lines[row - 1] = lines[row - 1][:column]
-    return lines
 
 
 def _docstrings(node: ast.AST) -> Iterator[ast.expr]:

@@ -33,6 +33,7 @@ STREAMS = (1, 2)  # standard output and error
 INTERRUPTED = 130  # exit code of a program that Ctrl-C ended
 PRELOADED = ("bulkwear.postproc.plots", "bulkwear.postproc.tables", "bulkwear.workflows.report", "matplotlib.backends")
 BACKENDS = {"backend_agg", "backend_svg", "backend_pdf"}  # of figures; others need what a machine may not have
+LIBRARIES = ("meshio", "pyvista")  # which modules import where they need them: most studies have such figures
 
 
 def start() -> subprocess.Popen | None:
@@ -115,12 +116,17 @@ def serve(waiting: socket.socket) -> None:
 
 
 def _preload() -> None:
-    """Import what figures import, the first time."""
+    """Import what figures import, and read the code with which each compares that of its runs; the first time."""
     for name in PRELOADED:
         package = importlib.import_module(name)
         for module in pkgutil.iter_modules(package.__path__):
             if name != "matplotlib.backends" or module.name in BACKENDS:
                 importlib.import_module(f"{name}.{module.name}")
+    for name in LIBRARIES:
+        importlib.import_module(name)
+    from bulkwear.workflows.engine.code_parts import part_hashes
+
+    part_hashes(())  # keeps what it has read
 
 
 def _answer(asked: socket.socket) -> None:

@@ -68,6 +68,23 @@ def test_words_about_code_are_no_code():
     assert essence(bare.replace("1", "2")) != essence(bare) != essence(bare.replace("#", "%"))
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        '"""a\n# b\n"""',
+        "'''a\n\"# b'''",
+        "'\\'# b'",
+        "'''a\\''' # b'''",
+        "f'{1}# b'",
+        "r'# b\\\\'",
+    ],
+)
+def test_a_number_sign_within_a_text_begins_no_comment(text):
+    """In texts of one line and of several, with either quote, and with escaped ones."""
+    assert essence(f"x = {text}  # said") == essence(f"x = {text}")
+    assert "# b" in essence(f"x = {text}")
+
+
 def test_every_part_of_every_case_has_files():
     """No pattern has lost its files, and no file is in two parts."""
     for name in case_names():

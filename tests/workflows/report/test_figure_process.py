@@ -61,6 +61,18 @@ def made(project) -> bool:
     return pd.read_csv(project / "beds.csv")["mass_found_kg"].tolist() == [1.9]
 
 
+def test_what_figures_need_is_there_before_it_forks():
+    """The libraries, and the code that is compared with that of the runs: read by no figure again."""
+    code = (
+        "import sys; from bulkwear.workflows.report import figure_process; figure_process._preload();"
+        "from bulkwear.workflows.engine.code_parts import _kept_essence, part_hashes;"
+        "read = _kept_essence.cache_info().misses; part_hashes(());"
+        "print(read > 0, _kept_essence.cache_info().misses - read, set(figure_process.LIBRARIES) <= set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=REPOSITORY, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "0", "True"]
+
+
 def test_it_makes_what_is_asked(process, project):
     """In the folder of who asks, and with the log of the job."""
     assert job(project, process[1]).wait(TIMEOUT) == 0

@@ -262,7 +262,7 @@ def _in_order(
 def page(remarks: Sequence[str]) -> Figure:
     """Return an empty figure of the largest size, on which pictures have places of their own."""
     figure = new_figure(remarks, LARGEST_HEIGHT)
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)
     return figure
 
 
