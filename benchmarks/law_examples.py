@@ -20,7 +20,7 @@ import numpy as np
 import yaml
 
 from bulkwear.postproc.reference import impact_angle
-from bulkwear.postproc.wear.coefficient import coefficient_per_pa
+from bulkwear.postproc.wear.coefficient import coefficient_per_pa, dimensionless_coefficient
 from bulkwear.postproc.wear.kernels import kernel_column, kernel_value
 from bulkwear.workflows.config.design import load_study
 
@@ -28,7 +28,7 @@ MM3 = 1e9  # per m3
 LINE = 120  # characters
 TIMES, ALPHA = "\u00d7", "\u03b1"
 LOAD_N, PATH_M, FRICTION = 5.0, 180.0, 0.5  # of a pin that is dragged over a plate
-HARDNESS_PA, K = 1.47e9, 9.3e-4  # -, of the steel in docs/wear.md
+STEEL = "mild_steel"  # of the file of materials, with its hardness
 TREMBLE_M, TREMBLE_HZ, HOUR_S = 1e-6, 100.0, 3600.0  # to each side, of a contact that sticks
 ROLLING_M, ROLLING_RATIO = 500.0, 0.05  # the ratio is assumed
 SPEED, MASS_KG, OBLIQUE_DEG, SHALLOW_DEG = 8.0, 1000.0, 30.0, 15.0  # m/s; of ore that hits a plate
@@ -85,18 +85,20 @@ def archard() -> Example:
 
 def hardness() -> Example:
     """The same pin on a plate of known hardness."""
-    alpha, work = coefficient_per_pa(K, HARDNESS_PA), LOAD_N * PATH_M
+    hardness, work = load_study("pin_on_disc").materials["walls"][STEEL]["hardness_pa"], LOAD_N * PATH_M
+    k = float(short(dimensionless_coefficient(default_coefficient(), hardness)))
+    alpha = coefficient_per_pa(k, hardness)
     return Example(
         "Archard, scaled by hardness",
         "archard",
-        f"The same pin on a plate of k = {short(K)} and H = {short(HARDNESS_PA)} Pa, as the [file of"
+        f"The same pin on a plate of k = {short(k)} and H = {short(hardness, 4)} Pa, as the [file of"
         " materials](wear.md#which-coefficient) has them; a plate twice as hard wears half as much.",
-        f"V = k F L / H = {short(K)} x {LOAD_N:g} N x {PATH_M:g} m / {short(HARDNESS_PA)} Pa",
+        f"V = k F L / H = {short(k)} x {LOAD_N:g} N x {PATH_M:g} m / {short(hardness, 4)} Pa",
         "Steel of one kind, softer than the abrasive.",
-        K / HARDNESS_PA * work,
+        k / hardness * work,
         alpha,
         {"sliding_work_J": work},
-        {"walls": {"steel": {"hardness_pa": HARDNESS_PA, "wear": {"iron_ore_10mm": {"wear_coefficient_k": K}}}}},
+        {"walls": {"steel": {"hardness_pa": hardness, "wear": {"iron_ore_10mm": {"wear_coefficient_k": k}}}}},
     )
 
 
@@ -235,9 +237,9 @@ def hit(degrees: float, kernel: str, given: dict[str, float]) -> float:
     return float(value(contacts, motion, up)[0])
 
 
-def short(value: float) -> str:
-    """Return three significant digits of a number, without the zeros and the plus of an exponent."""
-    return f"{float(f'{value:.3g}'):g}".replace("e+", "e").replace("e0", "e").replace("e-0", "e-")
+def short(value: float, digits: int = 3) -> str:
+    """Return significant digits of a number, without the zeros and the plus of an exponent."""
+    return f"{float(f'{value:.{digits}g}'):g}".replace("e+", "e").replace("e0", "e").replace("e-0", "e-")
 
 
 class Numbers(yaml.SafeDumper):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import yaml
 
-from benchmarks.law_examples import HARDNESS_PA, Numbers, examples, page
+from benchmarks.law_examples import Numbers, examples, page
 from bulkwear.postproc.wear.laws import LAWS, worn_volume
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.project import Project
@@ -49,7 +49,8 @@ def test_the_lines_of_materials_give_the_volume_by_hand(tmp_path):
     package = yaml.safe_load((REPOSITORY / "config" / "materials.yaml").read_text(encoding="utf-8"))
     volumes = []
     for factor in (1.0, 2.0):
-        steel = package["walls"]["steel"] | lines_of(example)["walls"]["steel"] | {"hardness_pa": factor * HARDNESS_PA}
+        told = lines_of(example)["walls"]["steel"]
+        steel = package["walls"]["steel"] | told | {"hardness_pa": factor * told["hardness_pa"]}
         (tmp_path / "config").mkdir(exist_ok=True)
         (tmp_path / "config" / "materials.yaml").write_text(yaml.safe_dump({"walls": {"steel": steel}}))
         law, parameters = law_in({"particle_scale": 1, "bed": {"material": "iron_ore_10mm"}}, Project(tmp_path))

@@ -16,6 +16,7 @@ from tests.support.own_machine_project import ORE, TINY, machine_study
 K, H, ALPHA = 1e-3, 2e9, 5e-13  # -, Pa, 1/Pa: k / H, to a rounding
 DEFAULT_ALPHA = 6.3e-13  # 1/Pa, of config/default.yaml
 ROUNDING = 1e-15  # relative; one quotient or product
+VICKERS, DIGITS = 9.807e6, 5e-4  # Pa, of 1 HV; -, of a number with four digits
 STEEL, PERSPEX = "walls:\n  steel:\n", "  perspex:\n"
 STUDY = "studies/small.yaml"
 
@@ -62,6 +63,14 @@ def test_a_known_hardness_tells_k_of_a_coefficient_in_1_per_pa(config):
     bed = study.beds[study.bed_of(study.runs[0].name)]
     assert len({run_digest(each.case, each.runs[0].parameters, bed) for each in (study, scaled)}) == 1
     assert "wear_coefficient_k" not in study.design_table()[0] and not hardness_words([])
+
+
+def test_the_hardness_of_the_source_s_disc_is_known():
+    """143 HV (Table 5.1), to the digits of the file; so each run of the pin tells its k."""
+    for run in load_study("pin_on_disc").runs:
+        wear = run.parameters["wear"]
+        assert wear["wall_hardness_pa"] == pytest.approx(143.0 * VICKERS, rel=DIGITS)
+        assert wear["wear_coefficient_k"] == pytest.approx(wear["wear_coefficient_per_pa"] * wear["wall_hardness_pa"])
 
 
 def test_the_stronger_way_to_give_a_coefficient_counts(config):
