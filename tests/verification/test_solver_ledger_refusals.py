@@ -2,18 +2,23 @@
 
 import re
 import shutil
+import subprocess
 
 import numpy as np
 import pytest
 
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.mesh import write_stl
+from bulkwear.workflows.engine.solver import solver_environment
+from tests.support.patience import LONGEST_S
 from tests.verification.ledger_cases import (
     LEDGER_LINE,
     MESH_LINE,
     PIN_MOTION,
     REPOSITORY,
+    SOLVER,
     build,
+    command,
     pin,
     run,
     said_when_refused,
@@ -26,6 +31,15 @@ pytestmark = pytest.mark.solver
 def test_the_plain_solver_does_not_know_the_ledger(tmp_path):
     """LIGGGHTS itself stops at the line, so no run goes on without a ledger that the deck asks for."""
     assert "Invalid fix style" in said_when_refused(tmp_path, solver=shutil.which("liggghts"))
+
+
+@pytest.mark.parametrize("solver", ["liggghts", str(SOLVER)])
+def test_the_installed_liggghts_has_no_superquadrics(tmp_path, solver):
+    """It is compiled without them, so that grains are spheres or clumps (docs/grain_shape.md)."""
+    (tmp_path / "deck.in").write_text("atom_style superquadric\n")
+    words = command(solver=solver)
+    done = subprocess.run(words, cwd=tmp_path, env=solver_environment(), capture_output=True, timeout=LONGEST_S)
+    assert done.returncode != 0 and b"Invalid atom style" in done.stdout + done.stderr
 
 
 @pytest.mark.parametrize(
