@@ -26,6 +26,7 @@ from bulkwear.workflows.config.coefficients import (
 from bulkwear.workflows.config.columns import as_settings, opened, row_overrides, setting_columns, with_row
 from bulkwear.workflows.config.factors import FACTORS, can_tell, factors_of
 from bulkwear.workflows.config.law_settings import check_law, check_volume
+from bulkwear.workflows.config.laws_beside import check_beside
 from bulkwear.workflows.config.layers import (
     ConfigError,
     Layer,
@@ -63,6 +64,7 @@ from bulkwear.workflows.config.validation import (
 )
 from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
+from bulkwear.workflows.engine.derived import laws_beside
 from bulkwear.workflows.engine.project import Project, current_project
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
@@ -228,6 +230,7 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     fidelity = fidelity_of(sources)
     layers = sources.stack(fidelity)
     check_law(layers)
+    check_beside(layers)
     settings = sources.merged(layers)
     materials = check_materials(read_materials(settings, project))
     head = sources.head
@@ -278,7 +281,8 @@ def _told(
 def _check_own_code(study: Study, layers: tuple[Layer, ...]) -> None:
     """Check a project's own laws, and its words of templates on the first run. Raises ConfigError."""
     first, own = study.runs[0], dict(current_project().own_laws)
-    given = {law: values for run in study.runs for law, values in study.case.laws(run.parameters)} if own else {}
+    case, runs = study.case, [run.parameters for run in study.runs] if own else []
+    given = {law: values for run in runs for law, values in (*case.laws(run), *laws_beside(run))}
     for law in own.keys() & given:
         check_volume(law, given[law])
     decks = partial(sample_decks, study.case, first.parameters, study.beds.get(study.bed_of(first.name)))

@@ -47,7 +47,11 @@ def parameters_schema(law: str) -> dict[str, Any]:
 def law_settings(layers: Sequence[Layer]) -> dict[str, float]:
     """Return the parameters of the law that the layers choose: what they give, defaults for the rest."""
     law, own = _layers_of_law(layers)
-    given = {key: value for layer in own for key, value in _given(layer).items()}
+    return completed(law, {key: value for layer in own for key, value in _given(layer).items()})
+
+
+def completed(law: str, given: Mapping[str, Any]) -> dict[str, float]:
+    """Return the parameters of a law: what is given, defaults for the rest, nothing for what has neither."""
     values = {parameter.name: given.get(parameter.name, parameter.default) for parameter in LAWS[law].parameters}
     return {
         key: float(value) if isinstance(value, int) else value for key, value in values.items() if value is not None

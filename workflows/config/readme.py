@@ -54,7 +54,7 @@ LAWS_HEAD = """\
 ## Wear laws
 
 Values of `wear.law`. `wear.parameters` holds the parameters of the chosen law, in the units that their names spell;
-those of another law are refused.
+those of another law are refused, and stand in `wear.beside.<law>`.
 
 """
 LAW_TABLE = """

@@ -12,7 +12,8 @@ from functools import reduce
 from typing import Any
 
 from bulkwear.workflows.config.coefficients import COEFFICIENTS, WEAR, alternatives_of
-from bulkwear.workflows.config.law_settings import law_settings
+from bulkwear.workflows.config.law_settings import PARAMETERS, law_settings
+from bulkwear.workflows.config.laws_beside import beside_settings
 from bulkwear.workflows.config.layers import (
     ConfigError,
     Layer,
@@ -27,6 +28,7 @@ from bulkwear.workflows.config.validation import check_alternatives, check_layer
 from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
 from bulkwear.workflows.engine.cases import case_folders, case_names, find_case
 from bulkwear.workflows.engine.project import Project, current_project
+from bulkwear.workflows.engine.worn_pair import BESIDE
 
 DESIGN = "design"  # key of a study, and of its fidelity blocks
 MATERIALS = "materials.yaml"  # in config, where a study names no other
@@ -103,9 +105,10 @@ class Sources:
         settings: dict[str, Any] = {}
         for layer in layers:
             settings = overridden(settings, layer, alternatives_of(self.case, layer.values))
-        settings["wear"].pop("parameters", None)
-        of_law = {"wear": {"parameters": found}} if (found := law_settings(layers)) else {}
-        return coerce_numbers(merge(settings, of_law), case_schema(self.case.name, "settings"))
+        told = {PARAMETERS: law_settings(layers), BESIDE: beside_settings(layers)}
+        rest = {key: value for key, value in settings[WEAR].items() if key not in told}
+        settings[WEAR] = rest | {key: found for key, found in told.items() if found}
+        return coerce_numbers(settings, case_schema(self.case.name, "settings"))
 
 
 def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) -> Sources:

@@ -18,10 +18,10 @@ import numpy as np
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.caps import edge_limit
 from bulkwear.postproc.wear.laws import kernels_of_laws
-from bulkwear.workflows.engine.derived import law_parameters, law_volume
+from bulkwear.workflows.engine.derived import law_parameters, law_volume, laws_beside
 from bulkwear.workflows.engine.schedule import Span, first_span, next_span
 from bulkwear.workflows.engine.work import Stage, Work
-from bulkwear.workflows.engine.worn_pair import COEFFICIENT_ERROR, ONLY_TOLD, WornPair, pair_of_section
+from bulkwear.workflows.engine.worn_pair import BESIDE, COEFFICIENT_ERROR, ONLY_TOLD, WornPair, pair_of_section
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -117,7 +117,7 @@ class Case:
     geometry: tuple[str, ...] = ()
     consumed: tuple[str, ...] = ("wear", "remeshing", "sliding")
     length: tuple[tuple[str, str], ...] = ()
-    only_told: tuple[str, ...] = (*ONLY_TOLD, COEFFICIENT_ERROR)
+    only_told: tuple[str, ...] = (*ONLY_TOLD, COEFFICIENT_ERROR, BESIDE)
     first_title = ""
     leftovers: tuple[str, ...] = (SETUP_LOADS,)
     kept: tuple[str, ...] = ()
@@ -249,8 +249,8 @@ class Case:
         return [(parameters["wear"]["law"], law_parameters(parameters))] if "wear" in parameters else []
 
     def kernels(self, parameters: Parameters) -> dict[str, dict[str, float]]:
-        """Return {contact kernel: {parameter: value}} whose sums the wear laws of a run need."""
-        return kernels_of_laws(self.laws(parameters))
+        """Return {contact kernel: {parameter: value}} whose sums the wear laws of a run need, and those beside them."""
+        return kernels_of_laws([*self.laws(parameters), *laws_beside(parameters)])
 
     def law_volume(self, parameters: Parameters, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame) -> np.ndarray:
         """Return the volume (m,) m3 that the wear law makes of a cycle's ledger, a row per triangle of the surface,

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from bulkwear.postproc.wear.laws import law_kernels, worn_volume
+from bulkwear.postproc.wear.coefficient import PER_PA
+from bulkwear.postproc.wear.laws import kernels_of_laws, worn_volume
 from bulkwear.workflows.engine.grains import smallest_radius
+from bulkwear.workflows.engine.worn_pair import BESIDE
 
 HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
@@ -159,9 +161,19 @@ def law_volume(run: Mapping[str, Any], ledger: Mapping[str, Any]) -> Any:
     return worn_volume(run["wear"]["law"], {name: np.asarray(ledger[name]) for name in ledger}, law_parameters(run))
 
 
+def laws_beside(run: Mapping[str, Any]) -> list[tuple[str, dict[str, float]]]:
+    """Return name and parameters (SI), the run's coefficient included, of each law by which nothing need wear and whose
+    sums the ledgers of a run hold too.
+    """
+    if BESIDE not in run.get("wear", {}):
+        return []
+    coefficient = {PER_PA: run["wear"]["accelerated_wear_coefficient_per_pa"]}
+    return [(law, {**coefficient, **given}) for law, given in run["wear"][BESIDE].items()]
+
+
 def run_kernels(run: Mapping[str, Any]) -> dict[str, dict[str, float]]:
-    """Return {contact kernel: {parameter: value}} whose sums the wear law of a run needs."""
-    return law_kernels(run["wear"]["law"], law_parameters(run))
+    """Return {contact kernel: {parameter: value}} whose sums the wear law of a run needs, and those beside it."""
+    return kernels_of_laws([(run["wear"]["law"], law_parameters(run)), *laws_beside(run)])
 
 
 def template_sections(settings: Mapping[str, Any]) -> dict[str, Any]:

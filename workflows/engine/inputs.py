@@ -16,11 +16,14 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.postproc.wear import WEAR_VERSION
+from bulkwear.postproc.wear.laws import kernels_of_laws
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case, Parameters
 from bulkwear.workflows.engine.chain import Chain, write_bed
+from bulkwear.workflows.engine.derived import laws_beside
 from bulkwear.workflows.engine.own_code import code_of_case, code_of_law
 from bulkwear.workflows.engine.schedule import first_span
+from bulkwear.workflows.engine.worn_pair import BESIDE
 
 DERIVED = (
     "time_step_s",
@@ -80,6 +83,7 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
         "ledger": parameters["ledger"],
         "pieces": [case.piece_ends(parameters, bed, span) for span in spans],
         **{section: _simulated(case, section, values) for section, values in sections.items()},
+        **({BESIDE: beside} if (beside := kernels_of_laws(laws_beside(parameters))) else {}),
         **_code_of_project(case, parameters),
     }
     return {
@@ -152,7 +156,8 @@ def _changed_setting(old: Any, new: Any, name: str = "") -> str:
 
 def _code_of_project(case: Case, parameters: Parameters) -> dict[str, Any]:
     """Return the hashes of a project's own files that a run depends on; nothing where all is the package's."""
-    law = {file: found for name, _ in case.laws(parameters) for file, found in code_of_law(name).items()}
+    laws = [*case.laws(parameters), *laws_beside(parameters)]
+    law = {file: found for name, _ in laws for file, found in code_of_law(name).items()}
     return {name: value for name, value in {"law": law, "case": code_of_case(case)}.items() if value}
 
 

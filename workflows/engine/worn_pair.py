@@ -12,6 +12,7 @@ from bulkwear.postproc.wear.coefficient import DIMENSIONLESS
 WALL_HARDNESS = "wall_hardness_pa"  # key of what wears, from the file of materials
 LAW_FIGURES = ("volume_by_law", "wear_by_law", "maps_by_law")  # of `Case.shared_figures`: laws side by side
 COEFFICIENT_ERROR = "wear_coefficient_error"  # key of the section `wear`: -, half of the 95 % interval over the value
+BESIDE = "beside"  # key of the section `wear`: further laws whose sums the ledgers hold, with their parameters
 ONLY_TOLD = (DIMENSIONLESS, WALL_HARDNESS)  # keys beside the coefficient in 1/Pa, which is what wears
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.postproc.plots.chart import BARS, Axis, Chart, Layer, Panel
 from bulkwear.postproc.wear.laws import LAWS, NEUTRAL_LAW
+from bulkwear.workflows.engine.derived import laws_beside
 from bulkwear.workflows.report import figure_findings
 from bulkwear.workflows.report.products import Job, every_run, figure, tables
 
@@ -42,8 +43,8 @@ CHARTS = (
 
 
 def what_wears(study: Study) -> dict[str, list[tuple[Any, ...]]]:
-    """Return {run: (wear law, its parameters, name and label of the faces, {law: parameters} of all parts) of each part
-    that wears}; one without a name or a label where all faces are one.
+    """Return {run: (wear law, its parameters, name and label of the faces, {law: parameters} of all parts and of laws
+    beside them) of each part that wears}; one without a name or a label where all faces are one.
     """
     found = {}
     for run in study.runs:
@@ -52,7 +53,8 @@ def what_wears(study: Study) -> dict[str, list[tuple[Any, ...]]]:
             numbered = enumerate(run.parameters["parts"])
             parts = [(part["name"], number) for number, part in numbered if part["wears"]]
         laws = study.case.laws(run.parameters)
-        found[run.name] = [(*law, *part, dict(laws)) for law, part in zip(laws, parts, strict=True)]
+        every = dict([*laws_beside(run.parameters), *laws])
+        found[run.name] = [(*law, *part, every) for law, part in zip(laws, parts, strict=True)]
     return found
 
 

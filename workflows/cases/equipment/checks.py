@@ -119,13 +119,14 @@ def updates_deform(run: CheckedRun) -> Fault | None:
 
 
 def laws_have_parameters(run: CheckedRun) -> Fault | None:
-    """Each part's wear law finds its parameters in wear.parameters, which are those of wear.law."""
+    """Each part's wear law finds its parameters in wear.beside, or in wear.parameters, which are those of wear.law."""
     for part in run.parameters["parts"]:
         if part["wears"] and not _has_parameters(part):
             law, own = run.settings["wear"]["law"], run.settings["parts"][part["name"]].get("law")
             without = [name for name, each in LAWS.items() if not each.parameters]
             return (f"parts.{part['name']}.law" if own else "wear.law"), (
-                f"wear.law ({law}), whose parameters stand in wear.parameters, or one without any: {', '.join(without)}"
+                f"wear.law ({law}), whose parameters stand in wear.parameters, one of wear.beside with its own, or one"
+                f" without any: {', '.join(without)}"
             )
     return None
 

@@ -16,7 +16,7 @@ from bulkwear.workflows.cases.equipment.motions import motion_of, surface_runs
 from bulkwear.workflows.cases.equipment.parameters import filled_mass, laws_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, feed_face, rectangle, room_needed
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.derived import neighbour_skin
+from bulkwear.workflows.engine.derived import laws_beside, neighbour_skin
 from bulkwear.workflows.engine.schedule import Span
 
 Parameters = Mapping[str, Any]
@@ -159,7 +159,7 @@ def part_words(run: Parameters, number: int, cycle: int, begin: int) -> dict[str
     """Return what a deck says of a part: its mesh, how it goes on from that step, its ledger."""
     part = run["parts"][number]
     motion, mesh = motion_of(part["motion"]), f"{mesh_name(part)}_{cycle}"
-    kernels = kernels_of_laws(laws_of(run))  # in the ledgers of all parts: a run's ledger is one table
+    kernels = kernels_of_laws([*laws_of(run), *laws_beside(run)])  # of all parts: a run's ledger is one table
     words = [word for name, given in kernels.items() for word in _kernel_words(name, given)]
     return {
         "name": part["name"],

@@ -23,6 +23,7 @@ from bulkwear.workflows.engine.derived import (
     youngs_modulus,
 )
 from bulkwear.workflows.engine.pouring import bulk_density, particles_of_mass
+from bulkwear.workflows.engine.worn_pair import BESIDE
 
 REPORTS = 20  # rows of the table of the flow in a block
 SHARED = ("inlet", "filling", "outlets", "periodic", "domain")  # sections that a study may leave out
@@ -88,6 +89,7 @@ def wall_materials(parts: Mapping[str, Any], materials: Mapping[str, Any]) -> li
 def part_section(name: str, part: Mapping[str, Any], wear: Mapping[str, Any], types: list[str]) -> dict[str, Any]:
     """Return a part: as given, with what the section `wear` says where it says nothing itself."""
     given = {key: value for key, value in part.items() if key not in ("role", "motion")}
+    beside, law = wear.get(BESIDE, {}), given.get("law", wear["law"])
     return {
         "name": name,
         **{key: wear[key] for key in PART_DEFAULTS if key in wear},
@@ -95,7 +97,7 @@ def part_section(name: str, part: Mapping[str, Any], wear: Mapping[str, Any], ty
         "wears": part["role"] == "wears",
         "motion": part.get("motion"),
         "type": types.index(part["material"]) + 2,
-        "law_parameters": dict(wear.get("parameters", {})),
+        "law_parameters": dict(beside[law] if law in beside else wear.get("parameters", {})),
         "drawing": drawing_digest(part["file"]),
     }
 

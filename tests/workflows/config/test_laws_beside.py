@@ -1,0 +1,122 @@
+"""Laws beside that of a study: which are allowed, what of them reaches runs, decks, parts, what is simulated again."""
+
+from dataclasses import replace
+
+import pytest
+
+from bulkwear.postproc.wear.laws import LAWS
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.engine.inputs import run_digest, simulated_from
+from bulkwear.workflows.report.laws import what_wears
+from tests.support.law_cases import LONG_SLIP, long_slip_registered
+from tests.support.own_machine_project import machine_study
+from tests.support.tiny import tiny_study
+
+THRESHOLD = {"threshold_velocity_m_per_s": 0.5}
+OKA = {
+    "angle_exponent": 0.7,
+    "hardness_exponent": 2.0,
+    "hardness_pa": 1.5e9,
+    "velocity_exponent": 2.3,
+    "reference_velocity_m_per_s": 100.0,
+}
+BESIDE = {"finnie": {}, "impact_threshold": THRESHOLD, "combined": {"rolling_ratio": 0.1}}
+
+
+def of_run(beside):
+    """Study and parameters of a run with these laws beside Archard's."""
+    study = tiny_study(wear={"beside": beside} if beside else {})
+    return study, study.run("R9_plain").parameters
+
+
+def digest(beside, ledger="solver"):
+    study = tiny_study(wear={"beside": beside} if beside else {}, ledger=ledger, solver={"rolling_friction": "cdt"})
+    return run_digest(study.case, study.run("R9_plain").parameters, study.beds[study.bed_of("R9_plain")])
+
+
+@pytest.mark.parametrize(
+    ("beside", "fault"),
+    [
+        ("{finie: {}}", "wear.beside.finie (a block of keys) is no known key, the nearest is wear.beside.finnie"),
+        (
+            "{impact_threshold: {threshold_velocity: 2}}",
+            "wear.beside.impact_threshold.threshold_velocity has no unit, write"
+            " wear.beside.impact_threshold.threshold_velocity_m_per_s (found threshold_velocity: 2)",
+        ),
+        (
+            "{combined: {rolling_ratio: -1}}",
+            "wear.beside.combined.rolling_ratio is -1, allowed is a number from 0 to 1000000",
+        ),
+        (
+            "{impact_threshold: {}}",
+            "wear.beside.impact_threshold.threshold_velocity_m_per_s is missing, allowed is a number from 0 to 100 m/s",
+        ),
+        ("{archard: {}}", "wear.beside has archard, which is wear.law, allowed are other laws"),
+        ("2", "wear.beside is 2, allowed is a block of wear laws by name, each a block of its parameters, {} of one"),
+    ],
+)
+def test_a_wrong_law_beside_is_named_with_its_place(config, beside, fault):
+    """Unknown, without a unit, beyond its range, without a parameter, the study's own, no block: one sentence each."""
+    config.edit("studies/small.yaml", "fidelities:", f"wear: {{beside: {beside}}}\nfidelities:")
+    with pytest.raises(ConfigError) as caught:
+        load_study("small", config.project)
+    assert str(caught.value).startswith(f"config/studies/small.yaml, line 6: {fault}")
+
+
+def test_a_kernel_is_summed_with_one_set_of_parameters(monkeypatch):
+    """Two laws that want it with others are refused, with the same they are not."""
+    with long_slip_registered():
+        monkeypatch.setitem(LAWS, "slower", replace(LONG_SLIP, words="slower."))
+        own = {"law": "long_slip", "parameters": {"exponent": 2}}
+        tiny_study(wear={**own, "beside": {"slower": {"exponent": 2}}})
+        with pytest.raises(ConfigError, match=r"wear\.beside\.slower has other parameters of the contact kernel long_"):
+            tiny_study(wear={**own, "beside": {"slower": {"exponent": 1}}})
+
+
+def test_they_reach_kernels_and_figures_in_si_with_their_defaults():
+    """Kernels of all laws, each once; figures get every law that ledgers serve with the run's coefficient."""
+    study, run = of_run(BESIDE)
+    assert study.settings["wear"]["beside"]["combined"] == {"rolling_ratio": 0.1, "impact_ratio": 0.0}
+    assert study.case.kernels(run) == {"finnie_work": {}, "impact_above_threshold": THRESHOLD}
+    ((law, given, *_, others),) = what_wears(study)["R9_plain"]
+    assert (law, set(others)) == ("archard", {"archard", *BESIDE})
+    assert others["impact_threshold"] == {**given, **THRESHOLD}
+    assert given["wear_coefficient_per_pa"] == run["wear"]["accelerated_wear_coefficient_per_pa"]
+
+
+def test_stronger_layers_add_laws_and_change_parameters(config):
+    """A command line's threshold counts, and the study's other law stays."""
+    config.edit("studies/small.yaml", "fidelities:", "wear: {beside: {finnie: {}}}\nfidelities:")
+    study = load_study("small", config.project, {"wear": {"beside": {"impact_threshold": THRESHOLD}}})
+    assert study.settings["wear"]["beside"] == {"finnie": {}, "impact_threshold": THRESHOLD}
+
+
+@pytest.mark.parametrize("ledger", ["solver", "dumps"])
+def test_what_needs_no_further_sum_is_not_simulated_again(ledger):
+    """Ratios of rolling and impact are of sums that every ledger has; kernels, and their parameters, are not."""
+    plain = digest({}, ledger)
+    assert digest({"combined": {"rolling_ratio": 0.1}}, ledger) == plain
+    found = [plain, digest({"finnie": {}}, ledger), digest({"impact_threshold": THRESHOLD}, ledger)]
+    found.append(digest({"impact_threshold": {"threshold_velocity_m_per_s": 0.6}}, ledger))
+    assert len(set(found)) == 4
+
+
+def test_decks_ask_for_the_kernels_of_all_laws():
+    """Own law first; each kernel with its parameters."""
+    study, run = of_run(BESIDE)
+    deck = simulated_from(study.case, run, study.beds[study.bed_of("R9_plain")])["decks"][1]
+    assert " kernels finnie_work impact_above_threshold threshold_velocity_m_per_s 0.5" in deck
+
+
+def test_parts_of_a_machine_wear_by_laws_beside(tmp_path):
+    """Each law with its own parameters, which one block wear.parameters could not hold."""
+    parts = {"liner": {"law": "oka"}, "plate": {"law": "impact_threshold"}}
+    with machine_study(tmp_path, wear={"beside": {"oka": OKA, "impact_threshold": THRESHOLD}}, parts=parts) as study:
+        run = study.runs[0].parameters
+        laws = dict(study.case.laws(run))
+        deck = simulated_from(study.case, run, None)["decks"][1]
+        assert set(what_wears(study)[study.runs[0].name][0][-1]) == {"archard", "oka", "impact_threshold"}
+    assert {**OKA, "wear_coefficient_per_pa": laws["oka"]["wear_coefficient_per_pa"]} == laws["oka"]
+    assert laws["impact_threshold"]["threshold_velocity_m_per_s"] == 0.5
+    assert "kernels oka_energy" in deck and "impact_above_threshold threshold_velocity_m_per_s 0.5" in deck
