@@ -2,7 +2,8 @@
 
     python -m benchmarks.stream_laws                # in the root of the repository, after the study and its page
 
-Reads results/which_law/figures/wear_by_law.csv and the page's table of loads, writes anew what is between the marks.
+Reads figures/wear_by_law.csv and volume_by_law.csv of results/which_law and the page's table of loads, writes anew what
+is between the marks.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from benchmarks.impact_angle import OVER, TESTED
@@ -21,17 +23,18 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.markdown import prose
 
 PAGE = Path("docs") / "wear.md"
-RESULTS = Path("results") / "which_law" / "figures" / "wear_by_law.csv"
+RESULTS = Path("results") / "which_law"
 LOADS = Path("docs") / "tables" / "which_law_quick_loads.csv"
 KG_PER_S = 1.0 / 3.6  # of a t/h
 BEGIN, END = "<!-- by benchmarks.stream_laws -->", "<!-- end -->"
-PART = "plate"
+PART, SLOPE = "plate", "slide"
 LAWS = {  # in the order of the page
     "tangential_work": "Shear work",
     "archard": "Archard",
     "finnie": "Finnie",
     "oka": "Oka, quartz on steel of 1.4 GPa",
 }
+SLOPES = "slope over plate at {}°"
 RATIOS = tuple(angle for angle in TESTED if angle != OVER)
 
 
@@ -46,9 +49,20 @@ def ratios(laws: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame({angle: plate[f"A{angle}"] / plate[f"A{OVER}"] for angle in RATIOS}).loc[list(LAWS)]
 
 
-def table(found: pd.DataFrame) -> str:
-    """Return the table in Markdown; found: as from `ratios`."""
-    heads = ["law", *(f"{angle} over {OVER}°" for angle in RATIOS)]
+def slope_over_plate(volumes: pd.DataFrame) -> pd.DataFrame:
+    """Return volume of the slope over that of the plate above it (-), geometric mean over packings, a line per law of
+    LAWS and a column per angle of TESTED.
+
+    volumes: as from `law_volumes.law_volumes`; both parts have one coefficient. Raises KeyError as `ratios`.
+    """
+    logs = np.log(volumes.set_index(["part", "law", "setting", "packing"])["worn_volume_m3"])
+    found = np.exp((logs[SLOPE] - logs[PART]).groupby(["law", "setting"]).mean()).unstack()
+    return found.loc[list(LAWS), [f"A{angle}" for angle in TESTED]].set_axis(list(TESTED), axis=1)
+
+
+def table(found: pd.DataFrame, what: str = f"{{}} over {OVER}°") -> str:
+    """Return a table in Markdown; found: as from `ratios` or `slope_over_plate`; what: of its columns, by angle."""
+    heads = ["law", *(what.format(angle) for angle in found)]
     lines = [
         [LAWS[law], *(f"{value:.2f}" for value in row)] for law, row in zip(found.index, found.to_numpy(), strict=True)
     ]
@@ -73,11 +87,11 @@ def sentence(shares: Mapping[int, float]) -> str:
     return prose(f"Of the stream's energy along the plate's normal impacts bring {each}.") + "\n"
 
 
-def with_table(text: str, new: str) -> str:
+def with_table(text: str, new: str, begin: str = BEGIN) -> str:
     """Return the page with what is new in the place of what is between the marks. Raises ValueError without these."""
-    between = re.compile(f"(?<={re.escape(BEGIN)}\n\n)[^<]*(?=\n{re.escape(END)})")
+    between = re.compile(f"(?<={re.escape(begin)}\n\n)[^<]*(?=\n{re.escape(END)})")
     if not between.search(text):
-        raise ValueError(f"found no table between {BEGIN} and {END}, allowed is a page with one")
+        raise ValueError(f"found no table between {begin} and {END}, allowed is a page with one")
     return between.sub(lambda _: new, text, count=1)
 
 
@@ -89,7 +103,9 @@ def main() -> None:
     parser.add_argument("--page", type=Path, default=PAGE)
     given = parser.parse_args()
     shares = arriving(pd.read_csv(given.loads), load_study("which_law").settings["inlet"])
-    new = f"{table(ratios(pd.read_csv(given.results)))}\n{sentence(shares)}"
+    by_law = pd.read_csv(given.results / "figures" / "wear_by_law.csv")
+    slopes = slope_over_plate(pd.read_csv(given.results / "volume_by_law.csv"))
+    new = f"{table(ratios(by_law))}\n{table(slopes, SLOPES)}\n{sentence(shares)}"
     given.page.write_text(with_table(given.page.read_text(encoding="utf-8"), new), encoding="utf-8")
 
 

@@ -6,7 +6,19 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks.stream_laws import BEGIN, END, LAWS, LOADS, arriving, ratios, sentence, table, with_table
+from benchmarks.stream_laws import (
+    BEGIN,
+    END,
+    LAWS,
+    LOADS,
+    SLOPES,
+    arriving,
+    ratios,
+    sentence,
+    slope_over_plate,
+    table,
+    with_table,
+)
 from bulkwear.workflows.config.design import load_study
 from tests import REPOSITORY
 
@@ -40,6 +52,22 @@ def test_ratios_are_of_plates_that_are_hit_at_other_angles():
         ratios(made_up()[lambda rows: rows["law"] != "oka"])
 
 
+def test_slopes_are_set_over_the_plates_above_them():
+    """In each packing, then their geometric mean: 2 and 8 make 4; the page has a line per law, a column per angle."""
+    rows = [
+        {"setting": setting, "packing": packing, "part": part, "law": law, "worn_volume_m3": value}
+        for setting in OVER_A90
+        for law in LAWS
+        for packing, over in ((1, 2.0), (2, 8.0))
+        for part, value in (("plate", 3.0 * packing), ("slide", 3.0 * packing * over))
+    ]
+    found = slope_over_plate(pd.DataFrame(rows))
+    assert list(found) == [90, 60, 30, 15] and found.index.tolist() == list(LAWS)
+    np.testing.assert_allclose(found, 4.0)
+    told, new = page("wear.md").partition(BEGIN)[2].split("\n\n")[2], table(found, SLOPES)
+    assert told.splitlines()[:2] == new.splitlines()[:2] and told.count("|") == new.count("|")
+
+
 def test_the_page_gets_the_table_between_its_marks():
     """All else stays; the page in docs has a table of that form."""
     told = page("wear.md")
@@ -47,7 +75,7 @@ def test_the_page_gets_the_table_between_its_marks():
     changed = with_table(told, new)
     before, _, rest = told.partition(BEGIN)
     assert changed == f"{before}{BEGIN}\n\n{new}\n{END}{rest.partition(END)[2]}"
-    old = [line for line in rest.partition(END)[0].splitlines() if line.startswith("|")]
+    old = [line for line in rest.split("\n\n")[1].splitlines() if line.startswith("|")]
     assert [line.split("|")[1] for line in old] == [line.split("|")[1] for line in new.splitlines()]
     with pytest.raises(ValueError, match="found no table between"):
         with_table(before, new)
@@ -59,7 +87,7 @@ def test_ratios_are_those_of_the_page_of_the_study():
     sentence = re.search(r"over that of A90 it wears (.*?)\. ", said)[1]
     found = {law: float(ratio) for ratio, law in re.findall(r"([\d.]+) \([^)]*\) by ([a-z]+(?: work)?)", sentence)}
     assert set(found) == {SPOKEN.get(law, law) for law in LAWS}
-    told = page("wear.md").partition(BEGIN)[2].partition(END)[0]
+    told = page("wear.md").partition(BEGIN)[2].split("\n\n")[1]
     lines = [line.split("|")[1:-1] for line in told.splitlines() if line.startswith("|")][2:]
     rows = {name.strip(): [float(cell) for cell in cells] for name, *cells in lines}
     for law, name in LAWS.items():
