@@ -1,4 +1,4 @@
-"""The design of a test that tells wear laws apart: docs are up to date, effects are those of the laws, errors are as said."""
+"""The design of a test that tells wear laws apart: docs, effects in closed form, how often the right law is chosen."""
 
 import numpy as np
 import pandas as pd
