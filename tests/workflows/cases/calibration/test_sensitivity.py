@@ -7,10 +7,11 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.inference.surrogate import fit_surrogate
-from bulkwear.workflows.cases.calibration.sensitivity import sensitivity_table, why_not
+from bulkwear.workflows.cases.calibration.sensitivity import sensitivity_table
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.report.products import products_of
 from bulkwear.workflows.report.sensitivity import refused
+from bulkwear.workflows.report.surrogate_indices import why_not
 from tests.support.calibration_study import ROLLING, SLIDING
 from tests.support.charts import drawn_chart, names, values
 
@@ -67,9 +68,14 @@ def test_left_out_simulations_are_predicted():
 
 
 @pytest.mark.parametrize(
-    ("case", "name"), [("calibration", "calibration_sensitivity"), ("sliding_sample", "regression_sensitivity")]
+    ("case", "name"),
+    [
+        ("calibration", "calibration_sensitivity"),
+        ("sliding_sample", "regression_sensitivity"),
+        ("sliding_sample", "search_sensitivity"),
+    ],
 )
-def test_both_figures_of_indices_become_interactive(case, name):
+def test_all_figures_of_indices_become_interactive(case, name):
     """Two bars of each factor with their intervals, a panel per response; one that is refused has none."""
     known = sensitivity_table(calibrated(surrogate(lambda x: x @ SLOPES)))
     table = pd.concat([known, refused("discharge_time_s", "too few simulations")], ignore_index=True)

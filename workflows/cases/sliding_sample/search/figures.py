@@ -11,6 +11,7 @@ from bulkwear.workflows.cases.sliding_sample.search import findings
 from bulkwear.workflows.config.optimise import OPTIMISE, Optimise, optimise_of
 from bulkwear.workflows.config.packings import PACKINGS
 from bulkwear.workflows.config.rounds import rounds_of
+from bulkwear.workflows.report import sensitivity
 from bulkwear.workflows.report.predictions import error_of
 from bulkwear.workflows.report.products import Job, every_run, figure
 
@@ -109,3 +110,31 @@ def search_slices(job: Job) -> Any:
     best = best_confirmed(pd.read_csv(job.files.confirmed, dtype={"setting": str}))
     table = slices(tried_of(runs, search), best, search)
     return tried.slices(table, job.remarks), table
+
+
+@figure(
+    "Search",
+    "Which measure decides",
+    finding=sensitivity.finding,
+    inputs=INPUTS,
+    told=TOLD,
+    charts=(sensitivity.CHART,),
+    when=searches,
+    digits=6,
+    caption="""
+    Sobol indices with 95 % intervals: the part of the response's variance that a measure of the pattern makes over the
+    ranges of the search, alone and with all its interactions, where all vary evenly and independently, patterns that
+    cannot be made among them. The intervals are those of draws of the surrogate of all simulated patterns, so that they
+    hold what it does not know. Nothing is told of one that predicts patterns that are left out no better than their
+    mean does.
+    """,
+)
+def search_sensitivity(job: Job) -> Any:
+    """Draw the Sobol indices of the surrogates of a search."""
+    from bulkwear.postproc.plots.sensitivity import sensitivity_bars
+    from bulkwear.workflows.cases.sliding_sample.search.results import tried_of
+    from bulkwear.workflows.cases.sliding_sample.search.sensitivity import sensitivity_table
+
+    search, _, runs, _ = _runs(job)
+    table = sensitivity_table(tried_of(runs, search), search)
+    return sensitivity_bars(table, job.remarks), table

@@ -12,12 +12,14 @@ from bulkwear.postproc.statistics.intervals import Ends
 from bulkwear.workflows.cases.sliding_sample.search.record import FORESEEN, best_confirmed
 from bulkwear.workflows.config.rounds import last_round
 from bulkwear.workflows.report.sections import Cards, Pictures, Section, Table, Text
+from bulkwear.workflows.report.sensitivity import read_indices, sensitivity_blocks
 from bulkwear.workflows.report.text import name_and_unit
 
 if TYPE_CHECKING:
     from bulkwear.workflows.config.design import Study
 
 CONFIRMED, EXCLUDED, RECORD = "search/confirmed.csv", "search/excluded.csv", "figures/search_record.csv"
+SENSITIVITY = "figures/search_sensitivity.csv"
 DIGITS = 2
 ENOUGH = {"yes": "enough", "no": "too little", "open": "whether that is enough cannot be said"}
 
@@ -61,6 +63,8 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
                 Table(_read(folder / EXCLUDED), "excluded"),
                 Pictures(["search_record"]),
                 Table(_read(folder / RECORD), "search_record"),
+                Pictures(["search_sensitivity"]),
+                *sensitivity_blocks(read_indices(folder / SENSITIVITY)),
             ],
         ),
     ]

@@ -15,7 +15,7 @@ from tests.support.finished_samples import embedded, page_of_results, write_resu
 from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, small_search, write_runs
 
 WITHIN = 0.03  # -, of wear over plain: scatter of packings, 0.01
-FIGURES = ("search_record", "search_slices")
+FIGURES = ("search_record", "search_slices", "search_sensitivity")
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +94,16 @@ def test_the_surrogate_is_drawn_along_every_factor(results):
     assert abs(along["value"].iloc[along["predicted"].to_numpy().argmin()] - BEST_HEIGHT_MM) <= 1.0
     assert "changes most with height" in strongest_factor(table)
     assert all((folder / "figures" / f"{name}.png").stat().st_size > 1000 for name in FIGURES)
+
+
+def test_the_height_decides_wear(results):
+    """Of wear, which the other measure has no part in; the loss per hour is that of all patterns over their volumes."""
+    _, folder, _ = results
+    table = pd.read_csv(folder / "figures" / "search_sensitivity.csv").set_index(["response", "factor"])
+    wear = table.loc["ln wear over plain"]
+    assert wear.loc["height", "total"] > 0.8 > 0.2 > wear.loc["minor radius", "total"]
+    assert (wear["total_low"] <= wear["total"]).all() and (wear["total"] <= wear["total_high"]).all()
+    assert set(table.index.get_level_values(0)) == {"ln wear over plain", "ln loss of the pattern per hour"}
 
 
 def test_the_page_answers_which_pattern_is_best(results):
