@@ -11,6 +11,7 @@ from typing import Any
 from bulkwear.workflows.config.coefficients import check_pairs
 from bulkwear.workflows.config.layers import ConfigError, Layer, dotted
 from bulkwear.workflows.config.schema import coerce_numbers, load_schema
+from bulkwear.workflows.config.sieves import by_sieves, check_sizes, with_classes
 from bulkwear.workflows.config.validation import check_layer, locate, show, unknown_name
 
 CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
@@ -32,11 +33,15 @@ def check_materials(layers: Sequence[Layer]) -> dict[str, Any]:
     kinds = dict.fromkeys(kind for layer in layers for kind in layer.values)
     together = {kind: {k: v for each in layers for k, v in each.values.get(kind, {}).items()} for kind in kinds}
     check_pairs(layers, together)
-    return coerce_numbers(together, schema)
+    particles = {name: with_classes(particle) for name, particle in together["particles"].items()}
+    return coerce_numbers({**together, "particles": particles}, schema)
 
 
 def _check_distributions(layer: Layer) -> None:
     for name, particle in layer.values.get("particles", {}).items():
+        check_sizes(layer, ("particles", name), particle)
+        if by_sieves(particle):
+            continue
         distribution = particle["size_distribution"]
         path = ("particles", name, "size_distribution", "mass_fraction")
         fractions, count = distribution["mass_fraction"], len(distribution["relative_diameter"])

@@ -200,6 +200,7 @@ def particle_section(name: str, materials: Mapping[str, Any], scale: float) -> d
         "median_diameter_m": median_diameter,
         "diameters_m": [median_diameter * relative for relative in distribution["relative_diameter"]],
         "mass_fractions": list(distribution["mass_fraction"]),
+        **({"sizes": distribution["told"]} if "told" in distribution else {}),
     }
 
 

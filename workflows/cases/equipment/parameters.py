@@ -62,7 +62,7 @@ def bulk_particle(settings: Mapping[str, Any], materials: Mapping[str, Any]) -> 
     bulk, scale = settings["bulk"], settings["particle_scale"]
     particle = particle_section(bulk["material"], materials, scale)
     if "passing" not in bulk:
-        return particle | {"sizes": "classes of the material"}
+        return {"sizes": "classes of the material"} | particle
     passing = bulk["passing"]
     try:
         found = size_classes(passing["sieve_m"], passing["fraction"], bulk["finest_fraction"], bulk["size_classes"])

@@ -260,10 +260,15 @@ def _particles(study: Mapping[str, Any]) -> str:
     moduli = range_text([particle["shear_modulus_pa"] for particle in particles])
     return (
         f"{_shapes(particles)} of {min(diameters):.3g} to {max(diameters):.3g} mm in diameter, {scale} times the real "
-        f"ones, in {len(particles[0]['diameters_m'])} sizes. {_stands_for_shape(particles, study)} "
+        f"ones, in {len(particles[0]['diameters_m'])} sizes. {_sizes(particles)}{_stands_for_shape(particles, study)} "
         f"{friction_between(particles)} Contacts are "
         f"softened: shear modulus {moduli} Pa."
     )
+
+
+def _sizes(particles: Sequence[Mapping[str, Any]]) -> str:
+    """Return how classes were made of what passes sieves, of true diameters; "" where materials give classes."""
+    return "".join(f"True sizes: {told} " for told in dict.fromkeys(each.get("sizes") for each in particles) if told)
 
 
 def _shapes(particles: Sequence[Mapping[str, Any]]) -> str:
