@@ -35,6 +35,10 @@ SPEED, MASS_KG, OBLIQUE_DEG, SHALLOW_DEG = 8.0, 1000.0, 30.0, 15.0  # m/s; of or
 THRESHOLD, PER_VOLUME = 0.5, 2.0e10  # m/s and J per m3, assumed
 E90_MM3_PER_KG, WRONG = 20.0, 0.1  # assumed; error of an exponent
 CONTACT_S = 1.0  # of a shallow contact
+ON_N, ON_M = 8500.0, 20.0  # of ore that slides on: the weight of MASS_KG on a slope of OBLIQUE_DEG
+HARD_HITS, BY_SPEED = "impact_above_threshold", {"threshold_velocity_m_per_s": THRESHOLD}
+IMPACT = kernel_column(HARD_HITS)
+IMPACT = kernel_column("impact_above_threshold")
 
 
 @dataclass(frozen=True)
@@ -125,7 +129,7 @@ def shear_work() -> Example:
 def rolling() -> Example:
     """Spheres that slide and roll."""
     alpha = default_coefficient()
-    work = {"sliding_work_J": LOAD_N * PATH_M, "rolling_work_J": LOAD_N * ROLLING_M, "impact_energy_J": 0.0}
+    work = {"sliding_work_J": LOAD_N * PATH_M, "rolling_work_J": LOAD_N * ROLLING_M, IMPACT: 0.0}
     return Example(
         "Combined: sliding and rolling",
         "combined",
@@ -138,46 +142,54 @@ def rolling() -> Example:
         alpha,
         work,
         {"wear": {"law": "combined", "parameters": {"rolling_ratio": ROLLING_RATIO}}},
-        {"rolling_ratio": ROLLING_RATIO, "impact_ratio": 0.0},
+        {"rolling_ratio": ROLLING_RATIO, "impact_ratio": 0.0, "threshold_velocity_m_per_s": 0.0},
     )
 
 
 def impact() -> Example:
-    """Ore that falls on a plate, with the coefficient of sliding beside it."""
-    alpha = default_coefficient()
+    """Ore that falls on a plate and slides on, with the coefficient of sliding for both."""
+    alpha, angle = default_coefficient(), np.radians(OBLIQUE_DEG)
     ratio = float(f"{1.0 / (PER_VOLUME * alpha):.3g}")
-    energy = 0.5 * MASS_KG * SPEED**2
+    energy, sliding = MASS_KG * SPEED**2 * float(impact_angle.impact_energy(angle, THRESHOLD / SPEED)), ON_N * ON_M
+    volume = alpha * (sliding + ratio * energy)
+    given = {"impact_ratio": ratio, "threshold_velocity_m_per_s": THRESHOLD}
     return Example(
-        "Combined: impact energy",
+        "Combined: sliding and impact",
         "combined",
-        f"{MASS_KG:g} kg of ore hit a plate squarely at {SPEED:g} m/s and slide nowhere; an impact spends"
-        f" {short(PER_VOLUME)} J per m³ worn (assumed), q = 1 / ({short(PER_VOLUME)} alpha).",
-        f"V = alpha q m v² / 2 = {short(alpha)} 1/Pa x {ratio:g} x {MASS_KG:g} kg x ({SPEED:g} m/s)² / 2",
-        "All impacts count, however slow: a bed that jumps on a plate that trembles wears it.",
-        alpha * ratio * energy,
+        f"{MASS_KG:g} kg of ore hit a plate at {SPEED:g} m/s and {OBLIQUE_DEG:g}° and slide on for {ON_M:g} m under"
+        f" {ON_N:g} N; above K = {THRESHOLD:g} m/s an impact spends {short(PER_VOLUME)} J per m³ worn (assumed), q = 1"
+        f" / ({short(PER_VOLUME)} alpha).",
+        f"V = alpha (F L + q m (v sin a - K)² / 2) = {short(alpha)} 1/Pa x ({ON_N:g} N x {ON_M:g} m + {ratio:g} x"
+        f" {MASS_KG:g} kg x (({SPEED:g} x {np.sin(angle):.3g} - {THRESHOLD:g}) m/s)² / 2)",
+        f"Here sliding has {100.0 * alpha * sliding / volume:.0f} % of it, by a ratio that only a test of one's own"
+        " tells.",
+        volume,
         alpha,
-        {"sliding_work_J": 0.0, "rolling_work_J": 0.0, "impact_energy_J": energy},
-        {"wear": {"law": "combined", "parameters": {"impact_ratio": ratio}}},
-        {"rolling_ratio": 0.0, "impact_ratio": ratio},
+        {
+            "sliding_work_J": sliding,
+            "rolling_work_J": 0.0,
+            IMPACT: hit(OBLIQUE_DEG, HARD_HITS, BY_SPEED),
+        },
+        {"wear": {"law": "combined", "parameters": given}},
+        {"rolling_ratio": 0.0, **given},
     )
 
 
 def threshold() -> Example:
     """The same ore at an angle, above a threshold."""
     angle, coefficient = np.radians(OBLIQUE_DEG), 1.0 / PER_VOLUME
-    given = {"threshold_velocity_m_per_s": THRESHOLD}
     return Example(
         "Impact energy above a threshold",
         "impact_threshold",
-        f"The same ore at {OBLIQUE_DEG:g}° to the plate; impacts below K = {THRESHOLD:g} m/s wear nothing.",
+        f"The same ore, of which impacts below K = {THRESHOLD:g} m/s wear nothing.",
         f"V = k m (v sin a - K)² / 2 = {short(coefficient)} 1/Pa x {MASS_KG:g} kg x (({SPEED:g} x {np.sin(angle):.3g} -"
         f" {THRESHOLD:g}) m/s)² / 2",
         "A bed that lies on the plate wears nothing by this law, however far it slides.",
         coefficient * MASS_KG * SPEED**2 * float(impact_angle.impact_energy(angle, THRESHOLD / SPEED)),
         coefficient,
-        {kernel_column("impact_above_threshold"): hit(OBLIQUE_DEG, "impact_above_threshold", given)},
-        {"wear": {"law": "impact_threshold", "wear_coefficient_per_pa": coefficient, "parameters": given}},
-        given,
+        {IMPACT: hit(OBLIQUE_DEG, HARD_HITS, BY_SPEED)},
+        {"wear": {"law": "impact_threshold", "wear_coefficient_per_pa": coefficient, "parameters": BY_SPEED}},
+        BY_SPEED,
     )
 
 

@@ -65,11 +65,12 @@ def tangential_work(columns: Mapping[str, np.ndarray], parameters: Mapping[str, 
 
 
 def combined(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:
-    """Worn volume by sliding, rolling and impact, V_i = k (sliding_work_i + r rolling_work_i + q impact_energy_i).
+    """Worn volume by sliding, rolling and impact, V_i = k (sliding_work_i + r rolling_work_i + q impact_i).
 
     Parameters
     ----------
-    columns : needs `sliding_work_J`, `rolling_work_J` and `impact_energy_J`, (m,) arrays in J.
+    columns : needs `sliding_work_J`, `rolling_work_J` and `impact_above_threshold_J`, (m,) arrays in J; the last one as
+        of `impact_threshold`.
     parameters : needs `wear_coefficient_per_pa`, k in 1/Pa, at least 0, that of sliding, and `rolling_ratio` and
         `impact_ratio`, r and q (-), at least 0: coefficients of rolling and of impact over that of sliding.
 
@@ -83,10 +84,10 @@ def combined(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float])
     ValueError : k or a ratio is negative or not finite.
 
     Source: rolling, Y. Yan, TU Delft 2022, chapter 7; impact, J. G. A. Bitter, Wear 6 (1963) 5, whose energy per volume
-    is 1 / (q k), without its threshold.
+    is 1 / (q k).
     """
-    volume = _proportional("sliding_work_J", columns, parameters)
-    for column, name in (("rolling_work_J", "rolling_ratio"), ("impact_energy_J", "impact_ratio")):
+    volume, impact = _proportional("sliding_work_J", columns, parameters), kernel_column("impact_above_threshold")
+    for column, name in (("rolling_work_J", "rolling_ratio"), (impact, "impact_ratio")):
         volume = volume + _not_negative(parameters, name, "-") * _proportional(column, columns, parameters)
     return volume
 
@@ -158,6 +159,8 @@ def oka(columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> n
     return _proportional(kernel_column("oka_energy"), columns, parameters)
 
 
+THRESHOLD = ("threshold_velocity_m_per_s", "velocity of impact that wears nothing", 0.0, 100.0)  # of two laws
+
 LAWS: dict[str, Law] = {
     "archard": Law(
         archard,
@@ -175,13 +178,16 @@ LAWS: dict[str, Law] = {
     ),
     "combined": Law(
         combined,
-        "volume = coefficient times (sliding work + {rolling_ratio} rolling work + {impact_ratio} impact energy), "
+        "volume = coefficient times (sliding work + {rolling_ratio} rolling work + {impact_ratio} m (v - "
+        "{threshold_velocity_m_per_s} m/s)^2 / 2 of every impact that is faster, v the speed along the normal), "
         "coefficient {wear_coefficient_per_pa} 1/Pa, the same for all particles and places.",
         "sliding, J. F. Archard, J. Appl. Phys. 24 (1953) 981; rolling, Y. Yan, TU Delft 2022, chapter 7; impact, "
-        "J. G. A. Bitter, Wear 6 (1963) 5, without a threshold",
+        "J. G. A. Bitter, Wear 6 (1963) 5",
+        kernels=("impact_above_threshold",),
         parameters=(
             Parameter("rolling_ratio", "coefficient of rolling over that of sliding", 0.0, 1e6, 0.0, unit="-"),
             Parameter("impact_ratio", "coefficient of impact energy over that of sliding", 0.0, 1e6, 0.0, unit="-"),
+            Parameter(*THRESHOLD, 0.0, unit="m/s"),
         ),
         comparable=True,
     ),
@@ -200,9 +206,7 @@ LAWS: dict[str, Law] = {
         "for all particles and places. Sliding and rolling take no volume.",
         "J. G. A. Bitter, Wear 6 (1963) 5",
         kernels=("impact_above_threshold",),
-        parameters=(
-            Parameter("threshold_velocity_m_per_s", "velocity of impact that wears nothing", 0.0, 100.0, unit="m/s"),
-        ),
+        parameters=(Parameter(*THRESHOLD, unit="m/s"),),
     ),
     "oka": Law(
         oka,

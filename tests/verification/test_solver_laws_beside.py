@@ -21,7 +21,7 @@ OKA = {
     "velocity_exponent": 2.3,
     "reference_velocity_m_per_s": 1.0,
 }
-BESIDE = {"finnie": {}, "oka": OKA, "impact_threshold": THRESHOLD, "combined": {"rolling_ratio": 0.1}}
+BESIDE = {"finnie": {}, "oka": OKA, "impact_threshold": THRESHOLD, "combined": {"rolling_ratio": 0.1, **THRESHOLD}}
 
 
 def rigid(**wear):

@@ -52,6 +52,16 @@ def words_of(given):
     return " ".join(f"{name} {value}" for name, value in given.items())
 
 
+def above_line(threshold):
+    """Deck line of a ledger with impacts above a threshold (m/s)."""
+    words = words_of(above_kernel(threshold)["impact_above_threshold"])
+    return f"fix above all load/ledger mesh sample file above.bin kernels impact_above_threshold {words}"
+
+
+def above_kernel(threshold):
+    return {"impact_above_threshold": {PARAMETER: threshold}}
+
+
 def rubbed(folder, settling, steps):
     """Ledger of a held sphere on a plate that goes to and fro by less than the contact's spring gives, undamped."""
     moving = f"fix rub all move/mesh mesh sample wiggle amplitude 0.0 {AMPLITUDE} 0.0 period {PERIOD * TIME_STEP}"
@@ -128,11 +138,12 @@ def test_combined_wears_by_rolling(tmp_path):
     spin, steps, ratio = 300.0, 1000, 0.2  # rad/s, -, -
     rolling = f"velocity all set 0.0 -{spin * (RADIUS - hertz_overlap() / 2):.17g} 0.0 units box"
     particles = [*pin(*START), f"set group all omegax {spin}", rolling]
-    case = {"friction": FRICTION, "steps": steps, "time_step": TIME_STEP, "outputs": DUMP_LINES}
-    ledger = run_case(tmp_path, PLATE, particles, PIN_MOTION, **case)
-    sampled = ledger_of_dumps(tmp_path, PLATE, TIME_STEP, 0)
+    case = {"friction": FRICTION, "steps": steps, "time_step": TIME_STEP, "outputs": [above_line(0.0), *DUMP_LINES]}
+    run_case(tmp_path, PLATE, particles, PIN_MOTION, **case)
+    exact = read_load_ledger(tmp_path / "above.bin", "sample").columns
+    sampled = ledger_of_dumps(tmp_path, PLATE, TIME_STEP, 0, kernels=above_kernel(0.0))
     expected = COEFFICIENT * ratio * FORCE * RADIUS * spin * steps * TIME_STEP
-    for table, tolerance in ((ledger.columns, EXACT), (sampled, DUMPED)):
+    for table, tolerance in ((exact, EXACT), (sampled, DUMPED)):
         found = volume("combined", table, rolling_ratio=ratio, impact_ratio=0.5).sum()
         assert found == pytest.approx(expected, rel=tolerance)
 
@@ -144,26 +155,40 @@ def thrown(folder, speed, along=0.0, **rest):
     return table_of_solver(run_case(folder, PLATE, particles, ["fix integrate all nve/sphere"], **case), PLATE)
 
 
-def test_combined_wears_by_impact(tmp_path):
-    """Where nothing slides or rolls: k q m v^2 / 2, in the solver and from dumps."""
+def hit(folder, threshold, speed=0.4, along=0.0):
+    """Ledgers of one hit, the solver's and that of dumps, with impacts above a threshold (m/s)."""
+    thrown(folder, speed, along, outputs=[above_line(threshold), *DUMP_LINES], restitution=1.0)
+    exact = read_load_ledger(folder / "above.bin", "sample").columns
+    return exact, ledger_of_dumps(folder, PLATE, 1e-5, 0, modulus=5e6, kernels=above_kernel(threshold), touching=[])
+
+
+@pytest.mark.parametrize("threshold", [0.0, 0.1, 0.5])
+def test_combined_wears_by_impact(tmp_path, threshold):
+    """Where nothing slides or rolls: k q m (v - K)^2 / 2, in the solver and from dumps."""
     speed, ratio = 0.4, 0.3  # m/s, -
-    exact = thrown(tmp_path, speed, outputs=DUMP_LINES, restitution=1.0)
-    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, touching=[])
-    for table, tolerance in ((exact, EXACT), (sampled, DUMPED)):
+    expected = COEFFICIENT * ratio * 0.5 * MASS * max(speed - threshold, 0.0) ** 2
+    for table, tolerance in zip(hit(tmp_path, threshold), (EXACT, DUMPED), strict=True):
         found = volume("combined", table, rolling_ratio=0.5, impact_ratio=ratio).sum()
-        assert found == pytest.approx(COEFFICIENT * ratio * 0.5 * MASS * speed**2, rel=tolerance)
+        assert found == pytest.approx(expected, rel=tolerance)
+
+
+def test_combined_has_a_share_of_each(tmp_path):
+    """A smooth sphere that hits at an angle without spin: k (J v_along + q m (v - K)^2 / 2), J = 2 m v its impulse."""
+    speed, along, threshold, ratio = 0.4, 0.3, 0.1, 0.3  # m/s, m/s, m/s, -
+    particles = [*pin(*START, RADIUS + 1e-4), f"velocity all set 0.0 {along} -{speed} units box"]
+    case = {"modulus": 5e6, "time_step": 1e-6, "steps": 4000, "restitution": 1.0, "friction": 0.0}
+    run_case(tmp_path, PLATE, particles, ["fix integrate all nve/sphere"], outputs=[above_line(threshold)], **case)
+    table = read_load_ledger(tmp_path / "above.bin", "sample").columns
+    shares = [2.0 * MASS * speed * along, ratio * 0.5 * MASS * (speed - threshold) ** 2]
+    found = volume("combined", table, rolling_ratio=0.5, impact_ratio=ratio).sum()
+    assert found == pytest.approx(COEFFICIENT * sum(shares), rel=STEPPED)
+    assert volume("archard", table).sum() == pytest.approx(COEFFICIENT * shares[0], rel=STEPPED)
 
 
 @pytest.mark.parametrize("threshold", [0.0, 0.1, 0.5])
 def test_impacts_wear_by_what_is_above_the_threshold(tmp_path, threshold):
     """k m (v - K)^2 / 2 of one hit, in the solver and from dumps; nothing where v is below K; all with K = 0."""
-    speed, kernels = 0.4, {"impact_above_threshold": {PARAMETER: threshold}}  # m/s
-    asked = (
-        f"fix above all load/ledger mesh sample file above.bin kernels impact_above_threshold {PARAMETER} {threshold}"
-    )
-    thrown(tmp_path, speed, outputs=[asked, *DUMP_LINES], restitution=1.0)
-    exact = read_load_ledger(tmp_path / "above.bin", "sample").columns
-    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, kernels=kernels, touching=[])
+    speed, (exact, sampled) = 0.4, hit(tmp_path, threshold)  # m/s
     expected = COEFFICIENT * 0.5 * MASS * max(speed - threshold, 0.0) ** 2
     assert volume("impact_threshold", exact).sum() == pytest.approx(expected, rel=EXACT)
     assert volume("impact_threshold", sampled).sum() == pytest.approx(expected, rel=DUMPED)

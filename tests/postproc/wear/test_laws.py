@@ -67,7 +67,7 @@ def test_combined_adds_rolling_and_impact_by_their_ratios():
     columns = {name: values.astype(float) for name, values in columns_for("combined").items()}
     archard_alone = worn_volume("archard", columns, parameters_of("archard"))
     np.testing.assert_array_equal(combined_of(columns, 0.0, 0.0), archard_alone)
-    for ratios, name in (((0.25, 0.0), "rolling_work_J"), ((0.0, 0.25), "impact_energy_J")):
+    for ratios, name in (((0.25, 0.0), "rolling_work_J"), ((0.0, 0.25), "impact_above_threshold_J")):
         added = combined_of(columns, *ratios) - archard_alone
         np.testing.assert_allclose(added, 0.25 * ALPHA * columns[name], rtol=1e-12)  # a difference of like numbers
 

@@ -1,14 +1,17 @@
 """Laws beside that of a study: which are allowed, what of them reaches runs, decks, parts, what is simulated again."""
 
+import re
 from dataclasses import replace
 
 import pytest
+import yaml
 
 from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.inputs import run_digest, simulated_from
 from bulkwear.workflows.report.laws import what_wears
+from tests import REPOSITORY
 from tests.support.law_cases import LONG_SLIP, long_slip_registered
 from tests.support.own_machine_project import machine_study
 from tests.support.tiny import tiny_study
@@ -21,7 +24,8 @@ OKA = {
     "velocity_exponent": 2.3,
     "reference_velocity_m_per_s": 100.0,
 }
-BESIDE = {"finnie": {}, "impact_threshold": THRESHOLD, "combined": {"rolling_ratio": 0.1}}
+COMBINED = {"rolling_ratio": 0.1, **THRESHOLD}
+BESIDE = {"finnie": {}, "impact_threshold": THRESHOLD, "combined": COMBINED}
 
 
 def of_run(beside):
@@ -66,6 +70,10 @@ def test_a_wrong_law_beside_is_named_with_its_place(config, beside, fault):
 
 def test_a_kernel_is_summed_with_one_set_of_parameters(monkeypatch):
     """Two laws that want it with others are refused, with the same they are not."""
+    with pytest.raises(
+        ConfigError, match=r"wear\.beside\.combined has other .* impact_above_threshold than impact_thr"
+    ):
+        tiny_study(wear={"beside": {"impact_threshold": THRESHOLD, "combined": {}}})
     with long_slip_registered():
         monkeypatch.setitem(LAWS, "slower", replace(LONG_SLIP, words="slower."))
         own = {"law": "long_slip", "parameters": {"exponent": 2}}
@@ -74,10 +82,18 @@ def test_a_kernel_is_summed_with_one_set_of_parameters(monkeypatch):
             tiny_study(wear={**own, "beside": {"slower": {"exponent": 1}}})
 
 
+def test_the_block_in_docs_is_taken():
+    """Three laws beside Archard's, with one threshold."""
+    page = (REPOSITORY / "docs" / "wear.md").read_text(encoding="utf-8")
+    blocks = [yaml.safe_load(text) for text in re.findall("```yaml\n(.*?)```", page, re.DOTALL)]
+    (block,) = [each for each in blocks if "beside" in each.get("wear", {})]
+    assert tiny_study(**block).settings["wear"]["beside"].keys() == block["wear"]["beside"].keys()
+
+
 def test_they_reach_kernels_and_figures_in_si_with_their_defaults():
     """Kernels of all laws, each once; figures get every law that ledgers serve with the run's coefficient."""
     study, run = of_run(BESIDE)
-    assert study.settings["wear"]["beside"]["combined"] == {"rolling_ratio": 0.1, "impact_ratio": 0.0}
+    assert study.settings["wear"]["beside"]["combined"] == {**COMBINED, "impact_ratio": 0.0}
     assert study.case.kernels(run) == {"finnie_work": {}, "impact_above_threshold": THRESHOLD}
     ((law, given, *_, others),) = what_wears(study)["R9_plain"]
     assert (law, set(others)) == ("archard", {"archard", *BESIDE})
@@ -94,10 +110,13 @@ def test_stronger_layers_add_laws_and_change_parameters(config):
 
 @pytest.mark.parametrize("ledger", ["solver", "dumps"])
 def test_what_needs_no_further_sum_is_not_simulated_again(ledger):
-    """Ratios of rolling and impact are of sums that every ledger has; kernels, and their parameters, are not."""
-    plain = digest({}, ledger)
-    assert digest({"combined": {"rolling_ratio": 0.1}}, ledger) == plain
-    found = [plain, digest({"finnie": {}}, ledger), digest({"impact_threshold": THRESHOLD}, ledger)]
+    """Shear work is of a sum that every ledger has, and ratios are of sums that are there; kernels, and their
+    parameters, are not.
+    """
+    plain, above = digest({}, ledger), digest({"impact_threshold": THRESHOLD}, ledger)
+    assert digest({"tangential_work": {}}, ledger) == plain
+    assert digest({"combined": {"impact_ratio": 3.0, **THRESHOLD}}, ledger) == above
+    found = [plain, above, digest({"finnie": {}}, ledger)]
     found.append(digest({"impact_threshold": {"threshold_velocity_m_per_s": 0.6}}, ledger))
     assert len(set(found)) == 4
 
