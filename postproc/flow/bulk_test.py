@@ -28,12 +28,14 @@ class Boxes:
     """What of a test's geometry its measurement needs, m.
 
     length: between the walls along y; width: across; opening: of a draw-down test, 0 without; diameter: median particle
+    spheres: of a particle; clumps of several that flow out of a shear box lie in a pit below it, others are taken out
     """
 
     length: float
     width: float
     diameter: float
     opening: float = 0.0
+    spheres: int = 1
 
 
 @dataclass(frozen=True)
@@ -51,14 +53,15 @@ class Measurement:
 
 def measured_shear_box(folder: Path, boxes: Boxes, time_step: float) -> Measurement:
     """Return the shear angle of a finished shear box. Raises FreeSurfaceError, OutflowError."""
-    check_count(outflow_curve(folder / LOG, time_step), True, folder / LOG)
-    slopes = {"shear_angle_deg": [slope_between(read_snapshot(folder / HEAP), boxes, 0.0, boxes.length)]}
+    check_count(outflow_curve(folder / LOG, time_step, boxes.spheres), boxes.spheres == 1, folder / LOG)
+    heap = read_snapshot(folder / HEAP)
+    slopes = {"shear_angle_deg": [slope_between(heap[heap["z_m"] > 0.0], boxes, 0.0, boxes.length)]}
     return _of_slopes(slopes, {}, {})
 
 
 def measured_draw_down(folder: Path, boxes: Boxes, time_step: float) -> Measurement:
     """Return both angles, each of two slopes, and the discharge time of a draw-down test. Raises as the shear box."""
-    curve = outflow_curve(folder / LOG, time_step)
+    curve = outflow_curve(folder / LOG, time_step, boxes.spheres)
     check_count(curve, False, folder / LOG)
     check_not_blocked(curve, folder / LOG)
     particles = read_snapshot(folder / HEAP)

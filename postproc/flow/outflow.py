@@ -22,11 +22,11 @@ class BlockedError(OutflowError):
     """An arch stands over the opening: this packing tells nothing, another one may flow."""
 
 
-def outflow_curve(log: str | Path, time_step: float) -> pd.DataFrame:
+def outflow_curve(log: str | Path, time_step: float, spheres: int = 1) -> pd.DataFrame:
     """Return time_s since the opening, mass_kg and count that have flowed out by then, and the particles still there.
 
-    log: of a bulk test, with the columns opened, out_kg and out_n; time_step: s. Raises OutflowError when nothing was
-    opened.
+    log: of a bulk test, with the columns opened, out_kg and out_n, which counts clumps, not their spheres; time_step: s
+    spheres: of a particle, which the solver has as so many. Raises OutflowError when nothing was opened.
     """
     thermo = pd.DataFrame(thermo_table(log)).drop_duplicates("Step", keep="last")
     opened = thermo[thermo["opened"] == 1.0]
@@ -37,7 +37,7 @@ def outflow_curve(log: str | Path, time_step: float) -> pd.DataFrame:
             "time_s": ((opened["Step"] - opened["Step"].iloc[0]) * time_step).to_numpy(),
             "mass_kg": (opened["out_kg"] - opened["out_kg"].iloc[0]).to_numpy(),
             "count": (opened["out_n"] - opened["out_n"].iloc[0]).to_numpy(),
-            "particles": opened["Atoms"].to_numpy(),
+            "particles": opened["Atoms"].to_numpy() / spheres,
         }
     )
 

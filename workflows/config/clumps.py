@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,21 +13,28 @@ from bulkwear.postproc.clump import Clump, unit_clump
 from bulkwear.workflows.config.layers import ConfigError, Layer, display_name, read_csv_rows
 from bulkwear.workflows.config.schema import load_schema
 from bulkwear.workflows.config.validation import cell_value, check_columns, check_layer, show
+from bulkwear.workflows.engine.grains import with_clump
 from bulkwear.workflows.engine.project import current_project
 
 CLUMPS = "config/clumps"  # folder of project and package
 ROUND = "sphere"  # the shape that needs no table
 SCHEMA = "clump"
 ROUND_OFF = 1e-9  # relative; spheres that touch as written
-SETTING = "bed.shape"
+SETTING = "bed.shape"  # that says which clump a bed's particles are
 
 
-def find_clump(shape: str) -> Clump | None:
-    """Return the clump that a bed's particles are, None for spheres. Raises ConfigError."""
+def shaped(particle: Mapping[str, Any], shape: str, setting: str = SETTING) -> dict[str, Any]:
+    """Return a bulk material with particles of that shape, see `find_clump`. Raises ConfigError."""
+    clump = find_clump(shape, setting)
+    return dict(particle) if clump is None else with_clump(particle, shape, clump)
+
+
+def find_clump(shape: str, setting: str = SETTING) -> Clump | None:
+    """Return the clump that particles are, None for spheres; setting: that gives the shape. Raises ConfigError."""
     project = current_project()
     shapes = [ROUND, *(name.removesuffix(".csv") for name in project.names(CLUMPS, ".csv"))]
     if shape not in shapes:
-        raise ConfigError(f"{SETTING} is {show(shape)}, allowed is one of {', '.join(shapes)}.")
+        raise ConfigError(f"{setting} is {show(shape)}, allowed is one of {', '.join(shapes)}.")
     return None if shape == ROUND else read_clump(project.file(f"{CLUMPS}/{shape}.csv"), project.folder)
 
 

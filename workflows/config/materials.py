@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 from functools import reduce
 from typing import Any
 
+from bulkwear.workflows.config.clumps import ROUND
 from bulkwear.workflows.config.coefficients import check_pairs
 from bulkwear.workflows.config.layers import ConfigError, Layer, dotted
 from bulkwear.workflows.config.schema import coerce_numbers, load_schema
@@ -17,6 +18,7 @@ from bulkwear.workflows.config.validation import check_layer, locate, show, unkn
 CALIBRATED_WITH = ("rolling_radius", "rolling_friction")  # settings that a calibrated material holds for
 ROLLING = "particle.contact.rolling_friction"  # the parameter that holds for them alone
 MASS_FRACTION_TOLERANCE = 1e-9  # rounding of a sum of decimal fractions
+SHAPE = "shape"  # of particles: key beside a material's name, and of what it was calibrated for
 MEDIAN_FACTOR = 2.0  # -, within which the classes of a size distribution have their median diameter
 
 
@@ -106,6 +108,8 @@ def check_calibrated_for(
     for *path, kind in () if ROLLING in looked_for else keys:
         name = reduce(dict.__getitem__, path, settings)
         found = materials.get(kind, {}).get(name, {}).get("calibrated")
+        if found and kind == "particles":
+            _check_shape(layers, settings, tuple(path), name, found.get(SHAPE, ROUND))
         for word in CALIBRATED_WITH if found and kind == "particles" else ():
             if settings["solver"][word] != found[word]:
                 raise ConfigError(
@@ -113,3 +117,20 @@ def check_calibrated_for(
                     f" {found[word]}, in which study {found['study']} calibrated {name}, or another"
                     f" {dotted(tuple(path))}."
                 )
+
+
+def _check_shape(
+    layers: tuple[Layer, ...], settings: dict[str, Any], path: tuple[str, ...], name: str, calibrated: str
+) -> None:
+    """Raise ConfigError where friction that was calibrated for clumps is that of other particles.
+
+    path: of the setting that names the material, beside which the shape stands
+    """
+    shape = reduce(dict.__getitem__, path[:-1], settings).get(SHAPE, ROUND)
+    if calibrated not in (ROUND, shape):
+        where = (*path[:-1], SHAPE)
+        place = locate(layers, where if any(layer.holds(where) for layer in layers) else path)
+        raise ConfigError(
+            f"{place}: {dotted(where)} is '{shape}', allowed is {calibrated}, for which {name} was calibrated, or"
+            f" another {dotted(path)}."
+        )

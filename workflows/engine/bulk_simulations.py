@@ -20,6 +20,7 @@ from bulkwear.workflows.engine.beds import BedMeasure, bed_fault, level_measure,
 from bulkwear.workflows.engine.bulk_tests import deck_text, filled_mass, kind_of, write_test
 from bulkwear.workflows.engine.case import CASES_PACKAGE
 from bulkwear.workflows.engine.cases import find_case
+from bulkwear.workflows.engine.grains import equal_spheres, solid_share
 from bulkwear.workflows.engine.pouring import particles_of_mass
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code
 from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, executable_of, processor_seconds, run_deck
@@ -92,7 +93,7 @@ def check_filling(folder: Path, test: Mapping[str, Any]) -> None:
 def filling_measures(folder: Path, test: Mapping[str, Any]) -> list[BedMeasure]:
     """Return mass and level of a box that was filled and rests."""
     particle, filled = test["particle"], read_snapshot(folder / FILLED)
-    volume = math.pi / 6.0 * (2.0 * filled["radius_m"]) ** 3
+    volume = solid_share(particle) * math.pi / 6.0 * (2.0 * filled["radius_m"]) ** 3
     level = 2.0 * float((volume * filled["z_m"]).sum() / volume.sum())
     return [
         mass_measure(particle, filled_mass(test), particle["density_kg_per_m3"] * float(volume.sum())),
@@ -122,8 +123,8 @@ def _record(
 
 
 def filled_particles(test: Mapping[str, Any]) -> float:
-    """Return about how many particles fill the box of a test."""
-    return particles_of_mass(test["particle"], filled_mass(test))
+    """Return about how many spheres cost the solver as much as the particles that fill the box of a test."""
+    return equal_spheres(test["particle"], particles_of_mass(test["particle"], filled_mass(test)))
 
 
 def simulation_bytes(stages: tuple[Stage, ...]) -> float:

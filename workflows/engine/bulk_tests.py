@@ -25,7 +25,8 @@ import numpy as np
 from bulkwear.postproc.mesh import write_stl
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.derived import WALLS, derived_materials, rayleigh_time
+from bulkwear.workflows.engine.derived import WALLS, derived_materials, smallest_rayleigh_time
+from bulkwear.workflows.engine.grains import largest_extent
 from bulkwear.workflows.engine.pouring import bulk_density, fill_gap, fill_height, periodic_gap, poured_particles
 from bulkwear.workflows.engine.solver import DECK
 from bulkwear.workflows.engine.templates import render
@@ -77,7 +78,7 @@ def write_test(test: Mapping[str, Any], folder: Path) -> None:
 
 def margin_of(test: Mapping[str, Any]) -> float:
     """Return the room (m) between a box and the end of the domain."""
-    return MARGIN_DIAMETERS * max(test["particle"]["diameters_m"])
+    return MARGIN_DIAMETERS * largest_extent(test["particle"])
 
 
 def rest_energy(test: Mapping[str, Any]) -> float:
@@ -92,14 +93,8 @@ def rest_energy(test: Mapping[str, Any]) -> float:
 
 
 def time_step(test: Mapping[str, Any]) -> float:
-    """Return the time step (s): a fraction of the Rayleigh time of the smallest particle."""
-    particle = test["particle"]
-    return test["solver"]["rayleigh_fraction"] * rayleigh_time(
-        min(particle["diameters_m"]) / 2.0,
-        particle["density_kg_per_m3"],
-        particle["shear_modulus_pa"],
-        particle["poissons_ratio"],
-    )
+    """Return the time step (s): a fraction of the Rayleigh time of the smallest particle, or sphere of a clump."""
+    return test["solver"]["rayleigh_fraction"] * smallest_rayleigh_time(test["particle"])
 
 
 def filled_box(test: Mapping[str, Any], type_names: Sequence[str]) -> dict[str, Any]:

@@ -30,6 +30,11 @@ def grain_kind(particle: Mapping[str, Any]) -> str:
     return CLUMP if CLUMP in particle else SPHERE
 
 
+def shape_of(particle: Mapping[str, Any]) -> str:
+    """Return the shape of a material's particles: sphere, or the name of the clump."""
+    return particle[CLUMP]["name"] if CLUMP in particle else SPHERE
+
+
 def spheres_per_grain(particle: Mapping[str, Any]) -> int:
     """Return of how many spheres a particle consists."""
     return len(particle[CLUMP]["spheres"]) if CLUMP in particle else 1
@@ -41,10 +46,26 @@ def smallest_radius(particle: Mapping[str, Any]) -> float:
     return share * min(particle["diameters_m"])
 
 
+def solid_share(particle: Mapping[str, Any]) -> float:
+    """Return the volume of a particle over the sum of those of its spheres (-), which overlap in clumps."""
+    if CLUMP not in particle:
+        return 1.0
+    return 1.0 / math.fsum((2.0 * sphere[-1]) ** 3 for sphere in particle[CLUMP]["spheres"])
+
+
 def largest_extent(particle: Mapping[str, Any]) -> float:
     """Return the diameter (m) of the sphere round the centre of mass that the largest particle turns in."""
     largest = max(particle["diameters_m"])
     return 2.0 * particle[CLUMP]["reach"] * largest if CLUMP in particle else largest
+
+
+def equal_spheres(particle: Mapping[str, Any], count: float) -> float:
+    """Return how many spheres cost the solver as much as so many particles: the body of a clump costs one more.
+
+    So 1.5 times as much per sphere in pairs and 1.25 times in fours; measured were 1.65 and 1.2 (filling of beds).
+    """
+    of_grain = spheres_per_grain(particle)
+    return count * (of_grain + 1.0) if of_grain > 1 else count
 
 
 def grain_words(particle: Mapping[str, Any]) -> dict[str, Any]:

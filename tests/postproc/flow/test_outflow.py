@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.flow.outflow import (
+    BlockedError,
     OutflowError,
     check_count,
     check_not_blocked,
@@ -92,3 +93,16 @@ def test_a_box_that_was_never_opened_is_refused(tmp_path):
     (tmp_path / "log").write_text(LOG[: LOG.index("Loop") + 18])
     with pytest.raises(OutflowError, match="never opened"):
         outflow_curve(tmp_path / "log", time_step=1e-3)
+
+
+def test_a_clump_is_one_particle(tmp_path):
+    """The solver has its spheres, and counts what flows out by clumps: 20 of 50 pairs are 40 %."""
+    (tmp_path / "log").write_text(
+        LOG.replace("             40", "       19.99999").replace("202       60", "202      100")
+    )
+    curve = outflow_curve(tmp_path / "log", time_step=1e-3, spheres=2)
+    assert curve["particles"].tolist() == [50.0, 50.0, 50.0]
+    check_count(curve, False, tmp_path / "log")
+    check_not_blocked(curve, tmp_path / "log")
+    with pytest.raises(BlockedError, match="20% of the particles flowed out"):
+        check_not_blocked(curve.assign(count=[0.0, 0.0, 9.999]), tmp_path / "log")

@@ -23,6 +23,7 @@ from bulkwear.workflows.engine.bulk_simulations import filled_particles
 from bulkwear.workflows.engine.bulk_tests import Kind, Meshes, fill_top, filled_box, margin_of, register, time_step
 from bulkwear.workflows.engine.case import Parameters
 from bulkwear.workflows.engine.derived import PERIODIC, WALLS
+from bulkwear.workflows.engine.grains import SPHERE, grain_kind
 from bulkwear.workflows.engine.templates import used_sections
 from bulkwear.workflows.engine.work import Stage
 
@@ -124,7 +125,7 @@ def walls_of(test: Mapping[str, Any]) -> list[tuple[tuple[float, float], tuple[f
 
 def shear_box(test: Mapping[str, Any]) -> dict[str, Any]:
     """Return the parameters of the deck of a shear box."""
-    return {**filled_box(test, ("particle", "side walls", "floor")), **_shear_box_domain(test)}
+    return {**filled_box(test, ("particle", "side walls", "floor")), **_shear_box_domain(test), **_pit(test)}
 
 
 def draw_down(test: Mapping[str, Any]) -> dict[str, Any]:
@@ -168,6 +169,21 @@ def _shear_box_domain(test: Mapping[str, Any]) -> dict[str, float]:
         "domain_front_m": test["box"]["length_m"] + test["box"]["fill_height_m"],
         "domain_bottom_m": -PIT_DIAMETERS * max(test["particle"]["diameters_m"]),
         "domain_top_m": fill_top(test) + margin_of(test),
+    }
+
+
+def _pit(test: Mapping[str, Any]) -> dict[str, float]:
+    """Return the pit below a shear box in which clumps come to rest, since the solver takes none out; nothing of
+    spheres. It is as deep as the box was filled: what flows out fills less than its triangle.
+    """
+    if grain_kind(test["particle"]) == SPHERE:
+        return {}
+    domain, depth = _shear_box_domain(test), test["box"]["fill_height_m"] + margin_of(test)
+    return {
+        "pit_back_m": domain["domain_back_m"] + margin_of(test) / 2.0,
+        "pit_front_m": domain["domain_front_m"] - margin_of(test) / 2.0,
+        "pit_bottom_m": -depth,
+        "domain_bottom_m": -depth - margin_of(test),
     }
 
 

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from bulkwear.workflows.cases.calibration import boxes
+from bulkwear.workflows.config.clumps import shaped
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.engine.bulk_simulations import simulation_bytes
 from bulkwear.workflows.engine.bulk_tests import deck_text
 from bulkwear.workflows.engine.case import Case, Parameters, Run, register
 from bulkwear.workflows.engine.derived import particle_section, template_sections, wall_section
+from bulkwear.workflows.engine.grains import SPHERE, grain_kind
 from bulkwear.workflows.engine.project import current_project
+from bulkwear.workflows.engine.solver import OWN_ROLLING_MODELS
 from bulkwear.workflows.engine.work import Work
 
 if TYPE_CHECKING:
@@ -65,6 +68,15 @@ def box_holds_particles(run: CheckedRun) -> Fault | None:
             if run.parameters[section][f"{key}_m"] < LEAST_DIAMETERS * diameter:
                 return f"{section}.{key}_mm", f"at least {1e3 * LEAST_DIAMETERS * diameter:.4g}, ten particle diameters"
     return None
+
+
+def rolling_model_of_bodies(run: CheckedRun) -> Fault | None:
+    """Clumps have a model of rolling friction that knows of bodies, or none."""
+    model = run.parameters["solver"]["rolling_friction"]
+    if grain_kind(run.parameters["particle"]) == SPHERE or model not in OWN_ROLLING_MODELS:
+        return None
+    own = " and ".join(OWN_ROLLING_MODELS)
+    return "solver.rolling_friction", f"none, or a model of LIGGGHTS, with clumps, because {own} act on spheres alone"
 
 
 def opening_lets_particles_pass(run: CheckedRun) -> Fault | None:
@@ -171,6 +183,7 @@ class Calibration(Case):
     )
     checks: tuple[Check, ...] = (
         box_holds_particles,
+        rolling_model_of_bodies,
         opening_lets_particles_pass,
         drag_makes_it_slide,
         one_wall_is_looked_for,
@@ -192,7 +205,11 @@ class Calibration(Case):
         return {
             **{name: settings[name] for name in sections},
             **template_sections(settings),
-            "particle": particle_section(settings["bulk"]["material"], materials, settings["particle_scale"]),
+            "particle": shaped(
+                particle_section(settings["bulk"]["material"], materials, settings["particle_scale"]),
+                settings["bulk"]["shape"],
+                "bulk.shape",
+            ),
             "walls": {name: wall_section(name, materials) for name in materials["walls"]},
             "varied": factors["varied"],
         }

@@ -27,6 +27,7 @@ from bulkwear.workflows.cases.calibration.responses import (
 from bulkwear.workflows.cases.calibration.simulations import flowing
 from bulkwear.workflows.cases.calibration.told import told_sentences
 from bulkwear.workflows.engine.case import Parameters
+from bulkwear.workflows.engine.grains import shape_of
 
 TITLES = {"shear_box": "Shear box", "draw_down": "Draw-down test", "wall_shear": "Wall shear test"}
 
@@ -139,6 +140,7 @@ def _provenance(done: Calibrated, intervals: pd.DataFrame, study: str) -> dict[s
         "rolling_radius": solver["rolling_radius"],
         "rolling_friction": solver["rolling_friction"],
         "particle_scale": float(done.parameters["particle"]["scale"]),
+        "shape": shape_of(done.parameters["particle"]),
         "measured": aims,
         "intervals": "; ".join(
             f"{row.parameter} {row.recommended:.3f}, 95 % between {row.low:.3f} and {row.high:.3f}"

@@ -25,6 +25,7 @@ from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, opening_length
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import time_step
+from bulkwear.workflows.engine.grains import spheres_per_grain
 from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.solver import SolverError
 
@@ -36,7 +37,9 @@ BLOCKED = "blocked_packings"  # column of a table of simulations
 def boxes_of(test: Mapping[str, Any]) -> Boxes:
     """Return what the measurement of a test needs to know of its geometry."""
     opening = opening_length(test) if test["kind"] == DRAW_DOWN else 0.0
-    return Boxes(test["box"]["length_m"], test["box"]["width_m"], test["particle"]["median_diameter_m"], opening)
+    box, particle = test["box"], test["particle"]
+    spheres = spheres_per_grain(particle)
+    return Boxes(box["length_m"], box["width_m"], particle["median_diameter_m"], opening, spheres)
 
 
 def measured(test: Mapping[str, Any], folder: Path) -> Measurement:

@@ -23,8 +23,9 @@ from bulkwear.workflows.cases.sliding_sample.decks import (
     wear_interval_steps,
 )
 from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters, flow_measures
-from bulkwear.workflows.cases.sliding_sample.shape import rolling, shaped, solver_for
+from bulkwear.workflows.cases.sliding_sample.shape import rolling, solver_for
 from bulkwear.workflows.cases.sliding_sample.study import varies_scale
+from bulkwear.workflows.config.clumps import shaped
 from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.config.patterns import (
     dimension_columns,

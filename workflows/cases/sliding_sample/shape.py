@@ -6,17 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from bulkwear.workflows.cases.sliding_sample.study import PARTICLE_SCALE
-from bulkwear.workflows.config.clumps import find_clump
 from bulkwear.workflows.config.run_checks import CheckedRun, Fault
 from bulkwear.workflows.engine.derived import WINDOW
-from bulkwear.workflows.engine.grains import SPHERE, grain_kind, with_clump
+from bulkwear.workflows.engine.grains import SPHERE, grain_kind
 from bulkwear.workflows.engine.solver import OWN_ROLLING_MODELS
-
-
-def shaped(particle: Mapping[str, Any], shape: str) -> dict[str, Any]:
-    """Return a bulk material with particles of that shape, see `clumps.find_clump`. Raises ConfigError."""
-    clump = find_clump(shape)
-    return dict(particle) if clump is None else with_clump(particle, shape, clump)
 
 
 def rolling(body: Mapping[str, Any], factor: float) -> dict[str, Any]:

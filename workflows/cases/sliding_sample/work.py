@@ -13,7 +13,7 @@ from bulkwear.workflows.cases.sliding_sample.parameters import RAMP
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.derived import ADAPTIVE, WINDOW
-from bulkwear.workflows.engine.grains import spheres_per_grain
+from bulkwear.workflows.engine.grains import equal_spheres, spheres_per_grain
 from bulkwear.workflows.engine.pouring import bulk_density
 from bulkwear.workflows.engine.work import Stage, builds_per_step, bytes_of_bed, bytes_of_run
 
@@ -58,12 +58,8 @@ def run_stages(run: Parameters, bed: Parameters) -> tuple[Stage, ...]:
 
 
 def single_spheres(run: Parameters) -> float:
-    """Return how many spheres cost the solver as much as a bed's particles: the body of a clump costs one more.
-
-    So 1.5 times as much per sphere in pairs and 1.25 times in fours; measured were 1.65 and 1.2 (filling of beds).
-    """
-    spheres, of_grain = run["derived"]["bed_particles"], spheres_per_grain(run["particle"])
-    return spheres if of_grain == 1 else spheres * (1.0 + 1.0 / of_grain)
+    """Return how many spheres cost the solver as much as a bed's particles."""
+    return equal_spheres(run["particle"], run["derived"]["bed_particles"] / spheres_per_grain(run["particle"]))
 
 
 def exchanges_per_step(run: Parameters) -> float:

@@ -15,7 +15,8 @@ from bulkwear.workflows.cases.calibration.boxes import (
     wall_shear_surfaces,
     with_values,
 )
-from bulkwear.workflows.engine.bulk_tests import deck_text
+from bulkwear.workflows.engine.bulk_tests import deck_text, time_step
+from bulkwear.workflows.engine.grains import smallest_radius
 from tests.support.bulk_boxes import PAIR, ROLLING, SLIDING, asked
 
 EXACT = 1e-12  # relative: the same formula
@@ -31,6 +32,22 @@ def test_decks_render_with_what_they_say(kind, front_and_back):
     assert ("front_wall" in text) == (kind == "draw_down" and front_and_back == "walls")
     loops = 1 if kind == "wall_shear" else 2  # until rest, each with a beginning and an end; a drag needs none
     assert text.count("label ") == 2 * loops
+
+
+def test_clumps_that_flow_out_lie_in_a_pit():
+    """The solver takes no bodies out: walls hold them within the domain, all of them below the box's floor."""
+    test = asked(bulk={"shape": "pair", "material": "river_gravel_published"}, solver={"rolling_friction": "none"})
+    text, given = deck_text(test), shear_box(test)
+    assert "delete_atoms" not in text and "erotate/multisphere" in text and "2*ke/atoms" in text
+    assert given["domain_bottom_m"] < given["pit_bottom_m"] < -test["box"]["fill_height_m"]
+    assert given["domain_back_m"] < given["pit_back_m"] < 0.0
+    assert test["box"]["length_m"] < given["pit_front_m"] < given["domain_front_m"]
+    spheres = asked(bulk={"material": "river_gravel_published"}, solver={"rolling_friction": "none"})
+    assert "delete_atoms" in deck_text(spheres) and "pit" not in deck_text(spheres)
+    assert time_step(test) == pytest.approx(
+        2.0 * smallest_radius(test["particle"]) / (2.0 * smallest_radius(spheres["particle"])) * time_step(spheres),
+        rel=EXACT,
+    )
 
 
 def test_a_plate_is_drawn_as_far_and_as_fast_as_asked():

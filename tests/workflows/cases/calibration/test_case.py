@@ -44,6 +44,11 @@ def test_every_fidelity_loads(fidelity):
             {"calibration": {"parameters": WALL}},
             r"shear_box\.wall_material is 'perspex'.*allowed is steel, as of draw_down",
         ),
+        (
+            {"bulk": {"shape": "pair"}},
+            r"solver\.rolling_friction is 'own_spin'.*allowed is none, or a model of LIGGGHTS, with clumps",
+        ),
+        ({"bulk": {"shape": "cube"}}, r"bulk\.shape is 'cube'.*allowed is one of sphere, pair, tetrahedron"),
         ({"calibration": {"measured": "none.txt"}}, r"the name of a \.csv file in config/published"),
     ],
 )

@@ -22,7 +22,7 @@ def test_statements_and_materials_of_a_calibration(done):
     text = calibrated_materials(done, study().materials, "calibration")
     found = yaml.safe_load(text)["particles"]["river_gravel"]
     assert found["contact"]["sliding_friction"] == pytest.approx(done.pairs[RECOMMENDED][SLIDING], abs=1e-4)
-    assert found["calibrated"]["rolling_radius"] == "full"
+    assert found["calibrated"]["rolling_radius"] == "full" and found["calibrated"]["shape"] == "sphere"
     assert "A wall shear test is: wall_friction_angle_deg" in found["calibrated"]["not_told"]
     statements = done.statements
     assert set(statements["inside"]) <= {"inside", "within its uncertainty", "outside"}

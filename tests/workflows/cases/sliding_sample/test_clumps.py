@@ -154,7 +154,7 @@ def test_a_study_of_particle_size_has_spheres():
         )
 
 
-@pytest.mark.parametrize("study", ["calibration", "circular_tester", "chute"])
+@pytest.mark.parametrize("study", ["circular_tester", "chute"])
 def test_other_cases_know_no_shape(study):
     """A shape where only spheres are simulated is a key that is not known, never one without effect."""
     block = "bulk" if study != "circular_tester" else "bed"
