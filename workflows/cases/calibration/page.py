@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.calibration import boxes
 from bulkwear.workflows.cases.calibration.case import calibration_box
+from bulkwear.workflows.engine.grains import SPHERE
 from bulkwear.workflows.report.sections import Light, Section
 
 if TYPE_CHECKING:
@@ -100,11 +101,12 @@ def remarks(study: Study) -> list[str]:
 def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return (what, how) of what is simpler here than in the laboratory."""
     settings = study["settings"]
-    solver, draw_down = settings["solver"], settings["draw_down"]
+    solver, draw_down, shape = settings["solver"], settings["draw_down"], settings["bulk"]["shape"]
+    grains = "Spheres" if shape == SPHERE else f"Clumps of spheres ({shape}) as large as spheres"
     return [
         (
             "Coarse-grained particles",
-            f"Spheres, {settings['particle_scale']:g} times as large as the real ones, in the same boxes. Slopes are "
+            f"{grains}, {settings['particle_scale']:g} times as large as the real ones, in the same boxes. Slopes are "
             "then fewer particles high: angles scatter more between packings, which the calibration counts as noise.",
         ),
         (

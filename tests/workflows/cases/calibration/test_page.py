@@ -26,6 +26,7 @@ from bulkwear.workflows.report.sections import Pictures, Points, Table
 from bulkwear.workflows.report.verdict import verdict
 from tests import REPOSITORY
 from tests.support.calibration_study import study
+from tests.support.tiny import OF_ANY_MODEL
 
 FIGURES = [
     *("heaps", "response_maps", "calibration_sensitivity", "family"),
@@ -148,3 +149,11 @@ def test_slopes_are_told_to_creep_under_a_constant_torque_alone(model):
     told = page_parameters(study(solver={"rolling_friction": model}))
     said = dict(page_of("calibration").simplifications(told))["Rolling friction stands for shape"]
     assert f"Model {model};" in said and ("creep" in said) == (model == "cdt")
+
+
+@pytest.mark.parametrize(("shape", "words"), [("sphere", "Spheres, 5 times"), ("pair", "Clumps of spheres (pair) as")])
+def test_grains_are_told_by_their_shape(shape, words):
+    """A calibration of clumps is not one of spheres."""
+    material = {"material": OF_ANY_MODEL, "shape": shape}
+    told = page_parameters(study(solver={"rolling_friction": "cdt"}, bulk=material))
+    assert dict(page_of("calibration").simplifications(told))["Coarse-grained particles"].startswith(words)
