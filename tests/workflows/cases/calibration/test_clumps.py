@@ -27,6 +27,7 @@ def box(kind, **sizes):
     return {**test, "box": {**test["box"], "width_m": 0.054, **sizes}}
 
 
+@pytest.mark.verify
 def test_a_shear_box_of_clumps(tmp_path):
     """The mass asked for; after the opening all are there, in the box as a slope or at rest in the pit."""
     test = box("shear_box", length_m=0.135, fill_height_m=0.12)
