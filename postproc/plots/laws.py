@@ -32,6 +32,10 @@ PANELS = {
     "overlap": "Wear where Archard's lies (-)",
     "front_share": "Share on fronts of bumps (-)",
 }
+RATIOS = ("over_archard", "over_first")
+MOST_ON_LINEAR = (
+    10.0  # -, largest over smallest ratio; beyond it bars go up and down from 1 on an axis of powers of ten
+)
 GROUP = 0.8  # of the distance between settings that bars fill
 TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
 FEW_PLACES = 4  # along the axis whose names stand level
@@ -51,6 +55,12 @@ def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     order, laws = list(dict.fromkeys(places)), list(dict.fromkeys(table["law"]))
     width = GROUP / len(laws)
     for axes, name in zip(grid, names, strict=False):
+        positive = table.loc[table[name] > 0.0, name]
+        far = name in RATIOS and positive.max() > MOST_ON_LINEAR * positive.min()
+        if far:
+            axes.set_yscale("log")
+            axes.yaxis.set_major_formatter("{x:g}")
+            axes.axhline(1.0, color="black", linewidth=0.8)
         for number, law in enumerate(laws):
             rows = table[(table["law"] == law) & table[name].notna()]
             at = np.array([order.index(place) for place in places[rows.index]]) + (number + 0.5) * width - GROUP / 2.0
@@ -58,9 +68,11 @@ def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
             ends = np.abs(rows[[f"{name}_low", f"{name}_high"]].to_numpy(float).T - value)
             known = {"yerr": ends} if np.isfinite(ends).any() else {}
             look = {"color": SERIES_COLOURS[number % len(SERIES_COLOURS)], "label": law.replace("_", " ")}
-            axes.bar(at, value, width, error_kw={"elinewidth": 0.9, "capsize": 2}, **known, **look)
+            base = 1.0 if far else 0.0
+            axes.bar(at, value - base, width, base, error_kw={"elinewidth": 0.9, "capsize": 2}, **known, **look)
         axes.set_title(PANELS[name], loc="left", fontsize=SMALLEST_FONT)  # panels are too low for words at their side
-        axes.set_ylim(bottom=0.0)
+        if not far:
+            axes.set_ylim(bottom=0.0)
     grid[-1].set_xticks(range(len(order)), order, rotation=0 if len(order) <= FEW_PLACES else 90)
     figure.legend(*named_once(grid), loc="outside upper left", ncols=len(laws))
     return figure

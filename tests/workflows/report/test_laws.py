@@ -54,6 +54,17 @@ def test_bars_are_the_means_with_intervals_over_packings():
     assert laws_apart(table).startswith("By finnie 10 % of the wear lies where Archard's does, at B liner")
 
 
+def test_ratios_of_orders_of_magnitude_are_seen_from_one():
+    """Where one law takes a hundred times what another does, bars go up and down from 1 on an axis of powers of ten."""
+    table = volumes("part", front=False)
+    table.loc[(table["law"] == "finnie") & (table["setting"] == "B"), "worn_volume_m3"] *= 50.0
+    upper, middle, _ = law_bars(laws_of_settings(table), ["said"]).axes
+    assert (upper.get_yscale(), middle.get_yscale()) == ("linear", "log")
+    assert [(bar.get_y(), bar.get_y() + bar.get_height()) for bar in middle.patches] == [
+        (1.0, pytest.approx(top)) for top in (2.0, 2.0, 200.0)
+    ]
+
+
 def test_the_design_on_which_laws_disagree_is_named():
     """Over the first one, each law with its interval, least first; nothing where they agree, or of one setting."""
     table = laws_of_settings(volumes("part", front=False))  # Finnie wears B twice as much, in half as many blocks
