@@ -13,10 +13,12 @@ from types import FrameType, TracebackType
 from bulkwear.workflows.engine.job import INTERRUPTED, STOPPED
 
 FINISHED = "job_finished"  # as Snakemake names the event
+LONGEST_REASON = 300  # letters, of why a job runs; a page's would name a hundred files
 
 
 class Terminal(logging.Filter):
-    """Listens to the lines of a logger; lets none through once Ctrl-C was pressed, as errors of all jobs would follow.
+    """Listens to a logger and shortens long reasons; lets no line through once Ctrl-C was pressed, as errors
+    of all jobs would follow.
 
     on_finished: called with the id of each job that ends
     """
@@ -28,6 +30,10 @@ class Terminal(logging.Filter):
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Return whether a line is shown."""
+        reason = getattr(record, "reason", None)
+        if isinstance(reason, str) and len(reason) > LONGEST_REASON:
+            shown = reason[:LONGEST_REASON].rpartition(", ")[0]
+            record.reason = f"{shown} and {reason.count(', ', len(shown))} more"
         if str(getattr(record, "event", "")) == FINISHED and not self.stopped:
             self.on_finished(record.job_id)
         return not self.stopped

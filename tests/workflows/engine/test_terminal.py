@@ -6,7 +6,7 @@ import signal
 import pytest
 
 from bulkwear.workflows.engine.job import STOPPED
-from bulkwear.workflows.engine.terminal import Terminal
+from bulkwear.workflows.engine.terminal import LONGEST_REASON, Terminal
 
 
 @pytest.fixture
@@ -52,3 +52,17 @@ def test_jobs_that_end_are_told(heard):
         logger.info("Finished", extra={"event": "job_finished", "job_id": number})
     logger.info("Started", extra={"event": "job_started", "jobs": [6]})
     assert ended == [3, 5] and len(lines) == 3
+
+
+def test_a_reason_of_a_hundred_files_is_a_line(heard):
+    """It names the first ones and counts the others; a short one is as it was."""
+    logger, *_ = heard
+    kept = []
+    logger.handlers[0].emit = lambda record: kept.append(record.reason)
+    files = [f"results/demo/figures/figure_{number:03}.png" for number in range(100)]
+    for reason in ("Missing output files: a, b", f"Missing output files: {', '.join(files)}"):
+        logger.info("Job", extra={"event": "job_info", "reason": reason})
+    assert kept[0] == "Missing output files: a, b"
+    shown = kept[1].count(".png")
+    assert len(kept[1]) <= LONGEST_REASON + len(" and 100 more") and shown > 1
+    assert kept[1].endswith(f"figure_{shown - 1:03}.png and {100 - shown} more")
