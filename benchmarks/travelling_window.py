@@ -64,7 +64,7 @@ LEVEL = 0.95  # of intervals
 SOURCE_EXCHANGE = 20  # mm of travel, at the source's particles
 LATE = {"ratio": "second_half_over_full", "ratio_low": "second_half_low", "ratio_high": "second_half_high"}
 CHEAPER_COLUMNS = ["cheaper_in_particle_steps", "cheaper_in_processor_time", "cheaper_low", "cheaper_high"]
-CHEAPER_COLUMNS += ["cheaper_with_its_run_in"]
+CHEAPER_COLUMNS += ["cheaper_with_its_run_in", "with_its_run_in_low", "with_its_run_in_high"]
 CHEAPER = {"particle_steps": "particle_steps", "core_hours": "core_hours"}  # column -> what it is the cost in
 
 
@@ -144,8 +144,8 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     ratio over the second half of the travel; force_over_full: mean normal force over the full bed's; cheaper_in_...:
     cost of the full bed over the bed's own, of particle-steps the ratio of means; processor time is that of the run and
     of its bed, which the plain twin shares but in the full bed, with cheaper_low and cheaper_high;
-    cheaper_with_its_run_in: per counted metre, the full bed with the source's run-in; second_half_over_whole: sliding
-    work per metre, 1 where the wear is steady after the run-in
+    cheaper_with_its_run_in, with_its_run_in_low, _high: per counted metre, the full bed with the source's run-in;
+    second_half_over_whole: sliding work per metre, 1 where the wear is steady after the run-in
     """
     parts = []
     for surface, of in runs.groupby("surface", sort=False):
@@ -164,6 +164,8 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
             "cheaper_low": 1.0 / cost["ratio_high"],
             "cheaper_high": 1.0 / cost["ratio_low"],
             "cheaper_with_its_run_in": run_in_factor() / cost["ratio"],
+            "with_its_run_in_low": run_in_factor() / cost["ratio_high"],
+            "with_its_run_in_high": run_in_factor() / cost["ratio_low"],
             "second_half_over_whole": table["second_half_J_per_m"] / table["sliding_work_J_per_m"],
         }
         parts.append(table.drop(columns="sliding_work_J_per_m").assign(surface=surface, **over))
@@ -282,7 +284,7 @@ def results_page(table: pd.DataFrame, runs: pd.DataFrame) -> str:
             " size. With one scatter for all beds, each needs as many packings for the same error: the ratios of cost"
             " are those at equal error. Cheaper in processor time: of a run with its bed, which its twin shares but in"
             " the bed that others are compared with, and the 95 % interval of that ratio; with its run-in: per counted"
-            " metre, where that bed has the source's run-in and travel. Means over the packings:"
+            " metre, where that bed has the source's run-in and travel, likewise. Means over the packings:"
         ),
         markdown(table[[*names, *cost, *CHEAPER_COLUMNS]]),
         "## The source's bed",

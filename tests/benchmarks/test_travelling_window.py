@@ -72,6 +72,19 @@ def test_packings_are_what_is_repeated():
     assert table["cheaper_low"][WINDOW] == pytest.approx(cost[WINDOW])  # processor times of these packings are equal
 
 
+def test_cheaper_has_the_interval_of_the_scatter_of_processor_times():
+    """Run-ins move both its ends alike. Costs of full bed and window are e and 1/e times 16 s: a ratio of 1."""
+    some = runs().assign(bed_processor_s=0.0)
+    some["processor_s"] = 16.0 * np.exp(np.where(some["seed"] == 0, 1.0, -1.0))
+    found = comparison(some).set_index("bed").loc[WINDOW]
+    reach = STUDENT_95_2 * np.sqrt(2.0)  # of a difference of two means of two, each of variance 2
+    assert found["cheaper_low"] == pytest.approx(np.exp(-reach), rel=1e-6)
+    assert found["cheaper_high"] == pytest.approx(np.exp(reach), rel=1e-6)
+    for end in ("low", "high"):
+        longer = found[f"with_its_run_in_{end}"] / found[f"cheaper_{end}"]
+        assert longer == pytest.approx(found["cheaper_with_its_run_in"])
+
+
 def test_beds_may_have_unequal_packings():
     """A run that is not finished yet takes nothing from the others; one packing has no interval."""
     some = runs().iloc[:3]
