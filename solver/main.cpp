@@ -112,6 +112,7 @@ int main(int argc, char** argv) {
   styles["load/ledger"] = create_load_ledger;
   styles["rolling/own_spin"] = create_spin_friction;
   rolling::add_rolling_models();
+  wall_search::prove(lammps);
   lammps->input->file();
   delete lammps;
   MPI_Finalize();

@@ -6,6 +6,7 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <string>
@@ -20,10 +21,16 @@
 #include "fix_neighlist_mesh.h"
 #include "fix_wall_gran.h"
 #include "gap.h"
+#include "library.h"
 #include "mesh_module_stress.h"
 #include "neighbor.h"
 #include "tri_mesh.h"
+#include "universe.h"
 #include "update.h"
+
+#ifndef LIGGGHTS_VERSION_BUILT_FOR
+#error "build with make -C solver, which says for which version"
+#endif
 
 using namespace LAMMPS_NS;
 
@@ -50,7 +57,7 @@ constexpr double MARGIN = 1e-3;        // -, of the radius: covers rounding, and
                                        // takes for its
 constexpr int PROOF_INTERVAL = 10000;  // steps between two looks at all pairs
 
-bool stock = false;
+std::string left;  // why all is left to the library; empty where it is not
 
 // Every list of neighbours that was made gets a number of its own; a list that lies where another lay has another.
 std::uint64_t builds = 0;
@@ -142,6 +149,14 @@ void say(LAMMPS* lammps, const std::string& sentence) {
     if (to) fprintf(to, "%s\n", sentence.c_str());
 }
 
+// Fields that are read through the solver's headers are where its compiled code has them.
+bool laid_out(LAMMPS* lammps) {
+  const Atom* atom = lammps->atom;
+  return lammps_extract_atom(lammps, "x") == atom->x && lammps_extract_atom(lammps, "radius") == atom->radius &&
+         lammps_extract_global(lammps, "nlocal") == &atom->nlocal &&
+         lammps_extract_global(lammps, "dt") == &lammps->update->dt;
+}
+
 // Once per wall.
 void tell(LAMMPS* lammps, const FixWallGran* wall, const std::string& sentence) {
   static std::map<const FixWallGran*, std::string> told;
@@ -152,7 +167,16 @@ void tell(LAMMPS* lammps, const FixWallGran* wall, const std::string& sentence) 
 
 }  // namespace
 
-void use_stock() { stock = true; }
+void use_stock() { left = "as asked"; }
+
+void prove(LAMMPS* lammps) {
+  if (!left.empty()) return;
+  if (!std::strstr(lammps->universe->version, LIGGGHTS_VERSION_BUILT_FOR))
+    left = std::string("this program was built for ") + LIGGGHTS_VERSION_BUILT_FOR;
+  for (const char* symbol : {POST_FORCE_MESH, PRE_FORCE, CALC_TOTAL_FORCE})
+    if (dlsym(RTLD_DEFAULT, symbol) == dlsym(RTLD_NEXT, symbol)) left = "the library calls functions of its own";
+  if (!left.empty()) say(lammps, "Wall search: " + std::string(STOCK) + ", " + left + ".");
+}
 
 }  // namespace wall_search
 
@@ -168,9 +192,12 @@ void FixNeighlistMesh::pre_force(int vflag) {
 
 void FixWallGran::post_force_mesh(int vflag) {
   static const auto library = original<void (*)(FixWallGran*, int)>(POST_FORCE_MESH);
-  std::string other;
-  if (stock) other = "as asked";
-  else if (!impl || !radius_ || atom->shapetype_flag) other = "particles are no spheres of a radius of their own";
+  static const bool fits = laid_out(lmp);
+  std::string other = left;
+  if (other.empty() && !(fits && x_ == atom->x && radius_ == atom->radius && nlocal_ == atom->nlocal))
+    other = "the library has its fields elsewhere than this program was built for";
+  if (other.empty() && (!impl || !radius_ || atom->shapetype_flag))
+    other = "particles are no spheres of a radius of their own";
   for (int index = 0; index < n_FixMesh_; ++index) {
     if (FixMesh_list_[index]->meshMulticontactData()) other = "the contact model lets contacts act on each other";
     if (!FixMesh_list_[index]->contactHistory()) other = "a mesh keeps no contacts";
@@ -231,7 +258,7 @@ void FixWallGran::post_force_mesh(int vflag) {
 // Wear of the step, and stresses of triangles from their forces, without the arithmetic where there are none.
 void MeshModuleStress::calc_total_force() {
   static const auto library = original<void (*)(MeshModuleStress*)>(CALC_TOTAL_FORCE);
-  if (stock || !stress_flag_) return library(this);
+  if (!left.empty() || !stress_flag_) return library(this);
   for (int triangle = 0; wear_flag_ && triangle < mesh->size(); ++triangle) {
     if (wear_step(triangle) == 0.0) continue;
     wear(triangle) += wear_step(triangle);

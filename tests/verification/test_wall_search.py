@@ -13,7 +13,8 @@ from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.workflows.engine.own_machine import write_update
 from bulkwear.workflows.engine.solver import solver_environment
-from tests.verification.ledger_cases import SOLVER, command, write_case
+from tests import REPOSITORY
+from tests.verification.ledger_cases import PIN_MOTION, SOLVER, build, command, pin, write_case
 from tests.verification.machines.four import MACHINES
 from tests.verification.test_solver_ledger_beds import BOX, LOOSE, POURED
 
@@ -42,6 +43,7 @@ fix angle all property/global contactAngle peratomtype 40 40
 """
 RESTARTED = ["restart 500 a.restart b.restart"]
 RESUMED = FALLEN["settling"] + 2 * STEPS  # steps
+SEARCH_SOURCE = "search/wall_search.cpp"
 
 
 def searched(folder: Path, search: str, ranks: int = 1, **variables) -> str:
@@ -141,6 +143,45 @@ def searched_machine(folder: Path, search: str, time_step: float) -> None:
         [*command(**variables), "-search", search], cwd=folder, env=solver_environment(), capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+
+
+def alone(folder: Path, solver: Path) -> subprocess.CompletedProcess[str]:
+    """Run a pin that falls on a plate, without a ledger, by a solver."""
+    write_case(folder, PLATE, pin(1.3e-4, 0.7e-4, 0.0031), PIN_MOTION, steps=200)
+    (folder / "ledger.in").write_text("")
+    words, told = command(solver=solver), {"capture_output": True, "text": True, "errors": "replace"}  # stray bytes
+    return subprocess.run(words, cwd=folder, env=solver_environment(), **told)
+
+
+@pytest.mark.verify
+def test_a_library_of_another_version_searches_itself(tmp_path):
+    """The log says why, once for all walls and at each; the run goes on."""
+    done = alone(tmp_path / "run", build(tmp_path, LIGGGHTS_VERSION="9.9"))
+    assert done.returncode == 0, done.stdout[-2000:]
+    why = "stock, this program was built for 9.9."
+    assert f"Wall search: {why}" in done.stdout and f"Wall search of wall: {why}" in done.stdout
+
+
+@pytest.mark.verify
+def test_a_library_that_does_not_call_ours_is_told(tmp_path):
+    """As one whose own function comes first: ours is taken out."""
+    text = (REPOSITORY / "solver" / SEARCH_SOURCE).read_text()
+    ours = text[text.index("void FixNeighlistMesh::pre_force(") : text.index("void FixWallGran::post_force_mesh(")]
+    done = alone(tmp_path / "run", build(tmp_path, edit=(SEARCH_SOURCE, ours, "")))
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert "Wall search: stock, the library calls functions of its own." in done.stdout
+    assert "Wall search of wall: ours" not in done.stdout
+
+
+@pytest.mark.verify
+def test_a_contact_before_it_was_due_stops_the_run(tmp_path):
+    """Pairs that wait a fifth of the radius too long are found by the look at all of them, here at every step."""
+    text = (REPOSITORY / "solver" / SEARCH_SOURCE).read_text()
+    rules = text[text.index("constexpr double MARGIN") : text.index("std::string left;")]
+    late = "constexpr double MARGIN = -0.2;\nconstexpr int PROOF_INTERVAL = 1;\n"
+    done = alone(tmp_path / "run", build(tmp_path, edit=(SEARCH_SOURCE, rules, late)))
+    assert done.returncode != 0
+    assert "found a contact before it was due" in done.stdout + done.stderr
 
 
 def test_another_word_is_refused():
