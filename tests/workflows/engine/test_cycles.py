@@ -33,7 +33,7 @@ from bulkwear.workflows.engine.machine import interpreter, machine_facts
 from bulkwear.workflows.engine.pieces import PIECES
 from bulkwear.workflows.engine.provenance import PROVENANCE, PROVENANCE_FILE, simulating_code
 from bulkwear.workflows.engine.schedule import first_span
-from bulkwear.workflows.engine.solver import SolverError
+from bulkwear.workflows.engine.solver import SEARCHES, SolverError
 from tests import REPOSITORY
 from tests.support.patience import LONGEST_S
 from tests.support.stl import stl_facets
@@ -606,10 +606,29 @@ def test_restart_files_that_no_resume_needs_go(tmp_path, kept, finished_cycles, 
     assert state.finished_cycles(tmp_path, "same", ("run.restart", "surface.vtu")) == finished_cycles - 1
 
 
-def test_kept_restart_files_change_no_input():
-    """What is kept is no reason to simulate again."""
-    digests = {inputs_of(tiny_study(solver={"kept_restarts": kept})) for kept in ("few", "all")}
-    assert len(digests) == 1
+@pytest.mark.parametrize(("setting", "values"), [("kept_restarts", ("few", "all")), ("search", SEARCHES)])
+def test_what_changes_no_number_changes_no_input(setting, values):
+    """Neither which restart files are kept nor who searches is a reason to simulate again."""
+    assert len({inputs_of(tiny_study(solver={setting: value})) for value in values}) == 1
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_the_study_says_who_searches(tmp_path, monkeypatch, search):
+    """For contacts with meshes in cycles, cycle 0 included."""
+    asked = []
+
+    def stopped(folder, *given, **settings):
+        asked.append(settings["search"])
+        raise SolverError("stopped")
+
+    monkeypatch.setattr(cycles, "run_deck", stopped)
+    study = tiny_study(solver={"search": search})
+    run, bed = study.run("R9_convex").parameters, study.beds["bed_1"]
+    chain = Chain("R9_convex", tmp_path, study.case, run, tmp_path / "surface.vtu", bed)
+    for span in (None, first_span(run)):
+        with pytest.raises(SolverError, match="stopped"):
+            cycles.simulate(chain, span, tmp_path, {}, Progress("R9_convex", 1))
+    assert asked == [search, search]
 
 
 def inputs_of(study):
