@@ -18,7 +18,7 @@ import numpy as np
 import pandas as pd
 
 TIMED = ("cost.csv", "solver_cost.csv", "forecast.csv", "ranks.csv")  # of tables that tell of the machine
-TIMED_COLUMNS = ("solver_s", "processor_s", "other_s", "wall_s")
+TIMED_COLUMNS = ("solver_s", "processor_s", "other_s", "other_processor_s", "wall_s")
 SKIPPED_FOLDERS = ("logs", "decks", "superseded")
 
 

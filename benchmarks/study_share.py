@@ -1,7 +1,11 @@
-"""What finished studies cost: how much of each is not the solver, by the wall times of whole jobs, and what the solver
-took over its forecast, by the rates of results/<study>/forecast.csv. Processor time counts where it was recorded; of a
-calibration only the solver's wall time is known, and no share. `python -m benchmarks.study_share FOLDER` prints a line
-per study of another folder of results.
+"""What finished studies cost: how much of each is not the solver, by the processor time of whole jobs, and what the
+solver took over its forecast, by the rates of results/<study>/forecast.csv.
+
+Each job ends its log with its processor time and that of the programs it ran; of jobs that simulate these are the
+solver. Wall times tell the share of studies that earlier versions ran, and mean little where a machine is shared. Of
+wear cycles the share is told by themselves too, also of a run that was stopped after some: in its folder each cycle
+keeps what solver and driver took. `python -m benchmarks.study_share FOLDER` prints a line per study of another folder
+of results.
 """
 
 from __future__ import annotations
@@ -17,6 +21,8 @@ import pandas as pd
 from benchmarks.measure import Measure, measured
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.cycles import OWN_TIME
+from bulkwear.workflows.engine.job import processor_seconds_of
 from bulkwear.workflows.report.cost import BENCHMARK_SUFFIX, against_forecast, benchmark_seconds, job_costs
 from bulkwear.workflows.report.markdown import markdown
 from bulkwear.workflows.report.page import FORECAST, cost_totals
@@ -26,6 +32,8 @@ SECONDS_PER_HOUR = 3600.0
 UNTOLD = "fidelity not told"  # by forecasts of earlier versions
 FURTHER_COSTS = {"packing_profiles": "packings/solver_cost.csv"}  # job that calls the solver, besides beds and runs
 SIMULATED = "simulations"  # stands for all solver jobs of a calibration
+SIMULATING = ("worn_run_", "settled_bed_", "calibrated_parameters", "box_sizes", "packing_profiles")  # jobs begin so
+PERCENT = 100.0
 
 
 def study_jobs(folder: Path) -> pd.DataFrame:
@@ -60,20 +68,55 @@ def forecast_of(folder: Path, calibration: bool) -> pd.DataFrame:
     return table[["job", "solver_s", "fidelity"]]
 
 
-def study_row(folder: Path) -> dict[str, Any] | None:
-    """Return what a study cost, None where no solver left a record: study, fidelity, outside_solver_percent of the wall
-    time of all jobs (NaN of a calibration, whose simulations run side by side within a job), solver_jobs that left a
-    record, solver_core_hours of those that were forecast, their forecast_core_hours and measured_over_forecast (NaN
-    without a forecast).
+def outside_of_jobs(folder: Path) -> float:
+    """Return the share (%) outside the solver of the processor time of a study's jobs; NaN where a job that left a
+    benchmark does not tell its own.
     """
-    jobs = study_jobs(folder)
-    if jobs.empty or not jobs["solver_s"].sum() > 0.0:
+    outside = solver = 0.0
+    for benchmark in sorted(folder.glob(f"logs/*{BENCHMARK_SUFFIX}")):
+        log = benchmark.with_name(benchmark.name.removesuffix(BENCHMARK_SUFFIX) + ".log")
+        if not log.is_file() or (spent := processor_seconds_of(log)) is None:
+            return math.nan
+        own, programs = spent
+        simulates = log.name.startswith(SIMULATING)
+        outside, solver = outside + own + (0.0 if simulates else programs), solver + simulates * programs
+    return PERCENT * outside / (outside + solver) if solver else math.nan
+
+
+def cycle_costs(folder: Path) -> pd.DataFrame:
+    """Return processor_s and `OWN_TIME` of the finished wear cycles of all runs, whether these are done or not; NaN
+    where a cycle does not tell them.
+    """
+    costs = [state.read_record(path / state.STATE)["cost"] for path in sorted(folder.glob("*/cycle_[0-9][0-9][0-9]"))]
+    return pd.DataFrame([each for each in costs if each["cycle"]], columns=["processor_s", OWN_TIME])
+
+
+def study_row(folder: Path) -> dict[str, Any] | None:
+    """Return what a study cost, None where no solver left a record: study, fidelity; outside_solver_percent of the
+    processor time of all jobs or, where one does not tell it, of their wall time (by: which of them; NaN of a
+    calibration by the clock, whose simulations run side by side within a job); outside_cycles_percent of the processor
+    time of the wear cycles that are finished, whose number cycles is; solver_jobs that left a record, solver_core_hours
+    of those that were forecast, their forecast_core_hours and measured_over_forecast (NaN without a forecast).
+    """
+    jobs, cycles, of_jobs = study_jobs(folder), cycle_costs(folder), outside_of_jobs(folder)
+    solved = not jobs.empty and jobs["solver_s"].sum() > 0.0
+    if not solved and cycles.empty:
         return None
-    totals, fidelity = cost_totals(jobs), forecast_of(folder, calibration=False)["fidelity"]
-    return {
+    fidelity = forecast_of(folder, calibration=False)["fidelity"]
+    own, solver = (cycles[name].sum(skipna=False) for name in (OWN_TIME, "processor_s"))
+    row = {
         "study": folder.name,
         "fidelity": fidelity.iloc[0] if len(fidelity) else UNTOLD,
-        "outside_solver_percent": float("nan") if SIMULATED in set(jobs["job"]) else totals["outside_percent"],
+        "outside_cycles_percent": PERCENT * own / (own + solver) if len(cycles) else math.nan,
+        "cycles": len(cycles),
+    }
+    if not solved:
+        return row
+    totals = cost_totals(jobs)
+    by_clock = math.nan if SIMULATED in set(jobs["job"]) else totals["outside_percent"]
+    return row | {
+        "outside_solver_percent": by_clock if math.isnan(of_jobs) else of_jobs,
+        "by": "the clock" if math.isnan(of_jobs) else "processor time",
         "jobs": totals["jobs"],
         "solver_jobs": int((jobs["solver_s"] > 0.0).sum()),
         "wall_hours": totals["wall_s"] / SECONDS_PER_HOUR,
@@ -90,16 +133,20 @@ def study_rows(results: Path) -> pd.DataFrame:
 
 
 def measures(folder: Path, quick: bool) -> list[Measure]:
-    """Return of each study with results the share (%) outside the solver, and the solver's hours over the forecast."""
+    """Return of each study with results the shares (%) outside the solver, and the solver's hours over the forecast."""
     told = []
-    for row in study_rows(RESULTS).itertuples():
-        name, share = f"{row.study} ({row.fidelity})", row.outside_solver_percent
-        if not math.isnan(share):
-            whole = f"all {row.jobs} jobs, {row.wall_hours:.2f} h"
+    for row in study_rows(RESULTS).to_dict("records"):
+        name, share, of_cycles = f"{row['study']} ({row['fidelity']})", row.get("outside_solver_percent"), row["cycles"]
+        if share is not None and not math.isnan(share):
+            whole = f"{row['by']} of all {row['jobs']:.0f} jobs, {row['wall_hours']:.2f} h"
             told.append(measured(f"{name}, outside the solver", "%", [share], whole))
-        if row.forecast_core_hours > 0.0:
-            hours, forecast = [row.solver_core_hours], [row.forecast_core_hours]
-            told.append(measured(f"{name}, solver, {row.solver_jobs} jobs", "core h", hours, "its forecast", forecast))
+        if not math.isnan(row["outside_cycles_percent"]):
+            whole = f"processor time of {of_cycles} wear cycles"
+            told.append(measured(f"{name}, outside the solver in cycles", "%", [row["outside_cycles_percent"]], whole))
+        if row.get("forecast_core_hours", 0.0) > 0.0:
+            hours, forecast = [row["solver_core_hours"]], [row["forecast_core_hours"]]
+            jobs = f"solver, {row['solver_jobs']:.0f} jobs"
+            told.append(measured(f"{name}, {jobs}", "core h", hours, "its forecast", forecast))
     return told
 
 

@@ -7,6 +7,8 @@ import pytest
 
 from benchmarks import study_share
 from benchmarks.study_share import UNTOLD, measures, study_row, study_rows
+from bulkwear.workflows.engine.job import TOOK
+from bulkwear.workflows.engine.records import write_record
 
 HOUR = 3600.0
 
@@ -68,10 +70,43 @@ def test_a_study_against_its_forecast(tmp_path):
     """
     row = study_row(sliding(tmp_path, "standard"))
     assert (row["study"], row["fidelity"], row["jobs"], row["solver_jobs"]) == ("demo", "standard", 3, 2)
-    assert row["outside_solver_percent"] == pytest.approx(100.0 / 6.0)
+    assert row["outside_solver_percent"] == pytest.approx(100.0 / 6.0) and row["by"] == "the clock"
     assert row["solver_core_hours"] == pytest.approx(0.8)
     assert row["forecast_core_hours"] == pytest.approx(2.0)
     assert row["measured_over_forecast"] == pytest.approx(0.4)
+
+
+def took(folder, **jobs):
+    """Logs of jobs that took so many s of processor time themselves, and their programs so many."""
+    for job, times in jobs.items():
+        (folder / "logs" / f"{job}.log").write_text(f"--- started\n{TOOK % times}\n")
+
+
+def test_processor_times_of_jobs_come_before_the_clock(tmp_path):
+    """Programs of what simulates are the solver, 30 and 60 s; of others, 4 s, they are not, as 1, 2 and 3 s of their
+    own: 10 of 100. Two starts of a job add up; where one job tells nothing the clock counts.
+    """
+    folder = sliding(tmp_path)
+    took(folder, worn_run_R9_plain=(1.0, 60.0), settled_bed_bed_1=(2.0, 30.0))
+    assert study_row(folder)["by"] == "the clock"
+    took(folder, summary=(3.0, 4.0))
+    row = study_row(folder)
+    assert row["outside_solver_percent"] == pytest.approx(10.0) and row["by"] == "processor time"
+    log = folder / "logs" / "worn_run_R9_plain.log"
+    log.write_text(log.read_text() + f"--- started\n{TOOK % (90.0, 10.0)}\n")
+    assert study_row(folder)["outside_solver_percent"] == pytest.approx(50.0)
+
+
+def test_a_run_that_was_stopped_tells_the_share_of_its_cycles(tmp_path):
+    """Of wear cycles: 1 and 2 s of 100. Cycle 0, and folders that are begun, do not count."""
+    for name, own in (("cycle_000", 50.0), ("cycle_001", 1.0), ("cycle_002", 2.0), ("cycle_003.part", 50.0)):
+        place = tmp_path / "demo" / "R9_plain" / name
+        place.mkdir(parents=True)
+        number = int(name[6:9])
+        cost = {"cycle": number, "solver_s": 99.0, "processor_s": 48.5, "other_processor_s": own}
+        write_record(place / "state.json", {"cost": cost})
+    (row,) = study_rows(tmp_path).to_dict("records")
+    assert row["outside_cycles_percent"] == pytest.approx(3.0) and row["cycles"] == 2
 
 
 def test_a_calibration_counts_all_its_simulations(tmp_path):

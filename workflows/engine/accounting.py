@@ -38,18 +38,16 @@ def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
     spent = [*source.written(folder), *(folder / name for name in case.leftovers)]
     spent += case.reduce(chain.parameters, span, folder)
     record = {"wear": row, "cost": {"ledger_bytes": ledger_bytes}}
-    if said := worn_through_words(int(row["through_nodes"]), read_surface(folder / SURFACE)):
-        record[WORN_THROUGH] = said
+    if nodes := int(row["through_nodes"]):
+        record[WORN_THROUGH] = worn_through_words(nodes, read_surface(folder / SURFACE))
     return record, spent
 
 
-def worn_through_words(nodes: int, worn: SurfaceMesh) -> str | None:
-    """Return where a surface is worn through, None where the update left no such node.
+def worn_through_words(nodes: int, worn: SurfaceMesh) -> str:
+    """Return where a surface is worn through.
 
-    nodes: worn through by the update; worn: after it and remeshing, which may take the last such node away
+    nodes: worn through by the update, one at least; worn: after it and remeshing, which may take the last one away
     """
-    if not nodes:
-        return None
     return through_phrase(worn) or f"worn through at {nodes} nodes, which remeshing has merged with their neighbours"
 
 

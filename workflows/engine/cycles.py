@@ -7,6 +7,7 @@ together.
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
@@ -70,6 +71,7 @@ from bulkwear.workflows.engine.solver import (
 from bulkwear.workflows.engine.wear_step import worn_surface
 
 WORN_SURFACE = "worn_surface.vtu"
+OWN_TIME = "other_processor_s"  # of a cycle's cost; cycles of earlier versions lack it
 # Faults of what the solver left: only another simulation mends it, as after a disk that was full for a moment.
 UNREADABLE = (LoadLedgerError, MeshLoadsError, ContactDumpError, SamplesError, SolverLogError)
 BED_RESTART = "bed.restart"
@@ -144,7 +146,7 @@ def cycles_of(chain: Chain) -> int | None:
 
 def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) -> None:
     """Simulate, account, wear and displace one cycle; cycle 0 (None) brings the run to its start, without wear."""
-    started, cycle = time.monotonic(), span.cycle if span else 0
+    started, own, cycle = time.monotonic(), time.process_time(), span.cycle if span else 0
     origin, code = origin_digest(chain, cycle, inputs), simulating_code(chain.case)
     with state.working_folder(chain.folder, cycle, lambda part: bool(finished_pieces(part, origin))) as folder:
         before = folder_bytes(state.cycle_folder(chain.folder, cycle - 1)) if cycle else 0
@@ -161,9 +163,8 @@ def run_cycle(chain: Chain, span: Span | None, inputs: str, progress: Progress) 
             progress.say(f"{title(chain, cycle)}: {through}")
         if turned := record.get("wear", {}).get("turned_faces"):
             progress.say(f"{title(chain, cycle)}: {turned} faces looked away from the particles and were turned")
-        record["cost"] = (
-            cost(chain, span, folder, sum(triangles.values()), pieces, time.monotonic() - started) | record["cost"]
-        )
+        spent_s = time.monotonic() - started, time.process_time() - own
+        record["cost"] = cost(chain, span, folder, sum(triangles.values()), pieces, *spent_s) | record["cost"]
         record |= {
             "span": asdict(span) if span else None,
             **chain.case.record(chain.parameters, chain.bed, span),
@@ -272,11 +273,18 @@ def cycle_executable(chain: Chain) -> str:
 
 
 def cost(
-    chain: Chain, span: Span | None, folder: Path, triangles: int, pieces: Sequence[Piece], all_seconds: float
+    chain: Chain,
+    span: Span | None,
+    folder: Path,
+    triangles: int,
+    pieces: Sequence[Piece],
+    all_seconds: float,
+    own_seconds: float,
 ) -> dict[str, float]:
     """Return what a cycle cost: times in s and the sizes that they depend on.
 
-    pieces: of its simulation; all_seconds: wall time of the cycle
+    pieces: of its simulation; all_seconds: wall time of the cycle; own_seconds: processor time of the driver itself,
+    since it was last started
     """
     thermo = thermo_table(folder / LOG)
     solver_seconds = sum(piece.wall_s for piece in pieces)
@@ -285,6 +293,7 @@ def cost(
         "solver_s": round(solver_seconds, 3),
         "processor_s": round(sum(piece.processor_s for piece in pieces), 3),
         "other_s": round(all_seconds - solver_seconds, 3),
+        OWN_TIME: round(own_seconds, 3),
         "steps": span.solver_steps if span else run_in_steps(chain),
         "particles": int(thermo["Atoms"][-1]),
         "triangles": triangles,
@@ -297,10 +306,9 @@ def write_products(chain: Chain, finished: int) -> None:
     """Write wear.csv, cost.csv, worn_surface.vtu and cycles.pvd of a run from what its finished cycles left."""
     states = [state.read_state(chain.folder, cycle) for cycle in range(finished)]
     write_table(chain.folder / "wear.csv", [found["wear"] for found in states[1:]])
-    free = {"solver_s": 0.0, "processor_s": 0.0, "other_s": 0.0}  # what another run has paid for
-    write_table(
-        chain.folder / "cost.csv", [found["cost"] | (free if "shared_with" in found else {}) for found in states]
-    )
+    free = dict.fromkeys(("solver_s", "processor_s", "other_s", OWN_TIME), 0.0)  # what another run has paid for
+    costs = [found["cost"] | (free if "shared_with" in found else {}) for found in states]
+    write_table(chain.folder / "cost.csv", [{**each, OWN_TIME: each.get(OWN_TIME, math.nan)} for each in costs])
     write_surface(chain.folder / WORN_SURFACE, worn_surface(chain, Span(**states[-1]["span"])))
     write_series(chain.folder, SURFACE, range(1, finished))
 

@@ -6,6 +6,8 @@ import contextlib
 import csv
 import errno
 import os
+import re
+import resource
 import sys
 import time
 import traceback
@@ -22,6 +24,7 @@ SECONDS_BETWEEN_LINES = 15.0
 WITHOUT_THREAD = ("can't start new thread", os.strerror(errno.EAGAIN))  # Python's words, and those of C++
 STARTED = "--- started %Y-%m-%d %H:%M:%S"  # begins what a log says of a start of its job
 STOPPED = "Stopped by Ctrl-C. The same command goes on after the last finished cycle or piece."
+TOOK = "--- took %.2f s of processor time itself, programs that it ran %.2f s"  # ends the log of a job that went well
 UNITS = {"s": 1, "min": 60, "h": 3600}  # s, of durations
 INTERRUPTED = 130  # exit code of what Ctrl-C has ended
 SMALLEST_BASIS = 0.01  # of the work; from less than that no time left is estimated
@@ -65,6 +68,8 @@ def project_job(log_path: str | Path) -> Iterator[None]:
         try:
             enter_project(Path.cwd())
             yield
+            spent = (resource.getrusage(of) for of in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+            print(TOOK % tuple(each.ru_utime + each.ru_stime for each in spent), file=log)
         except KeyboardInterrupt:
             print(STOPPED, file=log)
             sys.exit(INTERRUPTED)
@@ -75,6 +80,14 @@ def project_job(log_path: str | Path) -> Iterator[None]:
         except Exception:
             traceback.print_exc(file=log)
             raise
+
+
+def processor_seconds_of(log: Path) -> tuple[float, float] | None:
+    """Return the processor time (s) of a job itself and of the programs that it ran, of all its starts that went well;
+    None where its log tells of none.
+    """
+    told = re.findall(re.escape(TOOK).replace(r"%\.2f", r"([\d.]+)"), log.read_text("utf-8", "replace"))
+    return tuple(sum(map(float, times)) for times in zip(*told, strict=True)) if told else None
 
 
 def is_exhausted(fault: BaseException) -> bool:

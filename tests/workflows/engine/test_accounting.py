@@ -10,8 +10,3 @@ NEW = with_thickness(flat_plate(0.02, 0.02, 0.005), 0.01)  # m, with all of its 
 def test_a_hole_counts_though_remeshing_merged_its_node():
     """The update wore a node through, remeshing took it away: the run still has to end there."""
     assert worn_through_words(1, NEW).startswith("worn through at 1 nodes")
-
-
-def test_a_surface_without_holes_says_nothing():
-    """No node was worn through by the update."""
-    assert worn_through_words(0, NEW) is None

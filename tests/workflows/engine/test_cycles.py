@@ -527,8 +527,24 @@ def test_the_same_simulation_is_run_once(finished, tmp_path, monkeypatch):
     for name in ("wear.csv", "worn_surface.vtu"):
         assert (chain.folder / name).read_bytes() == (finished.folder / name).read_bytes()
     cost, paid = (pd.read_csv(folder / "cost.csv") for folder in (chain.folder, finished.folder))
-    assert not cost[["solver_s", "other_s"]].any(axis=None)
+    assert not cost[["solver_s", "other_s", cycles.OWN_TIME]].any(axis=None)
     assert paid["solver_s"].all() and cost["particles"].equals(paid["particles"])
+
+
+def test_what_the_driver_takes_itself_is_told(finished, tmp_path):
+    """Its processor time of each cycle, no more than the clock's but for what libraries do side by side; nothing of a
+    cycle that an earlier version left.
+    """
+    chain = replace(finished, folder=shutil.copytree(finished.folder, tmp_path / finished.name))
+    told = pd.read_csv(chain.folder / "cost.csv")
+    assert (told[cycles.OWN_TIME] > 0.0).all()
+    assert (told[cycles.OWN_TIME] < (os.cpu_count() or 1) * told["other_s"] + 0.1).all()
+    record = state.read_state(chain.folder, 0)
+    del record["cost"][cycles.OWN_TIME]
+    state.write_state(state.cycle_folder(chain.folder, 0), record.pop("inputs"), tuple(record.pop("files")), record)
+    cycles.write_products(chain, len(told))
+    again = pd.read_csv(chain.folder / "cost.csv")
+    assert again[cycles.OWN_TIME].isna().tolist() == [True, *[False] * (len(told) - 1)]
 
 
 def test_changed_inputs_are_not_reused_and_nothing_is_lost(finished, tmp_path):

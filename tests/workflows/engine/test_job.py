@@ -8,7 +8,7 @@ import sys
 import pyarrow
 import pytest
 
-from bulkwear.workflows.engine.job import INTERRUPTED, STOPPED, let_jobs_import, project_job
+from bulkwear.workflows.engine.job import INTERRUPTED, STOPPED, let_jobs_import, processor_seconds_of, project_job
 from tests import REPOSITORY
 
 FAULTS = {
@@ -58,3 +58,31 @@ def test_a_fault_of_the_program_shows_where_it_is(tmp_path, monkeypatch):
     with pytest.raises(KeyError), project_job(tmp_path / "job.log"):
         raise KeyError("worn_um")
     assert "Traceback" in (tmp_path / "job.log").read_text()
+
+
+JOB = """
+import subprocess, sys, time
+from bulkwear.workflows.engine.job import project_job
+
+BURN = "import time; all(iter(lambda: time.process_time() < {}, False))"
+with project_job(sys.argv[1]):
+    subprocess.run([sys.executable, "-c", BURN.format(0.5)], check=True)
+    begin = time.process_time()
+    while time.process_time() < begin + 0.2: pass
+    if len(sys.argv) > 2: raise ValueError("it went wrong")
+"""
+
+
+def test_a_job_that_went_well_tells_its_processor_time(tmp_path):
+    """Its own, imports included, and that of programs it ran; starts add up, one that failed tells nothing."""
+    log = tmp_path / "job.log"
+    words = [sys.executable, "-c", JOB, str(log)]
+    subprocess.run(words, cwd=REPOSITORY, check=True)
+    own, programs = processor_seconds_of(log)
+    assert own >= 0.2 and programs >= 0.5
+    subprocess.run(words, cwd=REPOSITORY, check=True)
+    more_own, more_programs = processor_seconds_of(log)
+    assert more_own >= own + 0.2 and more_programs >= programs + 0.5
+    failed = tmp_path / "failed.log"
+    subprocess.run([*words[:-1], str(failed), "fails"], cwd=REPOSITORY, check=False)
+    assert "it went wrong" in failed.read_text() and processor_seconds_of(failed) is None
