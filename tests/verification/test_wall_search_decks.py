@@ -1,11 +1,15 @@
-"""Every deck of the project by either search for contacts with meshes: the same to the last bit, on one process.
+"""Every deck of the project, and LIGGGHTS' tutorials with walls of meshes, by either search for contacts with meshes:
+the same to the last bit, on one process.
 
-Takes some minutes.
+Takes some minutes. The tutorials are those of a clone of LIGGGHTS-PUBLIC, whose folder examples/LIGGGHTS/
+Tutorials_public the environment names as LIGGGHTS_TUTORIALS; without it they are left out.
 """
 
 from __future__ import annotations
 
 import io
+import os
+import re
 import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -25,7 +29,7 @@ from bulkwear.workflows.engine.cycles import BED_RESTART, HISTORY, LEDGER, run_c
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.schedule import first_span
-from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, SCREEN, SEARCHES, run_deck
+from bulkwear.workflows.engine.solver import DECK, LEDGER_EXECUTABLE, SCREEN, SEARCHES, run_deck
 from bulkwear.workflows.engine.state import cycle_folder
 from tests.support.bulk_boxes import PAIR, SEED, small
 from tests.support.own_machine_project import machine_chain, machine_study
@@ -48,6 +52,12 @@ SLIDING = {
     "clumps": clumps,
 }
 MODELS = ("none", "cdt", "epsd2", "own_spin", "rvd")
+TUTORIALS = {"chute_wear": "granwalls", "conveyor": "wall", "meshGran": "granwalls", "movingMeshGran": "bucket_wall"}
+TUTORIAL_STEPS = 40_000  # of each `run` at most
+LAST_STATE = (
+    "write_dump all custom last.dump id x y z vx vy vz fx fy fz omegax omegay omegaz modify sort id format"
+    f' "%d{12 * " %.17g"}"'
+)
 
 
 CHAINS: dict[str, Callable[[Path], Chain]] = {
@@ -133,3 +143,21 @@ def test_same_bulk_test(tmp_path, kind):
         run_deck(tmp_path / search, executable=LEDGER_EXECUTABLE, search=search)
         found[search] = written(tmp_path / search, HEAP, FILLED)
     assert found["ours"] and found["ours"] == found["stock"]
+
+
+@pytest.mark.skipif("LIGGGHTS_TUTORIALS" not in os.environ, reason="LIGGGHTS_TUTORIALS names no folder")
+@pytest.mark.parametrize("name", TUTORIALS)
+def test_same_in_tutorials(tmp_path, name):
+    """Places, velocities, forces and spins when they end, or after many steps; pictures are left out."""
+    found = {}
+    for search in SEARCHES:
+        folder = shutil.copytree(Path(os.environ["LIGGGHTS_TUTORIALS"]) / name, tmp_path / search)
+        (folder / "post").mkdir(exist_ok=True)
+        text = re.sub(r"^\s*(un)?dump.*$", "", (folder / f"in.{name}").read_text(), flags=re.MULTILINE)
+        shorter = re.sub(r"(?m)^(run\s+)(\d+)", lambda words: f"{words[1]}{min(int(words[2]), TUTORIAL_STEPS)}", text)
+        (folder / DECK).write_text(f"{shorter}\n{LAST_STATE}\n")
+        run_deck(folder, executable=LEDGER_EXECUTABLE, search=search)
+        assert f"Wall search of {TUTORIALS[name]}: {search}, " in (folder / SCREEN).read_text()
+        found[search] = (folder / "last.dump").read_bytes()
+    assert found["ours"].count(b"\n") > 100
+    assert found["ours"] == found["stock"]
