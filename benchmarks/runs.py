@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from bulkwear.postproc.mesh import SurfaceMesh, read_surface, write_surface
+from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, read_surface, write_surface
 from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters
 from bulkwear.workflows.config.design import Run, Study, load_study
@@ -77,16 +77,16 @@ def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain
     return chain
 
 
-def prepared_tester(folder: Path, particle_scale: float) -> Chain:
-    """Return the chain of a plain sample in the circular tester's channel, filled and run in."""
+def prepared_tester(folder: Path, particle_scale: float, surface: str = PLAIN) -> Chain:
+    """Return the chain of a plain or convex sample in the circular tester's channel, filled and run in."""
     study = load_study(TESTER, overrides={"fidelity": "quick", "particle_scale": particle_scale})
-    run = next(run for run in study.runs if run.parameters["pattern"] is None)
-    surface, bed = folder / run.name / "surface.vtu", study.bed_of(run.name)
-    if not surface.exists():
-        surface.parent.mkdir(parents=True, exist_ok=True)
-        write_surface(surface, study.case.surface_mesh(run.parameters))
+    run = study.run(surface)
+    file, bed = folder / run.name / "surface.vtu", study.bed_of(run.name)
+    if not file.exists():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_surface(file, study.case.surface_mesh(run.parameters))
     restart = folder / "bed" / "bed.restart"
-    chain = Chain(run.name, surface.parent, study.case, run.parameters, surface, study.beds[bed], restart)
+    chain = Chain(run.name, file.parent, study.case, run.parameters, file, study.beds[bed], restart)
     with_bed(chain, bed)
     if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
         run_cycle(chain, None, inputs_digest(chain), Progress(run.name, run_in_steps(chain)))

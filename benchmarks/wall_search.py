@@ -1,4 +1,4 @@
-"""What our search for contacts with meshes saves against the library's: the same time steps of three decks by either.
+"""What our search for contacts with meshes saves against the library's: the same time steps of four decks by either.
 
 Each way runs over few and over more time steps; the difference of the processor times is that of the steps alone. Both
 give the same ledger to the last bit, which is checked in every round.
@@ -12,8 +12,9 @@ from pathlib import Path
 
 from benchmarks.measure import Measure, in_turn, measured
 from benchmarks.runs import cycle_deck, prepared_chain, prepared_tester
+from benchmarks.time_step_and_stiffness import CONVEX
 from bulkwear.meshes.disc import track_disc
-from bulkwear.postproc.mesh import write_stl
+from bulkwear.postproc.mesh import PLAIN, write_stl
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, SEARCHES, processor_seconds, run_deck
 from tests.verification.pin_cases import DISC_RADIUS, INNER_RADIUS, TRACK_RADIUS, PinCase, set_down, write_arc
 
@@ -44,8 +45,9 @@ def decks(folder: Path, quick: bool) -> dict[str, Path]:
     demo = prepared_chain(folder, QUICK_DEMO_SCALE if quick else DEMO_SCALE)
     found = {"bed past a convex sample (demo)": cycle_deck(demo, "wall_search")[0]}
     if not quick:
-        tester = prepared_tester(folder / "tester", TESTER_SCALE)
-        found["circular tester, channel"] = cycle_deck(tester, "wall_search")[0]
+        for surface in (PLAIN, CONVEX):
+            tester = prepared_tester(folder / "tester", TESTER_SCALE, surface)
+            found[f"circular tester, channel, {surface}"] = cycle_deck(tester, "wall_search")[0]
     return found | {"pin on a whole disc": pin_deck(folder / "pin", QUICK_ELEMENT if quick else ELEMENT)}
 
 
