@@ -102,6 +102,8 @@ def common(case: PinCase, cycle: int, report_steps: int) -> dict:
         "solver": {**SOLVER, "rayleigh_fraction": round(fraction, 3)},
         "largest_time_fraction": 1.25 * fraction,
         "skin_m": 0.2 * case.pin_radius,
+        "most_neighbours": 20_000,
+        "neighbours_of_page": 1_000_000,
         "load_n": case.load,
         "track_radius_m": case.track_radius,
         "type_names": ["pin", "disc"],

@@ -14,6 +14,7 @@ import numpy as np
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.engine.derived import neighbour_skin, run_kernels
 from bulkwear.workflows.engine.grains import grain_kind
+from bulkwear.workflows.engine.neighbour_lists import list_sizes
 from bulkwear.workflows.engine.templates import SOLVER, whole_sections
 
 DOMAIN_MARGIN_DIAMETERS = 2.0  # -, room between the bed and the domain's faces, in largest diameters
@@ -69,12 +70,14 @@ def integration(
 
     time_step: s; longest_run: time steps
     """
+    skin = neighbour_skin(particle)
     return {
         **whole_sections(parameters),
         "time_step_s": time_step,
         "largest_time_fraction": STEP_CHECK_MARGIN * parameters[SOLVER]["rayleigh_fraction"],
         "grains": grain_kind(particle),
-        "skin_m": neighbour_skin(particle),
+        "skin_m": skin,
+        **list_sizes(parameters, particle, skin),
         "gravity_m_per_s2": GRAVITY,
         "report_steps": max(longest_run // REPORTS_PER_RUN, 1),
     }

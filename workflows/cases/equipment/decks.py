@@ -17,6 +17,7 @@ from bulkwear.workflows.cases.equipment.parameters import filled_mass, laws_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, feed_face, rectangle, room_needed
 from bulkwear.workflows.engine import decks as deck
 from bulkwear.workflows.engine.derived import laws_beside, neighbour_skin
+from bulkwear.workflows.engine.neighbour_lists import list_sizes
 from bulkwear.workflows.engine.schedule import Span
 
 Parameters = Mapping[str, Any]
@@ -92,6 +93,7 @@ def _common(run: Parameters, cycle: int, begin: int) -> dict[str, Any]:
         **material_words(run),
         **integration,
         "skin_m": skin(run),
+        **list_sizes(run, particle, skin(run)),
         "report_steps": derived["report_steps"],
         "picture_steps": derived["picture_steps"],
         "stray_steps": STRAY_STEPS,

@@ -13,6 +13,7 @@ from bulkwear.workflows.cases.pin_on_disc.parameters import (
     SETTLING_OSCILLATIONS,
 )
 from bulkwear.workflows.engine.decks import REPORTS_PER_RUN, STEP_CHECK_MARGIN, exact_ledger, steps, whole_sections
+from bulkwear.workflows.engine.neighbour_lists import list_sizes
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.work import CYCLE_BYTES, RESTART_TRIANGLE, RUN_TRIANGLE, SURFACE_TRIANGLE, Stage
 
@@ -81,12 +82,13 @@ def revolutions(run: Parameters, steps_done: int) -> float:
 def _both(run: Parameters, cycle: int) -> dict[str, Any]:
     """Return what both decks need: time step, load, and the tables of the types pin and disc."""
     pin, disc, moduli = run["particle"], run["sample_material"], run["derived"]["youngs_modulus_pa"]
-    contact = disc["contact"]
+    contact, skin = disc["contact"], SKIN_OVER_RADIUS * run["pin"]["radius_m"]
     return {
         **whole_sections(run),
         "time_step_s": run["derived"]["time_step_s"],
         "largest_time_fraction": STEP_CHECK_MARGIN * run["solver"]["rayleigh_fraction"],
-        "skin_m": SKIN_OVER_RADIUS * run["pin"]["radius_m"],
+        "skin_m": skin,
+        **list_sizes(run, pin, skin),
         "load_n": run["pin"]["load_n"],
         "track_radius_m": run["disc"]["track_radius_m"],
         "cycle": cycle,

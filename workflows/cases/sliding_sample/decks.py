@@ -21,6 +21,7 @@ from bulkwear.workflows.engine.decks import (
 )
 from bulkwear.workflows.engine.derived import ROUNDING, WALLS, WINDOW, neighbour_skin, window_lengths
 from bulkwear.workflows.engine.grains import largest_extent
+from bulkwear.workflows.engine.neighbour_lists import list_sizes
 from bulkwear.workflows.engine.pouring import bulk_density, fill_gap, fill_height, periodic_gap, poured_particles
 from bulkwear.workflows.engine.schedule import Span
 from bulkwear.workflows.engine.templates import whole_sections
@@ -107,10 +108,12 @@ def sliding_sample(run: Mapping[str, Any], bed: Mapping[str, Any], span: Span, r
 
 def bed_contacts(run: Mapping[str, Any], restart: str) -> dict[str, Any]:
     """Return the parameters of the deck that counts contacts in a restart file; arguments as for `lowered_bed`."""
+    skin = neighbour_skin(run["particle"])
     return {
         **whole_sections(run),
         "time_step_s": run["derived"]["time_step_s"],
-        "skin_m": neighbour_skin(run["particle"]),
+        "skin_m": skin,
+        **list_sizes(run, run["particle"], skin),
         **material_tables(run["particle"], run["sample_material"], run["floor_material"], run["derived"]),
         "ends": run["bed"]["ends"],
         "begin": restart,
