@@ -19,7 +19,7 @@ from bulkwear.workflows.engine.chain import Chain, deck_text
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import EXECUTABLE, LEDGER_EXECUTABLE, SCREEN, run_deck
 
-PARTICLE_SCALE, QUICK_PARTICLE_SCALE = 1.85, 4.0  # the former makes some 20,000 particles of the demo's bed
+PARTICLE_SCALE, QUICK_PARTICLE_SCALE = 2.4, 4.0  # the former makes some 20,000 particles of the demo's bed
 STEPS, QUICK_STEPS = 1200, 200  # time steps per run
 ROUNDS, QUICK_ROUNDS = 5, 2
 SAMPLING_INTERVAL = 20  # steps, the default of studies with `ledger: dumps`

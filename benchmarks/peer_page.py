@@ -59,12 +59,13 @@ def wear_words(code: Code, ratio: float) -> str:
 
 def results_page(table: pd.DataFrame, known: Sequence[Code], machine: Mapping[str, Any]) -> str:
     """Return the page; table: a row per code and round; known: all codes, whether found or not."""
-    first, found = table.iloc[0], agreement(table)
+    first, found, dates = table.iloc[0], agreement(table), sorted(set(table["date"]))
     parts = [
         "# Beside other codes",
         prose(
             "Written by `python -m benchmarks.peers` from [peers.csv](peers.csv); not to be edited. Machine:"
-            f" {machine['processor']}, {machine['system']}; one core each, programs as they are distributed."
+            f" {machine['processor']}, {machine['system']}; one core each, programs as they are distributed; measured"
+            f" {' to '.join(dict.fromkeys((dates[0], dates[-1])))}."
         ),
         prose(
             f"One bed of {first['particles']:.0f} spheres (diameters 3.6, 4.0 and 4.4 mm) at rest in a box, whose floor"

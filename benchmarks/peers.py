@@ -72,6 +72,7 @@ def row(code: Code, folder: Path, run: PeerRun, particles: np.ndarray) -> dict[s
     return {
         "code": code.name,
         "version": version((folder / "run" / SCREEN).read_text("utf-8", "replace")),
+        "date": f"{date.today():%Y-%m-%d}",
         "particles": len(particles),
         "steps": run.steps,
         "particle_steps_per_s": rate,

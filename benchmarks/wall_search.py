@@ -18,7 +18,7 @@ from bulkwear.postproc.mesh import PLAIN, write_stl
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, SEARCHES, processor_seconds, run_deck
 from tests.verification.pin_cases import DISC_RADIUS, INNER_RADIUS, TRACK_RADIUS, PinCase, set_down, write_arc
 
-DEMO_SCALE, TESTER_SCALE = 2.0, 6.0  # -, of particles; those of the studies at quick
+DEMO_SCALE, TESTER_SCALE = 3.4, 6.0  # -, of particles; those of the studies at quick
 ELEMENT, BAND = 1e-4, 0.8e-3  # m; some 80,000 triangles
 QUICK_DEMO_SCALE, QUICK_ELEMENT = 4.0, 4e-4
 FEW, MANY, QUICK_MANY = 100, 1600, 200  # time steps

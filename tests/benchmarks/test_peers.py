@@ -35,7 +35,7 @@ def rounds(rates, apart=0.0):
     """A table of rounds: ours, and LAMMPS `apart` (-) from it in one quantity; rates: (ours, LAMMPS) per round."""
     same = dict.fromkeys(QUANTITIES, 2.0)
     rows = [
-        {"round": number, "code": code, "version": "1", "particles": 10, "steps": 100}
+        {"round": number, "code": code, "version": "1", "date": "2026-11-26", "particles": 10, "steps": 100}
         | {"particle_steps_per_s": rate, **same, "wear_over_archard": 1.0 if code == OURS else math.nan}
         | ({"force_z_N": 2.0 * (1.0 + apart)} if code == LAMMPS else {})
         for number, pair in enumerate(rates, 1)
@@ -106,6 +106,7 @@ def test_a_peer_that_is_not_there_is_named_and_left_out(tmp_path, monkeypatch, c
     assert left == {STOCK, LAMMPS, YADE, KRATOS}
     assert all(f"{name} was not found and is left out: " in said for name in left)
     page = results_page(rounds([(1.0, 2.0)]), known, MACHINE)
+    assert "measured 2026-11-26." in " ".join(page.split())
     assert page.count("* Kratos DEM: pip install KratosDEMApplication") == 1
 
 
