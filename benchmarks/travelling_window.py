@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from benchmarks.measure import Measure, measured
 from benchmarks.plots.figures import wear_side_by_side
 from benchmarks.ratios import ratio_intervals
 from benchmarks.window_case import (
@@ -33,7 +32,6 @@ from benchmarks.window_case import (
     BUMPS,
     ELEMENT_SIZE,
     FULL,
-    QUICK,
     SETTINGS,
     SOURCE_FRACTION,
     SURFACES,
@@ -58,7 +56,7 @@ from bulkwear.workflows.forecast.rates import DEFAULT, read_rates
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 PLACE = "travelling_window"  # of the runs, in the folder of simulations of all benchmarks
-PACKINGS, QUICK_PACKINGS = 3, 2
+PACKINGS = 3
 BLOCK = 0.1  # m of travel
 LEVEL = 0.95  # of intervals
 SOURCE_EXCHANGE = 20  # mm of travel, at the source's particles
@@ -66,22 +64,6 @@ LATE = {"ratio": "second_half_over_full", "ratio_low": "second_half_low", "ratio
 CHEAPER_COLUMNS = ["cheaper_in_particle_steps", "cheaper_in_processor_time", "cheaper_low", "cheaper_high"]
 CHEAPER_COLUMNS += ["cheaper_with_its_run_in", "with_its_run_in_low", "with_its_run_in_high"]
 CHEAPER = {"particle_steps": "particle_steps", "core_hours": "core_hours"}  # column -> what it is the cost in
-
-
-def measures(folder: Path, quick: bool) -> list[Measure]:
-    """Return of each window the sliding work per metre and the processor time, packing by packing."""
-    settings, packings = (QUICK, QUICK_PACKINGS) if quick else (SETTINGS, PACKINGS)
-    cases = [case for number in range(packings) for case in packing(SURFACES[:1], number)]
-    rows = [run_row(case, simulated(case, folder / PLACE, settings)) for case in cases]
-    runs = pd.DataFrame(rows).groupby("bed")
-    work, seconds = (
-        {name: list(of) for name, of in runs[column]} for column in ("sliding_work_J_per_m", "processor_s")
-    )
-    told = []
-    for name in list(BEDS)[1:]:
-        told.append(measured(f"{name}: sliding work", "J/m", work[name], FULL, work[FULL]))
-        told.append(measured(f"{name}: run, processor time", "s", seconds[name], FULL, seconds[FULL]))
-    return told
 
 
 # ---------------------------------------------------------------- what came out
