@@ -49,7 +49,12 @@ def lines_of(module: str, folder: Path, quick: bool) -> pd.DataFrame:
 
 
 def replaced(before: pd.DataFrame, now: Sequence[pd.DataFrame]) -> pd.DataFrame:
-    """Return the table with the lines of the benchmarks that were run now instead of their earlier ones, in order."""
+    """Return the table with the lines of the benchmarks that were run now instead of their earlier ones, in order; one
+    that found nothing to measure, as without finished studies, leaves them.
+    """
+    now = [table for table in now if len(table)]
+    if not now:
+        return before
     names = {name for table in now for name in table["benchmark"]}
     kept = [before[~before["benchmark"].isin(names)]] if len(before) else []
     whole = pd.concat([*kept, *now], ignore_index=True)

@@ -57,6 +57,8 @@ def test_lines_are_replaced_by_benchmark():
     assert after["benchmark"].tolist() == ["meshing", "ranks"]
     assert after["ratio"].iloc[1] == 0.9
     assert replaced(pd.DataFrame(), [ranks(0.9)])["ratio"].tolist() == [0.9]
+    nothing = pd.DataFrame()  # as of `study_share` where no study is finished
+    assert replaced(before, [nothing]).equals(before) and len(table_text(nothing).splitlines()) == 1
 
 
 def test_the_page_can_be_written_again(tmp_path):
