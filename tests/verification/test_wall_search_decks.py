@@ -40,6 +40,7 @@ from tests.verification.test_wall_shear import SMALL
 from tests.workflows.cases.pin_on_disc.test_case import pin_chain, tiny_pin
 from tests.workflows.cases.sliding_sample.test_clumps import clumps
 from tests.workflows.cases.sliding_sample.test_window import window_study
+from tests.workflows.engine.test_contact_model import ONE_BY_ONE, PROPERTIES
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 
@@ -51,7 +52,6 @@ SLIDING = {
     "in a window that travels": window_study,
     "clumps": clumps,
 }
-MODELS = ("none", "cdt", "epsd2", "own_spin", "rvd")
 TUTORIALS = {"chute_wear": "granwalls", "conveyor": "wall", "meshGran": "granwalls", "movingMeshGran": "bucket_wall"}
 TUTORIAL_STEPS = 40_000  # of each `run` at most
 LAST_STATE = (
@@ -63,10 +63,10 @@ LAST_STATE = (
 CHAINS: dict[str, Callable[[Path], Chain]] = {
     **{f"bed {name}": lambda folder, make=make: tiny_chain(make(), folder) for name, make in SLIDING.items()},
     **{
-        f"rolling friction {model}": lambda folder, model=model: tiny_chain(
-            tiny_study(solver={"rolling_friction": model}), folder
+        " ".join(["contact model", *chosen.values()]): lambda folder, chosen=chosen: tiny_chain(
+            tiny_study(solver=PROPERTIES | chosen), folder
         )
-        for model in MODELS
+        for chosen in ONE_BY_ONE
     },
     **{
         f"tester, {name}": lambda folder, given=given: tiny_chain(
@@ -112,7 +112,7 @@ def assert_same(chain: Chain) -> None:
 
 @pytest.mark.parametrize("name", CHAINS)
 def test_same_over_run_in_and_first_cycle(tmp_path, name):
-    """Every kind of bed, rolling model and tester, and the pin."""
+    """Every kind of bed, contact model of the settings and tester, and the pin."""
     assert_same(CHAINS[name](tmp_path))
 
 
