@@ -10,6 +10,7 @@ import pandas as pd
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.plots.scene import common_bounds, depth_oblique, facing_side, trimmed
@@ -36,6 +37,7 @@ RATIOS = ("over_archard", "over_first")
 MOST_ON_LINEAR = (
     10.0  # -, largest over smallest ratio; beyond it bars go up and down from 1 on an axis of powers of ten
 )
+LOG_TICKS = (1.0, 3.0)  # times powers of ten
 GROUP = 0.8  # of the distance between settings that bars fill
 TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
 FEW_PLACES = 4  # along the axis whose names stand level
@@ -59,7 +61,9 @@ def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         far = name in RATIOS and positive.max() > MOST_ON_LINEAR * positive.min()
         if far:
             axes.set_yscale("log")
-            axes.yaxis.set_major_formatter("{x:g}")
+            axes.yaxis.set(
+                major_locator=LogLocator(subs=LOG_TICKS), major_formatter="{x:g}", minor_formatter=NullFormatter()
+            )
             axes.axhline(1.0, color="black", linewidth=0.8)
         for number, law in enumerate(laws):
             rows = table[(table["law"] == law) & table[name].notna()]

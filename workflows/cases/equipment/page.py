@@ -10,6 +10,7 @@ import pandas as pd
 
 from bulkwear.postproc.tables.law_volumes import laws_of_settings
 from bulkwear.postproc.tables.summary import NAMES, read_summary
+from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.cases.equipment import findings, heads, page_blocks
 from bulkwear.workflows.cases.equipment.heads import shown
 from bulkwear.workflows.cases.equipment.page_blocks import read_tables
@@ -34,7 +35,7 @@ DECKS = (
 )
 SECONDS_PER_HOUR = 3600.0
 SUMMARY, VOLUMES = "summary.csv", "volume_by_law.csv"
-SEVERAL = 2  # laws by which parts of a study wear that compares laws
+SEVERAL = 2  # laws of a study that compares laws, without those that every ledger tells
 WEIGHTIEST = "Wear coefficient"  # every life is in proportion to it
 # Figures of the sections, by name; a study has those that its modules of figures declare
 LIFE_FIGURES = ("life_bars", "recession_against_time")
@@ -81,11 +82,12 @@ def answers(folder: Path) -> list[str]:
 
 
 def _answer_on_laws(file: Path) -> list[str]:
-    """Return on which design laws disagree, of a study that compares them: its parts wear by several."""
+    """Return on which design laws disagree, of a study that compares them: by parts or beside its own."""
     if not file.is_file():
         return []
     volumes = pd.read_csv(file, dtype=NAMES)
-    if volumes.loc[volumes["over_study_law"] == 1.0, "law"].nunique() < SEVERAL:
+    asked = volumes["law"].map(lambda law: bool(LAWS[law].kernels or LAWS[law].parameters))
+    if volumes.loc[asked | (volumes["over_study_law"] == 1.0), "law"].nunique() < SEVERAL:
         return []
     said = laws_on_designs(laws_of_settings(volumes))
     return [said] if said else []
