@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import NullFormatter
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.plots.scene import common_bounds, depth_oblique, facing_side, trimmed
@@ -37,7 +37,8 @@ RATIOS = ("over_archard", "over_first")
 MOST_ON_LINEAR = (
     10.0  # -, largest over smallest ratio; beyond it bars go up and down from 1 on an axis of powers of ten
 )
-LOG_TICKS = (1.0, 3.0)  # times powers of ten
+TICK_ROOM = 1.1  # times the ends of the bars, how far ticks reach
+FEW_DECADES = 1.5  # within which an axis of powers of ten has ticks at three times these too
 GROUP = 0.8  # of the distance between settings that bars fill
 TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
 FEW_PLACES = 4  # along the axis whose names stand level
@@ -61,9 +62,8 @@ def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
         far = name in RATIOS and positive.max() > MOST_ON_LINEAR * positive.min()
         if far:
             axes.set_yscale("log")
-            axes.yaxis.set(
-                major_locator=LogLocator(subs=LOG_TICKS), major_formatter="{x:g}", minor_formatter=NullFormatter()
-            )
+            axes.set_yticks(_log_ticks(positive.min(), positive.max()))
+            axes.yaxis.set(major_formatter="{x:g}", minor_formatter=NullFormatter())
             axes.axhline(1.0, color="black", linewidth=0.8)
         for number, law in enumerate(laws):
             rows = table[(table["law"] == law) & table[name].notna()]
@@ -80,6 +80,14 @@ def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
     grid[-1].set_xticks(range(len(order)), order, rotation=0 if len(order) <= FEW_PLACES else 90)
     figure.legend(*named_once(grid), loc="outside upper left", ncols=len(laws))
     return figure
+
+
+def _log_ticks(least: float, most: float) -> list[float]:
+    """Return ticks of an axis of powers of ten between two ratios on either side of 1."""
+    first, last = math.floor(math.log10(least)), math.ceil(math.log10(most))
+    steps = (1.0, 3.0) if math.log10(most / least) < FEW_DECADES else (1.0,)
+    ticks = [step * 10.0**power for power in range(first, last + 1) for step in steps]
+    return [tick for tick in ticks if min(least, 1.0) / TICK_ROOM <= tick <= max(most, 1.0) * TICK_ROOM]
 
 
 def law_pictures(maps: Sequence[LawMap], remarks: Sequence[str]) -> Figure:

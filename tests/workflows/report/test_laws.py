@@ -60,6 +60,7 @@ def test_ratios_of_orders_of_magnitude_are_seen_from_one():
     table.loc[(table["law"] == "finnie") & (table["setting"] == "B"), "worn_volume_m3"] *= 50.0
     upper, middle, _ = law_bars(laws_of_settings(table), ["said"]).axes
     assert (upper.get_yscale(), middle.get_yscale()) == ("linear", "log")
+    assert list(middle.get_yticks()) == [1.0, 10.0, 100.0]
     assert [(bar.get_y(), bar.get_y() + bar.get_height()) for bar in middle.patches] == [
         (1.0, pytest.approx(top)) for top in (2.0, 2.0, 200.0)
     ]
