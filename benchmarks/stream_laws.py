@@ -33,6 +33,8 @@ LAWS = {  # in the order of the page
     "archard": "Archard",
     "finnie": "Finnie",
     "oka": "Oka, quartz on steel of 1.4 GPa",
+    "combined": "Combined: Archard, a twentieth of rolling, impacts alike",
+    "impact_threshold": "Impact energy above 0.5 m/s",
 }
 SLOPES = "slope over plate at {}°"
 RATIOS = tuple(angle for angle in TESTED if angle != OVER)

@@ -6,11 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from benchmarks.impact_angle import OVER
 from benchmarks.stream_laws import (
     BEGIN,
     END,
     LAWS,
     LOADS,
+    RATIOS,
     SLOPES,
     arriving,
     ratios,
@@ -20,11 +22,11 @@ from benchmarks.stream_laws import (
     with_table,
 )
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.report.sentences import spoken
 from tests import REPOSITORY
 
 OVER_A90 = {"A90": np.nan, "A60": 2.0, "A30": 4.0, "A15": 3.0}  # of the first law; n-th laws have n times as much
 ROUNDED = 0.006  # -, two decimals here, three digits there
-SPOKEN = {"tangential_work": "tangential work"}  # on the page, where that is not the name of the law
 
 
 def page(name):
@@ -82,16 +84,20 @@ def test_the_page_gets_the_table_between_its_marks():
 
 
 def test_ratios_are_those_of_the_page_of_the_study():
-    """90 over 30 degrees by each law, and all by the study's own, are what the page of which_law says first."""
+    """By each law, where laws disagree most, and at all angles by the study's own: what the page of which_law says."""
     said = " ".join(page("which_law_results_quick.md").split())
-    sentence = re.search(r"over that of A90 it wears (.*?)\. ", said)[1]
-    found = {law: float(ratio) for ratio, law in re.findall(r"([\d.]+) \([^)]*\) by ([a-z]+(?: work)?)", sentence)}
-    assert set(found) == {SPOKEN.get(law, law) for law in LAWS}
+    angle, sentence = re.search(
+        r"disagree most on the plate of A(\d+): over that of A90 it wears (.*?)\. ", said
+    ).groups()
+    found = {law: float(ratio) for ratio, law in re.findall(r"([\d.]+) \([^)]*\) by ([a-z ]+?)(?=,| and|$)", sentence)}
+    assert set(found) == {spoken(law) for law in LAWS}
     told = page("wear.md").partition(BEGIN)[2].split("\n\n")[1]
     lines = [line.split("|")[1:-1] for line in told.splitlines() if line.startswith("|")][2:]
     rows = {name.strip(): [float(cell) for cell in cells] for name, *cells in lines}
     for law, name in LAWS.items():
-        assert rows[name][0] == pytest.approx(1.0 / found[SPOKEN.get(law, law)], abs=ROUNDED), law
+        over_30 = dict(zip(RATIOS, rows[name], strict=True)) | {OVER: 1.0}
+        rounded = sum(ROUNDED / over_30[each] for each in (int(angle), 90))
+        assert over_30[int(angle)] / over_30[90] == pytest.approx(found[spoken(law)], rel=rounded), law
     steel = re.findall(r"The plate of A(\d+) loses ([\d.]+) times as much steel per hour as that of A90", said)
     over = {int(angle): float(ratio) for angle, ratio in steel}
     assert rows[LAWS["oka"]] == pytest.approx([1.0 / over[30], over[60] / over[30], over[15] / over[30]], abs=ROUNDED)
