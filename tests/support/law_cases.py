@@ -13,7 +13,21 @@ from bulkwear.postproc.wear.laws import LAWS, Law, Parameter
 from bulkwear.workflows.config.schema import case_schema, load_schema
 from bulkwear.workflows.config.units import to_si
 
+OKA = {  # constants of Oka's law of no pair of materials
+    "angle_exponent": 0.7,
+    "hardness_exponent": 2.0,
+    "hardness_pa": 1.5e9,
+    "velocity_exponent": 2.3,
+    "reference_velocity_m_per_s": 100.0,
+}
 ALPHA = 6.3e-13  # 1/Pa, steel on a pin-on-disc rig (Yan 2022, chapter 5)
+
+
+def told_of(setting: str, packing: int, law: str, volume_m3: float) -> dict[str, Any]:
+    """Return a line of volume_by_law.csv, of a run of two blocks: as much as by Archard, and in the same places."""
+    run = {"run": f"{setting}-{packing}", "row": setting, "setting": setting, "packing": packing, "surface": ""}
+    ratios = {"over_archard": 1.0, "overlap": 1.0, "correlation": 1.0}
+    return run | {"law": law, "cycles": 2, "worn_volume_m3": volume_m3} | ratios
 
 
 def wear_settings(law: str) -> dict[str, Any]:

@@ -8,19 +8,13 @@ import pytest
 from bulkwear.postproc.tables.law_volumes import WornBy, law_maps, maps_of_cycles, told_laws
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.report.laws import what_wears
+from tests.support.law_cases import OKA
 from tests.support.tiny import tiny_chain, tiny_study
 
 pytestmark = pytest.mark.solver
 
 RUN = "R9_convex"
 THRESHOLD = {"threshold_velocity_m_per_s": 0.05}
-OKA = {
-    "angle_exponent": 0.7,
-    "hardness_exponent": 2.0,
-    "hardness_pa": 1.4e9,
-    "velocity_exponent": 2.3,
-    "reference_velocity_m_per_s": 1.0,
-}
 BESIDE = {"finnie": {}, "oka": OKA, "impact_threshold": THRESHOLD, "combined": {"rolling_ratio": 0.1, **THRESHOLD}}
 
 

@@ -6,6 +6,7 @@ import pytest
 from bulkwear.meshes.plate import flat_plate
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.laws import worn_volume
+from tests.support.law_cases import OKA
 from tests.verification.ledger_cases import (
     DUMP_LINES,
     MASS,
@@ -31,13 +32,7 @@ AMPLITUDE, PERIOD = 5e-6, 500  # m, a fifth of the spring's length at which the 
 DUMPED = 0.01  # relative; the dump's velocity is half a step later than its force
 THIRD = 2e-5  # relative; 0.33333 of the solver is not 1/3
 PARAMETER = "threshold_velocity_m_per_s"
-OKA = {
-    "angle_exponent": 0.7,
-    "hardness_exponent": 2.0,
-    "velocity_exponent": 2.3,
-    "hardness_pa": 1.5e9,
-    "reference_velocity_m_per_s": 1.0,
-}
+SLOW_OKA = {**OKA, "reference_velocity_m_per_s": 1.0}
 HELD = "fix carry all move linear 0.0 0.0 0.0 units box"
 PLATE = flat_plate(0.006, 0.012, 1e-3)
 
@@ -105,7 +100,7 @@ def test_a_sphere_led_into_the_plate_wears_by_the_law_of_finnie(tmp_path, angle)
 def test_a_pin_that_slides_level_wears_by_sliding_alone(tmp_path):
     """Where laws disagree most: alpha F L by Archard, nothing by Finnie, by impacts and by Oka."""
     along = f"fix carry all move linear 0.0 {SPEED} 0.0 units box"
-    kernels = f"finnie_work impact_above_threshold {PARAMETER} 0.0 oka_energy {words_of(OKA)}"
+    kernels = f"finnie_work impact_above_threshold {PARAMETER} 0.0 oka_energy {words_of(SLOW_OKA)}"
     asked = f"fix every all load/ledger mesh sample file every.bin kernels {kernels}"
     case = {"friction": FRICTION, "steps": 1000, "time_step": TIME_STEP, "outputs": [asked]}
     run_case(tmp_path, PLATE, pin(*START), [along], **case)
@@ -196,11 +191,11 @@ def test_impacts_wear_by_what_is_above_the_threshold(tmp_path, threshold):
 
 def test_oblique_impacts_wear_by_the_law_of_oka(tmp_path):
     """k m V^2 / 2 (v / V)^k2 g(a) of one hit at 53 degrees, in the solver and from dumps."""
-    square, along, (n1, n2, k2, hardness, reference) = 0.4, 0.3, OKA.values()  # m/s
-    asked = f"fix angle all load/ledger mesh sample file angle.bin kernels oka_energy {words_of(OKA)}"
+    square, along, (n1, n2, hardness, k2, reference) = 0.4, 0.3, SLOW_OKA.values()  # m/s
+    asked = f"fix angle all load/ledger mesh sample file angle.bin kernels oka_energy {words_of(SLOW_OKA)}"
     thrown(tmp_path, square, along, outputs=[asked, *DUMP_LINES], restitution=1.0, friction=0.0)
     exact = read_load_ledger(tmp_path / "angle.bin", "sample").columns
-    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, kernels={"oka_energy": OKA}, touching=[])
+    sampled = ledger_of_dumps(tmp_path, PLATE, 1e-5, 0, modulus=5e6, kernels={"oka_energy": SLOW_OKA}, touching=[])
     speed = np.hypot(square, along)
     sine = square / speed
     expected = COEFFICIENT * 0.5 * MASS * reference**2 * (speed / reference) ** k2

@@ -12,18 +12,11 @@ from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.inputs import run_digest, simulated_from
 from bulkwear.workflows.report.laws import what_wears
 from tests import REPOSITORY
-from tests.support.law_cases import LONG_SLIP, long_slip_registered
+from tests.support.law_cases import LONG_SLIP, OKA, long_slip_registered
 from tests.support.own_machine_project import machine_study
 from tests.support.tiny import tiny_study
 
 THRESHOLD = {"threshold_velocity_m_per_s": 0.5}
-OKA = {
-    "angle_exponent": 0.7,
-    "hardness_exponent": 2.0,
-    "hardness_pa": 1.5e9,
-    "velocity_exponent": 2.3,
-    "reference_velocity_m_per_s": 100.0,
-}
 COMBINED = {"rolling_ratio": 0.1, **THRESHOLD}
 BESIDE = {"finnie": {}, "impact_threshold": THRESHOLD, "combined": COMBINED}
 

@@ -4,26 +4,18 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.cases.equipment.page import _answer_on_laws
+from tests.support.law_cases import told_of
 
 
 def volumes(worn_by: str, *beside: str) -> pd.DataFrame:
     """Worn volumes of a liner in two designs; every further law makes twice as much of B as the one before."""
     laws = [worn_by, *(law for law in (*beside, "archard", "tangential_work") if law != worn_by)]
     rows = [
-        {
-            "run": f"{setting}-{packing}",
-            "row": setting,
-            "setting": setting,
-            "packing": packing,
-            "surface": "",
-            "part": "liner",
-        }
-        | {"law": law, "cycles": 2, "over_study_law": 1.0 if law == worn_by else 0.5, "worn_volume_m3": 1e-12 * factor}
-        | {"over_archard": 1.0, "overlap": 1.0, "correlation": 1.0, "front_share": float("nan")}
+        told_of(setting, packing, law, 2.0**place if setting == "B" else 1.0)
+        | {"part": "liner", "over_study_law": 1.0 if law == worn_by else 0.5, "front_share": float("nan")}
         for setting in "AB"
         for packing in (1, 2)
         for place, law in enumerate(laws)
-        for factor in [2.0**place if setting == "B" else 1.0]
     ]
     return pd.DataFrame(rows)
 
