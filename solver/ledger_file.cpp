@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <sstream>
+#include <string>
 
 #include "atom.h"
 #include "comm.h"
@@ -45,7 +47,13 @@ std::vector<std::string> FixLoadLedger::column_names() const {
   for (const Vector& vector : {Vector{"impulse", "N_s"}, {"back_impulse", "N_s"}, {"moment", "N_m_s"}})
     for (const char* direction : {"along", "across", "normal"})
       names.push_back(std::string(vector.name) + '_' + direction + '_' + vector.unit);
-  for (const ChosenKernel& chosen : kernels_) names.push_back(chosen.kernel.column);
+  std::map<std::string, int> sets;
+  for (const ChosenKernel& chosen : kernels_) {
+    std::string column = chosen.kernel.column;
+    if (const int number = ++sets[chosen.kernel.name]; number > 1)
+      column.insert(std::strlen(chosen.kernel.name), '.' + std::to_string(number));
+    names.push_back(column);
+  }
   return names;
 }
 

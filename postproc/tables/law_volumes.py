@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,6 +17,7 @@ from bulkwear.postproc.tables.display import in_display_units
 from bulkwear.postproc.tables.history import runs_of
 from bulkwear.postproc.tables.packings import over_packings
 from bulkwear.postproc.wear.coefficient import PER_PA
+from bulkwear.postproc.wear.kernel_sums import columns_of_law
 from bulkwear.postproc.wear.laws import LAWS, NEUTRAL_LAW, worn_volume
 
 SURFACE, LEDGER, WEAR = "surface.vtu", "ledger.parquet", "wear.csv"
@@ -29,7 +31,8 @@ class WornBy:
     """What wears by one law in a run.
 
     law, parameters: SI, the coefficient included; part: name and label: of its faces, "" and None of all that wear
-    others: {law: its parameters} of other parts, whose kernels the ledgers have summed too
+    others: {law: its parameters} of other parts and beside them, whose kernels the ledgers have summed too
+    sums: of contact kernels that the ledgers hold, as from `kernel_sums`; none where there is one of each
     """
 
     law: str
@@ -37,6 +40,7 @@ class WornBy:
     part: str = ""
     label: int | None = None
     others: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    sums: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def beside(self) -> dict[str, Mapping[str, float]]:
         """Return {law: its parameters} that the ledgers of such a run serve, the own law first; all with the own
@@ -102,7 +106,7 @@ def _maps(surface: SurfaceMesh, ledger: pd.DataFrame, worn: WornBy, flow: Sequen
     labels = surface.cell_data.get("part", np.zeros(len(faces), dtype=int))
     faces = faces if worn.label is None else faces & (labels == worn.label)
     columns = {name: values[faces] for name, values in _on_faces(ledger, len(faces)).items()}
-    volumes = {law: _volume(law, columns, given) for law, given in worn.beside().items()}
+    volumes = {law: _volume(law, columns, worn.sums, given) for law, given in worn.beside().items()}
     front, bumps = None, labels[faces] > 0
     if flow is not None and bumps.any():
         normals = unit_normals(surface.points, surface.triangles)[faces]
@@ -122,9 +126,11 @@ def _on_faces(ledger: pd.DataFrame, count: int) -> dict[str, np.ndarray]:
     return found
 
 
-def _volume(law: str, columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray | None:
+def _volume(law: str, columns: Mapping[str, np.ndarray], sums: Any, parameters: Mapping[str, float]) -> Any:
+    """Return (m,) m3 by a law; None where a ledger does not suffice for it."""
     try:
-        return worn_volume(law, columns, parameters)
+        own = columns_of_law(columns, sums, law, parameters) if sums else columns
+        return worn_volume(law, own, parameters)
     except KeyError:
         return None
 

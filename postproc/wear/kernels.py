@@ -4,6 +4,9 @@ A kernel is one function and one line in `KERNELS`. It returns a value per conta
 times the time step, over the contacts of every triangle; or a value per impact, of which the ledger takes the sum. The
 solver has the same kernels with the same parameters (`solver/kernels.h`), so that both producers of a ledger write the
 same columns.
+
+A ledger may hold sums of one kernel with several sets of parameters. The label of a sum is the kernel's name, of its
+second set `name.2`, and so on; a kernel's name has no point.
 """
 
 from __future__ import annotations
@@ -130,9 +133,19 @@ def register_kernel(name: str, kernel: Kernel) -> None:
     KERNELS[name] = kernel
 
 
-def kernel_column(name: str) -> str:
-    """Return the ledger column of a kernel, unit included. Raises ValueError for a name that is no kernel."""
-    return f"{name}_{_kernel(name).unit}"
+def sum_label(name: str, number: int) -> str:
+    """Return the label of the sum of a kernel with its first, second, ... set of parameters."""
+    return name if number == 1 else f"{name}.{number}"
+
+
+def kernel_of(label: str) -> str:
+    """Return the name of the kernel of a sum."""
+    return label.partition(".")[0]
+
+
+def kernel_column(label: str) -> str:
+    """Return the ledger column of a kernel's sum, unit included. Raises ValueError for a name that is no kernel."""
+    return f"{label}_{_kernel(kernel_of(label)).unit}"
 
 
 def kernel_parameters(name: str) -> tuple[str, ...]:

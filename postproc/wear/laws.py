@@ -10,11 +10,11 @@ linear in a contact's force and speed belongs into a kernel.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
-from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
+from bulkwear.postproc.wear.kernels import kernel_column
 from bulkwear.postproc.wear.law_declaration import Law, Parameter, check_declaration
 
 
@@ -236,27 +236,6 @@ def register_law(name: str, law: Law) -> None:
     """
     check_declaration(name, law)
     LAWS[name] = law
-
-
-def law_kernels(name: str, parameters: Mapping[str, float]) -> dict[str, dict[str, float]]:
-    """Return {contact kernel: {parameter: value}} that the law of that name needs.
-
-    parameters: of the law, SI
-
-    Raises ValueError and KeyError as `worn_volume`.
-    """
-    return {
-        kernel: {key: _required(parameters, key, "wear parameter") for key in kernel_parameters(kernel)}
-        for kernel in law_of(name).kernels
-    }
-
-
-def kernels_of_laws(laws: Iterable[tuple[str, Mapping[str, float]]]) -> dict[str, dict[str, float]]:
-    """Return `law_kernels` of several laws together.
-
-    laws: name and parameters of each; those that share a kernel have the same values for it
-    """
-    return {kernel: given for name, values in laws for kernel, given in law_kernels(name, values).items()}
 
 
 def worn_volume(law: str, columns: Mapping[str, np.ndarray], parameters: Mapping[str, float]) -> np.ndarray:

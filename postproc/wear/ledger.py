@@ -14,7 +14,7 @@ from types import MappingProxyType, SimpleNamespace
 import numpy as np
 
 from bulkwear.postproc.wear.dumped_forces import step_forces
-from bulkwear.postproc.wear.kernels import is_per_impact, kernel_column, kernel_value
+from bulkwear.postproc.wear.kernels import is_per_impact, kernel_column, kernel_of, kernel_value
 from bulkwear.postproc.wear.mesh_frame import MeshFrame, Pose, facet_frames
 from bulkwear.postproc.wear.touches import episode_begins, touches
 
@@ -113,7 +113,7 @@ def columns_of_solver(
         there, contact_weight_1 ... 3 in the order of the corners, and vectors in the frame of each facet
     corners: (n, 3, 3) m, corners of the facets as the solver got them (`postproc.mesh.stl_corners`), in the frame
         where positions and vectors are wanted
-    kernels: names of the kernels whose sums are wanted
+    kernels: labels of the sums of contact kernels that are wanted
 
     Raises KeyError when a column is missing, ValueError for an unknown kernel.
     """
@@ -156,7 +156,7 @@ class LedgerBuilder:
     touching: ids of the particles that touch the mesh in the sample before the first one (carry it from the
         previous cycle's builder, so that a lasting contact is no new impact); None: unknown, so nothing in
         the first sample counts as an impact
-    kernels: {name in `postproc.wear.kernels.KERNELS`: {parameter: value}} to sum as well, one column each
+    kernels: {label as in kernels.py: {parameter: value}} of sums of contact kernels, one column each
     corners: (n_triangles, 3, 3) m, of the facets as they stand in the mesh's file; kernels need them, and without them
         the table lacks the columns back_impulse and moment
     wall_angular_velocity: (3,) rad/s, of a mesh that rotates, in the simulation's frame
@@ -185,8 +185,10 @@ class LedgerBuilder:
         self.n_triangles, self.mesh_index = n_triangles, mesh_index
         self.effective_modulus, self.density = effective_modulus, density
         self.wall_angular_velocity = wall_angular_velocity
-        self._kernels = {kernel_column(name): kernel_value(name, given) for name, given in kernels.items()}
-        self._of_impacts = {kernel_column(name) for name in kernels if is_per_impact(name)}
+        self._kernels = {
+            kernel_column(label): kernel_value(kernel_of(label), given) for label, given in kernels.items()
+        }
+        self._of_impacts = {kernel_column(label) for label in kernels if is_per_impact(kernel_of(label))}
         self._pose, self._periods = pose, np.asarray(periods, np.float64)
         self._corners = None if corners is None else np.asarray(corners, np.float64)
         found = None if corners is None else self._corners.shape

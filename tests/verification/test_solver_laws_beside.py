@@ -14,8 +14,9 @@ from tests.support.tiny import tiny_chain, tiny_study
 pytestmark = pytest.mark.solver
 
 RUN = "R9_convex"
-THRESHOLD = {"threshold_velocity_m_per_s": 0.05}
-BESIDE = {"finnie": {}, "oka": OKA, "impact_threshold": THRESHOLD, "combined": {"rolling_ratio": 0.1, **THRESHOLD}}
+THRESHOLD, LOWER = {"threshold_velocity_m_per_s": 0.05}, {"threshold_velocity_m_per_s": 0.02}
+COMBINED = {"rolling_ratio": 0.1, "impact_ratio": 10.0, **LOWER}  # the kernel of impact_threshold, otherwise
+BESIDE = {"finnie": {}, "oka": OKA, "impact_threshold": THRESHOLD, "combined": COMBINED}
 
 
 def rigid(**wear):
@@ -37,7 +38,7 @@ def test_one_rigid_run_has_the_maps_of_all_laws(tmp_path):
     together, drawn = maps_of(rigid(beside=BESIDE), tmp_path / "together")
     assert told_laws([together]) == ["archard", *BESIDE, "tangential_work"]
     assert [each.law for each in drawn] == ["archard", *BESIDE, "tangential_work"]
-    for law in ("finnie", "oka", "impact_threshold"):
+    for law in BESIDE:
         alone, _ = maps_of(rigid(law=law, parameters=BESIDE[law]), tmp_path / law)
         assert alone.volumes[law].any()
         np.testing.assert_array_equal(together.volumes[law], alone.volumes[law])

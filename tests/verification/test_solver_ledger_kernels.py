@@ -32,7 +32,7 @@ inline double long_slip(const Contact& contact, const double* given) {
 
 """
 LINE = '    {"long_slip", "long_slip_m", long_slip, {"exponent", "length_m"}},\n'
-ASKED = LEDGER_LINE + " long_slip length_m 0.003 exponent 1.25"
+ASKED = LEDGER_LINE + " long_slip length_m 0.003 exponent 1.25 long_slip exponent 2 length_m 0.003"
 TIME_STEP, STEPS = 2e-6, 1000
 MAP_TOLERANCE = 1e-9  # relative; the dump has twelve digits
 EVEN = 1e-3  # relative; force and speed hardly change, so their mean product is that of their means
@@ -56,16 +56,20 @@ def drag(folder, solver, outputs=()):
 
 
 def test_both_producers_sum_the_same(tmp_path, solver):
-    """|v_t| (L / 1 mm)^n dt with L = 3 mm and n = 1.25, triangle by triangle, beside a kernel without parameters."""
+    """|v_t| (L / 1 mm)^n dt with L = 3 mm and n = 1.25, triangle by triangle, beside a kernel without parameters and
+    the same one with n = 2.
+    """
     mesh, ledger = drag(tmp_path, solver, outputs=DUMP_LINES)
-    given = {"finnie_work": {}, "long_slip": {"exponent": 1.25, "length_m": 0.003}}
+    sets = {"long_slip": {"exponent": 1.25, "length_m": 0.003}, "long_slip.2": {"exponent": 2.0, "length_m": 0.003}}
     with long_slip_registered():
-        table = ledger_of_dumps(tmp_path, mesh, TIME_STEP, after_step=0, kernels=given)
-    assert list(ledger.columns)[-2:] == ["finnie_work_J", "long_slip_m"]
-    np.testing.assert_allclose(ledger.columns["long_slip_m"], table["long_slip_m"], rtol=MAP_TOLERANCE)
+        table = ledger_of_dumps(tmp_path, mesh, TIME_STEP, after_step=0, kernels={"finnie_work": {}, **sets})
+    assert list(ledger.columns)[-3:] == ["finnie_work_J", "long_slip_m", "long_slip.2_m"]
+    for name in ("long_slip_m", "long_slip.2_m"):
+        np.testing.assert_allclose(ledger.columns[name], table[name], rtol=MAP_TOLERANCE)
     sums = {name: ledger.columns[name].sum() for name in ledger.columns}
     slip = sums["sliding_work_J"] / sums["normal_impulse_N_s"] * sums["contact_time_s"]
     assert sums["long_slip_m"] == pytest.approx(3.0**1.25 * slip, rel=EVEN) and slip > 0.0
+    assert sums["long_slip.2_m"] == pytest.approx(3.0**2 * slip, rel=EVEN)
 
 
 @pytest.mark.parametrize(

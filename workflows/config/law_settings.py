@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from bulkwear.postproc.wear.kernel_sums import law_kernels
 from bulkwear.postproc.wear.kernels import kernel_column
-from bulkwear.postproc.wear.laws import LAWS, law_kernels, worn_volume
+from bulkwear.postproc.wear.laws import LAWS, worn_volume
 from bulkwear.postproc.wear.ledger import LEDGER_FIELDS
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, dotted
 from bulkwear.workflows.config.schema import without_required

@@ -6,21 +6,19 @@ a part of a machine may wear by one of them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import reduce
 from typing import Any
 
-from bulkwear.postproc.wear.laws import LAWS, law_kernels
+from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.config.law_settings import (
     LAW,
     WEAR,
     completed,
-    law_settings,
     parameters_schema,
 )
 from bulkwear.workflows.config.layers import ConfigError, Layer, dotted, merge
 from bulkwear.workflows.config.schema import without_required
-from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.validation import allowed_text, check_layer, locate
 from bulkwear.workflows.engine.worn_pair import BESIDE
 
@@ -34,7 +32,7 @@ def beside_settings(layers: Sequence[Layer]) -> dict[str, dict[str, float]]:
 
 def check_beside(layers: Sequence[Layer]) -> None:
     """Raise ConfigError for a law beside the study's that there is not, or that is the study's own, for parameters as
-    `check_law` does, and for a contact kernel that two laws want with different values.
+    `check_law` does.
     """
     laws = {law: {**parameters_schema(law), "additionalProperties": False} for law in LAWS}
     block = {"type": "object", "additionalProperties": False, "properties": laws}
@@ -53,20 +51,6 @@ def check_beside(layers: Sequence[Layer]) -> None:
             if key not in given:
                 allowed = allowed_text(parameters_schema(law)["properties"][key])
                 raise ConfigError(f"{where}: {dotted((*PLACE, law, key))} is missing, allowed is {allowed}.")
-    _check_kernels(layers, own)
-
-
-def _check_kernels(layers: Sequence[Layer], own: str) -> None:
-    known: dict[str, tuple[str, Mapping[str, float]]] = {}
-    for law, given in {own: law_settings(layers), **beside_settings(layers)}.items():
-        for kernel, values in law_kernels(law, to_si(given)).items():
-            first, before = known.setdefault(kernel, (law, values))
-            if before != values:
-                path = (*PLACE, law)
-                raise ConfigError(
-                    f"{locate(tuple(layers), path)}: {dotted(path)} has other parameters of the contact kernel {kernel}"
-                    f" than {first}, allowed are the same: a ledger sums it once."
-                )
 
 
 def _given(layers: Sequence[Layer]) -> dict[str, dict[str, Any]]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.caps import edge_limit
-from bulkwear.postproc.wear.laws import kernels_of_laws
+from bulkwear.postproc.wear.kernel_sums import kernel_sums
 from bulkwear.workflows.engine.derived import law_parameters, law_volume, laws_beside
 from bulkwear.workflows.engine.schedule import Span, first_span, next_span
 from bulkwear.workflows.engine.work import Stage, Work
@@ -249,8 +249,8 @@ class Case:
         return [(parameters["wear"]["law"], law_parameters(parameters))] if "wear" in parameters else []
 
     def kernels(self, parameters: Parameters) -> dict[str, dict[str, float]]:
-        """Return {contact kernel: {parameter: value}} whose sums the wear laws of a run need, and those beside them."""
-        return kernels_of_laws([*self.laws(parameters), *laws_beside(parameters)])
+        """Return `kernel_sums` of the wear laws of a run and those beside them."""
+        return kernel_sums([*self.laws(parameters), *laws_beside(parameters)])
 
     def law_volume(self, parameters: Parameters, span: Span, surface: SurfaceMesh, ledger: pd.DataFrame) -> np.ndarray:
         """Return the volume (m,) m3 that the wear law makes of a cycle's ledger, a row per triangle of the surface,

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from bulkwear.postproc.wear.caps import GRAVITY
+from bulkwear.postproc.wear.kernels import kernel_of
 from bulkwear.workflows.engine.derived import neighbour_skin, run_kernels
 from bulkwear.workflows.engine.grains import grain_kind
 from bulkwear.workflows.engine.neighbour_lists import list_sizes
@@ -28,15 +29,20 @@ STEP_CHECK_MARGIN = 1.25  # -, of the chosen time step over the Rayleigh time, b
 
 def exact_ledger(run: Mapping[str, Any], history_steps: int = 0) -> dict[str, Any]:
     """Return what a deck needs to sum every contact in the solver, and to write the sums so far every so many steps."""
-    words = [
-        word
-        for kernel, given in run_kernels(run).items()
-        for word in (kernel, *(f"{name} {value!r}" for name, value in given.items()))
-    ]
     return {
         "ledger_history": f" history {history_steps}" if history_steps else "",
-        "ledger_kernels": " ".join(["", "kernels", *words]) if words else "",
+        "ledger_kernels": kernel_words(run_kernels(run)),
     }
+
+
+def kernel_words(sums: Mapping[str, Mapping[str, float]]) -> str:
+    """Return how a deck asks a ledger for sums of contact kernels, as from `kernel_sums`; nothing for none."""
+    words = [
+        word
+        for label, given in sums.items()
+        for word in (kernel_of(label), *(f"{name} {value!r}" for name, value in given.items()))
+    ]
+    return " ".join(["", "kernels", *words]) if words else ""
 
 
 def travelled(run: Mapping[str, Any], steps: int) -> float:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from bulkwear.postproc.wear.coefficient import PER_PA
-from bulkwear.postproc.wear.laws import kernels_of_laws, worn_volume
+from bulkwear.postproc.wear.kernel_sums import kernel_sums
+from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.workflows.engine.grains import smallest_radius
 from bulkwear.workflows.engine.worn_pair import BESIDE
 
@@ -172,8 +173,8 @@ def laws_beside(run: Mapping[str, Any]) -> list[tuple[str, dict[str, float]]]:
 
 
 def run_kernels(run: Mapping[str, Any]) -> dict[str, dict[str, float]]:
-    """Return {contact kernel: {parameter: value}} whose sums the wear law of a run needs, and those beside it."""
-    return kernels_of_laws([(run["wear"]["law"], law_parameters(run)), *laws_beside(run)])
+    """Return `kernel_sums` of the wear law of a run and those beside it."""
+    return kernel_sums([(run["wear"]["law"], law_parameters(run)), *laws_beside(run)])
 
 
 def template_sections(settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from bulkwear.postproc.wear import WEAR_VERSION
-from bulkwear.postproc.wear.laws import kernels_of_laws
+from bulkwear.postproc.wear.kernel_sums import kernel_sums
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Case, Parameters
 from bulkwear.workflows.engine.chain import Chain, write_bed
@@ -83,7 +83,7 @@ def simulated_from(case: Case, parameters: Parameters, bed: Parameters | None) -
         "ledger": parameters["ledger"],
         "pieces": [case.piece_ends(parameters, bed, span) for span in spans],
         **{section: _simulated(case, section, values) for section, values in sections.items()},
-        **({BESIDE: beside} if (beside := kernels_of_laws(laws_beside(parameters))) else {}),
+        **({BESIDE: beside} if (beside := kernel_sums(laws_beside(parameters))) else {}),
         **_code_of_project(case, parameters),
     }
     return {

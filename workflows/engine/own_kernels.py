@@ -16,7 +16,7 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from bulkwear.postproc.wear.kernels import KERNELS, is_per_impact, kernel_column, kernel_parameters
+from bulkwear.postproc.wear.kernels import KERNELS, is_per_impact, kernel_column, kernel_of, kernel_parameters
 from bulkwear.workflows.engine.project import LAWS, PACKAGE, ProjectError, current_project
 from bulkwear.workflows.engine.records import digest
 
@@ -30,11 +30,11 @@ LONGEST_S = 120.0  # for which a compiler may take
 
 
 def own_sources(kernels: Iterable[str]) -> dict[str, Path]:
-    """Return {kernel: its file} of those kernels that the project has in C++."""
+    """Return {kernel: its file} of those kernels that the project has in C++; kernels: names, or labels of sums."""
     project = current_project()
     if project.is_package:
         return {}
-    files = {name: project.folder / LAWS / f"{name}{SUFFIX}" for name in kernels}
+    files = {name: project.folder / LAWS / f"{name}{SUFFIX}" for name in map(kernel_of, kernels)}
     return {name: path for name, path in files.items() if path.is_file()}
 
 
@@ -73,7 +73,7 @@ def library_text(sources: dict[str, Path]) -> str:
 
 def python_fault(kernels: Iterable[str]) -> str | None:
     """Return a sentence where sampled contacts cannot be summed because a kernel is there in C++ alone, else None."""
-    if missing := [name for name in kernels if KERNELS[name].value is None]:
+    if missing := [name for name in map(kernel_of, kernels) if KERNELS[name].value is None]:
         return (
             f"contact kernel {missing[0]}: it has no function in Python, which `ledger: dumps` needs, allowed is"
             " `ledger: solver`, or a Kernel(function, ...)."

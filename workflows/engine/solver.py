@@ -19,7 +19,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from bulkwear.postproc.readers.solver_log import SolverLogError, ended_by_signal, failure, last_step, reported_triangles
-from bulkwear.postproc.wear.kernels import kernel_column, kernel_parameters
+from bulkwear.postproc.wear.kernels import kernel_column, kernel_of, kernel_parameters
 from bulkwear.workflows.engine.disk import RESERVE_BYTES, free_bytes, full_sentence
 from bulkwear.workflows.engine.own_kernels import own_library, python_fault
 from bulkwear.workflows.engine.patience import PATIENCE, Patience, Watch
@@ -97,7 +97,7 @@ def missing_kernels(executable: str, kernels: Iterable[str]) -> str | None:
 
     Raises ProjectError for a kernel of the project that cannot be compiled.
     """
-    wanted = {name: " ".join([name, kernel_column(name), *kernel_parameters(name)]) for name in kernels}
+    wanted = {name: " ".join([name, kernel_column(name), *kernel_parameters(name)]) for name in map(kernel_of, kernels)}
     known = _told(executable, *own_kernels_words(own_library(wanted)), "-kernels") if wanted else ()
     if missing := [name for name, line in wanted.items() if line not in known]:
         return (

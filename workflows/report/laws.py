@@ -44,7 +44,8 @@ CHARTS = (
 
 def what_wears(study: Study) -> dict[str, list[tuple[Any, ...]]]:
     """Return {run: (wear law, its parameters, name and label of the faces, {law: parameters} of all parts and of laws
-    beside them) of each part that wears}; one without a name or a label where all faces are one.
+    beside them, sums of contact kernels in the ledgers) of each part that wears}; one without a name or a label where
+    all faces are one. Of a law with several sets of parameters others have that of wear.beside, or the first part's.
     """
     found = {}
     for run in study.runs:
@@ -53,8 +54,11 @@ def what_wears(study: Study) -> dict[str, list[tuple[Any, ...]]]:
             numbered = enumerate(run.parameters["parts"])
             parts = [(part["name"], number) for number, part in numbered if part["wears"]]
         laws = study.case.laws(run.parameters)
-        every = dict([*laws_beside(run.parameters), *laws])
-        found[run.name] = [(*law, *part, every) for law, part in zip(laws, parts, strict=True)]
+        every: dict[str, dict[str, float]] = {}
+        for name, given in (*laws_beside(run.parameters), *laws):
+            every.setdefault(name, given)
+        sums = study.case.kernels(run.parameters)
+        found[run.name] = [(*law, *part, every, sums) for law, part in zip(laws, parts, strict=True)]
     return found
 
 

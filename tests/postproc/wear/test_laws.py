@@ -6,6 +6,7 @@ from string import Formatter
 import numpy as np
 import pytest
 
+from bulkwear.postproc.wear.kernel_sums import columns_of_law, kernel_sums, law_kernels
 from bulkwear.postproc.wear.kernels import KERNELS, kernel_column
 from bulkwear.postproc.wear.laws import (
     LAWS,
@@ -14,7 +15,6 @@ from bulkwear.postproc.wear.laws import (
     Parameter,
     archard,
     finnie,
-    law_kernels,
     register_law,
     worn_volume,
 )
@@ -219,3 +219,15 @@ def test_the_laws_that_are_there_could_be_registered(law, monkeypatch):
     monkeypatch.delitem(LAWS, law)
     register_law(law, declared)
     assert LAWS[law] is declared
+
+
+def test_each_set_of_parameters_has_a_sum_of_its_own():
+    """Laws that share a kernel and its parameters share the sum; a law finds its own under the kernel's name, and none
+    where the ledger lacks it.
+    """
+    hit, given = "impact_above_threshold", [{"threshold_velocity_m_per_s": speed} for speed in (0.5, 2.0, 0.1)]
+    sums = kernel_sums([("impact_threshold", given[0]), ("finnie", {}), ("combined", given[1]), ("combined", given[0])])
+    assert sums == {hit: given[0], "finnie_work": {}, f"{hit}.2": given[1]}
+    columns = {f"{hit}_J": np.ones(1), f"{hit}.2_J": np.full(1, 7.0), "finnie_work_J": np.zeros(1)}
+    found = [columns_of_law(columns, sums, "combined", each).get(f"{hit}_J") for each in given]
+    assert found == [[1.0], [7.0], None]

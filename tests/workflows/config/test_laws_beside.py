@@ -1,18 +1,16 @@
 """Laws beside that of a study: which are allowed, what of them reaches runs, decks, parts, what is simulated again."""
 
 import re
-from dataclasses import replace
 
 import pytest
 import yaml
 
-from bulkwear.postproc.wear.laws import LAWS
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.inputs import run_digest, simulated_from
 from bulkwear.workflows.report.laws import what_wears
 from tests import REPOSITORY
-from tests.support.law_cases import LONG_SLIP, OKA, long_slip_registered
+from tests.support.law_cases import OKA
 from tests.support.own_machine_project import machine_study
 from tests.support.tiny import tiny_study
 
@@ -61,18 +59,17 @@ def test_a_wrong_law_beside_is_named_with_its_place(config, beside, fault):
     assert str(caught.value).startswith(f"config/studies/small.yaml, line 6: {fault}")
 
 
-def test_a_kernel_is_summed_with_one_set_of_parameters(monkeypatch):
-    """Two laws that want it with others are refused, with the same they are not."""
-    with pytest.raises(
-        ConfigError, match=r"wear\.beside\.combined has other .* impact_above_threshold than impact_thr"
-    ):
-        tiny_study(wear={"beside": {"impact_threshold": THRESHOLD, "combined": {}}})
-    with long_slip_registered():
-        monkeypatch.setitem(LAWS, "slower", replace(LONG_SLIP, words="slower."))
-        own = {"law": "long_slip", "parameters": {"exponent": 2}}
-        tiny_study(wear={**own, "beside": {"slower": {"exponent": 2}}})
-        with pytest.raises(ConfigError, match=r"wear\.beside\.slower has other parameters of the contact kernel long_"):
-            tiny_study(wear={**own, "beside": {"slower": {"exponent": 1}}})
+def test_a_kernel_is_summed_once_for_each_set_of_parameters():
+    """Two thresholds are two sums, of which the deck asks in order; the study's own law has the first."""
+    both = {"law": "impact_threshold", "parameters": THRESHOLD, "beside": {"combined": {}, "finnie": {}}}
+    study = tiny_study(wear=both)
+    run = study.run("R9_plain").parameters
+    zero = {"threshold_velocity_m_per_s": 0.0}
+    sums = {"impact_above_threshold": THRESHOLD, "impact_above_threshold.2": zero, "finnie_work": {}}
+    assert study.case.kernels(run) == sums and what_wears(study)["R9_plain"][0][-1] == sums
+    deck = simulated_from(study.case, run, study.beds[study.bed_of("R9_plain")])["decks"][1]
+    asked = "impact_above_threshold threshold_velocity_m_per_s"
+    assert f" kernels {asked} 0.5 {asked} 0.0 finnie_work" in deck
 
 
 def test_the_block_in_docs_is_taken():
@@ -88,7 +85,7 @@ def test_they_reach_kernels_and_figures_in_si_with_their_defaults():
     study, run = of_run(BESIDE)
     assert study.settings["wear"]["beside"]["combined"] == {**COMBINED, "impact_ratio": 0.0}
     assert study.case.kernels(run) == {"finnie_work": {}, "impact_above_threshold": THRESHOLD}
-    ((law, given, *_, others),) = what_wears(study)["R9_plain"]
+    ((law, given, *_, others, _),) = what_wears(study)["R9_plain"]
     assert (law, set(others)) == ("archard", {"archard", *BESIDE})
     assert others["impact_threshold"] == {**given, **THRESHOLD}
     assert given["wear_coefficient_per_pa"] == run["wear"]["accelerated_wear_coefficient_per_pa"]
@@ -128,7 +125,48 @@ def test_parts_of_a_machine_wear_by_laws_beside(tmp_path):
         run = study.runs[0].parameters
         laws = dict(study.case.laws(run))
         deck = simulated_from(study.case, run, None)["decks"][1]
-        assert set(what_wears(study)[study.runs[0].name][0][-1]) == {"archard", "oka", "impact_threshold"}
+        assert set(what_wears(study)[study.runs[0].name][0][-2]) == {"archard", "oka", "impact_threshold"}
     assert {**OKA, "wear_coefficient_per_pa": laws["oka"]["wear_coefficient_per_pa"]} == laws["oka"]
     assert laws["impact_threshold"]["threshold_velocity_m_per_s"] == 0.5
     assert "kernels oka_energy" in deck and "impact_above_threshold threshold_velocity_m_per_s 0.5" in deck
+
+
+def test_parts_wear_by_one_law_with_parameters_of_their_own(tmp_path):
+    """What a part does not give is that of the law beside; two hardnesses are two sums."""
+    softer = 5e8
+    parts = {"liner": {"law": "oka"}, "plate": {"law": "oka", "parameters": {"hardness_pa": softer}}}
+    with machine_study(tmp_path, wear={"beside": {"oka": OKA}}, parts=parts) as study:
+        run = study.runs[0].parameters
+        found = study.case.kernels(run)
+        hardnesses = [given["hardness_pa"] for law, given in study.case.laws(run) if law == "oka"]
+        assert hardnesses == [OKA["hardness_pa"], softer]
+        assert found == {"oka_energy": OKA, "oka_energy.2": {**OKA, "hardness_pa": softer}}
+
+
+@pytest.mark.parametrize(
+    ("part", "fault"),
+    [
+        (
+            {"law": "oka", "parameters": {"hardness": 3}},
+            "parts.plate.parameters.hardness is 3 for row A, allowed is one of ",
+        ),
+        (
+            {"law": "finnie", "parameters": {"hardness_pa": 3}},
+            "hardness_pa is 3 for row A, allowed is none: what the law finnie",
+        ),
+        (
+            {"law": "oka", "parameters": {"hardness_pa": 3}},
+            "hardness_pa is 3 for row A, allowed is a number from 1000000 to",
+        ),
+        (
+            {"law": "oka", "parameters": {"hardness_pa": 1e9}},
+            "parts.plate.law is 'oka' for row A, allowed is wear.law (archard)",
+        ),
+        ({"role": "rigid", "parameters": {"hardness_pa": 1e9}}, "allowed is none for a part with role: rigid"),
+    ],
+)
+def test_wrong_parameters_of_a_part_are_named(tmp_path, part, fault):
+    """Not the law's, beyond its range, too few of them, of a part that keeps its shape."""
+    with pytest.raises(ConfigError) as caught, machine_study(tmp_path, parts={"plate": part}):
+        pass
+    assert fault in str(caught.value)

@@ -21,11 +21,12 @@ from bulkwear.postproc.statistics.intervals import error_of_mean, students_t
 from bulkwear.postproc.wear.area_patches import area_patches, patch_means, patch_sums, patch_table, patches_of
 from bulkwear.postproc.wear.caps import edge_limit
 from bulkwear.postproc.wear.fields import REMOVED_THICKNESS
+from bulkwear.postproc.wear.kernel_sums import columns_of_law
 from bulkwear.postproc.wear.laws import worn_volume
 from bulkwear.postproc.wear.part_loads import part_loads
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, with_thickness
 from bulkwear.workflows.cases.equipment.motions import axis_point
-from bulkwear.workflows.cases.equipment.parameters import law_values
+from bulkwear.workflows.cases.equipment.parameters import law_values, sums_of
 from bulkwear.workflows.cases.equipment.phases import PRISTINE, phase_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, label_of
 from bulkwear.workflows.engine.schedule import Span
@@ -72,12 +73,12 @@ def given_thickness(run: Parameters) -> dict[int, float]:
 
 def rate_volume(run: Parameters, surface: SurfaceMesh, ledger: pd.DataFrame) -> np.ndarray:
     """Return the volume (m,) m3 that each part's law makes of a block's ledger, with the true coefficients."""
-    volume = np.zeros(len(surface.triangles))
+    volume, sums = np.zeros(len(surface.triangles)), sums_of(run)
     for number, part in enumerate(run["parts"]):
         if part["wears"]:
-            faces = faces_of(surface, number, part)
+            faces, law, given = faces_of(surface, number, part), part["law"], law_values(part)
             columns = {name: ledger[name].to_numpy()[faces] for name in ledger}
-            volume[faces] = worn_volume(part["law"], columns, law_values(part))
+            volume[faces] = worn_volume(law, columns_of_law(columns, sums, law, given), given)
     return volume
 
 

@@ -12,8 +12,10 @@ from bulkwear.workflows.cases.equipment.motion_checks import MOTION_CHECKS
 from bulkwear.workflows.cases.equipment.parameters import REPORTS, SECONDS_PER_HOUR, most_blocks, start_up_blocks
 from bulkwear.workflows.cases.equipment.placing import largest_diameter
 from bulkwear.workflows.cases.equipment.room_checks import ROOM_CHECKS, T_PER_H
+from bulkwear.workflows.config.law_settings import parameters_schema
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault, millimetres, physical_modulus_known
 from bulkwear.workflows.config.units import to_si
+from bulkwear.workflows.config.validation import allowed_text
 from bulkwear.workflows.engine.derived import whole_steps
 from bulkwear.workflows.engine.pouring import particles_of_mass
 
@@ -27,7 +29,7 @@ MOST_FOR_PICTURES = 1.25  # -, time steps of a block, over those that it has wit
 LONGEST_OPERATION = 500_000.0  # h, as of operation.duration_h
 MOST_STEPS = 50_000_000  # of a run: with ten thousand particles they take a core about a week
 MOST_PARTICLES = 20_000_000  # in a machine: some 20 GB of memory
-HOW_IT_WEARS = (PER_PA, DIMENSIONLESS, "wear_coefficient_error", "law")  # keys of a part
+HOW_IT_WEARS = (PER_PA, DIMENSIONLESS, "wear_coefficient_error", "law", "parameters")  # keys of a part
 RULES = ("remaining_m", "remaining_fraction", "worn_mass_fraction")  # of a change-out
 
 
@@ -118,15 +120,30 @@ def updates_deform(run: CheckedRun) -> Fault | None:
     return "wear.deform", f"true where the shape is updated (updates.most: {most}), or updates.most: 0"
 
 
+def parameters_are_the_law_s(run: CheckedRun) -> Fault | None:
+    """What a part gives its wear law is a parameter of that law, within its range."""
+    for part in run.parameters["parts"]:
+        known = parameters_schema(part["law"])["properties"]
+        for key, value in run.settings["parts"][part["name"]].get("parameters", {}).items():
+            place = f"parts.{part['name']}.parameters.{key}"
+            if key not in known:
+                allowed = f"one of {', '.join(known)}" if known else "none"
+                return place, f"{allowed}: what the law {part['law']} takes"
+            if not known[key]["minimum"] <= value <= known[key]["maximum"]:
+                return place, allowed_text(known[key])
+    return None
+
+
 def laws_have_parameters(run: CheckedRun) -> Fault | None:
-    """Each part's wear law finds its parameters in wear.beside, or in wear.parameters, which are those of wear.law."""
+    """Each part's wear law finds its parameters: with the part, in wear.beside, or, of wear.law, in wear.parameters."""
     for part in run.parameters["parts"]:
         if part["wears"] and not _has_parameters(part):
             law, own = run.settings["wear"]["law"], run.settings["parts"][part["name"]].get("law")
             without = [name for name, each in LAWS.items() if not each.parameters]
             return (f"parts.{part['name']}.law" if own else "wear.law"), (
-                f"wear.law ({law}), whose parameters stand in wear.parameters, one of wear.beside with its own, or one"
-                f" without any: {', '.join(without)}"
+                f"wear.law ({law}), whose parameters stand in wear.parameters, one of wear.beside with its own, one"
+                f" whose parameters all stand in parts.{part['name']}.parameters, or one without any:"
+                f" {', '.join(without)}"
             )
     return None
 
@@ -288,6 +305,7 @@ EQUIPMENT_CHECKS: tuple[Check, ...] = (
     liner_thicker_than_elements,
     wear_as_predicted,
     updates_deform,
+    parameters_are_the_law_s,
     laws_have_parameters,
     physical_modulus_known,
     fed_what_is_predicted,

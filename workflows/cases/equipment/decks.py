@@ -11,12 +11,11 @@ import numpy as np
 
 from bulkwear.postproc.mesh import SurfaceMesh, write_stl
 from bulkwear.postproc.wear.caps import GRAVITY
-from bulkwear.postproc.wear.laws import kernels_of_laws
 from bulkwear.workflows.cases.equipment.motions import motion_of, surface_runs
-from bulkwear.workflows.cases.equipment.parameters import filled_mass, laws_of
+from bulkwear.workflows.cases.equipment.parameters import filled_mass, sums_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, feed_face, rectangle, room_needed
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine.derived import laws_beside, neighbour_skin
+from bulkwear.workflows.engine.derived import neighbour_skin
 from bulkwear.workflows.engine.neighbour_lists import list_sizes
 from bulkwear.workflows.engine.schedule import Span
 
@@ -161,25 +160,19 @@ def part_words(run: Parameters, number: int, cycle: int, begin: int) -> dict[str
     """Return what a deck says of a part: its mesh, how it goes on from that step, its ledger."""
     part = run["parts"][number]
     motion, mesh = motion_of(part["motion"]), f"{mesh_name(part)}_{cycle}"
-    kernels = kernels_of_laws([*laws_of(run), *laws_beside(run)])  # of all parts: a run's ledger is one table
-    words = [word for name, given in kernels.items() for word in _kernel_words(name, given)]
     return {
         "name": part["name"],
         "mesh": mesh,
         "type": part["type"],
         "surface_words": motion.mesh_words(),
         "motion_lines": list(motion.deck_lines(mesh, begin * run["derived"]["time_step_s"])),
-        "kernels": " ".join(["", "kernels", *words]) if words else "",
+        "kernels": deck.kernel_words(sums_of(run)),  # of all parts: a run's ledger is one table
     }
 
 
 def mesh_name(part: Parameters) -> str:
     """Return what the decks call the mesh of a part, before the number of the cycle: no other fix begins alike."""
     return f"part_{part['name']}"
-
-
-def _kernel_words(name: str, given: Mapping[str, float]) -> list[str]:
-    return [name, *(f"{key} {value!r}" for key, value in given.items())]
 
 
 def outlet_words(run: Parameters) -> list[dict[str, Any]]:

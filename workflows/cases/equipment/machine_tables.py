@@ -44,12 +44,18 @@ def _part_row(part: Mapping[str, Any]) -> dict[str, Any]:
         "material": part["material"],
         "thickness_mm": part.get("thickness_m", math.nan) * MILLIMETRES,
         "edge_mm": part["edge_m"] * MILLIMETRES,
-        "law": part["law"] if wears else "",
+        "law": _law_words(part) if wears else "",
         "wear_coefficient_per_pa": part["wear_coefficient_per_pa"] if wears else math.nan,
         **{key: part.get(key, math.nan) for key in ONLY_TOLD},
         "coefficient_error_percent": 100.0 * part["wear_coefficient_error"] if wears else math.nan,
         "motion": motion_words(part["motion"]),
     }
+
+
+def _law_words(part: Mapping[str, Any]) -> str:
+    """Return the wear law of a part, with its parameters in SI."""
+    given = part["law_parameters"]
+    return f"{part['law']} ({number(given, 3)})" if given else part["law"]
 
 
 def motion_words(motion: Mapping[str, Any] | None) -> str:

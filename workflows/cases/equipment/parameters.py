@@ -7,11 +7,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from bulkwear.postproc.flow.size_classes import size_classes
+from bulkwear.postproc.wear.kernel_sums import kernel_sums
 from bulkwear.workflows.cases.equipment.drawings import drawing_digest
+from bulkwear.workflows.config.law_settings import completed
 from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.derived import (
     ADAPTIVE,
     ROUNDING,
+    laws_beside,
     particle_section,
     physical_patch_factor,
     rolling_coefficient_for_solver,
@@ -88,8 +92,10 @@ def wall_materials(parts: Mapping[str, Any], materials: Mapping[str, Any]) -> li
 
 def part_section(name: str, part: Mapping[str, Any], wear: Mapping[str, Any], types: list[str]) -> dict[str, Any]:
     """Return a part: as given, with what the section `wear` says where it says nothing itself."""
-    given = {key: value for key, value in part.items() if key not in ("role", "motion")}
-    beside, law = wear.get(BESIDE, {}), given.get("law", wear["law"])
+    given = {key: value for key, value in part.items() if key not in ("role", "motion", "parameters")}
+    law = given.get("law", wear["law"])
+    beside, own = wear.get(BESIDE, {}), part.get("parameters", {})
+    shared = beside[law] if law in beside else wear.get("parameters", {}) if law == wear["law"] else {}
     return {
         "name": name,
         **{key: wear[key] for key in PART_DEFAULTS if key in wear},
@@ -97,7 +103,7 @@ def part_section(name: str, part: Mapping[str, Any], wear: Mapping[str, Any], ty
         "wears": part["role"] == "wears",
         "motion": part.get("motion"),
         "type": types.index(part["material"]) + 2,
-        "law_parameters": dict(beside[law] if law in beside else wear.get("parameters", {})),
+        "law_parameters": {**to_si(completed(law, {})), **shared, **own},
         "drawing": drawing_digest(part["file"]),
     }
 
@@ -105,6 +111,11 @@ def part_section(name: str, part: Mapping[str, Any], wear: Mapping[str, Any], ty
 def laws_of(run: Mapping[str, Any]) -> list[tuple[str, dict[str, float]]]:
     """Return the name of the wear law of each part that wears, with `law_values`."""
     return [(part["law"], law_values(part)) for part in run["parts"] if part["wears"]]
+
+
+def sums_of(run: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """Return `kernel_sums` of the laws of all parts that wear, and those beside them."""
+    return kernel_sums([*laws_of(run), *laws_beside(run)])
 
 
 def law_values(part: Mapping[str, Any]) -> dict[str, float]:

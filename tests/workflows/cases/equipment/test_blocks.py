@@ -65,6 +65,24 @@ def test_each_part_wears_by_its_own_law_and_coefficient(machine):
     assert not volume[faces(machine, 3)].any()
 
 
+def test_parts_wear_by_one_law_with_parameters_of_their_own(machine, tmp_path):
+    """Each by the sum that has its threshold."""
+    slow, fast = ({"threshold_velocity_m_per_s": speed} for speed in (0.2, 1.5))
+    parts = {
+        name: {"law": "impact_threshold", "parameters": given, "wear_coefficient_per_pa": 1e-11}
+        for name, given in (("liner", slow), ("plate", fast))
+    }
+    with machine_study(tmp_path, parts=parts) as study:
+        run = study.runs[0].parameters
+    hit = "impact_above_threshold"
+    names = dict(zip((part["name"] for part in run["parts"]), range(len(run["parts"])), strict=True))
+    assert blocks.sums_of(run) == {hit: slow, f"{hit}.2": fast}
+    ledger = machine.ledger.assign(**{f"{hit}_J": 1.0, f"{hit}.2_J": 3.0})
+    volume = blocks.rate_volume(run, machine.surface, ledger)
+    found = {name: set(volume[faces(machine, names[name])]) for name in ("liner", "plate")}
+    assert found == {"liner": {1e-11}, "plate": {3e-11}}
+
+
 def test_recession_is_volume_over_area_and_time(machine):
     """Of a patch: coefficient x sliding work over its area and the block's time, per hour of operation."""
     found = rows(machine)
