@@ -18,6 +18,8 @@ import numpy as np
 from bulkwear.meshes.shell import Shell, height_area, height_shell, shell_element_size
 
 RIM_MARGIN = 0.125  # of the foot's smaller radius: plane left between a shape and the rim, so that triangles fit there
+NEIGHBOURS = 8  # of a shape, that its gaps are looked for to
+OUTLINE_POINTS = 721  # of a quarter of an ellipse
 ROUNDING = 1e-9  # relative: a shape that fits exactly is not lost to the last digit
 
 
@@ -231,3 +233,23 @@ def _overlap_fault(pattern: Pattern, width: float, length: float) -> str | None:
         f"{pattern.noun}s overlap: neighbours stand {millimetres(worst[0])} across and {millimetres(worst[1])} along "
         f"the travel apart, too close for feet of {millimetres(2 * across)} by {millimetres(2 * lengthwise)}"
     )
+
+
+def narrowest_gap(pattern: Pattern, width: float, length: float) -> float:
+    """Smallest distance (m) between the feet of a pattern on a `width` by `length` m sample, inf of a single one.
+
+    Two equal ellipses with parallel axes are as far apart as the centre of one is from the other grown to twice its
+    size. The pattern is one without a fault.
+    """
+    from scipy.spatial import cKDTree  # slow to import, and every start of Snakemake reads this module
+
+    centres, _ = pattern_centres(pattern, width, length)
+    if len(centres) < 2:
+        return math.inf
+    grown = np.array([2 * pattern.half_width, 2 * pattern.half_length])
+    _, near = cKDTree(centres / grown).query(centres / grown, min(NEIGHBOURS, len(centres) - 1) + 1)
+    apart = np.abs(centres[near[:, 1:]] - centres[:, None]).reshape(-1, 2)
+    apart = np.unique(np.round(apart / grown, 9), axis=0) * grown
+    angle = np.linspace(0.0, math.pi / 2, OUTLINE_POINTS)
+    outline = grown * np.column_stack([np.cos(angle), np.sin(angle)])
+    return float(np.linalg.norm(apart[:, None] - outline, axis=2).min())

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bulkwear.meshes.lattice import pattern_centres, pattern_faults, pattern_rows
+from bulkwear.meshes.lattice import narrowest_gap, pattern_centres, pattern_faults, pattern_rows
 from bulkwear.meshes.pattern import ConvexPattern
 
 R5 = ConvexPattern(4e-3, 8e-3, 6e-3, row_spacing=40e-3, column_spacing=60e-3)
 R9 = ConvexPattern(8e-3, 2e-3, 6e-3, row_spacing=40e-3, column_spacing=20e-3)
 R12 = ConvexPattern(8e-3, 8e-3, 1.5e-3, row_spacing=40e-3, column_spacing=20e-3)
+OUTLINE = 1e-7  # m: a quarter of an ellipse of some 10 mm in 720 steps
 ROUNDING = 1e-12  # m: coordinates of 0.1 m in float64
 
 
@@ -114,6 +115,20 @@ def test_overlap_is_exact():
     limit = 16e-3 * np.sqrt(1 - (10 / 16) ** 2)  # R12: dx = 10 mm, feet of radius 8 mm
     assert pattern_faults(replace(R12, row_spacing=limit * 1.001), 0.2, 0.2) is None
     assert "bumps overlap" in pattern_faults(replace(R12, row_spacing=limit * 0.999), 0.2, 0.2)
+
+
+def test_gaps_between_feet_are_exact():
+    """Of circles beside and behind one another; of the diagonal neighbours of ellipses by walking both outlines."""
+    assert narrowest_gap(R12, 0.2, 0.2) == pytest.approx(20e-3 - 2 * 8e-3, abs=OUTLINE)
+    close = replace(R12, row_spacing=14e-3)
+    assert narrowest_gap(close, 0.2, 0.2) == pytest.approx(np.hypot(10e-3, 14e-3) - 2 * 8e-3, abs=OUTLINE)
+    slanted = replace(R5, column_spacing=24e-3, row_spacing=6e-3)
+    angle = np.linspace(0.0, 2.0 * np.pi, 1440)
+    foot = np.column_stack([slanted.half_width * np.cos(angle), slanted.half_length * np.sin(angle)])
+    other = foot + np.array([12e-3, 6e-3])
+    apart = np.linalg.norm(foot[:, None] - other, axis=2).min()
+    assert narrowest_gap(slanted, 0.2, 0.2) == pytest.approx(apart, abs=10 * OUTLINE)
+    assert narrowest_gap(R12, 0.019, 0.019) == np.inf
 
 
 def test_only_neighbours_that_exist_can_overlap():

@@ -12,6 +12,7 @@ from bulkwear.meshes.pattern import ConvexPattern
 from bulkwear.meshes.sample import SKIRT_DEPTH, floor_fault, sample_top, skirt_fall, skirt_width, sliding_sample
 from bulkwear.meshes.shell import foot_nodes
 from bulkwear.postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
+from bulkwear.workflows.config.run_checks import LEAST_GAP
 
 HEIGHT, SLOPE = 0.3e-3, math.radians(3)  # m, rad: the defaults of the sliding study
 ROUNDING = 1e-11  # relative: sums of 1e5 float64 terms
@@ -234,6 +235,13 @@ def test_senseless_samples_are_refused(arguments, message):
     """Faulty sizes, patterns and gaps too narrow for the elements are refused with one sentence."""
     with pytest.raises(ValueError, match=message):
         sliding_sample(*arguments)
+
+
+@pytest.mark.parametrize("element_size", [0.8 * MM, 1.5 * MM, 2.0 * MM])
+def test_the_narrowest_gap_that_is_allowed_is_meshed(element_size):
+    """Between bumps beside one another, by what a study is checked for."""
+    pattern = replace(pattern_of("R12"), column_spacing=16.0 * MM + LEAST_GAP * element_size)
+    sliding_sample(60 * MM, 60 * MM, element_size, pattern, HEIGHT, SLOPE)
 
 
 def test_recession_to_the_floor_is_told():

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from bulkwear.meshes.lattice import pattern_faults
+from bulkwear.meshes.lattice import narrowest_gap, pattern_faults
 from bulkwear.workflows.config.layers import ConfigError, Layer
 from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.config.schema import load_schema
@@ -27,6 +27,7 @@ Fault = tuple[str, str]  # key at fault (empty: the row as a whole) and what is 
 
 CONTACT_MODEL = "_shared/contact_model"  # template
 MOST_STEPS = 2**31 - 1  # of a run of LIGGGHTS, a small integer of its
+LEAST_GAP = 0.18  # between shapes, in elements: a triangle across it has the angle that a mesh promises, tan 10 degrees
 SAMPLE_ELEMENTS = 4  # elements along the shorter side of a sample; fewer give no map
 
 
@@ -147,17 +148,21 @@ def check_own_words(layers: tuple[Layer, ...], case: Case, words: Mapping[str, A
 
 
 def element_resolves_pattern(run: CheckedRun) -> Fault | None:
-    """The feet of a pattern are at least two elements across their narrow side.
+    """The feet of a pattern are at least two elements across their narrow side, and not too close for them.
 
     Height and depth set no limit: a low bump is a gentle slope, which large elements follow.
     """
-    pattern = pattern_of(run.parameters["pattern"])
+    pattern, sample = pattern_of(run.parameters["pattern"]), run.parameters["sample"]
     if pattern is None:
         return None
-    radius = min(pattern.half_width, pattern.half_length)
-    if run.parameters["sample"]["element_size_m"] <= radius:
+    radius, element = min(pattern.half_width, pattern.half_length), sample["element_size_m"]
+    if element > radius:
+        return "sample.element_size_mm", f"at most {millimetres(radius)}, the smaller radius of a {pattern.noun}"
+    gap = narrowest_gap(pattern, sample["width_m"], sample["length_m"])
+    if element * LEAST_GAP <= gap:
         return None
-    return "sample.element_size_mm", f"at most {millimetres(radius)}, the smaller radius of a {pattern.noun}"
+    allowed = f"at most {millimetres(gap / LEAST_GAP)} where {pattern.noun}s are {millimetres(gap)} apart"
+    return "sample.element_size_mm", allowed
 
 
 def element_resolves_sample(run: CheckedRun) -> Fault | None:

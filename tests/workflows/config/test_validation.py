@@ -446,6 +446,11 @@ BAD_COMBINATIONS = [
         " the smaller radius of a bump.",
     ),
     (
+        {"pattern": {"row_spacing_mm": 8.05}},
+        "config/studies/small.yaml, line 9, fidelity quick: sample.element_size_mm is 1.5 for row R9, allowed is at most"
+        " 0.555556 mm where bumps are 0.1 mm apart.",
+    ),
+    (
         {"sample": {"height_above_floor_mm": 2.2, "skirt_slope_deg": 45}},
         "command line: sample.height_above_floor_mm is 2.2 for row R9, allowed is below 2.12 mm,"
         " the radius of the smallest particle.",
