@@ -447,8 +447,8 @@ BAD_COMBINATIONS = [
     ),
     (
         {"pattern": {"row_spacing_mm": 8.05}},
-        "config/studies/small.yaml, line 9, fidelity quick: sample.element_size_mm is 1.5 for row R9, allowed is at most"
-        " 0.555556 mm where bumps are 0.1 mm apart.",
+        "config/studies/small.yaml, line 9, fidelity quick: sample.element_size_mm is 1.5 for row R9, allowed is at"
+        " most 0.555556 mm where bumps are 0.1 mm apart.",
     ),
     (
         {"sample": {"height_above_floor_mm": 2.2, "skirt_slope_deg": 45}},
