@@ -77,6 +77,11 @@ class Change:
     concerns: str
     change: str
 
+    @property
+    def words(self) -> str:
+        """Return when it was made and what it moves."""
+        return f"{self.date} UTC ({self.commit}), {self.part}: {self.change}."
+
 
 def read_origins(docs: Path) -> list[Origin]:
     """Return where the pages of a folder come from. Raises ResultsError."""
@@ -154,8 +159,7 @@ def _known_changes(origin: Origin, changes: Iterable[Change]) -> list[str]:
     """Return a sentence for each known change that came after the first simulation, or was made while they ran."""
     first, last = origin.simulated
     return [
-        f"{'Since then' if change.date > last else 'While it was simulated'}, {change.date} UTC ({change.commit}), "
-        f"{change.part}: {change.change}."
+        f"{'Since then' if change.date > last else 'While it was simulated'}, {change.words}"
         for change in changes
         if {origin.case, origin.page} & {*change.concerns.split()} and change.date > first
     ]

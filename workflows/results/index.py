@@ -66,7 +66,7 @@ def _index_row(
     origin: Origin, sentences: Sequence[str], changes: Sequence[Change], checks: Sequence[SpotCheck]
 ) -> list[str]:
     by = [f"{each['found']['commit'] or each['found']['version']}" for each in origin.versions]
-    moved = [change.part for change in changes if any(change.commit in sentence for sentence in sentences)]
+    moved = [change.part for change in changes if any(change.words in sentence for sentence in sentences)]
     return [
         f"[{origin.page}]({origin.page})",
         " to ".join(dict.fromkeys(origin.simulated)),

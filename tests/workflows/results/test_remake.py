@@ -223,3 +223,6 @@ def test_the_list_of_pages_names_what_moved_their_numbers():
     old, new = page.splitlines()[-2:]
     assert "| yes |  | edges |" in old and "0123456789ab, by the time" in old
     assert "| no |  | none |" in new and Path(OLD.page).stem in new
+    within = replace(OLD, commits=["feedfacecafe"], simulated=("2026-11-21 01:00", "2026-11-21 02:00"))
+    (row,) = index_page([within], lambda origin: older(origin, [change], NOW), [change]).splitlines()[-1:]
+    assert "feedfacecafe, by the time" in row and "| yes |  | none |" in row  # simulated by the change itself
