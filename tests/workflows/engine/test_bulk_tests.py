@@ -2,13 +2,15 @@
 
 import math
 
+import numpy as np
 import pytest
 
+from bulkwear.postproc.flow.bed import NEEDED
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.calibration.boxes import with_values
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.bulk_simulations import simulated, simulation_folder
-from bulkwear.workflows.engine.bulk_tests import rest_energy
+from bulkwear.workflows.engine.bulk_simulations import FILLED, check_filling, simulated, simulation_folder
+from bulkwear.workflows.engine.bulk_tests import filled_mass, rest_energy
 from bulkwear.workflows.engine.solver import SolverError
 from tests.support.bulk_boxes import ROLLING, SEED, asked, small
 
@@ -41,3 +43,28 @@ def test_a_box_without_rest_is_refused(tmp_path):
     with pytest.raises(SolverError, match=r"the filled box did not come to rest in 0.1 s \(rest.longest_s\)"):
         simulated(test, tmp_path)
     assert not state.cycle_folder(simulation_folder(test, tmp_path), 0).exists()
+
+
+def write_filling(test, folder, share, level):
+    """Write the dump of a box that holds a share of the mass asked for, in equal spheres, at a level (m)."""
+    radius = 0.5 * test["particle"]["median_diameter_m"]
+    each = test["particle"]["density_kg_per_m3"] * 4.0 / 3.0 * math.pi * radius**3
+    count = round(share * filled_mass(test) / each)
+    rows = np.zeros((count, len(NEEDED)))
+    for name, values in {"id": np.arange(count), "z": np.linspace(0.0, level, count), "radius": radius}.items():
+        rows[:, NEEDED.index(name)] = values
+    head = f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{count}\nITEM: BOX BOUNDS pp ff ff\n" + "0 1\n" * 3
+    lines = [" ".join(f"{value:.9g}" for value in row) for row in rows]
+    (folder / FILLED).write_text(f"{head}ITEM: ATOMS {' '.join(NEEDED)}\n" + "\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize("kind", ["shear_box", "draw_down", "wall_shear"])
+def test_a_box_without_its_mass_is_refused_and_a_loose_one_is_not(kind, tmp_path):
+    """With mass and level in the sentence; a level that is too high is what friction makes of the filling."""
+    test = asked(kind)
+    height = test["box"]["fill_height_m"]
+    write_filling(test, tmp_path, share=1.0, level=1.5 * height)
+    check_filling(tmp_path, test)
+    write_filling(test, tmp_path, share=0.9, level=0.9 * height)
+    with pytest.raises(SolverError, match=r"not as asked: mass \S+ kg \(asked .*\), level \S+ m \(asked .*\)\.$"):
+        check_filling(tmp_path, test)

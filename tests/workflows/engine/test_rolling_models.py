@@ -112,14 +112,19 @@ def torques_meant(model, force, spin, normal):
     if model == "own_spin":
         return -COEFFICIENT * force[:, None, None] * np.array(RADII)[:, None] * unit(spin)
     reduced = RADII[0] * RADII[1] / sum(RADII)
+    if model == "cdt":
+        against = tangential(unit(spin[:, 0] - spin[:, 1]), normal)
+        return -COEFFICIENT * reduced * force[:, None, None] * np.stack([against, -against], axis=1)
     against = unit(tangential(spin.sum(axis=1), normal))
     return np.repeat(-COEFFICIENT * reduced * force[:, None, None] * against[:, None], 2, axis=1)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("model", OWN_ROLLING_MODELS)
+@pytest.mark.parametrize("model", [*OWN_ROLLING_MODELS, "cdt"])
 def test_torques_between_particles(model, ranks, tmp_path):
-    """Unequal spheres with any spins at any angle to the normal, also where the two belong to two ranks."""
+    """Unequal spheres with any spins at any angle to the normal, also where the two belong to two ranks; under the
+    library's cdt what is resisted falls with the cosine of the spin's angle to the plane of contact.
+    """
     found = simulated(tmp_path, pair_deck(model, SHORT, 1, 1, ranks), ranks)
     *_, spins, normal = pairs()
     force = np.linalg.norm(found["force"][1].reshape(PAIRS, 2, 3)[:, 0], axis=1)
