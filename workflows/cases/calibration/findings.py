@@ -38,6 +38,7 @@ INSIDE = (
     "measurement. Denser share: of the posterior in pairs that fit better; a pair belongs to the family when it is at "
     "most 0.95."
 )
+DISCHARGE = "discharge_time_s"  # response
 MARGIN_DEVIATIONS = 2.0  # -, standard deviations of the measurement that a pair's response may be off
 NORMAL = NormalDist().inv_cdf(0.5 + 0.5 * CONFIDENCE)  # -, standard deviations to each side
 AT_PUBLISHED = (
@@ -183,8 +184,15 @@ def at_published(done: Calibrated) -> Block:
                 row = {"quantity": name, "setting": words, "unit": unit, "published_value": pair[response]}
                 ends = {"computed_low": mean[number] - reach[number], "computed_high": mean[number] + reach[number]}
                 row |= {"computed_value": mean[number], **ends, "margin": margin, "source": pair["source"]}
+                row["reason"] = opening_words(done.parameters["draw_down"]) if response == DISCHARGE else ""
                 rows.append(row)
     return Table(pd.DataFrame(rows), "published_pairs", AT_PUBLISHED, beside_source=True)
+
+
+def opening_words(draw_down: Mapping[str, Any]) -> str:
+    """Return why discharge times may be off; draw_down: parameters of the box."""
+    told = f"{draw_down['opening']} of {1e3 * draw_down['opening_m']:g} mm"
+    return f"the size of the opening is not published: with the {told} that is assumed the level tells nothing"
 
 
 def checked_pairs(done: Calibrated) -> list[Block]:

@@ -117,9 +117,10 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         ),
         (
             "Opening of the draw-down test",
-            f"Its size is not published. A {OPENINGS[draw_down['opening']].format(draw_down['opening_mm'])} "
-            "is assumed, chosen so that the published pair discharges in about the published time. How discharge "
-            "times differ between pairs is a result; their level is not.",
+            "The source calls it square and tells no size. A "
+            f"{OPENINGS[draw_down['opening']].format(draw_down['opening_mm'])} is assumed, chosen so that the "
+            "published pair discharges in about the published time. How discharge times differ between pairs is a "
+            "result; their level is not.",
         ),
         (
             "Periodic slices",

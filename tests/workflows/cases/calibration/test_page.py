@@ -9,7 +9,9 @@ import pytest
 import yaml
 from matplotlib.figure import Figure
 
+from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
+from bulkwear.workflows.cases.calibration.findings import DISCHARGE, opening_words
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 from bulkwear.workflows.report import markdown
 from bulkwear.workflows.report.page import write_page
@@ -99,6 +101,12 @@ def test_sections_tell_every_response(folder, done):
     assert any("Angle of repose" in said and "not simulated" in said for said in points.items)
     simulated = next(block for block in sections(folder)["Responses over both frictions"] if isinstance(block, Table))
     assert len(simulated.data) == len(done.simulations)
+
+
+def test_discharge_times_are_told_with_the_opening_that_is_assumed():
+    """Beside those that others simulated: form and size, as the study has them."""
+    assert DISCHARGE in RESPONSES["draw_down"]
+    assert "with the slot of 45 mm that is assumed" in opening_words(study().runs[0].parameters["draw_down"])
 
 
 def test_sections_show_every_figure_once(folder):
