@@ -10,7 +10,7 @@ from bulkwear.workflows.cases.circular_tester import decks as tester_deck
 from bulkwear.workflows.cases.circular_tester import key_numbers
 from bulkwear.workflows.cases.circular_tester.beds import NOTE
 from bulkwear.workflows.cases.circular_tester.runs import has_pairs
-from bulkwear.workflows.cases.circular_tester.sensitivity_figures import EFFECTS, SENSITIVITY, SETTINGS_SAID
+from bulkwear.workflows.cases.circular_tester.sensitivity_figures import EFFECTS, NUMBERS, SENSITIVITY, SETTINGS_SAID
 from bulkwear.workflows.report.beds import blocks_of_beds
 from bulkwear.workflows.report.sections import Block, Pictures, Points, Section, Table, Text
 from bulkwear.workflows.report.sentences import friction_between
@@ -26,6 +26,10 @@ RUNS_NOTE = (
 SENSITIVITY_NOTE = (
     "Over: value over the nearest one that agrees, 1 where it does itself. Reached: whether the value agrees; of one "
     "packing that is this packing's, and there is no verdict."
+)
+NUMBERS_NOTE = (
+    "Means of the main pair over its revolutions; of the patterned sample, where it is said, of the first one. Losses "
+    "of bumps are told in proportion to the volume that the laboratory's sample had lost."
 )
 EFFECTS_NOTE = (
     "Factor: by which a change multiplies a number, least squares of the logarithm over all settings; interval: 95 %, "
@@ -68,7 +72,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
             key_numbers.beside_the_experiment(folder),
             ("tester_hours", "tester_benchmark"),
         ),
-        ("Findings of the source", key_numbers.findings(study, folder), ()),
+        ("Findings of the source", [*key_numbers.findings(study, folder), *published_numbers(folder)], ()),
         ("Volume by revolution", key_numbers.rates(study, folder), ("tester_volume", "tester_increments")),
         ("Patterned over plain at equal distance", key_numbers.ratios(folder), ("tester_ring",)),
         ("Every run", key_numbers.every_run(folder), ("worn_surface", "worn_surface_3d")),
@@ -82,6 +86,14 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     if (folder / SENSITIVITY).is_file():
         parts = (("What the source does not tell", what_is_open(folder), ("tester_sensitivity",)), *parts)
     return [Section(title, [*blocks, Pictures(pictures)]) for title, blocks, pictures in parts]
+
+
+def published_numbers(folder: Path) -> list[Block]:
+    """Return the published numbers that findings, which are ratios and trends, do not hold, beside ours."""
+    import pandas as pd
+
+    table = pd.read_csv(folder / NUMBERS).fillna({"reason": "", "found": ""})
+    return [Table(table, "numbers", NUMBERS_NOTE, beside_source=True)] if len(table) else []
 
 
 def what_is_open(folder: Path) -> list[Block]:

@@ -175,6 +175,27 @@ def sensitivity_table(
     return pd.DataFrame(rows)
 
 
+def numbers_table(numbers: Sequence[Mapping[str, float]], claims: Mapping[str, Claim]) -> pd.DataFrame:
+    """Return finding, claim, found, verdict, reason, factor and source, a row per claim that a packing has a number of.
+
+    numbers: of each packing of one setting
+    """
+    import pandas as pd
+
+    from bulkwear.postproc.statistics.intervals import estimate
+    from bulkwear.postproc.statistics.verdicts import judged
+
+    rows = []
+    for key, claim in claims.items():
+        values = [each[key] for each in numbers if key in each]
+        if values:
+            found = estimate(values, log=True)
+            told = judged(claim, found, found.text(unit="" if claim.unit == "-" else claim.unit))
+            said = {"found": told.found, "verdict": told.verdict, "reason": told.reason, "factor": told.factor}
+            rows.append({"finding": claim.finding, "claim": claim.words, **said, "source": claim.source})
+    return pd.DataFrame(rows, columns=["finding", "claim", "found", "verdict", "reason", "factor", "source"])
+
+
 def effects_table(table: pd.DataFrame, changes: Mapping[str, Mapping[str, str]]) -> pd.DataFrame:
     """Return what each change does to each number: key, quantity, change, factor (-, with the change over without), and
     its 95 % interval, low and high, from how far the settings are off a product of such factors.

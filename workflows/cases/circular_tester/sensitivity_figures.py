@@ -1,18 +1,53 @@
-"""The figure and tables of a study that varies what the source does not tell of its tester."""
+"""What runs reach of the published numbers of the tester: a table of every study, and the figure and tables of one that
+varies what the source does not tell.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.cases.circular_tester import figure_findings
-from bulkwear.workflows.cases.circular_tester.figures import ALL_RUNS, CLAIMS, DIGITS, PUBLISHED, WEAR, read, runs_of
-from bulkwear.workflows.cases.circular_tester.runs import VARIED, has_series
+from bulkwear.workflows.cases.circular_tester.figures import (
+    ALL_RUNS,
+    CLAIMS,
+    DIGITS,
+    OF_PAIRS,
+    PAIRS,
+    PUBLISHED,
+    WEAR,
+    read,
+    runs_of,
+)
+from bulkwear.workflows.cases.circular_tester.runs import VARIED, has_series, pairs_of
 from bulkwear.workflows.cases.circular_tester.sensitivity import changes_of, settings_of_pairs
-from bulkwear.workflows.report.products import Job, figure
+from bulkwear.workflows.report.products import Job, figure, tables
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 CLAIMS_PART = "tester_sensitivity"
 SENSITIVITY, EFFECTS = "tester/sensitivity.csv", "tester/sensitivity_effects.csv"
 SETTINGS_SAID = "tester/sensitivity.txt"  # sentences of the page
+NUMBERS = "tester/published_numbers.csv"
+TOLD_AS_FINDINGS = ("loss_ratio", "plain_columns", "first_column", "bump_share")  # numbers that findings judge already
+
+
+@tables(inputs={**PUBLISHED, **CLAIMS, **WEAR}, told=PAIRS, tables={"numbers": NUMBERS}, **OF_PAIRS)
+def tester_numbers(job: Job) -> dict[str, pd.DataFrame]:
+    """Make the table of published forces, volumes, spins, velocities and losses beside those of the main pair; without
+    rows where its pattern is not the source's.
+    """
+    from bulkwear.postproc.tables.summary import published_value
+    from bulkwear.workflows.cases.circular_tester import sensitivity
+    from bulkwear.workflows.cases.circular_tester.volume import CONVEX
+    from bulkwear.workflows.config.claims import claims_of
+
+    lost = published_value(*read(job, "published"), "convex_volume_184_h", "laboratory")
+    claims = claims_of(CLAIMS_PART, job.files.claims)
+    claims = {key: claim for key, claim in claims.items() if key not in TOLD_AS_FINDINGS}
+    pairs = [pair for pair in pairs_of(runs_of(job)) if pair[0].surface == CONVEX]
+    numbers = [sensitivity.numbers_of_pair(patterned, plain, lost) for patterned, plain in pairs]
+    return {"numbers": sensitivity.numbers_table(numbers, claims)}
 
 
 @figure(

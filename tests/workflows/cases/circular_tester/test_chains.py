@@ -19,7 +19,7 @@ from bulkwear.workflows.cases.circular_tester.key_numbers import result_table
 from bulkwear.workflows.cases.circular_tester.page import sections
 from bulkwear.workflows.cases.circular_tester.runs import pairs_of, runs_of_values, values_of_runs
 from bulkwear.workflows.cases.circular_tester.sensitivity import numbers_of_pair
-from bulkwear.workflows.cases.circular_tester.sensitivity_figures import CLAIMS_PART
+from bulkwear.workflows.cases.circular_tester.sensitivity_figures import CLAIMS_PART, TOLD_AS_FINDINGS
 from bulkwear.workflows.config.claims import claims_of
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.beds import MASS_TOLERANCE, MEASURES, bed_fault
@@ -180,7 +180,7 @@ def test_snapshots_become_a_table_of_the_lowest_layer(finished):
 @pytest.fixture(scope="module")
 def tables(finished):
     """The tables of the study by name."""
-    make_products(finished.study, finished.root, ["tester_runs", "beds"], REMARKS)
+    make_products(finished.study, finished.root, ["tester_runs", "tester_numbers", "beds"], REMARKS)
     written = [*(finished.folder / "tester").glob("*.csv"), finished.folder / BEDS]
     return {path.stem: pd.read_csv(path) for path in written}
 
@@ -225,6 +225,16 @@ def test_tables_are_made_of_the_runs(finished, tables):
     per_revolution = wear.groupby(["run", np.floor(wear["worn_revolution"])]).size()
     assert (per_revolution == finished.study.settings["solver"]["looks_per_revolution"]).all()
     assert (tables["findings"]["verdict"] == UNSAID).all()  # of one packing
+
+
+def test_published_numbers_stand_beside_ours(finished, tables):
+    """Those of claims that no finding judges already; the force is that of the cycles."""
+    table = tables["published_numbers"].set_index("finding")
+    claims = {key: claim for key, claim in claims_of(CLAIMS_PART).items() if key not in TOLD_AS_FINDINGS}
+    assert set(table.index) <= {claim.finding for claim in claims.values()} and len(table) >= 8
+    force = pd.read_csv(finished.chains["plain"].folder / "wear.csv")["mean_normal_force_N"].mean()
+    found = float(table.loc["Normal force, plain", "found"].split(" N ")[0])
+    assert found == pytest.approx(force, rel=0.02)  # by looks, by cycles
 
 
 @pytest.fixture(scope="module")
@@ -277,6 +287,7 @@ def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
         "| 56 | plain volume | mm3 | 145.2 | 147.3 |",
         "more than 2 times the simulated revolutions; one packing, scatter unknown",
         "20 cannot be said",
+        "| Normal force, plain |",
         "Eq 6.6",
         "| channel | 4 | 2 | 1 |",
         "wear rate m3 per s",

@@ -5,20 +5,24 @@ import math
 import numpy as np
 import pytest
 
-from bulkwear.postproc.statistics.verdicts import AGREES, UNSAID
+from bulkwear.postproc.statistics.verdicts import AGREES, CONTRADICTS, UNSAID
+from bulkwear.workflows.cases.circular_tester.page import published_numbers
 from bulkwear.workflows.cases.circular_tester.plots.sensitivity import reached_by_setting
 from bulkwear.workflows.cases.circular_tester.sensitivity import (
     REFERENCE,
     changes_of,
     effects_table,
+    numbers_table,
     sensitivity_table,
     sentences,
     settings_of_pairs,
 )
-from bulkwear.workflows.cases.circular_tester.sensitivity_figures import CLAIMS_PART
+from bulkwear.workflows.cases.circular_tester.sensitivity_figures import CLAIMS_PART, NUMBERS
 from bulkwear.workflows.config.claims import claims_of
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.cases import find_case
+from bulkwear.workflows.report.published import published_numbers as collected
+from bulkwear.workflows.report.sections import Section
 
 CLAIMS = claims_of(CLAIMS_PART)
 MIDDLE = {key: 0.5 * sum(claim.magnitude) if claim.magnitude else claim.reference for key, claim in CLAIMS.items()}
@@ -88,6 +92,30 @@ def test_a_number_that_no_setting_has_is_left_out():
     """A small sample has no bump C15; its line would be empty."""
     bare = {key: value for key, value in MIDDLE.items() if key != "loss_C15"}
     assert set(sensitivity_table({REFERENCE: [bare]}, CLAIMS)["key"]) == set(bare)
+
+
+def test_numbers_are_told_as_claims_with_verdicts():
+    """Of packings that lie close together; a number that none has is left out, without any there is an empty table."""
+    packings = [{key: each * value for key, value in MIDDLE.items() if key != "loss_C15"} for each in (0.999, 1, 1.001)]
+    told = numbers_table(packings, CLAIMS).set_index("finding")
+    assert len(told) == len(CLAIMS) - 1
+    of_size = [claim.finding for key, claim in CLAIMS.items() if claim.magnitude and key != "loss_C15"]
+    assert (told.loc[of_size, "verdict"] == AGREES).all() and told["source"].str.contains("Yan 2022").all()
+    assert told.loc["Convex over plain", "found"].startswith(f"{MIDDLE['loss_ratio']:.3g} (95 %")
+    twice = numbers_table([{"plain_force": 2.0 * MIDDLE["plain_force"] * each} for each in (0.999, 1, 1.001)], CLAIMS)
+    assert twice["verdict"].tolist() == [CONTRADICTS] and "33" in twice["found"].iloc[0]
+    assert numbers_table([], CLAIMS).empty and "finding" in numbers_table([], CLAIMS)
+
+
+def test_numbers_go_to_the_page_of_published_numbers(tmp_path):
+    """As a table beside the source; of a pattern that is not the source's there is none."""
+    (tmp_path / NUMBERS).parent.mkdir()
+    told = numbers_table([MIDDLE], {key: CLAIMS[key] for key in ("plain_force", "convex_spin")})
+    told.to_csv(tmp_path / NUMBERS, index=False)
+    found = collected([Section("Findings of the source", published_numbers(tmp_path))])
+    assert found["finding"].tolist() == told["finding"].tolist() and (found["verdict"] == UNSAID).all()
+    numbers_table([], CLAIMS).to_csv(tmp_path / NUMBERS, index=False)
+    assert published_numbers(tmp_path) == []
 
 
 def test_sentences_name_the_best_setting_and_what_it_misses(table, settings):
