@@ -202,7 +202,8 @@ class Equipment(Case):
     def own_columns(self, parameters: Parameters, span: Span, folder: Path) -> dict[str, float]:
         """Write the block's tables of patches and of the flow, and return what decides the next block.
 
-        Raises CycleError where particles were lost elsewhere than through an outlet.
+        Raises CycleError where the machine was not filled as asked, and where particles were lost elsewhere than
+        through an outlet.
         """
         from bulkwear.workflows.cases.equipment import blocks, flow
         from bulkwear.workflows.cases.equipment.steadiness import is_steady
@@ -212,7 +213,7 @@ class Equipment(Case):
         rows.to_csv(folder / blocks.PATCHES, index=False)
         last = flow.flow_table(parameters, folder)
         last.to_csv(folder / flow.FLOW, index=False)
-        if fault := flow.lost_phrase(parameters, folder, last):
+        if fault := flow.filling_phrase(parameters, folder.parent) or flow.lost_phrase(parameters, folder, last):
             raise CycleError(f"{folder.parent.name}, cycle {span.cycle}: {fault}.")
         before = blocks.patch_tables(folder.parent, span.cycle - 1)
         tables = [table for table in [*before, rows] if table["phase"].iloc[0] != "start_up"]

@@ -11,10 +11,14 @@ import pandas as pd
 
 from bulkwear.postproc.flow.bed import read_snapshot
 from bulkwear.postproc.readers.dump_text import read_frames
+from bulkwear.workflows.cases.equipment.parameters import drawn_mass_scatter, filled_mass
+from bulkwear.workflows.engine.beds import MASS_TOLERANCE, BedMeasure
 
 Parameters = Mapping[str, Any]
 
 PRINTED, FLOW, STRAYS = "flow.txt", "flow.csv", "strays.dump"
+FIRST = "cycle_000"  # folder of the first block, in which a machine is filled
+SCATTER = 4.0  # -, standard deviations of a mass whose particles are drawn
 AXES = ("x", "y", "z")
 SHOWN = 3  # places of lost particles in a sentence
 
@@ -34,7 +38,7 @@ def flow_table(run: Parameters, folder: Path) -> pd.DataFrame:
     It takes the first block's own table for what the machine was filled with, and that of the block before.
     """
     found = printed_flow(folder)
-    first, before = folder.parent / "cycle_000", _block_before(folder)
+    first, before = folder.parent / FIRST, _block_before(folder)
     filled = (found if before is None else printed_flow(first)).iloc[0]
     outlets = list(run["outlets"] or {})
     out_before = 0.0 if before is None else read_flow(run, before)["out_particles"].iloc[-1]
@@ -102,6 +106,22 @@ def lost_phrase(run: Parameters, folder: Path, flow: pd.DataFrame) -> str | None
         f"{count} {'missing' if lost > 0 else 'too many'} in the balance of what came in, is there and left through"
         f" outlets, allowed is none: {seen}; close the gap there, or put an outlet there"
     )
+
+
+def filling_phrase(run: Parameters, run_folder: Path) -> str | None:
+    """Return a phrase where a machine was not filled with the mass that was asked for, else None.
+
+    The solver draws sizes by number, and places what it has drawn as long as there is room.
+    """
+    asked = filled_mass(run)
+    if not asked:
+        return None
+    found = printed_flow(run_folder / FIRST)["filled_mass_kg"].iloc[0]
+    tolerance = max(MASS_TOLERANCE * asked, SCATTER * drawn_mass_scatter(run["particle"], asked))
+    filled = BedMeasure("mass", "kg", asked, found, tolerance)
+    if not filled.missed:
+        return None
+    return f"the machine is not filled as asked: {filled.said()}; its room needs a smaller filling.fraction"
 
 
 def stray_places(folder: Path) -> list[str]:

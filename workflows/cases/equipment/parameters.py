@@ -189,6 +189,20 @@ def filled_mass(parameters: Mapping[str, Any]) -> float:
     return filling["fraction"] * volume * bulk_density(particle)
 
 
+def drawn_mass_scatter(particle: Mapping[str, Any], mass: float) -> float:
+    """Return the standard deviation (kg) of the mass of as many particles, their sizes drawn by number, as have that
+    mass (kg) on average.
+    """
+    classes = list(zip(particle["diameters_m"], particle["mass_fractions"], strict=True))
+    masses = [particle["density_kg_per_m3"] * math.pi / 6.0 * diameter**3 for diameter, _ in classes]
+    numbers = [fraction / each for each, (_, fraction) in zip(masses, classes, strict=True)]
+    mean, square = (
+        sum(number * each**power for number, each in zip(numbers, masses, strict=True)) / sum(numbers)
+        for power in (1, 2)
+    )
+    return math.sqrt(mass / mean * max(square - mean**2, 0.0))
+
+
 def held_particles(parameters: Mapping[str, Any]) -> float:
     """Return about how many particles a machine holds: its filling, and what comes in within half the longest start-up,
     which lasts twice as long as material needs through the machine.

@@ -1,9 +1,11 @@
 """The flow of blocks from what the solver printed: sums over blocks, the balance, and where particles were lost."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from bulkwear.workflows.cases.equipment import flow
+from bulkwear.workflows.cases.equipment.parameters import drawn_mass_scatter, filled_mass
 
 MASS = 0.5  # kg, of a particle
 ROUND_OFF = 1e-12
@@ -184,3 +186,29 @@ def test_particles_that_were_never_seen_are_counted_all_the_same(tmp_path):
     dump(more / "picture_400.dump", {400: [particle(1, (0, 0, 0))]})
     dump(more / flow.STRAYS, {200: [], 400: []})
     assert flow.lost_phrase(run, more, flow.flow_table(run, more)).startswith("2 particles are too many")
+
+
+@pytest.mark.parametrize(("found", "refused"), [(1000, False), (920, False), (900, True), (1100, True)])
+def test_a_machine_that_is_not_filled_as_asked_is_refused(tmp_path, found, refused):
+    """Of a thousand particles of two sizes half a kilogram each on average, drawn by number, within four standard
+    deviations: masses of 1 and 1/4 kg, two of the small to one of the large, scatter by 0.354 kg, a thousand of them by
+    11.2 kg.
+    """
+    diameters = [(6.0 * mass / (np.pi * 2000.0)) ** (1.0 / 3.0) for mass in (1.0, 0.25)]
+    particle = {"diameters_m": diameters, "mass_fractions": [2 / 3, 1 / 3], "density_kg_per_m3": 2000.0}
+    particle["bulk_solid_fraction"] = 0.5
+    filling = {"fraction": 0.5, "radius_m": 1.0, "length_m": MASS * 1000 / (0.5 * np.pi * 1000.0)}
+    run = run_of() | {"filling": filling, "particle": particle}
+    finish(write_block(run, tmp_path, 0, [(found, 0, {"below": (0, 0)})], filled=found))
+    assert filled_mass(run) == pytest.approx(500.0)
+    assert drawn_mass_scatter(particle, 500.0) == pytest.approx(np.sqrt(1000 / 8.0))
+    phrase = flow.filling_phrase(run, tmp_path)
+    assert (phrase is not None) == refused
+    if refused:
+        said = f"the machine is not filled as asked: mass {MASS * found:.4g} kg (asked 500 within 45); its room needs"
+        assert phrase.startswith(said)
+
+
+def test_a_machine_without_a_filling_is_not_asked_for_one(tmp_path):
+    """Fed machines begin empty."""
+    assert flow.filling_phrase({"filling": None, "particle": {}}, tmp_path) is None
