@@ -6,8 +6,9 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN
-from bulkwear.postproc.statistics.verdicts import AGREES, OTHER_SIZE, UNSAID
+from bulkwear.postproc.statistics.verdicts import AGREES, CONTRADICTS, OTHER_SIZE, UNSAID
 from bulkwear.workflows.config.claims import ABOUT, about
+from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.report.provenance_of_pages import Origin
 from bulkwear.workflows.report.published import (
     COLUMNS,
@@ -19,7 +20,13 @@ from bulkwear.workflows.report.published import (
 )
 from bulkwear.workflows.report.sections import Section, Table, Text
 from bulkwear.workflows.report.text import number
-from bulkwear.workflows.results.published_numbers import PAGE, published_page
+from bulkwear.workflows.results.published_numbers import (
+    PAGE,
+    UNKNOWN_CAUSE,
+    known_differences,
+    published_page,
+    with_causes,
+)
 from tests import REPOSITORY
 
 SAID = {"found": "0.9 (0.8 to 1.0)", "verdict": AGREES, "reason": None, "factor": math.nan, "source": "Yan 2022"}
@@ -123,3 +130,34 @@ def test_the_page_in_docs_is_that_of_its_tables():
     assert (DOCS / PAGE).read_text(encoding="utf-8") == published_page(DOCS, origins)
     known = {published_file(each.page) for each in origins}
     assert {str(path.relative_to(DOCS)) for path in (DOCS / "published").glob("*.csv")} <= known
+
+
+def test_differences_have_a_reason_or_are_said_to_have_none():
+    """The page's own first; then the first line that fits page and finding, a candidate where no page shows it."""
+    own, shown, guessed, none = "the page's own", "critical scale", "coordination number", "velocity"
+    table = pd.DataFrame(
+        {
+            "finding": [shown, shown, guessed, none, none],
+            "verdict": [OTHER_SIZE, CONTRADICTS, CONTRADICTS, OTHER_SIZE, AGREES],
+            "reason": [own, "", "", "", ""],
+        }
+    )
+    known = [
+        {"page": "a", "finding": "critical", "cause": "sizes", "shown": "sizes.md"},
+        {"page": "", "finding": "c", "cause": "beds"},
+    ]
+    found = with_causes("a_results_quick.md", table, known)["reason"]
+    assert found.tolist() == [own, "sizes ([shown](sizes.md))", "candidate: beds", UNKNOWN_CAUSE, ""]
+    assert with_causes("b.md", table, known)["reason"].iloc[1] == "candidate: beds"
+
+
+def test_lines_of_differences_are_of_pages_that_there_are(tmp_path):
+    """Those that measured a cause too; a line with another key is refused."""
+    pages = [path.name for path in DOCS.glob("*.md")]
+    for line in known_differences():
+        assert any(page.startswith(line["page"]) for page in pages) and line.get("shown", PAGE) in pages
+    (tmp_path / "differences.yaml").write_text("differences: [{page: a, finding: b, why: c}]\n")
+    with pytest.raises(
+        ConfigError, match=r"line 1 has page, finding, why, allowed are cause, finding, page and, if any,"
+    ):
+        known_differences(tmp_path / "differences.yaml")
