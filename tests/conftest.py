@@ -22,7 +22,6 @@ LONGEST_FIRST = (  # measured on two cores: half a minute to minutes each, most 
     "workflows/test_project.py",
     "workflows/test_snakemake.py",
     "engine/test_cycles.py",
-    "equipment/test_tutorial.py",
     "test_solver_ledger_ranks.py",
     "test_extend.py",
     "test_equipment_motion.py",

@@ -1,6 +1,7 @@
 """The tutorial of a chute in docs, done as it is written there, with the package as a wheel installs it.
 
-Its files and commands are taken from the page; less is simulated than on the page.
+Its files and commands are taken from the page; less is simulated than on the page, and yet it takes the processor a
+minute and a half, so that `make test` loads its study alone.
 """
 
 import html
@@ -92,6 +93,7 @@ def test_the_page_gives_what_a_machine_needs():
 
 
 @pytest.mark.solver
+@pytest.mark.verify
 def test_every_step_leaves_what_the_page_says(finished):
     """The table of bodies, the forecast, decks, tables and page; all of it by the installed package."""
     project, said = finished
@@ -109,6 +111,7 @@ def test_every_step_leaves_what_the_page_says(finished):
 
 
 @pytest.mark.solver
+@pytest.mark.verify
 def test_the_run_goes_through_all_phases(finished):
     """Start-up, shape as built, updates, worn shape; both parts wear, and no particle is missing."""
     run = finished[0] / "results" / STUDY / "A"
