@@ -23,6 +23,7 @@ from bulkwear.postproc.plots.style import save_small
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
 from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.config.rounds import rounds_of
 from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.engine.state import STATE
@@ -213,7 +214,7 @@ def versions_in_folder(folder: Path, study: Study) -> list[Simulated]:
 def origin_of(page: str, folder: Path, study: Study) -> Origin:
     """Return where the page of a study that was run comes from."""
     rows = list(dict.fromkeys(run.row for run in study.runs))
-    whole = len(study.runs) == len(study.all_runs)
+    whole = study.optimise or len(study.runs) == len(study.all_runs)
     jobs = jobs_of(page_parameters(study), folder) if study.case.wears else None
     return Origin(
         page=page,
@@ -249,6 +250,24 @@ def durations(folder: Path, page: Mapping[str, Any]) -> list[Block]:
     return [Text(told), Table(table, "durations")]
 
 
+def study_that_was_run(folder: Path, fidelity: str) -> Study:
+    """Return the study of results/<study> with those rows and packings that were run, by its design table; of a search
+    by what its last round decided.
+    """
+    study = load_study(folder.name, overrides={"fidelity": fidelity})
+    if study.optimise:
+        return as_decided(study, folder)
+    runs = pd.read_csv(folder / "design.csv", dtype={"row": str})
+    chosen = {"rows": runs["row"].unique().tolist(), "packings": int(runs["packing"].max())}
+    return load_study(folder.name, overrides={"fidelity": fidelity, **chosen})
+
+
+def as_decided(study: Study, folder: Path) -> Study:
+    """Return a study that searches with the packings that its last round decided; others as they are."""
+    decided = list(rounds_of(folder, study.search_digest)) if study.optimise else []
+    return study.with_packings(decided[-1]["packings"]) if decided else study
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="of the study that was run, results/<study>")
@@ -261,10 +280,7 @@ def main() -> None:
     if not design.is_file():
         sys.exit(f"{design} is missing; `snakemake {given.folder.name}` runs the study that has it")
     try:
-        runs = pd.read_csv(design, dtype={"row": str})
-        chosen = {"rows": runs["row"].unique().tolist(), "packings": int(runs["packing"].max())}
-        study = load_study(given.folder.name, overrides={"fidelity": given.fidelity, **chosen})
-        print(write_results(given.folder, given.docs, study))
+        print(write_results(given.folder, given.docs, study_that_was_run(given.folder, given.fidelity)))
     except FileNotFoundError as fault:
         sys.exit(str(fault))
 

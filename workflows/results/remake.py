@@ -99,7 +99,7 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
     """Write the page of a study from its runs; return what was done, or what is missing and what it costs."""
     study = load_study(origin.study, overrides=origin.overrides)
     pending = pending_of(origin, cores)
-    missing = missing_work(study, pending)
+    missing = missing_work(study.foreseen, pending)
     solving = pending is None or any(rule in study.case.solver_rules for rule, _ in pending)
     if solving and not run:
         what = f"{len(missing)} jobs of the solver are not done in results/{origin.study}"
@@ -109,9 +109,9 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
     folder = Path("results") / origin.study
     if origin.figure:
         shutil.copyfile(folder / "figures" / f"{origin.figure}.png", docs / origin.page)
-        keep_origin(docs, origin_of(origin.page, folder, study))
+        keep_origin(docs, origin_of(origin.page, folder, as_decided(study, folder)))
     else:
-        write_results(folder, docs, study)
+        write_results(folder, docs, as_decided(study, folder))
     return f"{WRITTEN} results/{origin.study}"
 
 
@@ -184,7 +184,7 @@ def anew(origin: Origin, cores: int) -> str:
     """Return what simulating a page anew takes whose runs are finished, though by older code."""
     if origin.command:
         return f"to simulate them anew move {origin.runs or 'what it kept'} away: {redo(origin)}"
-    cost = cost_words(missing_work(load_study(origin.study, overrides=origin.overrides), None), cores)
+    cost = cost_words(missing_work(load_study(origin.study, overrides=origin.overrides).foreseen, None), cores)
     return f"to simulate them anew ({cost}) move results/{origin.study} away: {redo(origin)}"
 
 
