@@ -26,7 +26,7 @@ from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.engine.work import Work
 from bulkwear.workflows.forecast.forecast import forecast_table, hours_text, totals, work_of
 from bulkwear.workflows.forecast.rates import rates_file, read_rates
-from bulkwear.workflows.report.markdown import SECONDS_PER_HOUR, origin_of, simulated_between, write_results
+from bulkwear.workflows.report.markdown import SECONDS_PER_HOUR, as_decided, origin_of, simulated_between, write_results
 from bulkwear.workflows.report.page import package_version
 from bulkwear.workflows.report.provenance_of_pages import (
     Origin,

@@ -18,6 +18,7 @@ from bulkwear.workflows.cases.sliding_sample.search.results import (
 from bulkwear.workflows.cases.sliding_sample.search.rounds import lowest_predicted, short_reason
 from bulkwear.workflows.config.rounds import core_hours
 from bulkwear.workflows.forecast.limits import fault_of_budget
+from bulkwear.workflows.report.markdown import as_decided
 from tests.support.searched import BEST_HEIGHT_MM, LEAST, STUDY, costs_of, decided_round, small_search, write_runs
 
 BUDGET_H = 0.25
@@ -140,3 +141,12 @@ def test_patterns_of_a_packing_share_its_plain_twin(tmp_path):
     assert np.sqrt(tried.noise.diagonal().min()) > 0.2
     alone = tried_of(runs[runs["packing"] == 1], search)
     assert not alone.noise.any()
+
+
+def test_the_page_in_docs_is_of_what_the_last_round_decided(finished):
+    """Packings of first rows, those found, and those confirmed; before any round all that there may be."""
+    root, decided = finished
+    study = small_search(root)
+    found = as_decided(study, root / "results" / STUDY)
+    assert found.runs == study.with_packings(decided[-1]["packings"]).runs != study.runs
+    assert as_decided(study, root / "nothing").runs == study.runs
