@@ -7,9 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bulkwear.meshes.lattice import pattern_centres
+from bulkwear.meshes.lattice import narrowest_gap, pattern_centres
 from bulkwear.meshes.pattern import ConvexPattern
-from bulkwear.meshes.sample import SKIRT_DEPTH, floor_fault, sample_top, skirt_fall, skirt_width, sliding_sample
+from bulkwear.meshes.sample import (
+    SKIRT_DEPTH,
+    SMALLEST_ANGLE,
+    floor_fault,
+    sample_top,
+    skirt_fall,
+    skirt_width,
+    sliding_sample,
+)
 from bulkwear.meshes.shell import foot_nodes
 from bulkwear.postproc.mesh import area_vectors, boundary_edges, nonmanifold_edges, smallest_angles, volume_above_plane
 from bulkwear.workflows.config.run_checks import LEAST_GAP
@@ -241,7 +249,9 @@ def test_senseless_samples_are_refused(arguments, message):
 def test_the_narrowest_gap_that_is_allowed_is_meshed(element_size):
     """Between bumps beside one another, by what a study is checked for."""
     pattern = replace(pattern_of("R12"), column_spacing=16.0 * MM + LEAST_GAP * element_size)
-    sliding_sample(60 * MM, 60 * MM, element_size, pattern, HEIGHT, SLOPE)
+    sample = sliding_sample(60 * MM, 60 * MM, element_size, pattern, HEIGHT, SLOPE)
+    assert narrowest_gap(pattern, 60 * MM, 60 * MM) == pytest.approx(LEAST_GAP * element_size, rel=1e-6)
+    assert smallest_angles(sample.points, sample.triangles).min() >= SMALLEST_ANGLE
 
 
 def test_recession_to_the_floor_is_told():

@@ -24,6 +24,7 @@ from bulkwear.postproc.tables.summary import patterned_name
 
 BAR_WIDTH = 0.38  # -, of the space of a row with two runs
 MANY = 6  # settings and surfaces; from here on their names stand upright
+MOST_NUMBERS = 14  # rows that have room for numbers of three digits beside one another; of more these stand upright
 MOST_CHARACTERS = 64  # of all names in one line under an axis; longer ones stand upright
 MOST_ROOM = 3.0  # -, of the highest bar; what intervals have beyond it is cut off
 LIFT = 4  # pt, of a number above its bar
@@ -106,7 +107,8 @@ def relative_wear(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
     table = table.sort_values("wear_over_plain", kind="stable", ignore_index=True)
     ratio = table["wear_over_plain"]
     places = _axis(axes, table)
-    axes.set_xticks(places, table["setting"], rotation=0)
+    turned = 90 if len(table) > MOST_NUMBERS else 0
+    axes.set_xticks(places, table["setting"], rotation=turned)
     axes.bar(places, ratio, 0.7, color=[colour(surface) for surface in table["surface"]])
     draw_intervals(axes, places, ratio, table)
     top = HEADROOM * highest_shown([1.0, *ratio], table["interval_high"])
@@ -123,8 +125,9 @@ def relative_wear(table: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
             va="bottom",
             color="white",
             fontsize=SMALLEST_FONT,
+            rotation=turned,
         )
-        axes.text(place, 0.985 * top, f"{size:.2f}", ha="center", va="top", fontsize=SMALLEST_FONT)
+        axes.text(place, 0.985 * top, f"{size:.2f}", ha="center", va="top", fontsize=SMALLEST_FONT, rotation=turned)
     axes.set_title(
         r"equivalent size ratio $\alpha_{ER}$ of each row in the line below", loc="left", fontsize=SMALLEST_FONT
     )

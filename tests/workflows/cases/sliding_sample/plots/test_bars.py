@@ -82,6 +82,18 @@ def test_relative_wear_is_sorted_and_marked():
     assert remarks_of(figure) == "; ".join(REMARKS)
 
 
+@pytest.mark.parametrize(("count", "angle"), [(bars.MOST_NUMBERS, 0.0), (bars.MOST_NUMBERS + 1, 90.0)])
+def test_numbers_of_many_rows_stand_upright(count, angle):
+    """Names and both numbers of a row, so that none covers its neighbour's."""
+    told = {"surface": "convex", "wear_over_plain": 0.5, "equivalent_size_ratio": 0.4}
+    table = pd.DataFrame(
+        [{"setting": f"O{k}", **told, "interval_low": 0.4, "interval_high": 0.6} for k in range(count)]
+    )
+    axes = bars.relative_wear(table, pd.DataFrame(columns=["row", "relation", "value", "source"]), REMARKS).axes[0]
+    shown = [*axes.texts, *axes.get_xticklabels()]
+    assert len(shown) == 3 * count and {text.get_rotation() for text in shown} == {angle}
+
+
 def test_laws_on_a_log_axis():
     """Both volumes are drawn as tabled in mm³ on a log axis; a volume of zero is left out, not drawn at a limit."""
     volumes = {"worn_volume_mm3": [1.0, 2.0], "finnie_volume_mm3": [0.01, 0.0], "finnie_over_archard": [0.01, np.nan]}
