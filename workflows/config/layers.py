@@ -33,8 +33,7 @@ KeyPath = tuple[Hashable, ...]
 
 INTEGER = re.compile(r"[-+]?[0-9]+\Z")
 NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z")
-
-
+NAMES = ("rows",)  # settings that are lists of names
 LONGEST_CELL, SHOWN_LETTERS = 1000, 40  # letters of a table's cell, and of one in a message
 
 
@@ -217,13 +216,16 @@ def _key_words(key: yaml.Node) -> str:
 
 
 def command_line_layer(overrides: dict[str, Any] | None) -> Layer:
-    """Return overrides as a layer; text that spells a number or a boolean becomes one."""
-    return Layer("command line", _reread(overrides or {}))
+    """Return overrides as a layer; text that spells a number or a boolean becomes one, but for the names of rows."""
+    given = overrides or {}
+    return Layer("command line", _reread(given) | {key: given[key] for key in NAMES if key in given})
 
 
 def _reread(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(key): _reread(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_reread(inner) for inner in value]
     if isinstance(value, str) and len(value) > LONGEST_NUMBER:
         return value
     if isinstance(value, str) and INTEGER.match(value):

@@ -612,8 +612,14 @@ def test_yaml_1_1_surprises_do_not_happen(tmp_path, text, value):
 
 def test_command_line_text_becomes_numbers():
     """A shell knows only text; numbers and booleans in it are read as in the files, words stay words."""
-    layer = command_line_layer({"a": "2", "b": {"c": "1e-9", "d": "True", "e": "steel"}})
-    assert layer.values == {"a": 2, "b": {"c": 1e-9, "d": True, "e": "steel"}}
+    given = {"a": "2", "b": {"c": "1e-9", "d": "True", "e": "steel"}, "f": [{"low": "0.1"}, ["3"], "4"]}
+    read = {"a": 2, "b": {"c": 1e-9, "d": True, "e": "steel"}, "f": [{"low": 0.1}, [3], 4]}
+    assert command_line_layer(given).values == read
+
+
+def test_names_of_rows_stay_words():
+    """A row may be called 5."""
+    assert command_line_layer({"rows": ["5", "R9"]}).values == {"rows": ["5", "R9"]}
 
 
 def test_merge_is_deep_and_changes_nothing():
