@@ -23,7 +23,15 @@ from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.grains import equal_spheres, solid_share
 from bulkwear.workflows.engine.pouring import particles_of_mass
 from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulating_code
-from bulkwear.workflows.engine.solver import LOG, SCREEN, SolverError, executable_of, processor_seconds, run_deck
+from bulkwear.workflows.engine.solver import (
+    LOG,
+    SCREEN,
+    SolverError,
+    SolverKilledError,
+    executable_of,
+    processor_seconds,
+    run_deck,
+)
 from bulkwear.workflows.engine.work import CYCLE_BYTES, PICTURE_PARTICLE, Stage
 
 FILLED = "filled.dump"
@@ -63,6 +71,8 @@ def _run(folder: Path, test: Mapping[str, Any]) -> float:
     """Run the deck and return its wall time in s; a deck that gives up without an error found no rest."""
     try:
         return run_deck(folder, executable=executable_of(test))
+    except SolverKilledError:
+        raise
     except SolverError:
         if (folder / SCREEN).is_file() and failure(folder / SCREEN) is None:
             check_rest(folder, test)

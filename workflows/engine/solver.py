@@ -57,6 +57,10 @@ class SolverError(RuntimeError):
     """LIGGGHTS failed; the message gives its last words and, where known, the cause."""
 
 
+class SolverKilledError(SolverError):
+    """A signal ended LIGGGHTS."""
+
+
 def missing_program(executable: str) -> str | None:
     """Return a sentence that says what to do where a program is missing, None where it is there."""
     if shutil.which(executable) is not None:
@@ -227,7 +231,7 @@ def run_deck(
             _stop(process)
     code = process.returncode or (-signal.SIGTERM if ended_by_signal(folder / SCREEN) else 0)
     if code != 0:
-        raise SolverError(_last_words(folder, code))
+        raise (SolverKilledError if signal_of(code) else SolverError)(_last_words(folder, code))
     if unchecked:
         raise SolverError(f"{folder / SCREEN}: LIGGGHTS did not report the triangles of mesh {', '.join(unchecked)}.")
     return time.monotonic() - started
@@ -287,16 +291,22 @@ def _last_words(folder: Path, code: int) -> str:
     return f"{folder / DECK}: {cause}. Its last lines ({folder / SCREEN}):\n{quoted}"
 
 
-def exit_words(code: int) -> str:
-    """Return how a program ended, in words; a launcher tells the signal of a rank as 128 plus its number."""
+def signal_of(code: int) -> int | None:
+    """Return the signal that ended a program, None where none did; a launcher tells that of a rank as 128 plus it."""
     number = -code if code < 0 else code - OF_LAUNCHER
+    return number if number in set(signal.Signals) else None
+
+
+def exit_words(code: int) -> str:
+    """Return how a program ended, in words."""
+    number = signal_of(code)
+    if number is None:
+        return f"stopped with exit code {code}"
     if number == signal.SIGKILL:
         return "was killed (signal 9): the memory was exhausted and the system ended it, or somebody did"
     if number in CRASHES:
         return f"crashed ({signal.Signals(number).name}, signal {number})"
-    if number in set(signal.Signals):
-        return f"was ended by {signal.Signals(number).name} (signal {number})"
-    return f"stopped with exit code {code}"
+    return f"was ended by {signal.Signals(number).name} (signal {number})"
 
 
 def _stop(process: subprocess.Popen) -> None:

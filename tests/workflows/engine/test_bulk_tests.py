@@ -8,10 +8,10 @@ import pytest
 from bulkwear.postproc.flow.bed import NEEDED
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.calibration.boxes import with_values
-from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine import bulk_simulations, state
 from bulkwear.workflows.engine.bulk_simulations import FILLED, check_filling, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import filled_mass, rest_energy
-from bulkwear.workflows.engine.solver import SolverError
+from bulkwear.workflows.engine.solver import SolverError, SolverKilledError
 from tests.support.bulk_boxes import ROLLING, SEED, asked, small
 
 EXACT = 1e-12  # relative: the same formula
@@ -43,6 +43,19 @@ def test_a_box_without_rest_is_refused(tmp_path):
     with pytest.raises(SolverError, match=r"the filled box did not come to rest in 0.1 s \(rest.longest_s\)"):
         simulated(test, tmp_path)
     assert not state.cycle_folder(simulation_folder(test, tmp_path), 0).exists()
+
+
+@pytest.mark.parametrize(
+    ("signal", "words"), [("KILL", "memory was exhausted"), ("TERM", r"ended by SIGTERM \(signal 15\)")]
+)
+def test_a_killed_solver_is_not_called_restless(tmp_path, monkeypatch, signal, words):
+    """Who runs out of memory is not sent to look for rest."""
+    program = tmp_path / "killed"
+    program.write_text(f"#!/bin/sh\nkill -{signal} $$\n")
+    program.chmod(0o755)
+    monkeypatch.setattr(bulk_simulations, "executable_of", lambda test: str(program))
+    with pytest.raises(SolverKilledError, match=words):
+        simulated(small(), tmp_path)
 
 
 def write_filling(test, folder, share, level):
