@@ -38,6 +38,8 @@ def depths_of(folder: Path) -> pd.DataFrame:
 
 def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
     """Return the answer to a study's question in cards, and the numbers of every setting."""
+    from bulkwear.workflows.cases.sliding_sample.search.page import of_best
+
     summary, settings, depths = read_summary(folder / "summary.csv"), study["settings"], depths_of(folder)
     acceleration = settings["wear"]["acceleration"]
     results = result_table(summary, depths, acceleration)
@@ -45,12 +47,12 @@ def key_numbers(study: Mapping[str, Any], folder: Path) -> list[Block]:
         *(["carried_share_percent"] if not settings["wear"]["deform"] else []),
         *(["real_volume_per_metre_mm3_per_m"] if acceleration == 1.0 else []),
     ]
-    shown = results.drop(columns=needless).dropna(axis="columns", how="all")
+    shown, best = results.drop(columns=needless).dropna(axis="columns", how="all"), of_best(summary, folder)
     return [
-        *([Cards(found)] if (found := cards(summary, acceleration)) else []),
+        *([Cards(found)] if (found := cards(best, acceleration)) else []),
         Table(shown, "key_numbers"),
         Text(note(settings, results["packings"])),
-        *prediction_blocks(predictions(summary, depths, acceleration, error_of(settings)), error_of(settings)),
+        *prediction_blocks(predictions(best, depths, acceleration, error_of(settings)), error_of(settings)),
     ]
 
 

@@ -88,8 +88,11 @@ def answers(folder: Path) -> list[str]:
 
 def facts(study: Mapping[str, Any], folder: Path) -> list[str]:
     """Return in sentences how deep the samples wear per hour, and for how long the runs stand."""
+    from bulkwear.workflows.cases.sliding_sample.search import page as search
+
     acceleration, error = study["settings"]["wear"]["acceleration"], error_of(study["settings"])
-    return key_numbers.facts(read_summary(folder / "summary.csv"), key_numbers.depths_of(folder), acceleration, error)
+    shown = search.of_best(read_summary(folder / "summary.csv"), folder)
+    return key_numbers.facts(shown, key_numbers.depths_of(folder), acceleration, error)
 
 
 def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:

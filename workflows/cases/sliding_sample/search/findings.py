@@ -11,14 +11,20 @@ DIGITS = 2  # significant, of ratios in words
 
 
 def lowest_tried(record: pd.DataFrame) -> str:
-    """Return the lowest pattern of which enough is left, and how many were tried; record: `record.record_table`."""
+    """Return the lowest of the patterns in the most packings of which enough is left, and how many were tried: one in
+    fewer packings may be the lowest by luck; record: `record.record_table`.
+    """
     sound = record[record["enough_left"] == "yes"]
     tried = f"{len(record)} patterns were tried"
     if sound.empty:
         return f"{tried}; of none is enough left."
+    sound = sound[sound["packings"] == sound["packings"].max()]
     best = sound.loc[sound["wear_over_plain"].idxmin()]
     ratio = with_interval(best["wear_over_plain"], best["interval_low"], best["interval_high"], best["packings"])
-    return f"{tried}; of those of which enough is left {best['setting']} wears least, {ratio} of plain."
+    return (
+        f"{tried}; of those in the most packings of which enough is left {best['setting']} wears least,"
+        f" {ratio} of plain."
+    )
 
 
 def strongest_factor(table: pd.DataFrame) -> str:

@@ -90,6 +90,15 @@ def answers(folder: Path) -> list[str]:
     ]
 
 
+def of_best(summary: pd.DataFrame, folder: Path) -> pd.DataFrame:
+    """Return the runs of a summary that are of the best confirmed pattern, all of them where nothing was looked for:
+    one that was tried in fewer packings may wear less by luck.
+    """
+    if not (folder / CONFIRMED).is_file():
+        return summary
+    return summary[summary["setting"] == best_confirmed(_read(folder / CONFIRMED))["setting"]]
+
+
 def _measure(name: str, value: float) -> str:
     words, unit = name_and_unit(name)
     return f"{words} {value:g} {unit}"

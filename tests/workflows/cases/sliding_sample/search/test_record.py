@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.tables.summary import summary_table
+from bulkwear.postproc.tables.summary import read_summary, summary_table
 from bulkwear.workflows.cases.sliding_sample.search import page
 from bulkwear.workflows.cases.sliding_sample.search.findings import lowest_tried, strongest_factor
 from bulkwear.workflows.cases.sliding_sample.search.record import best_confirmed
@@ -58,9 +58,21 @@ def test_the_record_has_every_pattern_with_its_prediction(results):
     assert inside.mean() > 0.5
     own = record.set_index("setting").loc["R5"]
     assert own["wear_over_plain"] == pytest.approx(LEAST * np.exp(0.2), abs=WITHIN) and own["packings"] == 3
-    assert lowest_tried(record).startswith(f"{len(record)} patterns were tried; of those of which enough is left")
+    said = lowest_tried(record)
+    assert said.startswith(f"{len(record)} patterns were tried; of those in the most packings of which enough is left")
+    lucky = record.assign(wear_over_plain=record["wear_over_plain"].where(record["packings"] > 2, 0.01))
+    assert lowest_tried(lucky) == said
     none = lowest_tried(record.assign(enough_left="no"))
     assert none == f"{len(record)} patterns were tried; of none is enough left."
+
+
+def test_key_numbers_are_those_of_the_best_confirmed(results):
+    """Not of a pattern that was lower in fewer packings; a study that looks for nothing keeps all its runs."""
+    _, folder, _ = results
+    summary = read_summary(folder / "summary.csv")
+    best = best_confirmed(pd.read_csv(folder / "search" / "confirmed.csv"))["setting"]
+    assert set(page.of_best(summary, folder)["setting"]) == {best}
+    assert len(page.of_best(summary, folder / "search")) == len(summary)
 
 
 def test_confirmed_patterns_stand_beside_the_reference(results):
