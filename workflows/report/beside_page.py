@@ -37,7 +37,7 @@ def short_sections(sections: Sequence[Section], docs: Path, name: str, published
 def _short(section: Section, blocks: Sequence[Block], docs: Path, name: str, published: str) -> Iterator[Block]:
     """Yield the blocks of a section, links in place of what is long."""
     for index, block in enumerate(blocks):
-        if isinstance(block, Table) and block.beside_source and published:
+        if isinstance(block, Table) and block.beside_source is True and published:
             ours = f"[Published numbers beside ours]({PUBLISHED_PAGE}), with verdicts"
             yield Text(f"{ours}: {len(block.data)} ([table]({published_file(published)})).")
         elif isinstance(block, Table) and len(block.data) > MOST_ROWS:

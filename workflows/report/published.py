@@ -17,7 +17,7 @@ import pandas as pd
 from bulkwear.postproc.statistics.intervals import Ends
 from bulkwear.postproc.statistics.verdicts import Claim, Verdict, judged, not_said
 from bulkwear.workflows.config.claims import about
-from bulkwear.workflows.report.sections import DIGITS, Section, Table
+from bulkwear.workflows.report.sections import DIGITS, Block, Section, Table
 
 COLUMNS = ["finding", "published", "found", "factor", "verdict", "reason", "source"]
 FOLDER = "published"  # in docs
@@ -42,8 +42,16 @@ def write_published_numbers(docs: Path, page: str, sections: Iterable[Section]) 
 def published_numbers(sections: Iterable[Section]) -> pd.DataFrame:
     """Return COLUMNS of all tables of a page's sections that are marked as beside the source, in their order."""
     blocks = [block for section in sections for block in section.blocks]
-    tables = [_alike(block.data) for block in blocks if isinstance(block, Table) and block.beside_source]
+    tables = [_alike(each) for block in blocks if (each := _beside_source(block)) is not None]
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=COLUMNS)
+
+
+def _beside_source(block: Block) -> pd.DataFrame | None:
+    """Return the published numbers of a block beside ours, None where it has none."""
+    beside = block.beside_source if isinstance(block, Table) else False
+    if isinstance(beside, pd.DataFrame):
+        return beside if len(beside) else None
+    return block.data if beside else None
 
 
 def _alike(table: pd.DataFrame) -> pd.DataFrame:

@@ -61,7 +61,8 @@ class Table:
     note: what must be said of its columns
     digits: significant ones, of single columns by name; else 3
     heads: names and units of columns, (name, unit), where the column's name does not say them
-    beside_source: whether it holds published numbers beside ours, see `published`
+    beside_source: whether it holds published numbers beside ours, see `published`; or these numbers, where the table
+    shows them in columns of its own
     """
 
     data: pd.DataFrame
@@ -69,7 +70,7 @@ class Table:
     note: str = ""
     digits: Mapping[str, int] = field(default_factory=dict)
     heads: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    beside_source: bool = False
+    beside_source: bool | pd.DataFrame = False
 
 
 @dataclass(frozen=True)

@@ -56,6 +56,14 @@ def test_tables_of_three_kinds_are_told_alike():
     assert table["reason"].tolist()[:2] == ["", ""]
 
 
+def test_a_table_may_have_its_numbers_beside_it():
+    """One that shows them in columns of its own; without any it leaves no line."""
+    shown, beside = pd.DataFrame({"hours": [56.0]}), pd.DataFrame([VALUE | {"computed_value": 130.0}])
+    found = published_numbers([Section("Hours", [Table(shown, beside_source=beside)])])
+    assert found["finding"].tolist() == ["toe pristine, n77"]
+    assert published_numbers([Section("Hours", [Table(shown, beside_source=beside[:0])])]).empty
+
+
 def test_tables_that_are_not_marked_are_left_out():
     """Not every table with a source is a comparison."""
     assert published_numbers([section(CLAIM, beside=False)]).empty

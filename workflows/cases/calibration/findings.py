@@ -12,7 +12,7 @@ import pandas as pd
 
 from bulkwear.postproc.inference.posterior import FAMILY_SHARE
 from bulkwear.postproc.inference.told import told_table
-from bulkwear.postproc.statistics.intervals import CONFIDENCE
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.case import PUBLISHED, published
 from bulkwear.workflows.cases.calibration.checked_pairs import CHECKED, checked_means
@@ -76,7 +76,7 @@ def sections_of(done: Calibrated, study: str) -> list[Section]:
         Section("Responses over both frictions", [*simulations(done), Pictures(["response_maps"])]),
         Section("Which parameter decides", [*deciding(done.folder), Pictures(["calibration_sensitivity"])]),
         Section("At the pairs that others simulated", [at_published(done)]),
-        Section("Size and width of the box", [Table(sizes(done.folder)), Pictures(["box_sizes"])]),
+        Section("Size and width of the box", [sizes(done.folder), Pictures(["box_sizes"])]),
         *([Section("Pairs in tests that the calibration did not use", checked_pairs(done))] if checked else []),
         Section("The heap of the recommended pair", [Pictures(["heaps"])]),
         Section("Use of the result", use(done.folder, study)),
@@ -241,13 +241,37 @@ def deciding(folder: Path) -> list[Block]:
     return sensitivity_blocks(read_indices(folder / "figures" / "calibration_sensitivity.csv"))
 
 
-def sizes(folder: Path) -> pd.DataFrame:
+def sizes(folder: Path) -> Block:
     """Return the shear angle in boxes of other sizes, ours and the published ones."""
     ours = pd.read_csv(folder / "box_sizes.csv").drop(columns="row")
     theirs = published("shear_box_sizes.csv").rename(
         columns={"shear_angle_deg": "mean", "deviation_deg": "deviation", "source": "varied"}
     )
-    return pd.concat([ours, theirs], ignore_index=True)
+    return Table(pd.concat([ours, theirs], ignore_index=True), beside_source=sizes_beside_source(folder))
+
+
+def sizes_beside_source(folder: Path) -> pd.DataFrame:
+    """Return the published shear angles in shorter boxes beside ours, whose slice has the width of the longest one's;
+    that of the longest box is a pair's, see `at_published`.
+    """
+    ours, theirs = pd.read_csv(folder / "box_sizes.csv"), published("shear_box_sizes.csv")
+    widest = ours.loc[ours["length_mm"].idxmax(), "width_mm"]
+    ours = ours[ours["width_mm"] == widest].set_index("length_mm")
+    rows = []
+    for line in theirs[theirs["length_mm"] < theirs["length_mm"].max()].to_dict("records"):
+        found = ours.reindex([line["length_mm"]]).iloc[0]
+        count = 0 if np.isnan(found["seeds"]) else int(found["seeds"])
+        error = found["deviation"] / np.sqrt(count) if count else np.nan
+        low, high = Estimate(found["mean"], error, max(count - 1, 0), count).interval()
+        rows.append(
+            {
+                **{"quantity": "Shear angle, shear box", "setting": f"box of {line['length_mm']:g} mm", "unit": "°"},
+                **{"published_value": line["shear_angle_deg"], "computed_value": found["mean"]},
+                **{"computed_low": low, "computed_high": high, "packings": count, "source": line["source"]},
+                "margin": MARGIN_DEVIATIONS * line["deviation_deg"],
+            }
+        )
+    return pd.DataFrame(rows)
 
 
 def use(folder: Path, study: str) -> list[Block]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
@@ -28,6 +29,7 @@ from bulkwear.workflows.cases.circular_tester.volume import (
 from bulkwear.workflows.config.claims import date_of_rules
 from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.predictions import HEADS, Foreseen, error_of, prediction_note, prediction_table
+from bulkwear.workflows.report.published import GIVEN
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
 from bulkwear.workflows.report.text import number
 
@@ -56,6 +58,7 @@ STEADY_HEADS = {
     "drift_low": ("drift, interval from", "%"),
     "drift_high": ("to", "%"),
 }
+EXPERIMENT = "Yan 2022, section 6.2.3"
 PER_REVOLUTION = "worn volume per revolution"
 INTERVALS = "Intervals: 95 %, over packings; of one packing the scatter is unknown."
 REDUCED = "At the reduced scale told at the top of the page: a finding that is contradicted here is not thereby wrong."
@@ -101,8 +104,28 @@ def beside_the_experiment(folder: Path) -> list[Block]:
     return [
         Cards(cards(compared, of_study(folder, "mean_ratios"), _patterned(folder))),
         Text(time_words(scale)),
-        Table(compared, "comparison", note, digits, heads),
+        Table(compared, "comparison", note, digits, heads, beside_source=measured_beside_ours(compared)),
     ]
+
+
+def measured_beside_ours(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return the measured volumes of the comparison as values beside values; the one that sets the scale of time is
+    given. Reductions stand among the findings.
+    """
+    measured = compared[compared[LABORATORY].notna() & (compared["unit"] == "mm3")]
+    hours = measured["hours"]
+    sets_scale = (measured["quantity"] == f"{PLAIN} volume") & (hours == hours.min())
+    return pd.DataFrame(
+        {
+            "quantity": measured["quantity"],
+            "setting": [f"experiment after {each:g} h" for each in hours],
+            "unit": "mm³",
+            "published_value": measured[LABORATORY],
+            **{"computed_value": measured[OURS], "computed_low": measured[LOW], "computed_high": measured[HIGH]},
+            **{"packings": measured["packings"], "reason": measured["note"], "source": EXPERIMENT},
+            GIVEN: np.where(sets_scale, "yes", ""),
+        }
+    )
 
 
 def time_words(scale: pd.Series) -> str:

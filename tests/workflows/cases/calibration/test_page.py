@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
-from bulkwear.workflows.cases.calibration.findings import DISCHARGE, opening_words
+from bulkwear.workflows.cases.calibration.findings import DISCHARGE, opening_words, sizes_beside_source
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 from bulkwear.workflows.report import markdown
 from bulkwear.workflows.report.page import write_page
@@ -34,6 +34,19 @@ FIGURES = [
     *("heaps", "response_maps", "calibration_sensitivity", "family"),
     *("pairs_against_bands", "box_sizes", "calibration_progress"),
 ]
+
+
+def test_published_angles_of_shorter_boxes_stand_beside_ours(tmp_path):
+    """In the slice of the longest box alone; a box that was not simulated has no angle. t is 12.71 for two packings."""
+    rows = [(200.0, 85.0, 37.0), (150.0, 85.0, 30.0), (150.0, 53.0, 99.0), (135.0, 85.0, 36.0)]
+    table = pd.DataFrame(rows, columns=["length_mm", "width_mm", "mean"]).assign(row="a", deviation=0.5, seeds=2)
+    table.to_csv(tmp_path / "box_sizes.csv", index=False)
+    found = sizes_beside_source(tmp_path).set_index("setting")
+    assert found["published_value"].to_dict() == {"box of 150 mm": 30.4, "box of 100 mm": 31.1}
+    middle = found.loc["box of 150 mm"]
+    assert middle["computed_value"] == 30.0 and middle["margin"] == 1.0
+    assert middle["computed_high"] - 30.0 == pytest.approx(12.7062 * 0.5 / 2**0.5, rel=1e-5)
+    assert pd.isna(found.loc["box of 100 mm", "computed_value"])
 
 
 def make(product, folder):

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.cases.circular_tester.hours import predictions, time_scale
-from bulkwear.workflows.cases.circular_tester.key_numbers import predicted_rates
+from bulkwear.workflows.cases.circular_tester.key_numbers import measured_beside_ours, predicted_rates
 from bulkwear.workflows.cases.circular_tester.tables import (
     BEYOND,
     LABORATORY,
@@ -59,6 +59,18 @@ def test_notes_say_what_is_extrapolated_and_what_is_not_sure():
     assert BEYOND in compared(revolutions=5, packings=3).loc[(184.0, "reduction"), "note"]
     alone = compared()
     assert alone["note"].str.contains(ONE_PACKING).all() and alone["interval_low"].isna().all()
+
+
+def test_measured_volumes_are_published_numbers():
+    """The experiment's four volumes; that which sets the scale of time is given, one not reached is missing."""
+    table = measured_beside_ours(compared(revolutions=3, packings=3, scatter=0.02).reset_index())
+    found = {(row.quantity, row.setting): row for row in table.itertuples()}
+    measured = {name: row.published_value for name, row in found.items()}
+    assert sorted(measured.values()) == pytest.approx([82.8, 145.2, 240.3, 474.5])
+    assert table.loc[table["given"] == "yes", "published_value"].tolist() == [145.2]
+    early, late = (found["convex volume", f"experiment after {hours} h"] for hours in (56, 184))
+    assert early.computed_low < early.computed_value < early.computed_high and early.packings == 3
+    assert np.isnan(late.computed_value) and "more than 2 times" in late.reason
 
 
 def test_losses_stand_beside_the_scanned_ones():

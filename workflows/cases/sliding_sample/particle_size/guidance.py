@@ -19,7 +19,7 @@ from bulkwear.postproc.reference.size_ratios import (
     size_ratios,
 )
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES
-from bulkwear.postproc.statistics.intervals import CONFIDENCE, students_t
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimate, students_t
 
 PUBLISHED_SCALES = np.arange(1.0, 9.0)  # of the source's lines (Yan 2022, Table 4.1 and Fig 4.14)
 ROUNDING = 1e-9  # relative
@@ -105,6 +105,31 @@ def published_line(lines: pd.DataFrame) -> Line:
     coefficients = line[["intercept", "slope"]].to_numpy(dtype=float)
     covariance = variance * np.linalg.inv(matrix.T @ matrix)
     return Line(coefficients, covariance, freedom, (PUBLISHED_SCALES.min(), PUBLISHED_SCALES.max()))
+
+
+def published_at_scales(wear: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Return the source's lines at the least and the largest of our scales that they are of, beside our means there.
+
+    wear: as from `wear_by_scale`; published: as for `published_line`. Columns as `report.published` reads values.
+    """
+    ours = wear[wear["particle_scale"].between(PUBLISHED_SCALES.min(), PUBLISHED_SCALES.max())]
+    rows = []
+    for line in published.to_dict("records"):
+        of_curve = ours[ours["curve"] == line["curve"]]
+        for scale in np.unique(of_curve["particle_scale"].agg(["min", "max"]).dropna()):
+            found = estimate(of_curve.loc[of_curve["particle_scale"] == scale, "relative_wear"].to_numpy())
+            low, high = found.interval()
+            rows.append(
+                {
+                    "quantity": "wear over that of the finest plain sample",
+                    "setting": f"{line['curve']} at scale {scale:g}",
+                    "unit": "-",
+                    "published_value": line["intercept"] + line["slope"] * scale,
+                    **{"computed_value": found.value, "computed_low": low, "computed_high": high},
+                    **{"packings": found.packings, "source": line["source"]},
+                }
+            )
+    return pd.DataFrame(rows)
 
 
 def own_line(scale: np.ndarray, wear: np.ndarray) -> Line | None:

@@ -17,10 +17,16 @@ from bulkwear.postproc.tables.display import MILLIMETRES, in_display_units
 from bulkwear.postproc.tables.packings import SETTING, over_packings
 from bulkwear.postproc.tables.summary import patterned_name, read_summary
 from bulkwear.workflows.cases.sliding_sample.particle_size.collision import spread_over_scales
-from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Pattern
+from bulkwear.workflows.cases.sliding_sample.particle_size.figures import PUBLISHED_LINES
+from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import Pattern, published_at_scales
 from bulkwear.workflows.cases.sliding_sample.particle_size.study import bumps_and_particles
-from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import bed_sentences
+from bulkwear.workflows.cases.sliding_sample.particle_size.wear_by_scale import (
+    bed_sentences,
+    lines_beside,
+    wear_by_scale,
+)
 from bulkwear.workflows.config.claims import ABOUT
+from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.report.sections import Block, Pictures, Section, Table, Text
 
 if TYPE_CHECKING:
@@ -84,6 +90,7 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
             "Straight lines of wear over that of the plain sample with the smallest particles simulated, against"
             " particle scale; the source's are over its plain sample at scale 1. Lack of fit: how probable it is that"
             " packings alone scatter the means of the scales so far off the line.",
+            beside_source=lines_beside_source(folder),
         ),
         Table(
             pd.read_csv(folder / "particle_size" / "critical_scale_forms.csv"),
@@ -92,6 +99,13 @@ def critical_scale(study: Mapping[str, Any], folder: Path) -> list[Block]:
             " packings lets expect is rejected; the interval of the critical scale is what the others leave open.",
         ),
     ]
+
+
+def lines_beside_source(folder: Path) -> pd.DataFrame:
+    """Return the source's lines at two scales beside our wear there."""
+    wear = wear_by_scale(read_summary(folder / "summary.csv"))
+    lines = pd.read_csv(current_project().file(PUBLISHED_LINES))
+    return published_at_scales(wear, lines_beside(lines, wear))
 
 
 def plain_beds(study: Mapping[str, Any], summary: pd.DataFrame) -> pd.DataFrame:

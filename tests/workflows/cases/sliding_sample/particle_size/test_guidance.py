@@ -12,6 +12,7 @@ from bulkwear.workflows.cases.sliding_sample.particle_size.guidance import (
     guidance_table,
     line_ratio,
     own_line,
+    published_at_scales,
     published_bias,
     published_line,
 )
@@ -45,6 +46,20 @@ def test_larger_gravel_is_not_helped():
     some, most = guidance(R5, scaled(3.2)), guidance(R5, scaled(4.0))
     assert some["helps"] and some["larger_share"] == 0.25
     assert not most["helps"] and most["larger_share"] == 0.75 and most["largest_scale"] < 1.0
+
+
+def test_the_published_lines_stand_beside_our_means():
+    """At the least and the largest scale that the source has too; Eq 4.15 at 4 is 0.96, at 8 2.0."""
+    wear = pd.DataFrame(
+        [("convex", scale, wear) for scale, wears in {4: (0.4, 0.6), 6: (0.8,), 8: (1.0, 1.2), 12: (1.3,)}.items()
+         for wear in wears],
+        columns=["curve", "particle_scale", "relative_wear"],
+    )  # fmt: skip
+    table = published_at_scales(wear, LINES).set_index("setting")
+    assert table.index.tolist() == ["convex at scale 4", "convex at scale 8"]
+    np.testing.assert_allclose(table["published_value"], [0.96, 2.0], rtol=ROUNDING)
+    np.testing.assert_allclose(table["computed_value"], [0.5, 1.1], rtol=ROUNDING)
+    assert (table["packings"] == 2).all() and (table["computed_low"] < table["computed_value"]).all()
 
 
 def test_the_published_line_tells_what_scale_does_to_wear():
