@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value
 from bulkwear.workflows.cases.pin_on_disc.coefficient import coefficient_of_laboratory
 from bulkwear.workflows.cases.pin_on_disc.comparison import EDGES_PER_WIDTH, STABLE_PERCENT
@@ -17,6 +18,7 @@ from bulkwear.workflows.cases.pin_on_disc.volume import (
     LARGEST_CHANGE,
     PERCENT,
     QUADRATIC,
+    VOLUMES,
     groove_remark,
     shown_factors,
 )
@@ -29,6 +31,7 @@ CHANGE_POINTS_NOTE = (
     "A broken line, from a transient to a level; the interval is at 95 %, for values correlated with their neighbours. "
     "In a series that is level all along a run-in is found in 5 %, however long it is."
 )
+SOURCES_SUM = "Eq 5.9, touched"  # of volume.VOLUMES
 PUBLISHED = PACKAGE / "config" / "published"
 VOLUME_HEADS = {
     "volume_mm3": ("volume", "mm³"),
@@ -118,7 +121,26 @@ def fit_blocks(folder: Path) -> list[Block]:
     ours = trends[(trends["volume"] == "removed") | summed].drop(columns="run")
     theirs = pd.read_csv(PUBLISHED / "pin_on_disc_volume.csv").rename(columns={"source": "scheme"})
     together = pd.concat([ours, published_growth(theirs)], ignore_index=True).drop(columns="r_squared")
-    return [Table(together, "fits", FITS_NOTE, heads=VOLUME_HEADS)]
+    beside = volumes_beside_source(table_of(folder, "wear_volume"))
+    return [Table(together, "fits", FITS_NOTE, heads=VOLUME_HEADS, beside_source=beside)]
+
+
+def volumes_beside_source(volumes: pd.DataFrame) -> pd.DataFrame:
+    """Return the volumes of the published fits beside ours by the source's own rule and sum, after the last revolution
+    of each run; volumes: as from `volume.beside_laws`. No run is repeated, so that none has an interval.
+    """
+    ours = volumes[(volumes["scheme"] == "per_triangle") & volumes["published_volume_m3"].notna()]
+    last = ours.loc[ours.groupby("run", sort=False)["revolution"].idxmax()]
+    return pd.DataFrame(
+        {
+            "quantity": [f"volume after {revolution:g} revolutions" for revolution in last["revolution"]],
+            "setting": [f"{each:.2g} 1/Pa" for each in last["wear_coefficient_per_pa"]],
+            "unit": "mm³",
+            "published_value": CUBIC_MILLIMETRES * last["published_volume_m3"].to_numpy(),
+            "computed_value": CUBIC_MILLIMETRES * last[VOLUMES[SOURCES_SUM]].to_numpy(),
+            "source": "Yan 2022, Eq 5.11 to 5.15",
+        }
+    )
 
 
 def published_growth(fits: pd.DataFrame) -> pd.DataFrame:

@@ -60,6 +60,22 @@ def test_fits_stand_beside_the_published_ones(finished):
     assert (table["volume"] == "published").sum() == 5
 
 
+def test_published_volumes_stand_beside_those_by_the_sources_rule(finished):
+    """Per-triangle runs of a published coefficient alone, after their last revolution; Eq 5.13 at 3 is 0.105 mm3."""
+    volumes = pd.DataFrame(
+        [(run, scheme, 1.7e-11, revolution, 1e-10 * revolution, published)
+         for run, scheme, published in (("d", "per_triangle", 0.105e-9), ("c", "conserving", 0.105e-9),
+                                        ("e", "per_triangle", float("nan"))) for revolution in (1.0, 3.0)],
+        columns=["run", "scheme", "wear_coefficient_per_pa", "revolution", "touched_centroid_path_volume_m3",
+                 "published_volume_m3"],
+    )  # fmt: skip
+    (line,) = findings.volumes_beside_source(volumes).to_dict("records")
+    assert (line["quantity"], line["setting"]) == ("volume after 3 revolutions", "1.7e-11 1/Pa")
+    assert line["published_value"] == pytest.approx(0.105) and line["computed_value"] == pytest.approx(0.3)
+    (block,) = findings.fit_blocks(finished)
+    assert set(block.beside_source["setting"]) <= {f"{each}e-11 1/Pa" for each in ("1", "1.5", "1.7", "2", "5")}
+
+
 def test_the_run_in_is_told_by_scheme_and_source(finished):
     """A smooth wave is never normal, the source's table is from revolution 8; p values of both by revolution."""
     blocks = findings.run_in_blocks(finished)
