@@ -47,7 +47,7 @@ from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.chain import Chain, total_steps
-from bulkwear.workflows.engine.solver import SolverError
+from bulkwear.workflows.engine.solver import SolverError, SolverKilledError
 
 FRACTIONS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)  # -, time step over the Rayleigh time of the smallest particle
 SURFACES, PACKINGS = (PLAIN, CONVEX), 3
@@ -118,6 +118,8 @@ def simulated(case: Case, folder: Path) -> None:
         return
     try:
         simulated_run(chain, "bed")
+    except SolverKilledError:  # by the machine, not by the time step
+        raise
     except SolverError as fault:
         failed.write_text(str(fault))
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimates, students_t
+from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN, estimates, students_t
 
 REJECTED = 0.05  # -, a form whose lack of fit is less probable than that is no form of these data
 PLACES = 2001  # at which a fitted form is looked at between the first and the last place
@@ -166,7 +166,7 @@ def crossing(place: np.ndarray, ratio: np.ndarray, level: float = 1.0) -> Crossi
     kept = table[~table["rejected"]]
     value = _simplest(kept)
     if not table["freedom_of_error"].iloc[0]:
-        return Crossing(value, math.nan, math.nan, forms=len(kept), reason="one packing, scatter unknown", **told)
+        return Crossing(value, math.nan, math.nan, forms=len(kept), reason=UNKNOWN, **told)
     if kept.empty:
         return Crossing(math.nan, math.nan, math.nan, forms=0, reason="no form tried describes the wear", **told)
     ends = kept[["interval_low", "interval_high"]].dropna()

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN, read_surface
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.statistics.verdicts import Claim
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester import comparison, distribution, flow, hours, volume
@@ -31,7 +32,7 @@ COMPARED = ["hours", "quantity", "unit", LABORATORY, THESIS, THESIS_ALIKE, OURS,
 ALIKE = 0.1  # relative; of revolutions: wear cycles end at a few places only
 THESIS_SCALE = 1.0  # particle scale of Eq 6.2 and 6.3, which the thesis itself holds against its experiment
 TOLD_HOURS = (SHORT, LONG)
-ONE_PACKING, BEYOND = "one packing, scatter unknown", "ours extrapolated"
+BEYOND = "ours extrapolated"
 
 
 def tables_of_runs(
@@ -107,7 +108,7 @@ def comparison_table(
 
 def _told(row: pd.Series, name: str) -> list[object]:
     """Return ours, packings, the ends of the interval and the note of a prediction."""
-    said = [row["reason"] or (BEYOND if row["extrapolated"] else ""), ONE_PACKING if row["packings"] < 2 else ""]
+    said = [row["reason"] or (BEYOND if row["extrapolated"] else ""), UNKNOWN if row["packings"] < 2 else ""]
     return [row[name], row["packings"], row[f"{name}_low"], row[f"{name}_high"], "; ".join(filter(None, said))]
 
 
@@ -136,7 +137,7 @@ def loss_rows(losses: pd.DataFrame, published: pd.DataFrame, revolution: float, 
     test_hours = published_value(published, LONG, "laboratory")
     short = revolution < wanted * (1.0 - ALIKE)
     notes = [f"ours after {revolution:.3g} revolutions, {test_hours:g} h are {wanted:.3g}" if short else ""]
-    notes.append(ONE_PACKING if losses[PACKING].nunique() < 2 else "")
+    notes.append(UNKNOWN if losses[PACKING].nunique() < 2 else "")
     table = over_packings(losses, ["bump"], "loss_mm").rename(columns={"loss_mm": OURS})
     table["quantity"] = "largest loss of " + table["bump"]
     table[LABORATORY] = [published_value(published, f"largest_loss_{bump}", "laboratory") for bump in table["bump"]]

@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.circular_tester.hours import predictions, time_scale
 from bulkwear.workflows.cases.circular_tester.key_numbers import measured_beside_ours, predicted_rates
 from bulkwear.workflows.cases.circular_tester.tables import (
     BEYOND,
     LABORATORY,
-    ONE_PACKING,
     OURS,
     THESIS,
     THESIS_ALIKE,
@@ -58,7 +58,7 @@ def test_notes_say_what_is_extrapolated_and_what_is_not_sure():
     assert np.isnan(table.loc[(184.0, "reduction"), OURS])
     assert BEYOND in compared(revolutions=5, packings=3).loc[(184.0, "reduction"), "note"]
     alone = compared()
-    assert alone["note"].str.contains(ONE_PACKING).all() and alone["interval_low"].isna().all()
+    assert alone["note"].str.contains(UNKNOWN).all() and alone["interval_low"].isna().all()
 
 
 def test_measured_volumes_are_published_numbers():
@@ -81,7 +81,7 @@ def test_losses_stand_beside_the_scanned_ones():
     assert table[OURS].to_list() == pytest.approx([0.5, 0.6]) and (table["note"] == "").all()
     assert (table["hours"] == 184.0).all() and table[THESIS].isna().all() and (table["packings"] == 2).all()
     short = loss_rows(losses.head(2), study.PUBLISHED, 4.0, 6.57)
-    assert short["note"].iloc[0] == f"ours after 4 revolutions, 184 h are 6.57; {ONE_PACKING}"
+    assert short["note"].iloc[0] == f"ours after 4 revolutions, 184 h are 6.57; {UNKNOWN}"
 
 
 def test_rates_with_the_error_of_the_coefficient():
