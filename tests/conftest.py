@@ -36,12 +36,23 @@ TOGETHER = (  # folders with a fixture of their own that takes seconds
 )
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector):
+    """Let each process begin to read elsewhere: what one compiles (libraries, modules, asserts), others then find."""
+    report = yield
+    worker = getattr(collector.config, "workerinput", None)
+    if worker and isinstance(collector, pytest.Directory):
+        start = len(report.result) * int(worker["workerid"].removeprefix("gw")) // worker["workercount"]
+        report.result = report.result[start:] + report.result[:start]
+    return report
+
+
 def pytest_collection_modifyitems(items):
-    """Sort files by their place in the lists, all others after them as they come."""
+    """Sort files by their place in the lists, all others after them by name."""
 
     def place(item):
         path = item.path.as_posix()
-        return next((k for k, name in enumerate(FIRST) if path.endswith(name)), len(FIRST))
+        return next((k for k, name in enumerate(FIRST) if path.endswith(name)), len(FIRST)), path
 
     items.sort(key=place)
 
