@@ -29,10 +29,10 @@ wear: {{law: hardened, parameters: {{hardening: 3}}}}
 deck: {{remark: {WORD}}}
 {FEW}""",
     "config/studies/second.yaml": f"""\
-title: A plain sample
+title: A plain sample and one with bumps
 question: Does it wear?
 design: mine.csv
-surfaces: [plain]
+surfaces: [convex, plain]
 deck: {{remark: nothing}}
 {FEW}""",
     "config/designs/mine.csv": """\

@@ -2,9 +2,12 @@
 
 import json
 import multiprocessing
+import os
 import re
 import shutil
+import signal
 import subprocess
+import time
 from pathlib import Path
 
 import pandas as pd
@@ -15,8 +18,8 @@ from bulkwear.workflows.config.targets import Naming, naming, requested_studies
 from bulkwear.workflows.engine.project import PACKAGE, Project
 from bulkwear.workflows.report.printed import PDF, browser
 from tests.support.loaded_project import load_project, plan
-from tests.support.own_project import STUDY, TEMPLATE, WORD, own_project
-from tests.workflows.test_snakemake import finish, planned_jobs, snakemake
+from tests.support.own_project import SECOND, STUDY, TEMPLATE, WORD, own_project
+from tests.workflows.test_snakemake import TIMEOUT, finish, planned_jobs, snakemake
 
 # Each process is forked from one that has read modules and entered no project: starting Snakemake costs 1.5 seconds.
 CLEAN = multiprocessing.get_context("forkserver")
@@ -25,6 +28,8 @@ CLEAN.set_forkserver_preload(
 )
 ROUNDING = 1e-12  # relative; of a sum over triangles
 WITHOUT_LIBRARIES = 80.0  # MB, of a process that imports no library, 25 of them; with pandas and matplotlib 170
+RUNS, SUMMARY = ["A_convex", "A_plain"], f"results/{SECOND}/summary.csv"
+POLL = 0.01  # s, of a cycle that takes a quarter of a second
 PROFILE = ("--workflow-profile", str(PACKAGE / "workflows/profiles/default"))
 
 
@@ -60,10 +65,10 @@ def finished(tmp_path_factory):
     place = tmp_path_factory.mktemp("with a space")
     mine, other = own_project(place / "my project"), own_project(place / "the other one")
     before = read_only()
-    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(mine), "--cores", "1")
+    outside = (*outside_of(mine), "--cores", "1")
     running = {
         "mine": snakemake(place, *outside, STUDY, before=before),
-        "second": snakemake(place, *outside, "results/second/summary.csv", before=before),
+        "second": snakemake(place, *outside, SUMMARY, before=before),
         "module": snakemake(other, *PROFILE, "--cores", "1", before=before),
     }
     said = {name: finish(process) for name, process in running.items()}
@@ -95,7 +100,7 @@ def test_figures_are_made_by_one_process(finished):
 def test_a_finished_study_has_further_reports(finished):
     """Its page as PDF, where there is a browser; and Snakemake's own report with a description, its tables by name and
     each figure by its title."""
-    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(finished["mine"]), "--cores", "1")
+    outside = (*outside_of(finished["mine"]), "--cores", "1")
     folder = finished["mine"] / "results" / STUDY
     if browser():
         finish(snakemake(finished["mine"], *outside, f"results/{STUDY}/report.pdf"))
@@ -114,8 +119,49 @@ def test_a_finished_study_has_further_reports(finished):
 @pytest.mark.solver
 def test_two_studies_at_once_from_one_folder(finished):
     """Each ends in its summary."""
-    for name in (STUDY, "second"):
-        assert list(pd.read_csv(finished["mine"] / f"results/{name}/summary.csv")["run"]) == ["A_plain"]
+    for name, runs in ((STUDY, ["A_plain"]), (SECOND, RUNS)):
+        assert list(pd.read_csv(finished["mine"] / f"results/{name}/summary.csv")["run"]) == runs
+
+
+@pytest.mark.solver
+def test_a_design_row_becomes_a_summary(finished):
+    """One row and two surfaces give two runs, each with its wear; the plain run is its own reference."""
+    table = pd.read_csv(finished["mine"] / SUMMARY).set_index("run")
+    assert (table["worn_volume_m3"] > 0).all()
+    assert table.loc["A_plain", "wear_over_plain"] == 1.0
+    assert table.loc["A_plain", "pattern_worn_volume_m3"] == 0.0 < table.loc["A_convex", "pattern_worn_volume_m3"]
+
+
+@pytest.mark.solver
+def test_nothing_is_left_to_do_after_a_study(finished):
+    """Started again, Snakemake finds everything up to date; the settled bed was filled once for both runs."""
+    outside = (*PROFILE, "--snakefile", str(PACKAGE / "Snakefile"))
+    assert "Nothing to be done" in said_of(finished["mine"], *outside, SUMMARY)
+    assert len(list((finished["mine"] / f"results/{SECOND}/beds").iterdir())) == 1
+
+
+@pytest.mark.solver
+def test_killed_snakemake_started_again_gives_the_same_summary(finished, tmp_path):
+    """kill -9 of everything during a wear cycle; a plain second call ends in the same summary.csv. Surfaces and bed are
+    there already.
+    """
+    folder = shutil.copytree(finished["mine"], tmp_path / "killed", symlinks=True)
+    (folder / SUMMARY).unlink()
+    for run in RUNS:
+        shutil.rmtree(folder / f"results/{SECOND}" / run)
+    outside = (*PROFILE, "--snakefile", str(PACKAGE / "Snakefile"), SUMMARY)
+    process = snakemake(folder, *outside)
+    deadline = time.monotonic() + TIMEOUT
+    while not list(folder.glob(f"results/{SECOND}/*/cycle_00[12].part/bed_*.dump")):
+        assert process.poll() is None and time.monotonic() < deadline
+        time.sleep(POLL)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+    assert not (folder / SUMMARY).exists()
+    finish(snakemake(folder, *outside))
+    for name in ("summary.csv", *(f"{run}/wear.csv" for run in RUNS)):
+        path = Path(f"results/{SECOND}") / name
+        assert (folder / path).read_bytes() == (finished["mine"] / path).read_bytes()
 
 
 @pytest.mark.solver
@@ -166,7 +212,7 @@ def test_a_changed_line_is_told_before_a_run_is_done_again(finished, tmp_path):
 def test_a_project_is_planned_on_a_cluster(tmp_path):
     """The profile for Slurm of the package, on the project's study; the same jobs as on one machine."""
     mine = own_project(tmp_path / "my project")
-    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(mine), "--dry-run", STUDY)
+    outside = (*outside_of(mine), "--dry-run", STUDY)
     profiles = (str(PACKAGE / "workflows/profiles" / name) for name in ("default", "slurm"))
     planned = [planned_jobs(said_of(tmp_path, *outside, "--workflow-profile", each)) for each in profiles]
     assert planned[0] == planned[1] and planned[0]["worn_run"] == 1
@@ -177,8 +223,8 @@ def test_one_command_makes_a_project(tmp_path, capsys):
     folder = tmp_path / "a new one"
     assert main(["project", str(folder)]) == 0
     assert f"cd '{folder}' && snakemake" in capsys.readouterr().out
-    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(folder))
-    planned = [planned_jobs(said) for said in (said_of(folder, "--dry-run"), said_of(tmp_path, *outside, "--dry-run"))]
+    from_outside = said_of(tmp_path, *outside_of(folder), "--dry-run")
+    planned = [planned_jobs(said) for said in (said_of(folder, "--dry-run"), from_outside)]
     assert planned[0] == planned[1] and planned[0]["worn_run"] == 2 * 3 and planned[0]["report"] == 1
     assert {"demo", "screening", "first"} <= set(said_of(folder, "--list-target-rules").split())
     assert main(["project", str(folder)]) == 1
@@ -288,7 +334,7 @@ def test_studies_of_the_package_are_planned_in_a_project(tmp_path):
     """With the published tables that they are compared with, and those of the project where it has some."""
     folder = own_project(tmp_path / "my project")
     shutil.rmtree(folder / "templates")
-    outside = ("--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(folder), "--dry-run")
+    outside = (*outside_of(folder), "--dry-run")
     planned = planned_jobs(said_of(tmp_path, *outside, "calibration", "particle_size"))
     assert planned["calibrated_parameters"] == 1 and planned["report"] == 2
 
@@ -309,7 +355,7 @@ use rule * from {name} as {name}_*
     ]
     (folder / "Snakefile").write_text("".join(texts))
     planned = planned_jobs(said_of(folder, *PROFILE, "a_mine", "b_second_decks", "--dry-run"))
-    assert planned["a_worn_run"] == 1 and planned["b_run_decks"] == 1
+    assert planned["a_worn_run"] == 1 and planned["b_run_decks"] == 2
     (folder / "Snakefile").write_text(texts[0].replace("['mine']", "'mine'"))
     output = said_of(folder, *PROFILE, "--dry-run", code=1)
     assert "config of the module: studies is 'mine', allowed is a list of names of studies." in output
@@ -333,6 +379,11 @@ def said_of(folder: Path, *arguments: str, code: int = 0) -> str:
     return output
 
 
+def outside_of(folder: Path) -> tuple[str, ...]:
+    """How a project is named from outside it, for the package's own Snakefile."""
+    return "--snakefile", str(PACKAGE / "Snakefile"), "--directory", str(folder)
+
+
 def told_of(folder: Path, study: str = STUDY) -> str:
     """What is said of a project that cannot be worked in, and nothing else: one line."""
     said = folder.parent / "said.txt"
@@ -343,6 +394,37 @@ def told_of(folder: Path, study: str = STUDY) -> str:
     assert process.exitcode == 1 and told.count("\n") == 1, told
     assert not (folder / "results").exists()
     return told
+
+
+def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
+    """The message names file, line and key; no job starts and the exit code is not zero."""
+    folder = own_project(tmp_path / "my project")
+    study = folder / MINE
+    study.write_text(study.read_text().replace("width_mm: 40", "width_cm: 4"))
+    output = said_of(tmp_path, *outside_of(folder), STUDY, code=1)
+    assert f"{MINE}, line 12, fidelity quick: unit cm is not allowed for sample.width" in output
+    assert "Traceback" not in output and not (folder / "results").exists()
+
+
+def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
+    """A study that is not asked for is not read; where all are listed one with a fault is left out with its words."""
+    folder = own_project(tmp_path / "my project")
+    broken = (folder / MINE).read_text().replace("width_mm: 40", "width_cm: 4")
+    (folder / "config/studies/broken.yaml").write_text(broken)
+    assert "broken" not in said_of(tmp_path, *outside_of(folder), STUDY, "--dry-run")
+    output = said_of(tmp_path, *outside_of(folder), "--list-target-rules")
+    assert "Study broken is left out: config/studies/broken.yaml, line 12" in output
+    assert {STUDY, f"{STUDY}_decks", f"{STUDY}_forecast"} <= set(output.split()) and "broken_decks" not in output
+
+
+def test_an_unknown_target_is_one_sentence(tmp_path):
+    """The message lists the studies and the endings of their targets."""
+    folder = own_project(tmp_path / "my project")
+    output = said_of(tmp_path, *outside_of(folder), "mien_decks", "--dry-run", code=1)
+    assert "Traceback" not in output
+    found = re.search(r"target is 'mien_decks', allowed is one of (.*), alone or with the ending (.*)\.", output)
+    assert {STUDY, SECOND} <= set(found[1].split(", "))
+    assert found[2] == "_decks, _forecast or _confirmation"
 
 
 def test_a_bad_project_ends_snakemake(tmp_path):

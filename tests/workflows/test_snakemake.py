@@ -1,4 +1,4 @@
-"""Snakemake on a tiny study in a copy of the repository: from design row to summary, killed, started again, refused."""
+"""Snakemake on a tiny study in a copy of the repository: planned, stopped, refused; whole studies: test_project.py."""
 
 import os
 import re
@@ -10,7 +10,6 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import ConfigError, load_study
@@ -35,7 +34,6 @@ fidelities:
     sliding: {run_in_mm: 10, travel_mm: 20, cycles: 2}
 packings: 1
 """
-RUNS = ["R9_convex", "R9_plain"]
 THREE_RUNS = """\
 rule all:
     input:
@@ -91,52 +89,6 @@ def finish(process: subprocess.Popen) -> str:
     return output
 
 
-@pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory):
-    folder = workspace(tmp_path_factory.mktemp("undisturbed"))
-    finish(snakemake(folder, "results/tiny/summary.csv"))
-    return folder
-
-
-@pytest.mark.solver
-def test_a_design_row_becomes_a_summary(undisturbed):
-    """One row and two surfaces give two runs, each with its wear; the plain run is its own reference."""
-    table = pd.read_csv(undisturbed / "results/tiny/summary.csv").set_index("run")
-    assert list(table.index) == RUNS
-    assert (table["worn_volume_m3"] > 0).all()
-    assert table.loc["R9_plain", "wear_over_plain"] == 1.0
-    assert table.loc["R9_plain", "pattern_worn_volume_m3"] == 0.0 < table.loc["R9_convex", "pattern_worn_volume_m3"]
-
-
-@pytest.mark.solver
-def test_nothing_is_left_to_do_after_a_study(undisturbed):
-    """Started again, Snakemake finds everything up to date; the settled bed was filled once for both runs."""
-    assert "Nothing to be done" in finish(snakemake(undisturbed, "results/tiny/summary.csv"))
-    assert len(list((undisturbed / "results/tiny/beds").iterdir())) == 1
-
-
-@pytest.mark.solver
-def test_killed_snakemake_started_again_gives_the_same_summary(undisturbed, tmp_path):
-    """kill -9 of everything during a wear cycle; a plain second call ends in the same summary.csv. Surfaces and bed are
-    there already.
-    """
-    folder = shutil.copytree(undisturbed, tmp_path / "killed", symlinks=True)
-    (folder / "results/tiny/summary.csv").unlink()
-    for run in RUNS:
-        shutil.rmtree(folder / "results/tiny" / run)
-    process = snakemake(folder, "results/tiny/summary.csv")
-    deadline = time.monotonic() + TIMEOUT
-    while not list(folder.glob("results/tiny/*/cycle_001.part/bed_0.dump")):
-        assert process.poll() is None and time.monotonic() < deadline
-        time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.communicate()
-    finish(snakemake(folder, "results/tiny/summary.csv"))
-    for name in ("summary.csv", *(f"{run}/wear.csv" for run in RUNS)):
-        path = Path("results/tiny") / name
-        assert (folder / path).read_bytes() == (undisturbed / path).read_bytes()
-
-
 @pytest.mark.solver
 def test_ctrl_c_says_how_to_go_on(tmp_path):
     """What a terminal sends with Ctrl-C, while the solver works: the job says in a line how to go on, without a
@@ -155,30 +107,6 @@ def test_ctrl_c_says_how_to_go_on(tmp_path):
     finish(snakemake(folder, "results/tiny/beds/bed_1/bed.restart"))
 
 
-def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
-    """The message names file, line and key; no job starts and the exit code is not zero."""
-    folder = workspace(tmp_path)
-    study = folder / "config" / "studies" / "tiny.yaml"
-    study.write_text(TINY.replace("width_mm: 40", "width_cm: 4"))
-    process = snakemake(folder, "tiny")
-    output, _ = process.communicate(timeout=TIMEOUT)
-    assert process.returncode != 0
-    sentence = "config/studies/tiny.yaml, line 9, fidelity quick: unit cm is not allowed for sample.width"
-    assert sentence in output
-    assert "Traceback" not in output
-    assert not (folder / "results").exists()
-
-
-def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
-    """A study that is not asked for is not read; where all are listed one with a fault is left out with its words."""
-    folder = workspace(tmp_path)
-    (folder / "config/studies/broken.yaml").write_text(TINY.replace("width_mm: 40", "width_cm: 4"))
-    assert "broken" not in finish(snakemake(folder, "tiny", "--dry-run"))
-    output = finish(snakemake(folder, "--list-target-rules"))
-    assert "Study broken is left out: config/studies/broken.yaml, line 9" in output
-    assert {"tiny", "tiny_decks", "tiny_forecast"} <= set(output.split()) and "broken_decks" not in output
-
-
 @pytest.mark.verify
 def test_only_cases_of_the_studies_asked_for_are_imported(tmp_path):
     """A case that cannot be imported keeps no study of another case from being planned, and no job of one."""
@@ -191,17 +119,6 @@ def test_only_cases_of_the_studies_asked_for_are_imported(tmp_path):
     assert planned_jobs(finish(snakemake(folder, *job, "--dry-run"))) == {"box_sizes": 1}
     output, _ = (process := snakemake(folder, "tiny", "--dry-run")).communicate(timeout=TIMEOUT)
     assert process.returncode != 0 and "not to be imported" in output
-
-
-def test_an_unknown_target_is_one_sentence(tmp_path):
-    """The message lists the studies and the endings of their targets."""
-    folder = workspace(tmp_path)
-    output, _ = (process := snakemake(folder, "tyni_decks", "--dry-run")).communicate(timeout=TIMEOUT)
-    assert process.returncode != 0 and "Traceback" not in output
-    sentence = (
-        "target is 'tyni_decks', allowed is one of tiny, alone or with the ending _decks, _forecast or _confirmation."
-    )
-    assert sentence in output
 
 
 @pytest.mark.parametrize(
