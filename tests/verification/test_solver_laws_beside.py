@@ -10,6 +10,7 @@ from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.report.laws import what_wears
 from tests.support.law_cases import OKA
 from tests.support.tiny import tiny_chain, tiny_study
+from tests.workflows.engine.test_cycles import twin
 
 pytestmark = pytest.mark.solver
 
@@ -24,9 +25,9 @@ def rigid(**wear):
     return tiny_study(wear={"deform": False, **wear}, sliding={"cycles": 1})
 
 
-def maps_of(study, folder):
-    """What laws make of the ledger of a run's only wear cycle."""
-    chain = replace(tiny_chain(rigid(), folder), parameters=study.run(RUN).parameters)
+def maps_of(study, chain, folder):
+    """What laws make of the ledger of a run's only wear cycle; the chain brings its surface and bed."""
+    chain = replace(twin(chain, folder), parameters=study.run(RUN).parameters)
     cycles.run_chain(chain)
     worn = [WornBy(*each) for each in what_wears(study)[RUN]]
     (maps,) = maps_of_cycles(chain.folder, worn[0], (0.0, 1.0, 0.0))
@@ -35,10 +36,11 @@ def maps_of(study, folder):
 
 def test_one_rigid_run_has_the_maps_of_all_laws(tmp_path):
     """Triangle by triangle, to the last bit, what a run worn by that law alone has; and each law draws a map."""
-    together, drawn = maps_of(rigid(beside=BESIDE), tmp_path / "together")
+    chain = tiny_chain(rigid(), tmp_path)
+    together, drawn = maps_of(rigid(beside=BESIDE), chain, tmp_path / "together")
     assert told_laws([together]) == ["archard", *BESIDE, "tangential_work"]
     assert [each.law for each in drawn] == ["archard", *BESIDE, "tangential_work"]
     for law in BESIDE:
-        alone, _ = maps_of(rigid(law=law, parameters=BESIDE[law]), tmp_path / law)
+        alone, _ = maps_of(rigid(law=law, parameters=BESIDE[law]), chain, tmp_path / law)
         assert alone.volumes[law].any()
         np.testing.assert_array_equal(together.volumes[law], alone.volumes[law])

@@ -47,7 +47,8 @@ def test_the_finest_mesh_counts():
 @pytest.mark.parametrize("fits", [False, True])
 def test_the_solver_has_room_for_fine_triangles(tmp_path, fits):
     """A pin on elements so fine that it ends with the least room, which it says, goes on with what is computed."""
-    mesh = flat_plate(0.01, 0.01, FINE)
+    mesh = flat_plate(0.005, 0.005, FINE)  # all of it within reach of the pin
+    assert len(mesh.triangles) > LEAST_LIST
     write_case(tmp_path, mesh, pin(1.3e-4, 0.7e-4), PIN_MOTION, steps=2)
     found = list_sizes({"sample": {"element_size_m": FINE}}, of_diameters(2.0 * RADIUS), SKIN) if fits else LEAST
     told = f"one {found['most_neighbours']} page {found['neighbours_of_page']}"
