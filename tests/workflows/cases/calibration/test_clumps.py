@@ -17,7 +17,7 @@ pytestmark = pytest.mark.solver
 PAIRS = {"bulk": {"shape": "pair", "material": "river_gravel_published"}, "solver": {"rolling_friction": "none"}}
 WALL_FRICTION = 0.2  # -, low enough that clumps slide over the plate and do not turn
 WALL = "wall_material.contact.sliding_friction"
-SLIDES = 0.1  # deg, of the mean over the drag; measured 0.013
+SLIDES = 0.1  # deg, of the mean over the drag; measured 1e-8, and 0.013 over twice the way
 FLOWED = (0.2, 0.9)  # -, of the clumps
 
 
@@ -43,6 +43,6 @@ def test_a_shear_box_of_clumps(tmp_path):
 
 def test_clumps_that_slide_have_the_friction_of_the_plate(tmp_path):
     """Under a plate that is drawn they slide, as they cannot roll: the wall friction angle is atan mu."""
-    test = with_values(box("wall_shear", length_m=0.1, fill_height_m=0.06, drag_m=0.04), {WALL: WALL_FRICTION})
+    test = with_values(box("wall_shear", length_m=0.06, fill_height_m=0.06, drag_m=0.02), {WALL: WALL_FRICTION})
     found = measured(test, simulated(test, tmp_path)).responses["wall_friction_angle_deg"]
     assert found == pytest.approx(math.degrees(math.atan(WALL_FRICTION)), abs=SLIDES)
