@@ -1,4 +1,4 @@
-"""Projects outside the package: run by --directory and as a module, side by side; told in a sentence what is wrong."""
+"""Projects outside the package: by --directory and as a module, side by side, killed; what is wrong is a sentence."""
 
 import json
 import multiprocessing

@@ -1,4 +1,4 @@
-"""Snakemake on a tiny study in a copy of the repository: planned, stopped, refused; whole studies: test_project.py."""
+"""Snakemake on a tiny study in a copy of the repository: planned, interrupted by Ctrl-C, started again, refused."""
 
 import os
 import re
