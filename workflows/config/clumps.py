@@ -33,6 +33,8 @@ def find_clump(shape: str, setting: str = SETTING) -> Clump | None:
     """Return the clump that particles are, None for spheres; setting: that gives the shape. Raises ConfigError."""
     project = current_project()
     shapes = [ROUND, *(name.removesuffix(".csv") for name in project.names(CLUMPS, ".csv"))]
+    if f"{ROUND}.csv" in project.names(CLUMPS, ".csv"):
+        raise ConfigError(f"{CLUMPS}/{ROUND}.csv: found a clump of that name, allowed is another name.")
     if shape not in shapes:
         raise ConfigError(f"{setting} is {show(shape)}, allowed is one of {', '.join(shapes)}.")
     return None if shape == ROUND else read_clump(project.file(f"{CLUMPS}/{shape}.csv"), project.folder)
@@ -59,9 +61,19 @@ def _clump(path: Path, root: Path, _written: int) -> Clump:
     table = np.array(spheres)
     if len(np.unique(table, axis=0)) < len(table):
         raise ConfigError(f"{source}: found a sphere twice, allowed is each once.")
+    if (line := _hidden(table[:, :3], table[:, 3])) is not None:
+        raise ConfigError(f"{source}, line {rows[line][0]}: found a sphere within another, allowed is none.")
     if not _hangs_together(table[:, :3], table[:, 3]):
         raise ConfigError(f"{source}: found spheres apart from the others, allowed are spheres that touch or overlap.")
     return unit_clump(table[:, :3], table[:, 3])
+
+
+def _hidden(centres: np.ndarray, radii: np.ndarray) -> int | None:
+    """Return the number of a sphere that lies within another one and so touches nothing, if there is any."""
+    apart = np.linalg.norm(centres[:, None] - centres[None], axis=2)
+    within = apart + radii[:, None] <= radii[None]
+    np.fill_diagonal(within, False)
+    return int(np.argmax(within.any(axis=1))) if within.any() else None
 
 
 def _hangs_together(centres: np.ndarray, radii: np.ndarray) -> bool:

@@ -16,6 +16,7 @@ from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.config.layers import read_csv_rows
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.grains import smallest_radius
+from bulkwear.workflows.engine.project import enter_project, leave_project
 from bulkwear.workflows.engine.solver import OWN_ROLLING_MODELS
 from bulkwear.workflows.engine.templates import render
 from tests import REPOSITORY
@@ -169,6 +170,7 @@ def test_other_cases_know_no_shape(study):
         ("x,y,z,radius\n0,0,0,1\n", "found one sphere, allowed are two or more"),
         ("x,y,z,radius\n0,0,0,1\n2.1,0,0,1\n", "found spheres apart from the others"),
         ("x,y,z,radius\n0,0,0,1\n1,0,0,1\n0,0,0,1\n", "found a sphere twice"),
+        ("x,y,z,radius\n0,0,0,1\n0.5,0,0,0.4\n", "line 3: found a sphere within another"),
         ("x,y,z,radius\n0,0,0,1\n1,0,0,0\n", "line 3: radius is 0"),
         ("x,y,z,radius\n0,0,0,1\n1,wide,0,1\n", "line 3: y is 'wide'"),
     ],
@@ -179,6 +181,18 @@ def test_a_table_that_is_no_clump_is_refused(tmp_path, rows, message):
     path.write_text(rows)
     with pytest.raises(ConfigError, match=rf"mine\.csv.*{message}"):
         read_clump(path, tmp_path)
+
+
+def test_a_table_of_the_name_of_round_grains_is_refused(tmp_path):
+    """It would never be read."""
+    (tmp_path / "config" / "clumps").mkdir(parents=True)
+    (tmp_path / "config" / "clumps" / "sphere.csv").write_text("x,y,z,radius\n0,0,0,1\n1,0,0,1\n")
+    enter_project(tmp_path)
+    try:
+        with pytest.raises(ConfigError, match=r"^config/clumps/sphere\.csv: found a clump of that name, allowed is"):
+            find_clump("sphere")
+    finally:
+        leave_project()
 
 
 # ---------------------------------------------------------------- the real solver
