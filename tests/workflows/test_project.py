@@ -257,6 +257,20 @@ LAW, CASE, MINE = "laws/hardened.py", "cases/dimpled/case.py", "config/studies/m
         (LAW, "LAW = ", "RULE = ", f"{LAW}: there is no LAW in it, allowed is a module with LAW = Law(...)."),
         (
             LAW,
+            "return archard",
+            "return -archard",
+            f"{LAW}: of two triangles, the first without load, the law",
+        ),
+        (LAW, "parameters) / ", "parameters) ** 2 / ", f"{LAW}: by twice the load the law hardened makes "),
+        (LAW, "return archard(columns, parameters)", 'return columns["sliding_work_J"]', f"{LAW}: by twice the coeffi"),
+        (
+            LAW,
+            '"measured by ourselves",',
+            '"us", kernels=("oka_energy",),',
+            f"{LAW}: a contact kernel of the law",
+        ),
+        (
+            LAW,
             "{hardening}",
             "{hardness}",
             f"{LAW}: words of the law hardened have {{hardness}}, allowed",
@@ -295,7 +309,7 @@ def test_a_bad_project_is_one_sentence(tmp_path, file, old, new, sentence):
             LAW,
             "from bulkwear.postproc.wear.laws import Law\n\n"
             "LAW = Law(lambda columns, given: columns['work'], 'so.', 'nobody')\n",
-            "law hardened: on a ledger without load it ends in KeyError: 'work'; allowed is a volume of 0.",
+            f"{LAW}: the law hardened ends in KeyError: 'work'; allowed are columns of the ledger and the law's",
         ),
         ("laws/_part.py", "1 / 0\n", "laws/_part.py, line 1: ZeroDivisionError: division by zero; allowed is Python"),
         (

@@ -9,15 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from bulkwear.postproc.wear.coefficient import PER_PA
 from bulkwear.postproc.wear.kernel_sums import law_kernels
 from bulkwear.postproc.wear.kernels import kernel_column
 from bulkwear.postproc.wear.laws import LAWS, worn_volume
-from bulkwear.postproc.wear.ledger import LEDGER_FIELDS
+from bulkwear.postproc.wear.ledger import LEDGER_FIELDS, MEAN_FIELDS
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, dotted
 from bulkwear.workflows.config.schema import without_required
 from bulkwear.workflows.config.validation import UNIT_OF_SUFFIX, allowed_text, check_layer, locate, show, unknown_key
 
 WEAR, LAW, PARAMETERS = "wear", "law", "parameters"
+PROPORTIONAL = 1e-9  # relative; rounding of a law's function, far below any power but 1
 
 
 def parameters_schema(law: str) -> dict[str, Any]:
@@ -77,24 +79,47 @@ def check_law(layers: Sequence[Layer]) -> None:
             raise ConfigError(f"{where}: {WEAR}.{PARAMETERS}.{key} is missing for the law {law}, allowed is {allowed}.")
 
 
-def check_volume(law: str, parameters: Mapping[str, float]) -> None:
-    """Raise ConfigError where a law's function fails on a ledger without load, or does not return what it should.
+def check_volume(law: str, parameters: Mapping[str, float], file: str) -> None:
+    """Raise ConfigError where a law's function fails, or does not return what it should, on a ledger of two triangles
+    of which one has no load, the other 1 in every column: 0 of the first, and of the other a volume that is not
+    negative, twice as much after twice the load, and by twice the coefficient.
 
-    parameters: of the law, SI, the coefficient included
+    parameters: of the law, SI, the coefficient included; file: that the law stands in
     """
     try:
         kernels = law_kernels(law, parameters)
-        names = (*LEDGER_FIELDS, *map(kernel_column, kernels))
-        volume = np.asarray(worn_volume(law, {name: np.zeros(2) for name in names}, parameters), float)
-    except Exception as fault:  # a law of a project's own may fail in any way
-        words = f"{type(fault).__name__}: {fault}"
+    except KeyError as fault:
         raise ConfigError(
-            f"law {law}: on a ledger without load it ends in {words}; allowed is a volume of 0."
+            f"{file}: a contact kernel of the law {law} takes {fault.args[0]}, allowed are the law's parameters, in SI:"
+            f" {', '.join(sorted(parameters))}."
         ) from None
-    if volume.shape != (2,) or volume.any():
+    names = (*LEDGER_FIELDS, *map(kernel_column, kernels))
+    once = {name: np.array([0.0, 1.0]) for name in names}
+    twice = {name: column if name in MEAN_FIELDS else 2.0 * column for name, column in once.items()}
+    double = {**parameters, PER_PA: 2.0 * parameters[PER_PA]}
+    try:
+        volumes = [
+            np.asarray(worn_volume(law, *given), float)
+            for given in ((once, parameters), (twice, parameters), (once, double))
+        ]
+    except Exception as fault:  # a law of a project's own may fail in any way
         raise ConfigError(
-            f"law {law}: on a ledger of two triangles without load it returns {volume.tolist()}, allowed is 0 for each."
+            f"{file}: the law {law} ends in {type(fault).__name__}: {fault}; allowed are columns of the ledger and the"
+            " law's parameters, in SI."
+        ) from None
+    volume, after_twice, by_twice = volumes
+    if volume.shape != (2,) or volume[0] != 0.0 or not 0.0 <= volume[1] < np.inf:
+        raise ConfigError(
+            f"{file}: of two triangles, the first without load, the law {law} returns {volume.tolist()} m3, allowed are"
+            " two volumes, 0 for the first and no negative one."
         )
+    kernel = "; a law that is not linear brings a contact kernel"
+    for found, more, advice in ((after_twice, "twice the load", kernel), (by_twice, "twice the coefficient", "")):
+        if not np.allclose(found, 2.0 * volume, rtol=PROPORTIONAL, atol=0.0):
+            raise ConfigError(
+                f"{file}: by {more} the law {law} makes {found[1]:.4g} of {volume[1]:.4g} m3, allowed is twice as"
+                f" much{advice}."
+            )
 
 
 def _unknown(path: KeyPath, value: str, law: str, schema: dict[str, Any]) -> str:

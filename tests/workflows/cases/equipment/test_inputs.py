@@ -127,10 +127,10 @@ def own_law(tmp_path):
 def test_a_run_hangs_on_the_own_law_of_a_part(tmp_path, own_law):
     """Another line in the project's law of one part is another simulation, though wear.law is the package's."""
     first = digest(tmp_path, **own_law('given["wear_coefficient_per_pa"] * columns["sliding_work_J"]'))
-    assert digest(tmp_path, **own_law('0.5 * columns["sliding_work_J"]')) != first
+    assert digest(tmp_path, **own_law('0.5 * given["wear_coefficient_per_pa"] * columns["sliding_work_J"]')) != first
 
 
 def test_the_own_law_of_a_part_is_tried_first(tmp_path, own_law):
     """One that takes a volume without load is refused where the study is read."""
-    with pytest.raises(ConfigError, match="law ours: on a ledger of two triangles without load it returns"):
+    with pytest.raises(ConfigError, match=r"laws/ours\.py: of two triangles, the first without load, the law ours"):
         digest(tmp_path, **own_law('1.0 + columns["sliding_work_J"]'))
