@@ -193,6 +193,13 @@ def test_what_does_not_compile_is_refused(project, text, sentence):
     assert not list((project / "results" / "own_kernels").iterdir())
 
 
+def test_a_missing_file_is_told(project):
+    """Of a kernel that is declared, with the name that the file must have."""
+    (project / "laws" / "slip_power.h").unlink()
+    with pytest.raises(ProjectError, match=r"^laws/slip_power\.h: there is no such file, allowed is the con"):
+        own_library(["finnie_work", "slip_power"])
+
+
 def test_a_missing_compiler_is_told(project, monkeypatch):
     """Which ones were looked for, and what to install."""
     monkeypatch.setattr(shutil, "which", lambda name: None)

@@ -17,7 +17,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from bulkwear.postproc.wear.kernels import KERNELS, is_per_impact, kernel_column, kernel_of, kernel_parameters
-from bulkwear.workflows.engine.project import LAWS, PACKAGE, ProjectError, current_project
+from bulkwear.workflows.engine.project import KERNELS_OF_PACKAGE, LAWS, PACKAGE, ProjectError, current_project
 from bulkwear.workflows.engine.records import digest
 
 SUFFIX = ".h"
@@ -43,9 +43,17 @@ def own_library(kernels: Iterable[str]) -> Path | None:
 
     None where it has none of them in C++.
 
-    Raises ProjectError where there is no compiler, or where it refuses: file, line and its words.
+    Raises ProjectError where a kernel of the project has no file, where there is no compiler, or where it refuses:
+    file, line and its words.
     """
+    kernels = [kernel_of(label) for label in kernels]
     sources = own_sources(kernels)
+    if not current_project().is_package:
+        for name in (name for name in kernels if name not in {*sources, *KERNELS_OF_PACKAGE}):
+            raise ProjectError(
+                f"{LAWS}/{name}{SUFFIX}: there is no such file, allowed is the contact kernel {name} in C++; its"
+                " function in Python serves `ledger: dumps`."
+            )
     if not sources:
         return None
     compiler, text = _compiler(), library_text(sources)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
+from bulkwear.postproc.wear.kernels import KERNELS as REGISTERED_KERNELS
 from bulkwear.postproc.wear.kernels import register_kernel
 from bulkwear.postproc.wear.laws import LAWS as REGISTERED_LAWS
 from bulkwear.postproc.wear.laws import register_law
@@ -21,7 +22,7 @@ from bulkwear.postproc.wear.laws import register_law
 PACKAGE = Path(__file__).resolve().parents[2]
 CONFIG, TEMPLATES, CASES, LAWS, MESHES = "config", "templates", "cases", "laws", "meshes"  # folders of a project
 CASES_OF_PACKAGE = PACKAGE / "workflows" / CASES
-LAWS_OF_PACKAGE = frozenset(REGISTERED_LAWS)
+LAWS_OF_PACKAGE, KERNELS_OF_PACKAGE = frozenset(REGISTERED_LAWS), frozenset(REGISTERED_KERNELS)
 LAWS_PACKAGE = "bulkwear_laws"  # by which a project's laws and their helpers are imported
 LAW, KERNELS = "LAW", "KERNELS"  # what a module of laws/ has
 
