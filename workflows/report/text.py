@@ -48,6 +48,9 @@ UNITS = (
     ("_h", "h"),
 )
 NAMED_ELSEWHERE = f" Where figures and columns name {NEUTRAL_LAW.capitalize()}'s volume, it is this law's."
+OF_ITS_OWN = (
+    " Its coefficient is another quantity than Archard's: volumes and hours hold where it is of a test by this law."
+)
 SPOKEN = {"_fraction", "_steps"}  # suffixes that belong to the name as well
 EXTRA_UNITS = {
     "particle_scale": NO_UNIT,
@@ -208,8 +211,9 @@ def law_words(wear: Mapping[str, Any], coefficient: str) -> str:
     """
     given = {key: number(value) for key, value in wear.get("parameters", {}).items()}
     words = LAWS[wear["law"]].words.format(wear_coefficient_per_pa=coefficient, **given)
+    own = "" if LAWS[wear["law"]].comparable else OF_ITS_OWN
     named = "" if wear["law"] == NEUTRAL_LAW else NAMED_ELSEWHERE
-    return f"{wear['law'].replace('_', ' ').capitalize()}: {words}{named}"
+    return f"{wear['law'].replace('_', ' ').capitalize()}: {words}{own}{named}"
 
 
 def hardness_words(scaled: Sequence[Mapping[str, float]]) -> str:

@@ -114,6 +114,9 @@ def test_figures_and_pages_tell_the_parameters():
     assert law_words(study.settings["wear"], "6.3e-13").startswith(
         "Long slip: coefficient 6.3e-13 1/Pa, exponent 1.5, length 2 mm."
     )
+    own = "another quantity than Archard's"  # a law's that is not one of work along the surface
+    assert own in law_words(study.settings["wear"], "6.3e-13")
+    assert own not in law_words({"law": "tangential_work"}, "1e-12")
     remark = "worn by the law long_slip (exponent 1.5, length 2 mm)"
     assert remark in figure_remarks(study)
     page = page_parameters(study)
