@@ -1,12 +1,13 @@
 """Wear coefficients of a run: in 1/Pa, or k over the hardness of the wall, given by part, section or pair of materials.
 
 The file of materials may give the coefficient of a pair, `walls.<wall>.wear.<particle>`, and the wall's `hardness_pa`.
-A pair's stands above config/default.yaml, below whatever else gives one, and serves the law that it names.
+A pair's stands above config/default.yaml, below whatever else gives one, and serves the law that it names; its error
+goes with it, unless a study gives one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import reduce
 from typing import Any
 
@@ -20,7 +21,7 @@ from bulkwear.postproc.wear.laws import NEUTRAL_LAW
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, dotted, merge
 from bulkwear.workflows.config.validation import check_alternatives, locate, show, unknown_name
 from bulkwear.workflows.engine.case import Case
-from bulkwear.workflows.engine.worn_pair import WALL_HARDNESS, WornPair
+from bulkwear.workflows.engine.worn_pair import COEFFICIENT_ERROR, WALL_HARDNESS, WornPair
 
 COEFFICIENTS = (PER_PA, DIMENSIONLESS)
 WEAR, HARDNESS, LAW = "wear", "hardness_pa", "law"  # keys of the settings and of a wall
@@ -38,23 +39,26 @@ def alternatives_of(case: Case, values: Mapping[str, Any]) -> list[tuple[KeyPath
 
 
 def with_coefficients(
-    case: Case, settings: dict[str, Any], materials: Mapping[str, Any], is_named: bool
+    case: Case, settings: dict[str, Any], materials: Mapping[str, Any], named: Collection[str]
 ) -> dict[str, Any]:
     """Return the settings of a run with the coefficient (1/Pa) of everything that wears; where the wall's hardness is
     known with k and hardness too. A coefficient that needs a hardness which is not known stays as it is.
 
-    is_named: whether the section `wear` gives one above the defaults that all cases share
+    named: keys of the section `wear` that stand above a pair's, as of `Sources.of_coefficient`
     """
     settings = merge(settings, {})
     shared = settings[WEAR] | {}
     for pair in case.worn_pairs(settings):
         block = reduce(dict.__getitem__, pair.block, settings)
         own = {} if pair.block == (WEAR,) else block
-        given = _given(own) or (_given(shared) if is_named else _of_pair(materials, pair)) or _given(shared)
+        of_pair = {} if _given(own) or set(COEFFICIENTS) & set(named) else _of_pair(materials, pair)
+        given = _given(own) or _given(of_pair) or _given(shared)
         found = _complete(given, materials["walls"].get(pair.wall, {}).get(HARDNESS))
         if _given(own) or found != _given(shared):
             block.pop(PER_PA, None)
             block.update(found)
+        if COEFFICIENT_ERROR in of_pair and COEFFICIENT_ERROR not in {*own, *named}:
+            block[COEFFICIENT_ERROR] = of_pair[COEFFICIENT_ERROR]
         if PER_PA in found:
             settings[WEAR].setdefault(PER_PA, found[PER_PA])  # of several parts the first one's
     return settings
@@ -107,10 +111,10 @@ def _given(block: Mapping[str, Any]) -> dict[str, float]:
     return {key: block[key] for key in COEFFICIENTS if key in block}
 
 
-def _of_pair(materials: Mapping[str, Any], pair: WornPair) -> dict[str, float]:
-    """Return the coefficient of a pair of materials, nothing where there is none for the law."""
+def _of_pair(materials: Mapping[str, Any], pair: WornPair) -> dict[str, Any]:
+    """Return what a pair of materials says of its coefficient, nothing where there is none for the law."""
     found = materials["walls"].get(pair.wall, {}).get(WEAR, {}).get(pair.particle, {})
-    return _given(found) if found.get(LAW, NEUTRAL_LAW) == pair.law else {}
+    return found if found.get(LAW, NEUTRAL_LAW) == pair.law else {}
 
 
 def _complete(given: Mapping[str, float], hardness: float | None) -> dict[str, float]:

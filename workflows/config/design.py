@@ -275,7 +275,7 @@ def _told(
     sources: Sources, layers: tuple[Layer, ...], settings: dict[str, Any], materials: dict[str, Any]
 ) -> dict[str, Any]:
     """Return settings as pages tell them, with the wear coefficients that follow from materials."""
-    return with_coefficients(sources.case, settings, materials, sources.names_coefficient(layers))
+    return with_coefficients(sources.case, settings, materials, sources.of_coefficient(layers))
 
 
 def _check_own_code(study: Study, layers: tuple[Layer, ...]) -> None:
@@ -376,7 +376,7 @@ def _checked_run(
     named = case.named_materials(of_row)
     check_material_names(stack, of_row, materials, named)
     check_calibrated_for(stack, of_row, materials, named, case.looks_for(of_row))
-    of_row = with_coefficients(case, of_row, materials, sources.names_coefficient(stack))
+    of_row = with_coefficients(case, of_row, materials, sources.of_coefficient(stack))
     check_hardness(stack, case, of_row)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
     try:

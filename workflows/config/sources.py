@@ -28,7 +28,7 @@ from bulkwear.workflows.config.validation import check_alternatives, check_layer
 from bulkwear.workflows.engine.case import DEFAULT_CASE, Case
 from bulkwear.workflows.engine.cases import case_folders, case_names, find_case
 from bulkwear.workflows.engine.project import Project, current_project
-from bulkwear.workflows.engine.worn_pair import BESIDE
+from bulkwear.workflows.engine.worn_pair import BESIDE, COEFFICIENT_ERROR
 
 DESIGN = "design"  # key of a study, and of its fidelity blocks
 MATERIALS = "materials.yaml"  # in config, where a study names no other
@@ -95,10 +95,12 @@ class Sources:
             *(block.part(set(block.values) - {DESIGN}), self.command),
         )
 
-    def names_coefficient(self, layers: Sequence[Layer]) -> bool:
-        """Return whether the section `wear` of these layers gives a coefficient above what all cases share."""
-        above = [layer for layer in layers if layer not in self.shared]
-        return any(layer.holds((WEAR, key)) for layer in above for key in COEFFICIENTS)
+    def of_coefficient(self, layers: Sequence[Layer]) -> set[str]:
+        """Return what the section `wear` of these layers gives of its coefficient before a pair of materials does: a
+        coefficient above what all cases share, its error above all defaults.
+        """
+        places = [*((key, self.shared) for key in COEFFICIENTS), (COEFFICIENT_ERROR, self.defaults)]
+        return {key for key, weaker in places for each in layers if each not in weaker and each.holds((WEAR, key))}
 
     def merged(self, layers: tuple[Layer, ...]) -> dict[str, Any]:
         """Return the settings of the layers, the last one strongest."""

@@ -14,6 +14,7 @@ from bulkwear.workflows.report.text import hardness_words
 from tests.support.own_machine_project import ORE, TINY, machine_study
 
 K, H, ALPHA = 1e-3, 2e9, 5e-13  # -, Pa, 1/Pa: k / H, to a rounding
+OF_PAIR = 0.4  # -, error of a pair's coefficient, as no default has it
 DEFAULT_ALPHA = 6.3e-13  # 1/Pa, of config/default.yaml
 ROUNDING = 1e-15  # relative; one quotient or product
 VICKERS, DIGITS = 9.807e6, 5e-4  # Pa, of 1 HV; -, of a number with four digits
@@ -110,6 +111,16 @@ def test_a_pair_of_materials_gives_what_a_study_does_not_name(config, key):
     assert wear_of(config, wear_coefficient_per_pa=1e-12)["wear_coefficient_per_pa"] == 1e-12
 
 
+def test_the_error_of_a_pair_goes_with_its_coefficient(config):
+    """Not with a study's own coefficient, nor with that of another law; an error that the study gives counts first."""
+    hard(config, river_gravel={"wear_coefficient_k": K, "wear_coefficient_error": OF_PAIR})
+    study, error = load_study("small", config.project), "wear_coefficient_error"
+    assert study.settings["wear"][error] == study.runs[0].parameters["wear"][error] == OF_PAIR
+    for other in ({"wear_coefficient_per_pa": 1e-12}, {"law": "tangential_work"}):
+        assert wear_of(config, **other).get(error) != OF_PAIR
+    assert wear_of(config, wear_coefficient_error=0.5)[error] == 0.5
+
+
 def test_the_coefficient_of_a_pair_belongs_to_a_law(config):
     """A study of another law does not take it."""
     hard(config, hardness=None, river_gravel={"wear_coefficient_per_pa": 1e-12, "law": "tangential_work"})
@@ -143,9 +154,10 @@ def test_a_wrong_pair_is_named(config, pairs, said):
 # ---------------------------------------------------------------- parts
 
 WALL = {"density_kg_per_m3": 8000, "poissons_ratio": 0.3, "shear_modulus_pa": 8.0e10, "contact": dict(ORE["contact"])}
+ERROR = {"wear_coefficient_error": OF_PAIR}
 WALLS = {
-    "soft": {**WALL, "hardness_pa": 1.0e9, "wear": {"ore": {"wear_coefficient_k": 0.002}}},
-    "hard": {**WALL, "hardness_pa": 4.0e9, "wear": {"ore": {"wear_coefficient_per_pa": 1.0e-13}}},
+    "soft": {**WALL, "hardness_pa": 1.0e9, "wear": {"ore": {"wear_coefficient_k": 0.002, **ERROR}}},
+    "hard": {**WALL, "hardness_pa": 4.0e9, "wear": {"ore": {"wear_coefficient_per_pa": 1.0e-13, **ERROR}}},
 }
 MACHINE = replace(TINY, materials={**TINY.materials, "walls": WALLS})
 PARTS = {"liner": {"material": "soft"}, "plate": {"material": "hard", "wear_coefficient_per_pa": None, "law": None}}
@@ -171,10 +183,13 @@ def test_parts_of_several_materials_have_each_their_own_coefficient(tmp_path):
 
 
 def test_parts_take_the_coefficients_of_their_pairs(tmp_path):
-    """Each wall under the ore has its own; a wall without a pair has the default, and tells no k."""
+    """Each wall under the ore has its own; a wall without a pair has the default, and tells no k. The liner's own error
+    counts before its pair's.
+    """
     parts, table = parts_of(tmp_path, parts=PARTS)
     found = {name: part["wear_coefficient_per_pa"] for name, part in parts.items() if part["wears"]}
     assert found == pytest.approx({"liner": 0.002 / 1e9, "plate": 1e-13, "paddle": DEFAULT_ALPHA}, rel=ROUNDING)
+    assert [parts[name]["wear_coefficient_error"] for name in ("liner", "plate")] == [0.2, OF_PAIR]
     assert table.loc["plate", "wear_coefficient_k"] == pytest.approx(1e-13 * 4e9, rel=ROUNDING)
     assert table.loc[["paddle"], "wear_coefficient_k"].isna().all()
 
