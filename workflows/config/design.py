@@ -240,7 +240,7 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
     )
     checked_runs = partial(_checked_runs, sources, layers, settings, materials)
     digest = search_digest(settings, written)
-    written = with_search(written, settings, head, checked_runs, project.folder / "results" / name)
+    written = _placed(layers, with_search, written, settings, head, checked_runs, project.folder / "results" / name)
     designed = _packings(sources, layers, settings, written)
     rows = list(designed.rows) if confirms else chosen_rows(layers, settings, designed)
     runs_of = runs_of_rows(designed.added_last(), rows, checked_runs)
@@ -379,10 +379,16 @@ def _checked_run(
     of_row = with_coefficients(case, of_row, materials, sources.of_coefficient(stack))
     check_hardness(stack, case, of_row)
     check_needed(layers, of_row, schema, "pattern", case.needed_pattern_keys(of_row, surface))
-    try:
-        parameters = case.run_parameters(to_si(of_row), to_si(materials), to_si(row.values), surface)
-    except ConfigError as fault:
-        raise ConfigError(with_place(stack, str(fault))) from None
+    given = (to_si(of_row), to_si(materials), to_si(row.values), surface)
+    parameters = _placed(stack, case.run_parameters, *given)
     check_run(CheckedRun(layers, of_row, row, parameters, columns), (*COMMON_CHECKS, *case.checks, *LAST_CHECKS))
     name = row.values["row"]
     return Run(name=f"{name}_{surface}" if surface else name, row=name, surface=surface, parameters=parameters)
+
+
+def _placed(layers: tuple[Layer, ...], function: Callable[..., Any], *given: Any) -> Any:
+    """Return what a function makes of what it is given; its ConfigError of a setting gets that one's place."""
+    try:
+        return function(*given)
+    except ConfigError as fault:
+        raise ConfigError(with_place(layers, str(fault))) from None

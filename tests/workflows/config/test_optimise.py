@@ -152,7 +152,7 @@ def test_patterns_that_cannot_be_made_are_named_with_the_reason(study):
 @pytest.mark.parametrize(
     ("asked", "found"),
     [
-        ({"most_rows": 6}, "optimise.most_rows is 6, allowed are 7 or more"),
+        ({"most_rows": 6}, "command line: optimise.most_rows is 6, allowed are 7 or more"),
         ({"confirming_packings": 1}, "optimise.confirming_packings is 1"),
         ({"factors": [*SMALL["optimise"]["factors"], SMALL["optimise"]["factors"][0]]}, "has height_mm twice"),
         ({"factors": [dict(each, high=each["low"]) for each in SMALL["optimise"]["factors"]]}, "from 2 to 2"),
