@@ -1,8 +1,9 @@
 """Every published number beside ours: taken from the tables of a page that are marked so, in one set of columns.
 
-Three kinds of tables are: claims with their verdicts (finding, claim, found, verdict, reason, factor, source), numbers
-with a relation (quantity, surface, scales, relation, value, unit, and the same from found on), and values beside values
-(published_value, computed_value with its interval, packings, source), which are judged here unless they are `given`.
+Three kinds of tables are: claims with their verdicts (finding, of what, claim, found, verdict, reason, factor, source),
+numbers with a relation (quantity, surface, scales, relation, value, unit, and the same from found on), and values
+beside values (published_value, computed_value with its interval, packings, source), which are judged here unless they
+are `given`.
 """
 
 from __future__ import annotations
@@ -62,7 +63,8 @@ def _alike(table: pd.DataFrame) -> pd.DataFrame:
         published = [_number_words(row) for row in table.to_dict("records")]
         table = table.assign(finding=finding, published=published)
     else:
-        table = table.rename(columns={"claim": "published", "claimed": "published"})
+        finding = [_words(row, "finding", "of") for row in table.to_dict("records")]
+        table = table.rename(columns={"claim": "published", "claimed": "published"}).assign(finding=finding)
     return table.reindex(columns=COLUMNS).fillna({"found": "", "reason": ""})
 
 

@@ -56,6 +56,12 @@ def test_tables_of_three_kinds_are_told_alike():
     assert table["reason"].tolist()[:2] == ["", ""]
 
 
+def test_a_claim_of_several_runs_tells_of_which():
+    assert published_numbers([section(CLAIM | {"of": "conserving, removed"})])["finding"].tolist() == [
+        "It is so, conserving, removed"
+    ]
+
+
 def test_a_table_may_have_its_numbers_beside_it():
     """One that shows them in columns of its own; without any it leaves no line."""
     shown, beside = pd.DataFrame({"hours": [56.0]}), pd.DataFrame([VALUE | {"computed_value": 130.0}])
