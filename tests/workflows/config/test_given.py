@@ -34,7 +34,7 @@ def message_of(folder, overrides=None, **changes) -> str:
         ({"periodic": {"axis": "y"}}, "periodic.low_mm is missing, allowed is a number from -100000 to 100000 mm."),
         ({"domain": {"low_mm": [0, 0, 0]}}, "domain.high_mm is missing, allowed is a list of three numbers from"),
         ({"filling": {"axis": "y"}}, "filling.fraction is missing, allowed is a number from 1e-09 to 0.55."),
-        ({"bulk": {"passing": {"sieve_mm": [1, 2]}}}, "bulk.passing.fraction is missing, allowed is a list of rising"),
+        ({"bulk": {"passing": {"sieve_mm": [1, 2]}}}, "bulk.passing.fraction is missing, allowed is a list of numbers"),
         ({"parts": {"paddle": {"motion": {"kind": None}}}}, "parts.paddle.motion.kind is missing, allowed is one of"),
     ],
 )
