@@ -84,9 +84,10 @@ def remarks(study: Study) -> list[str]:
     """Return what figures must say about model, convention and width."""
     run = calibration_box(study)
     solver = run["solver"]
-    scale = run["particle"]["scale"]
+    scale, shape = run["particle"]["scale"], study.settings["bulk"]["shape"]
     said = [
         *([f"particles at scale {scale:g}"] if scale != 1.0 else []),
+        *([f"clumps of spheres ({shape})"] if shape != SPHERE else []),
         f"rolling friction {solver['rolling_friction']}, coefficients for the {solver['rolling_radius']} radius",
     ]
     for section in run["calibration"]["tests"]:

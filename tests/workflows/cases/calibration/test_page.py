@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
 from bulkwear.workflows.cases.calibration.findings import DISCHARGE, opening_words, sizes_beside_source
+from bulkwear.workflows.cases.calibration.page import remarks
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 from bulkwear.workflows.report import markdown
 from bulkwear.workflows.report.page import write_page
@@ -34,6 +35,13 @@ FIGURES = [
     *("heaps", "response_maps", "calibration_sensitivity", "family"),
     *("pairs_against_bands", "box_sizes", "calibration_progress"),
 ]
+
+
+def test_figures_say_that_grains_are_clumps():
+    """A friction found for pairs is none of round grains."""
+    clumps = study(solver={"rolling_friction": "cdt"}, bulk={"shape": "pair", "material": "river_gravel_published"})
+    assert "clumps of spheres (pair)" in remarks(clumps)
+    assert not any("clumps" in said for said in remarks(study()))
 
 
 def test_published_angles_of_shorter_boxes_stand_beside_ours(tmp_path):

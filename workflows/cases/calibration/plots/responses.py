@@ -34,6 +34,7 @@ from bulkwear.workflows.cases.calibration.responses import BAND, RECOMMENDED, pa
 OURS, OTHERS = BLUE, ORANGE
 MAPS_BESIDE = 2  # maps in a line: of more their numbers are too small to read
 LABEL_FONT = 8.0  # pt, of numbers within maps
+CLEAR_OF_TITLE = 0.9  # of a map's height, above which a mark's number stands below it
 CLEAR_OF_MARKS = (0.10, 0.09)  # of a map's width and height, by which a contour's number keeps away from marks' numbers
 BAND_COLOUR = "#000000"
 FAMILY_COLOURS = ListedColormap(["#0072B2", "#9ecbe6"])
@@ -121,13 +122,14 @@ def _draw_map(
     _hide_numbers_near(numbers, pd.concat(points.values())[pair].to_numpy(), CLEAR_OF_MARKS * (most - least))
     for _, row in points["D"].iterrows():
         place = row[pair].to_numpy(float)
-        right = place[0] > (x.min() + x.max()) / 2.0
+        right, top = place[0] > (x.min() + x.max()) / 2.0, place[1] > least[1] + CLEAR_OF_TITLE * (most - least)[1]
         value = axes.annotate(
             f"{row[name]:.3g}",
             place,
-            (-4 if right else 4, 4),
+            (-4 if right else 4, -4 if top else 4),
             textcoords="offset points",
             ha="right" if right else "left",
+            va="top" if top else "baseline",
             fontsize=LABEL_FONT,
             color=OTHERS,
             bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6},

@@ -104,6 +104,15 @@ def test_progress_shows_the_stopping_rule():
     assert "(bit)" in figure.axes[1].get_xlabel()
 
 
+@pytest.mark.parametrize(("rolling", "below"), [(0.7, True), (0.5, False)])
+def test_a_number_at_the_upper_end_stands_below_its_mark(rolling, below):
+    """Where it would else lie on the title."""
+    published = pd.DataFrame({NAMES[0]: [0.3], NAMES[1]: [rolling], "shear_angle_deg": [35.7]})
+    figure = plots.response_maps(grid(), grid().iloc[[0]], {}, published, NAMES, REMARKS)
+    (number,) = (text for text in figure.axes[0].texts if isinstance(text, Annotation))
+    assert (number.xyann[1] < 0.0) is below and (number.get_va() == "top") is below
+
+
 def test_marks_at_the_ends_of_the_range_are_whole_and_clear_of_numbers():
     """A mark on the border is not cut, one outside the range is not drawn, no contour's number lies on a mark."""
     simulations = grid().iloc[[0, 3, 12]]
