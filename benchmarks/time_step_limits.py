@@ -7,8 +7,9 @@ sample, whose front ends particles strike, with time steps of 0.1 to 0.6 of the 
     python -m benchmarks.time_step_limits --redraw
 
 Runs stay in `--folder`, where a stopped one goes on; `--minutes` of processor time at most are spent. A model is done
-before the next, a packing before the next. Writes into docs: time_step_limits.csv (every run), figure and
-time_step_limits_results.md; `--redraw` makes the last two from the first.
+before the next, a packing before the next. Where a verdict takes many packings, `--models`, `--surfaces`,
+`--fractions` and `--packings` choose the runs. Writes into docs: time_step_limits.csv (every run in the folder), figure
+and time_step_limits_results.md; `--redraw` makes the last two from the first.
 """
 
 from __future__ import annotations
@@ -72,15 +73,20 @@ class Case:
         return f"{self.model}/seed_{self.seed}/{self.surface}_{self.fraction:g}"
 
 
-def cases(models: Sequence[str], packings: int) -> list[Case]:
+def cases(
+    models: Sequence[str],
+    packings: int,
+    surfaces: Sequence[str] = SURFACES,
+    fractions: Sequence[float] = FRACTIONS,
+) -> list[Case]:
     """Return all runs in the order in which they are done; of a packing and surface the longest steps, cheap, first."""
     seeds = range(FIRST_SEED, FIRST_SEED + SEED_SPACING * packings, SEED_SPACING)
     return [
         Case(model, seed, surface, fraction)
         for model in models
         for seed in seeds
-        for surface in SURFACES
-        for fraction in reversed(FRACTIONS)
+        for surface in surfaces
+        for fraction in sorted(fractions, reverse=True)
     ]
 
 
@@ -162,9 +168,10 @@ def simulate(wanted: Sequence[Case], folder: Path, minutes: float) -> Iterator[C
         yield case
 
 
-def table_of(wanted: Sequence[Case], folder: Path) -> pd.DataFrame:
-    """Return the rows of those runs that are done; nothing is simulated."""
-    return pd.DataFrame([row_of(case, folder) for case in wanted if is_done(case, folder)])
+def table_of(folder: Path) -> pd.DataFrame:
+    """Return the rows of all runs in the folder that are done; nothing is simulated."""
+    packings = len({found.name for found in folder.glob("*/seed_*")})
+    return pd.DataFrame([row_of(case, folder) for case in cases(MODELS, packings) if is_done(case, folder)])
 
 
 def forecast(wanted: Sequence[Case], folder: Path) -> str:
@@ -195,13 +202,15 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/time_step_limits"))
     parser.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS), metavar="NAME")
+    parser.add_argument("--surfaces", nargs="+", choices=SURFACES, default=list(SURFACES), metavar="NAME")
+    parser.add_argument("--fractions", nargs="+", type=float, choices=FRACTIONS, default=list(FRACTIONS), metavar="F")
     parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each model, else {PACKINGS}")
     parser.add_argument("--minutes", type=float, default=MINUTES, help="processor time of the solver at most")
     parser.add_argument("--forecast", action="store_true", help="say what is missing, simulate nothing")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take the runs that are done")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     given = parser.parse_args()
-    wanted = cases(given.models, given.packings)
+    wanted = cases(given.models, given.packings, given.surfaces, given.fractions)
     if given.forecast:
         print(forecast(wanted, given.folder))
         return
@@ -209,7 +218,7 @@ def main() -> None:
         if not given.finished:
             for case in simulate(wanted, given.folder, given.minutes):
                 print(f"done: {case.folder}", flush=True)
-        table_of(wanted, given.folder).to_csv(given.output / FILE, index=False, float_format="%.6g")
+        table_of(given.folder).to_csv(given.output / FILE, index=False, float_format="%.6g")
     print(publish(given.output, pd.read_csv(given.output / FILE)), flush=True)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from benchmarks.changes import FAILED, UNDECIDED, WITHIN, changes
+from benchmarks.changes import BEYOND, FAILED, UNDECIDED, WITHIN, changes
 from benchmarks.time_step_and_stiffness import LIMIT, PERCENT
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
@@ -35,14 +35,15 @@ def answers(table: pd.DataFrame) -> Answers:
 
 
 def longest(found: pd.DataFrame) -> float:
-    """Return the longest time step (-) whose change is within the limit with those of all shorter ones, NaN where too
-    few packings ran.
+    """Return the longest time step (-) whose change is shown to be within the limit, where of no shorter one the
+    opposite is shown and none failed; NaN where too few packings ran.
 
     found: of `answers`
     """
     if len(found) < 2 or (found["runs"] + found["failed"]).min() < ENOUGH:
         return math.nan
-    return float(found.loc[(found["verdict"] == WITHIN).cummin(), "value"].iloc[-1])
+    allowed = ~found["verdict"].isin([BEYOND, FAILED]).cummax()
+    return float(found.loc[allowed & (found["verdict"] == WITHIN), "value"].iloc[-1])
 
 
 def limits(found: Answers) -> pd.DataFrame:

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks.changes import WITHIN
+from benchmarks.changes import BEYOND, UNDECIDED, WITHIN
 from benchmarks.rolling_page import MODELS
 from benchmarks.time_step_and_stiffness import CONVEX, FRACTION
 from benchmarks.time_step_limits import (
@@ -20,8 +20,9 @@ from benchmarks.time_step_limits import (
     publish,
     run_of,
     simulate,
+    table_of,
 )
-from benchmarks.time_step_page import ENOUGH, RESPONSES, answers, limits, results_page
+from benchmarks.time_step_page import ENOUGH, RESPONSES, answers, limits, longest, results_page
 from bulkwear.postproc.mesh import PLAIN
 
 NOISE = 1e-3  # -, scatter of made-up runs
@@ -103,6 +104,23 @@ def test_a_run_that_failed_ends_the_limit():
     of = (table["model"] == "epsd2") & (table["surface"] == PLAIN) & (table["rayleigh_fraction"] == 0.4)
     table.loc[table[of].index[0], [*RESPONSES, "processor_s"]] = np.nan
     assert limits(answers(table)).set_index("model").loc["epsd2", "all of them"] == 0.3
+
+
+def test_a_shorter_step_that_is_undecided_ends_no_limit_but_one_beyond_does():
+    """More packings of one time step tell more of that one."""
+    told = pd.DataFrame({"value": FRACTIONS[:4], "runs": ENOUGH, "failed": 0})
+    assert longest(told.assign(verdict=[WITHIN, UNDECIDED, WITHIN, UNDECIDED])) == FRACTIONS[2]
+    assert longest(told.assign(verdict=[WITHIN, BEYOND, WITHIN, WITHIN])) == FRACTIONS[0]
+
+
+def test_the_table_has_every_run_of_the_folder(tmp_path, monkeypatch):
+    """Whatever was asked for last: further packings of one surface and time step stand beside the others."""
+    monkeypatch.setattr("benchmarks.time_step_limits.row_of", lambda case, folder: {"case": case})
+    done = [*cases(MODELS[:1], 1), *cases(MODELS[-1:], 4, [CONVEX], [0.1, 0.4])]
+    for case in done:
+        (tmp_path / case.folder).mkdir(parents=True)
+        (tmp_path / case.folder / FAILED).write_text("it did")
+    assert list(table_of(tmp_path)["case"]) == done
 
 
 def test_a_single_packing_gives_no_verdict(tmp_path):
