@@ -153,7 +153,10 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, nargs="?", default=RESULTS, help="of results, with a folder per study")
-    table = study_rows(parser.parse_args().folder)
+    given = parser.parse_args()
+    if (given.folder / "design.csv").exists():
+        parser.error(f"{given.folder} is one study, allowed is a folder with one folder per study")
+    table = study_rows(given.folder)
     print(markdown(table) if len(table) else "No study with results.")
 
 

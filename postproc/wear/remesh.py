@@ -122,12 +122,14 @@ def _improved(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, old: OldSur
 
 
 def _attempts(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, old: OldSurface, repair: bool, counts):
-    """(mesh, volume worn ahead in m3, faults) after attempts on so many rings each, after repair if wanted."""
+    """(mesh, volume worn ahead in m3, faults) after attempts on so many rings each, after repair if wanted; what repair
+    leaves tangled is not attempted again, as it was before.
+    """
     ahead = 0.0
     if repair:
         mesh, ahead, faults = untangled(mesh, faults, bounds, old)
     for count in counts:
-        if faults.faces.any():
+        if faults.faces.any() and not (repair and faults.tangled.any()):
             mesh, faults = _attempt(mesh, faults, bounds, count, old)
     return mesh, ahead, faults
 

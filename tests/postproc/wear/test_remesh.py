@@ -22,7 +22,7 @@ from bulkwear.postproc.mesh import (
 )
 from bulkwear.postproc.wear.depth import height_loss
 from bulkwear.postproc.wear.mesh_faults import DEFAULT_BOUNDS, TARGET_EDGE, mesh_faults, with_target_edges
-from bulkwear.postproc.wear.remesh import RemeshError, remesh
+from bulkwear.postproc.wear.remesh import RINGS, RemeshError, remesh
 from bulkwear.postproc.wear.remesh_operations import Limits, flip
 from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch
 from bulkwear.postproc.wear.remesh_repair import repair_cost
@@ -231,6 +231,21 @@ def test_hopeless_mesh_is_refused():
     mesh = with_target_edges(SurfaceMesh(points, np.array([[0, 1, 2], [3, 4, 5]])))
     with pytest.raises(RemeshError, match=r"faces 0 and 1 of the worn surface cut one another at \(1, 1, 0\) mm"):
         remesh(mesh)
+
+
+def test_what_repair_leaves_tangled_is_not_attempted_again(monkeypatch):
+    """Every number of rings had its turn before the first repair; each further turn would cost as much again."""
+    points = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0], [1, 1, -1], [1, 1, 2], [5, 5, 2.0]]) * 1e-3
+    mesh, rings = with_target_edges(SurfaceMesh(points, np.array([[0, 1, 2], [3, 4, 5]]))), []
+
+    def attempt(mesh, faults, bounds, count, old):
+        rings.append(count)
+        return mesh, faults
+
+    monkeypatch.setattr("bulkwear.postproc.wear.remesh._attempt", attempt)
+    with pytest.raises(RemeshError):
+        remesh(mesh)
+    assert rings == list(RINGS)
 
 
 def random_sheet(seed, waviness, jitter, pull, share):
