@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
 import pandas as pd
 
 from benchmarks.changes import BEYOND, FAILED, UNDECIDED, WITHIN, changes
@@ -60,6 +61,16 @@ def limits(found: Answers) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
+def costs(table: pd.DataFrame) -> pd.Series:
+    """Return the processor time (-) of each model over that of the first, geometric mean over surfaces and time steps
+    that both have.
+
+    table: as in `answers`
+    """
+    spent = table.groupby(["model", "surface", "rayleigh_fraction"], sort=False)["processor_s"].mean().unstack(0)
+    return np.exp(np.log(spent.div(spent.iloc[:, 0], axis=0)).mean())
+
+
 def said_of(model: str, found: Answers, row: pd.Series) -> str:
     """Return in a sentence how long a time step may be under a model; row: of `limits`."""
     own, limit = [told for key, told in found.items() if key[0] == model], row["all of them"]
@@ -82,6 +93,7 @@ def results_page(table: pd.DataFrame) -> str:
     """Return the page; table: as in `answers`."""
     found = answers(table)
     told, first = limits(found), table.iloc[0]
+    cost = ", ".join(f"`{model}` {ratio:.2f}" for model, ratio in costs(table).items())
     parts = [
         "# How long a time step, by rolling model",
         prose(
@@ -96,6 +108,7 @@ def results_page(table: pd.DataFrame) -> str:
             f" where every time step ran with {ENOUGH} packings at least."
         ),
         markdown(told),
+        prose(f"Processor time of the solver at equal time steps, over `{first['model']}`: {cost}; not run in turn."),
         "![Change of sliding work and impact energy with the time step](time_step_limits.png)",
     ]
     for (model, surface, response), of in found.items():

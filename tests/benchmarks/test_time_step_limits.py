@@ -22,7 +22,7 @@ from benchmarks.time_step_limits import (
     simulate,
     table_of,
 )
-from benchmarks.time_step_page import ENOUGH, RESPONSES, answers, limits, longest, results_page
+from benchmarks.time_step_page import ENOUGH, RESPONSES, answers, costs, limits, longest, results_page
 from bulkwear.postproc.mesh import PLAIN
 
 NOISE = 1e-3  # -, scatter of made-up runs
@@ -97,6 +97,16 @@ def test_a_limit_at_the_shortest_step_is_told_as_none():
     page = " ".join(results_page(table).split())
     assert "`cdt`: that all stays within 2 % is shown of no step longer than 0.1 of the Rayleigh time" in page
     assert f"of {PLAIN}, sliding work up to {max(FRACTIONS):g}" in page and "`epsd2`: within 2 %" in page
+
+
+def test_what_models_cost_is_compared_at_equal_steps():
+    """One with long steps only is no cheaper for that."""
+    table = made_up()
+    table["processor_s"] = 1.0 / table["rayleigh_fraction"]
+    table.loc[table["model"] == "epsd2", "processor_s"] *= 1.25
+    few = table[(table["model"] == "cdt") | (table["rayleigh_fraction"] > 0.4)]
+    assert costs(few).to_dict() == pytest.approx({"cdt": 1.0, "epsd2": 1.25})
+    assert "over `cdt`: `cdt` 1.00, `epsd2` 1.25" in " ".join(results_page(few).split())
 
 
 def test_a_run_that_failed_ends_the_limit():
