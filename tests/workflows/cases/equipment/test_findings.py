@@ -12,7 +12,7 @@ from tests.workflows.cases.equipment.synthetic import SyntheticPart, SyntheticRu
 
 LINER = SyntheticPart("back_liner", (1e-6, 5e-6), error=0.2)
 WHEEL = SyntheticPart("wheel", (4e-6,), power=100.0)
-RUN = SyntheticRun("plain", (LINER,), pristine=8)
+RUN = SyntheticRun("plain", (LINER,), pristine=4)
 
 
 def packings(setting, factors, **given):
@@ -23,21 +23,22 @@ def packings(setting, factors, **given):
     ]
 
 
+TABLES = {
+    "life": life_tables.life_table,
+    "designs": comparison.designs_table,
+    "loads": lambda read, lives: tables.loads_table(read),
+    "flow": lambda read, lives: flow_tables.flow_table(read),
+    "mass_balance": lambda read, lives: flow_tables.mass_balance(read),
+}
+
+
 @pytest.fixture
 def found(tmp_path):
-    """What makes the tables of a synthetic study that sentences are made of."""
+    """What makes one of the tables of a synthetic study that sentences are made of."""
 
-    def made(runs):
+    def made(name, runs):
         read = tables.read_runs(write_study(tmp_path, runs), tmp_path)
-        lives = life.part_lives(read, {})
-        return {
-            "life": life_tables.life_table(read, lives),
-            "designs": comparison.designs_table(read, lives),
-            "loads": tables.loads_table(read),
-            "flow": flow_tables.flow_table(read),
-            "mass_balance": flow_tables.mass_balance(read),
-            "steel": life_tables.steel_table(read, lives),
-        }
+        return TABLES[name](read, life.part_lives(read, {}))
 
     return made
 
@@ -64,7 +65,7 @@ def test_numbers_of_answers(value, said):
 
 def test_answer_on_life(found):
     """Hours with the interval, Mt, years, the place and its rates, and how far the shape was worn."""
-    (said,) = findings.answers_on_life(found(packings("plain", (0.98, 1.0, 1.02)))["life"])
+    (said,) = findings.answers_on_life(found("life", packings("plain", (0.98, 1.0, 1.02))))
     assert said.startswith("The back liner has to be changed after 6,000 h (")
     assert " h, 95 %), 1.1 Mt, 1.0 years; its worst place is at (150, 50, 0) mm of its drawing and loses 5.0 mm" in said
     assert "The shape was worn for 300 h; from there on the last rate goes on." in said
@@ -76,21 +77,21 @@ def test_what_happens_in_one_packing_alone_is_said(found):
     """With its place and its hours, at the end; of alike packings nothing is said."""
     jam = replace(LINER, recession=(2e-5, 5e-6))
     first, *others = packings("plain", (0.98, 1.0, 1.02))
-    (said,) = findings.answers_on_life(found([replace(first, parts=(jam,)), *others])["life"])
+    (said,) = findings.answers_on_life(found("life", [replace(first, parts=(jam,)), *others]))
     place = "In packing 1 alone the place at (50, 50, 0) mm would be changed after 1,500 h"
     assert place in said and said.startswith("The back liner has to be changed after 6,000 h (")
-    (said,) = findings.answers_on_life(found([first, *others])["life"])
+    (said,) = findings.answers_on_life(found("life", [first, *others]))
     assert "alone" not in said
 
 
 def test_one_packing_is_unknown(found):
     """Its scatter is, whatever its own blocks and the coefficient give."""
     few = replace(RUN, pristine=1, updates=1, worn=1)
-    (said,) = findings.answers_on_life(found([few])["life"])
+    (said,) = findings.answers_on_life(found("life", [few]))
     assert f"after 6,000 h ({UNKNOWN}; the coefficient alone gives 5,000 to 7,500 h)" in said
-    (said,) = findings.answers_on_life(found([replace(RUN, scatter=0.05)])["life"])
+    (said,) = findings.answers_on_life(found("life", [replace(RUN, scatter=0.05)]))
     assert f"({UNKNOWN}; its own blocks and the coefficient give " in said
-    (said,) = findings.answers_on_life(found([replace(few, parts=(replace(LINER, error=0.0),))])["life"])
+    (said,) = findings.answers_on_life(found("life", [replace(few, parts=(replace(LINER, error=0.0),))]))
     assert f"after 6,000 h ({UNKNOWN})" in said
 
 
@@ -100,14 +101,14 @@ def test_one_packing_is_unknown(found):
 )
 def test_unknown_life_says_why(found, part, reason):
     """There is a sentence and no number."""
-    table = found([replace(RUN, parts=(part,))])["life"]
+    table = found("life", [replace(RUN, parts=(part,))])
     assert findings.answers_on_life(table) == [f"The back liner: how long it lasts cannot be said, because {reason}."]
     assert findings.cards(table) == []
 
 
 def test_interval_round_what_is_asked_for_says_nothing(found):
     """Where the interval of the life holds the hours that are asked for, neither is said."""
-    (said,) = findings.answers_on_life(found(packings("plain", (0.6, 0.75, 0.9)))["life"])
+    (said,) = findings.answers_on_life(found("life", packings("plain", (0.6, 0.75, 0.9))))
     assert said.endswith("Whether it lasts the 8,000 h that are asked for cannot be said.")
 
 
@@ -122,9 +123,9 @@ def test_interval_round_what_is_asked_for_says_nothing(found):
 )
 def test_a_running_surface_that_wears_is_worn_where_it_stands(found, motion, said):
     """It is said once for all designs, however the life comes out; not of parts that move, and of those at rest."""
-    parts = {"parts": (replace(LINER, motion=motion),)}
-    runs = [*packings("plain", (0.9, 1.1), **parts), *packings("R9", (0.9, 1.1), **parts)]
-    answers = findings.answers_on_life(found(runs)["life"])
+    short = {"parts": (replace(LINER, motion=motion),), "pristine": 1, "updates": 1, "worn": 1}
+    runs = [*packings("plain", (1.0,), **short), *packings("R9", (1.0,), **short)]
+    answers = findings.answers_on_life(found("life", runs))
     sentence = f"The surface of the back liner runs, and is worn where it stands: {findings.RUNNING}."
     assert answers[2:] == ([sentence] if said else [])
 
@@ -135,11 +136,11 @@ def test_a_running_surface_that_wears_is_worn_where_it_stands(found, motion, sai
 def test_clear_difference_is_said(found):
     """Half the rate is twice the life: better, and the interval says so; the first design stands for itself."""
     runs = [*packings("plain", (0.98, 1.0, 1.02)), *packings("R9", (0.49, 0.5, 0.51))]
-    all_found = found(runs)
-    said = findings.answers_on_designs(all_found["designs"])
+    designs = found("designs", runs)
+    said = findings.answers_on_designs(designs)
     assert said[0].startswith("The back liner of R9 lasts 2.00 times as long as that of plain (")
     assert all(each.endswith("that is better, and the interval says so.") for each in said) and len(said) == 2
-    table = all_found["designs"].set_index(["quantity", "setting"])
+    table = designs.set_index(["quantity", "setting"])
     assert table.loc[("life", "plain"), "verdict"] == comparison.FIRST
     assert table.loc[("steel_lost", "R9"), "ratio"] == pytest.approx(0.5)
     assert table.loc[("worst_recession", "plain"), "value"] == pytest.approx(5.0, rel=1e-3)
@@ -148,10 +149,10 @@ def test_clear_difference_is_said(found):
 def test_overlap_and_one_packing_say_nothing(found):
     """Scatter larger than the difference, or unknown, does not tell which is better."""
     wide = findings.answers_on_designs(
-        found([*packings("A", (0.7, 1.0, 1.4)), *packings("B", (0.8, 1.1, 1.5))])["designs"]
+        found("designs", [*packings("A", (0.7, 1.0, 1.4)), *packings("B", (0.8, 1.1, 1.5))])
     )
     assert all(each.endswith("which is better cannot be said.") for each in wide) and wide
-    one = findings.answers_on_designs(found([*packings("A", (1.0,)), *packings("B", (2.0,))])["designs"])
+    one = findings.answers_on_designs(found("designs", [*packings("A", (1.0,)), *packings("B", (2.0,))]))
     assert all(UNKNOWN in each and each.endswith("which is better cannot be said.") for each in one) and one
 
 
@@ -159,7 +160,7 @@ def test_neither_more_nor_less_power_is_better(found):
     """Of power it is told which is larger."""
     parts = {"parts": (WHEEL,)}
     runs = [*packings("A", (0.99, 1.0, 1.01), **parts), *packings("B", (1.98, 2.0, 2.02), **parts)]
-    table = found(runs)["designs"]
+    table = found("designs", runs)
     power = table[(table["quantity"] == "power") & (table["setting"] == "B")].iloc[0]
     assert power["verdict"] == "larger" and power["ratio"] == pytest.approx(2.0)
 
@@ -167,7 +168,7 @@ def test_neither_more_nor_less_power_is_better(found):
 def test_part_that_the_first_design_has_not_is_not_compared(found):
     """It stands in the table with its value."""
     runs = [*packings("A", (1.0, 1.1)), *packings("B", (1.0, 1.1), parts=(LINER, WHEEL))]
-    table = found(runs)["designs"]
+    table = found("designs", runs)
     alone = table[(table["part"] == "wheel") & (table["quantity"] == "life")].iloc[0]
     assert alone["setting"] == "B" and np.isnan(alone["ratio"]) and alone["verdict"] == ""
     assert all("wheel" not in each for each in findings.answers_on_designs(table))
@@ -179,39 +180,39 @@ def test_part_that_the_first_design_has_not_is_not_compared(found):
 def test_change_of_the_worn_shape(found):
     """What every packing has is said with its interval; of one packing it is unknown; none is called none."""
     worn = {"parts": (replace(WHEEL, worn=1.2),)}
-    said = findings.answers_on_worn_shape(found(packings("plain", (0.9, 1.0, 1.1), **worn))["loads"])
+    said = findings.answers_on_worn_shape(found("loads", packings("plain", (0.9, 1.0, 1.1), **worn)))
     assert said[0].startswith("The wheel as worn loses 20 % more steel per hour than as built (change 20 to 20 %")
     assert said[1].startswith("The wheel as worn takes 20 % more power than as built")
-    one = findings.answers_on_worn_shape(found(packings("plain", (1.0,), **worn))["loads"])
+    one = findings.answers_on_worn_shape(found("loads", packings("plain", (1.0,), **worn)))
     assert all(each.endswith(f"({UNKNOWN}).") for each in one)
-    same = findings.answers_on_worn_shape(found(packings("plain", (1.0,), parts=(WHEEL,)))["loads"])
+    same = findings.answers_on_worn_shape(found("loads", packings("plain", (1.0,), parts=(WHEEL,))))
     assert same[0] == "The wheel as worn loses as much steel per hour as built, within 0.1 %."
 
 
 def test_change_that_is_not_shown_is_no_answer(found):
     """It stands in the table of loads alone."""
     runs = packings("plain", (0.9, 1.0, 1.1), parts=(WHEEL,), scatter=0.2)
-    loads = found(runs)["loads"]
+    loads = found("loads", runs)
     loads["change_percent"], loads["change_percent_low"], loads["change_percent_high"] = 5.0, -3.0, 13.0
     assert findings.answers_on_worn_shape(loads) == []
 
 
 def test_answer_on_the_flow(found):
     """Whether it is steady, in how many packings, and its means; of a filled machine what it holds."""
-    said = findings.answers_on_flow(found(packings("plain", (1.0, 1.1)))["flow"])
+    said = findings.answers_on_flow(found("flow", packings("plain", (1.0, 1.1), pristine=8)))
     assert said == [
         "The flow is steady in 2 of 2 packings: 180 t/h come in, 180 t/h go out, 20.0 kg are held, each for 0.40 s."
     ]
-    (said,) = findings.answers_on_flow(found(packings("mill", (1.0,), rate=None, parts=(WHEEL,)))["flow"])
+    (said,) = findings.answers_on_flow(found("flow", packings("mill", (1.0,), rate=None, parts=(WHEEL,), pristine=8)))
     assert said == "The flow is steady: 20.0 kg are held."
-    (said,) = findings.answers_on_flow(found(packings("short", (1.0,), pristine=1))["flow"])
+    (said,) = findings.answers_on_flow(found("flow", packings("short", (1.0,), pristine=1)))
     assert said.startswith("The flow is not known to be steady: ")
 
 
 def test_missing_particles_are_named(found):
     """Each with its cycle and run."""
-    balance = found([RUN])["mass_balance"]
-    assert findings.answer_on_balance(balance).startswith("No particle is missing in any of 14 cycles of the run")
+    balance = found("mass_balance", [RUN])
+    assert findings.answer_on_balance(balance).startswith("No particle is missing in any of 10 cycles of the run")
     balance.loc[3, "missing"] = 2
     assert findings.answer_on_balance(balance) == "Particles are missing: 2 in cycle 3 of plain."
 
