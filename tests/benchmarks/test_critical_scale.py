@@ -21,6 +21,7 @@ from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, 
 from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
 from bulkwear.postproc.statistics.crossing import Crossing
 from bulkwear.workflows.config.design import load_study
+from tests.support.loaded_once import loaded_once
 
 OTHER = "neighbouring rows 40 mm apart"
 TINY = {
@@ -31,6 +32,13 @@ TINY = {
     "solver": {"picture_interval_mm": 10, "wear_interval_mm": 50},
 }
 STUDENT_95_1 = 12.7062  # two-sided 95 % point of Student's t with one degree of freedom; tables
+
+
+@pytest.fixture(scope="module", autouse=True)
+def study_loaded_once():
+    """Every case is a change of one row of one study."""
+    with loaded_once(scale_case):
+        yield
 
 
 def rows(ratios=((REFERENCE, (0.5, 0.5 * np.e)), (OTHER, (1.0,)))):

@@ -10,9 +10,17 @@ from benchmarks import travelling_window
 from benchmarks.ratios import ratio_intervals
 from benchmarks.travelling_window import BLOCK, at_source_size, comparison, publish, run_row
 from benchmarks.window_case import BEDS, FULL, OWN_SEARCH, SOURCE_FRACTION, Case, chain_of, packing, said_beforehand
+from tests.support.loaded_once import loaded_once
 
 WINDOW, COARSE = "window 100 + 50", "window 150 + 200, time step 0.4"
 STUDENT_95_2 = 4.302653  # two-sided 95 % point of Student's t with two degrees of freedom; tables
+
+
+@pytest.fixture(scope="module", autouse=True)
+def studies_loaded_once():
+    """Every comparison asks for the source's settings, and both surfaces of a bed are of one study."""
+    with loaded_once(travelling_window, window):
+        yield
 
 
 def runs(surface="plain", per_bed=((FULL, (1.0, 4.0), 1000.0, 60.0), (WINDOW, (2.0, 8.0), 200.0, 15.0))):

@@ -113,7 +113,7 @@ def mosaic(mesh, values, length):
 
 # ---------------------------------------------------------------- folders of runs
 
-PATCH, TIME_STEP, BLOCK = 0.2, 1e-3, 0.5  # m; s; s
+PATCH, TIME_STEP, BLOCK = 0.3, 1e-3, 0.5  # m; s; s
 REPORTS, PICTURES = 10, 2  # of a block
 RATE, HELD, PARTICLE = 100.0, 50.0, 0.1  # kg/s, kg, kg
 THICKNESS = 0.03  # m, of parts that wear

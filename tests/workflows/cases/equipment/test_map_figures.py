@@ -1,5 +1,6 @@
 """Figures of where parts wear, how long they last and what is left, of machines whose wear is known."""
 
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,12 +21,22 @@ SCATTER = 0.02  # -, a life is the inverse of a geometric mean of loads, the lin
 ROUNDED = 1e-6  # -, relative: numbers of tables are written with nine digits
 
 
+@pytest.fixture(scope="module")
+def studies(tmp_path_factory):
+    """Folder, what jobs are told of the runs, and the tables of studies by name, each made once."""
+
+    @cache
+    def made(name):
+        folder = tmp_path_factory.mktemp(name)
+        runs = getattr(scenes, f"{name}_study")(folder)
+        return folder, runs, scenes.write_tables(folder, runs)
+
+    return made
+
+
 @pytest.fixture(scope="module", params=["chute", "drum"])
-def study(request, tmp_path_factory):
-    """Folder, what jobs are told of the runs, and the tables of a study."""
-    folder = tmp_path_factory.mktemp(request.param)
-    runs = getattr(scenes, f"{request.param}_study")(folder)
-    return folder, runs, scenes.write_tables(folder, runs)
+def study(request, studies):
+    return studies(request.param)
 
 
 @pytest.mark.parametrize("make", FIGURES, ids=lambda make: make.product.name)
@@ -153,10 +164,10 @@ def test_a_bump_does_not_turn_the_section_of_its_plate():
     assert flank[2] < 0.8 and plane.out[2] == pytest.approx(1.0, abs=0.01)
 
 
-def test_a_section_of_a_mill_is_square_to_its_axis(tmp_path):
+def test_a_section_of_a_mill_is_square_to_its_axis(studies):
     """Its outlines reach from lifters to shell: out is to the axis, and the far side lies two radii away."""
-    runs = scenes.drum_study(tmp_path)
-    lines, sections = worst_sections(runs, tmp_path, scenes.write_tables(tmp_path, runs)["worst_places"])
+    folder, runs, tables = studies("drum")
+    lines, sections = worst_sections(runs, folder, tables["worst_places"])
     assert sections["turns"].all()
     places = lines.loc[lines["operation_h"] == 0.0, ["along_1_mm", "out_1_mm"]].to_numpy()
     radius = 1e3 * np.hypot(*(sections[["x_mm", "z_mm"]].to_numpy()[0] / 1e3))
