@@ -130,10 +130,9 @@ walls:
 """
 
 
-@pytest.fixture
-def config(tmp_path: Path) -> ConfigCopy:
-    """A complete small configuration of its own, so that tests do not follow the shipped settings."""
-    copy = ConfigCopy(tmp_path)
+def _small_config(root: Path) -> ConfigCopy:
+    """Write a complete small configuration of its own, so that tests do not follow the shipped settings."""
+    copy = ConfigCopy(root)
     for folder in ("cases", "studies", "designs"):
         copy.path(folder).mkdir(parents=True)
     for name, text in (
@@ -145,6 +144,18 @@ def config(tmp_path: Path) -> ConfigCopy:
     ):
         copy.write(name, text)
     return copy
+
+
+@pytest.fixture
+def config(tmp_path: Path) -> ConfigCopy:
+    """A small configuration that the test may spoil."""
+    return _small_config(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def config_of_file(tmp_path_factory) -> ConfigCopy:
+    """A small configuration that all tests of a file share, and none spoils."""
+    return _small_config(tmp_path_factory.mktemp("config"))
 
 
 @pytest.fixture(scope="session")

@@ -29,16 +29,16 @@ from tests.support.finished_samples import (
 RELATIVE = 1e-9  # numbers pass through CSV text
 
 
-@pytest.fixture
-def study(config):
+@pytest.fixture(scope="module")
+def study(config_of_file):
     """A study of two design rows, each convex and plain."""
-    return load_study("small", config.project)
+    return load_study("small", config_of_file.project)
 
 
-@pytest.fixture
-def page(study, tmp_path):
+@pytest.fixture(scope="module")
+def page(study, tmp_path_factory):
     """The text of its page."""
-    return finished_page(tmp_path / "results" / study.name, study)
+    return finished_page(tmp_path_factory.mktemp("page") / "results" / study.name, study)
 
 
 def test_each_figure_stands_once_with_its_number(page, study):

@@ -69,6 +69,12 @@ def table(mill):
     return lifters_table(mill[1], mill[0])
 
 
+@pytest.fixture(scope="module")
+def table_of_one(mill):
+    """The table of the first packing alone."""
+    return lifters_table(mill[1][:1], mill[0])
+
+
 def test_the_chart_shows_heights_and_faces(table):
     """Against hours, each with its interval over packings."""
     found = drawn_chart(lifter_figures.lifter_profiles.product, table)
@@ -96,9 +102,8 @@ def test_loss_is_taken_packing_by_packing(table):
     np.testing.assert_allclose(table[LOSS].iloc[1:], np.mean(each), rtol=0.01)
 
 
-def test_one_packing_has_no_interval(mill):
-    table = lifters_table(mill[1][:1], mill[0])
-    assert table["height_mm"].notna().all() and table["height_mm_low"].isna().all()
+def test_one_packing_has_no_interval(table_of_one):
+    assert table_of_one["height_mm"].notna().all() and table_of_one["height_mm_low"].isna().all()
 
 
 def test_lifters_that_differ(tmp_path):
@@ -152,9 +157,9 @@ def test_figure_is_readable(table, tmp_path, found):
         np.testing.assert_allclose(np.asarray(line, float), table[name].to_numpy(float))
 
 
-def test_the_job_makes_the_table(mill, table):
+def test_the_job_makes_the_table(mill, table_of_one):
     """From the files that runs leave."""
-    folder, runs = mill
+    folder, runs = mill[0], mill[1][:1]
     made = lifter_figures.lifters(job_of({"wear": [str(folder / runs[0]["run"] / "wear.csv")]}, {"runs": runs}, []))
     assert set(made) == set(LIFTERS)
-    pd.testing.assert_frame_equal(made["lifters"], table)
+    pd.testing.assert_frame_equal(made["lifters"], table_of_one)

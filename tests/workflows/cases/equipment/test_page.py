@@ -2,6 +2,7 @@
 
 import html
 import json
+import shutil
 from contextlib import contextmanager
 
 import pandas as pd
@@ -59,7 +60,7 @@ def run_of(study, run, **given):
     factor = (rate or 1.0) * (1.0 + 0.02 * packing)
     worn = {part["name"] for part in run.parameters["parts"] if part["wears"]}
     parts = [part if part.name in worn else SyntheticPart(part.name, force=10.0) for part in PARTS]
-    held = {"rate": rate, "held": 0.2, "pristine": 8, **given}
+    held = {"rate": rate, "held": 0.2, "pristine": 4, **given}
     return SyntheticRun(run.name, parts, study.setting_of[run.row], packing, factor=factor, duration=0.15, **held)
 
 
@@ -81,25 +82,46 @@ def write_charge(study, folder):
     charge.to_csv(folder / "figures" / "charge_shape.csv", index=False)
 
 
-@contextmanager
-def finished(root, monkeypatch, rows=ROWS, given=None, chosen=(), **changes):
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Folders of results by what they are of, each made once; tests get copies."""
+    return {}, tmp_path_factory.mktemp("results")
+
+
+@pytest.fixture
+def finished(tmp_path, monkeypatch, results):
     """A study with all tables, made of synthetic runs; given: of those runs; chosen: rows, all without."""
-    with machine_study(root, rows, **changes) as whole:
-        study = load_study(whole.name, overrides={"rows": list(chosen)}) if chosen else whole
-        monkeypatch.chdir(root)
-        (root / "config/published").mkdir(exist_ok=True)
-        (root / "config/published/equipment_anchors.csv").write_text(ANCHORS)
-        folder = root / "results" / study.name
-        write_study(folder, [run_of(study, run, **(given or {})) for run in study.runs])
-        pd.DataFrame(study.design_table()).to_csv(folder / "design.csv", index=False)
-        wear = [folder / run.name / "wear.csv" for run in study.runs]
-        study.case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
-        make(study, folder, "equipment_tables")
-        if "charge_shape" in products_of_study(study):
-            write_charge(study, folder)
-            make(study, folder, "lifters")
-        make(study, folder, "beside_published")
-        yield study, folder
+
+    @contextmanager
+    def made(rows=ROWS, given=None, chosen=(), **changes):
+        root = tmp_path / "".join(chosen)
+        with machine_study(root, rows, **changes) as whole:
+            study = load_study(whole.name, overrides={"rows": list(chosen)}) if chosen else whole
+            monkeypatch.chdir(root)
+            (root / "config/published").mkdir(exist_ok=True)
+            (root / "config/published/equipment_anchors.csv").write_text(ANCHORS)
+            kept, folder = results
+            name = kept.setdefault(repr((rows, given, chosen, changes)), str(len(kept)))
+            if not (folder / name).exists():
+                write_tables(study, root / "results" / study.name, given or {})
+                shutil.copytree(root / "results", folder / name)
+            shutil.copytree(folder / name, root / "results", dirs_exist_ok=True)
+            yield study, root / "results" / study.name
+
+    return made
+
+
+def write_tables(study, folder, given):
+    """Write the folders of all runs and the tables of a study."""
+    write_study(folder, [run_of(study, run, **given) for run in study.runs])
+    pd.DataFrame(study.design_table()).to_csv(folder / "design.csv", index=False)
+    wear = [folder / run.name / "wear.csv" for run in study.runs]
+    study.case.summary(folder / "design.csv", wear, [], []).to_csv(folder / "summary.csv", index=False)
+    make(study, folder, "equipment_tables")
+    if "charge_shape" in products_of_study(study):
+        write_charge(study, folder)
+        make(study, folder, "lifters")
+    make(study, folder, "beside_published")
 
 
 def sections_of(study, folder):
@@ -108,9 +130,9 @@ def sections_of(study, folder):
     return {each.title: "\n".join(written(block, study.name) for block in each.blocks) for each in found}
 
 
-def test_sections_and_answers(tmp_path, monkeypatch):
+def test_sections_and_answers(finished):
     """The verdict says when each part of each design is changed; the answers of the command line are the same."""
-    with finished(tmp_path, monkeypatch, packings=2) as (study, folder):
+    with finished(packings=2) as (study, folder):
         found = page.sections(page_parameters(study), folder)
         assert [each.title for each in found] == [*SECTIONS, "Beside published values"]
         points = next(block for block in verdict(page_parameters(study), folder).blocks if isinstance(block, Points))
@@ -134,26 +156,26 @@ def test_every_figure_has_a_section(tmp_path):
     assert len(named) == len(set(named)) and figures <= set(named)
 
 
-def test_one_design_and_one_packing(tmp_path, monkeypatch):
+def test_one_design_and_one_packing(finished):
     """Nothing is compared, no design is named, and the scatter is unknown."""
-    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+    with finished(rows="row\nA\n") as (study, folder):
         found = sections_of(study, folder)
     assert "Designs side by side" not in found
     first = found["Verdict"]
     assert "The liner has to be changed after" in first and UNKNOWN in first and "Design A" not in first
 
 
-def test_choice_of_rows(tmp_path, monkeypatch):
+def test_choice_of_rows(finished):
     """A choice of rows has its page as the whole design has."""
-    with finished(tmp_path, monkeypatch, packings=2, chosen=["fast"]) as (study, folder):
+    with finished(packings=2, chosen=["fast"]) as (study, folder):
         assert {run.row for run in study.runs} == {"fast", "fast-2"}
         found = sections_of(study, folder)
     assert set(found) == {"Verdict", *SECTIONS, "Beside published values"} - {"Designs side by side"}
 
 
-def test_machine_without_feed(tmp_path, monkeypatch):
+def test_machine_without_feed(finished):
     """A filled one has no t/h and no Mt; its flow is what it holds."""
-    with finished(tmp_path, monkeypatch, rows="row\nA\n", **MILL) as (study, folder):
+    with finished(rows="row\nA\n", **MILL) as (study, folder):
         found = sections_of(study, folder)
         told = page.run_columns(next(iter(page_parameters(study)["parameters"].values())))
         numbers = pd.read_csv(folder / "equipment/key_numbers.csv").set_index("quantity")["value"]
@@ -162,9 +184,9 @@ def test_machine_without_feed(tmp_path, monkeypatch):
     assert numbers["load_angle_pristine"] == 35.0
 
 
-def test_lifters_of_a_mill(tmp_path, monkeypatch):
+def test_lifters_of_a_mill(finished):
     """Their table stands after the worn shape; parts that turn without lifters have no rows, and the page no table."""
-    with finished(tmp_path, monkeypatch, rows="row\nA\n", **MILL) as (study, folder):
+    with finished(rows="row\nA\n", **MILL) as (study, folder):
         none = pd.read_csv(folder / "equipment/lifters.csv")
         assert none.empty and "leading face" not in sections_of(study, folder).get("Lifters", "")
         rows = {"setting": "A", "part": "paddle", "operation_h": [0.0, 300.0], "packings": 1, "lifters": 8}
@@ -179,18 +201,18 @@ def test_lifters_of_a_mill(tmp_path, monkeypatch):
     assert numbers["lifter_height_paddle_pristine"] == 65.25 and numbers["lifter_height_paddle_worn"] == 51.5
 
 
-def test_shape_as_built_alone(tmp_path, monkeypatch):
+def test_shape_as_built_alone(finished):
     """Without updates nothing is told of a worn shape, and lives are by the rate as built."""
     given = {"updates": 0, "worn": 0}
-    with finished(tmp_path, monkeypatch, "row\nA\n", given, updates={"most": 0, "worn_blocks": 0}) as (study, folder):
+    with finished("row\nA\n", given, updates={"most": 0, "worn_blocks": 0}) as (study, folder):
         found = sections_of(study, folder)
     assert "The shape was kept as built" in found["The worn shape"]
     assert "That is by the rate as built" in found["Verdict"]
 
 
-def test_beside_published_values(tmp_path, monkeypatch):
+def test_beside_published_values(finished, tmp_path):
     """Rows of the study alone, with the difference; a study without any has no such section."""
-    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+    with finished(rows="row\nA\n") as (study, folder):
         said = sections_of(study, folder)["Beside published values"]
         assert "of another ore" in said and "worn by finer grains" in said
         table = pd.read_csv(folder / "equipment/anchors.csv")
@@ -202,9 +224,9 @@ def test_beside_published_values(tmp_path, monkeypatch):
         assert "Beside published values" not in sections_of(study, folder)
 
 
-def test_what_is_simplified_has_the_numbers_of_the_study(tmp_path, monkeypatch):
+def test_what_is_simplified_has_the_numbers_of_the_study(finished):
     """Sizes, scale, errors and patches; the words on wear have the coefficients of the parts."""
-    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+    with finished(rows="row\nA\n") as (study, folder):
         said = dict(simplifications(page_parameters(study), pd.read_csv(folder / "summary.csv"), page))
     assert said["Coarse-grained particles"].startswith("Spheres of 9.6 to 14.4 mm, 4 times the real ones")
     assert "20 to 30 %" in said["Wear coefficient"] and "60 mm" in said["Patches"]
@@ -241,9 +263,9 @@ def test_sentences_end_once(tmp_path):
     assert len(texts) == 1 and texts[0].endswith(" mm.") and ".." not in texts[0]
 
 
-def test_whole_page(tmp_path, monkeypatch):
+def test_whole_page(finished):
     """The page is written with every section and what is told of the runs."""
-    with finished(tmp_path, monkeypatch, packings=2) as (study, folder):
+    with finished(packings=2) as (study, folder):
         told = page_parameters(study) | {"figures": {}}
         (folder / "logs").mkdir()
         for job in told["jobs"]:
@@ -269,9 +291,9 @@ def test_numbers_for_people():
     assert found["x_mm"].tolist() == [0.0, 3.0] and found["value"].tolist() == [6.3e-13, 1.0]
 
 
-def test_nothing_is_said_twice(tmp_path, monkeypatch):
+def test_nothing_is_said_twice(finished):
     """A sentence of the answers stands in no other section."""
-    with finished(tmp_path, monkeypatch, packings=2) as (study, folder):
+    with finished(packings=2) as (study, folder):
         found = page.sections(page_parameters(study), folder)
     texts = [item for each in found for block in each.blocks for item in getattr(block, "items", ())]
     assert len(texts) == len(set(texts))
@@ -289,22 +311,22 @@ def test_equal_parts_of_designs_stand_once(tmp_path):
         assert "setting" not in parts_table({run.name: run.parameters for run in study.runs})
 
 
-def test_choices_of_designs_with_other_parts_that_wear(tmp_path, monkeypatch):
+def test_choices_of_designs_with_other_parts_that_wear(finished):
     """A part that wears in the second design alone: any choice of rows has its page, and only what both have is
     compared.
     """
-    rows = "row,parts.plate.role,packings\nA,rigid,2\nB,,2\n"
+    rows = "row,parts.plate.role\nA,rigid\nB,\n"
     for chosen in (["A"], ["B"], ["A", "B"]):
-        with finished(tmp_path / "".join(chosen), monkeypatch, rows=rows, chosen=chosen) as (study, folder):
+        with finished(rows=rows, chosen=chosen) as (study, folder):
             found = sections_of(study, folder)
             said = found["When what has to be changed"]
             assert ("the plate is changed" in said) == ("B" in chosen) and "the liner is changed" in said
             assert ("Designs side by side" in found) == (len(chosen) == 2)
 
 
-def test_pictures_stand_in_their_sections(tmp_path, monkeypatch):
+def test_pictures_stand_in_their_sections(finished):
     """The map of wear stands with the worst places, sections through them with the worn shape."""
-    with finished(tmp_path, monkeypatch, rows="row\nA\n") as (study, folder):
+    with finished(rows="row\nA\n") as (study, folder):
         found = page.sections(page_parameters(study), folder)
     names = {each.title: block.names for each in found for block in each.blocks if isinstance(block, Pictures)}
     assert "wear_map" in names["Where it wears"] and "profile_sections" in names["The worn shape"]

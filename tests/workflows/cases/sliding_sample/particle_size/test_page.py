@@ -20,7 +20,7 @@ SCATTER = {1: 1.0, 2: 1.02, 3: 1.0 / 1.02}  # -, of packings, geometric mean 1
 LAYERS = {"S4": 4.3, "S6": 2.9, "S8": 2.2}  # 46 mm over 2.65 mm times the scale
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def study():
     return load_study("particle_size", overrides={"rows": list(LAYERS)})
 
@@ -77,20 +77,20 @@ def write_tables(folder, study, table):
     pd.DataFrame(collisions).to_csv(folder / "particle_size" / "collisions.csv", index=False)
 
 
-@pytest.fixture
-def folder(study, tmp_path):
+@pytest.fixture(scope="module")
+def folder(study, tmp_path_factory):
     """A folder with what the pages read."""
-    table = summary(study)
-    table.to_csv(tmp_path / "summary.csv", index=False)
-    write_tables(tmp_path, study, table)
-    (tmp_path / "packings").mkdir()
+    table, folder = summary(study), tmp_path_factory.mktemp("results")
+    table.to_csv(folder / "summary.csv", index=False)
+    write_tables(folder, study, table)
+    (folder / "packings").mkdir()
     cost = {"solver_s": [40.0, 20.0], "processor_s": [36.0, 18.0], "steps": [5000, 4000], "particles": [300, 200]}
-    pd.DataFrame(cost).to_csv(tmp_path / "packings" / "solver_cost.csv", index=False)
-    leave_runs(study, tmp_path, "packing_profiles")
-    return tmp_path
+    pd.DataFrame(cost).to_csv(folder / "packings" / "solver_cost.csv", index=False)
+    leave_runs(study, folder, "packing_profiles")
+    return folder
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def page(study):
     """What the page is told of the study."""
     return {**page_parameters(study), "told": told(study)}
