@@ -1,13 +1,17 @@
 """A worn sample of known wear, and what a scanner would see of it: noise, a hole, outliers, axes of its own."""
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from bulkwear.meshes.pattern import ConvexPattern
 from bulkwear.meshes.sample import sliding_sample
 from bulkwear.postproc.mesh import SurfaceMesh
+from bulkwear.postproc.scans import registration
 from bulkwear.postproc.scans.start import RigidMotion, points_on
 
 SIDE, ELEMENT, HEIGHT = 0.06, 1.5e-3, 3e-3  # m
@@ -57,3 +61,19 @@ def scan_of(mesh, motion, count=60_000, noise=NOISE, outliers=OUTLIERS, hole=Tru
 def leading_edge(motion):
     """A scanned place near the middle of the edge that meets the bed, not exactly there."""
     return motion(np.array([[2e-3, -SIDE / 2 + 1e-3, HEIGHT]]))[0]
+
+
+@contextmanager
+def rough_positions_once() -> Iterator[None]:
+    """Look for rough positions, most of the work of a registration, once per scan and surface."""
+    look, found = registration.rough_positions, {}
+
+    def remembered(scan, mesh):
+        key = scan.tobytes(), mesh.points.tobytes()
+        if key not in found:
+            found[key] = look(scan, mesh)
+        return found[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(registration, "rough_positions", remembered)
+        yield

@@ -16,18 +16,9 @@ ROUNDING = 1e-12
 
 
 @pytest.fixture(scope="module", autouse=True)
-def rough_positions_once():
-    """Rough positions, most of the work, are looked for once per scan and surface: two tests register some again."""
-    look, found = registration.rough_positions, {}
-
-    def remembered(scan, mesh):
-        key = scan.tobytes(), mesh.points.tobytes()
-        if key not in found:
-            found[key] = look(scan, mesh)
-        return found[key]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(registration, "rough_positions", remembered)
+def registered_again():
+    """Two tests register a scan that was registered before."""
+    with sample.rough_positions_once():
         yield
 
 

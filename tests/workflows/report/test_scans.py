@@ -15,6 +15,13 @@ POSITION = 20e-6  # m
 BOX = ["--box", "-2000", "2000", "-2000", "2000", "-2000", "2000"]  # mm, all of the scan
 
 
+@pytest.fixture(scope="module", autouse=True)
+def registered_again():
+    """The same scan is registered with and without its leading edge."""
+    with sample.rough_positions_once():
+        yield
+
+
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     """Folder with pristine.vtu, worn.vtu and scan.xyz in mm; the motion of the scan is 4."""

@@ -11,6 +11,7 @@ from bulkwear.postproc.mesh import SurfaceMesh, centroids, read_surface, unit_no
 from bulkwear.postproc.tables.display import few_digits
 from bulkwear.workflows.cases.equipment import map_figures, pictures, remaining
 from bulkwear.workflows.cases.equipment.life_tables import BEYOND, SIMULATED
+from bulkwear.workflows.cases.equipment.plots import views
 from bulkwear.workflows.cases.equipment.sections import COLUMNS, _plane, worst_sections
 from bulkwear.workflows.config.schema import case_schema
 from tests.support.charts import drawn_chart, names, values
@@ -19,6 +20,14 @@ from tests.workflows.cases.equipment import scenes
 FIGURES = [each for each in vars(map_figures).values() if hasattr(each, "product")]
 SCATTER = 0.02  # -, a life is the inverse of a geometric mean of loads, the line an arithmetic mean of depths
 ROUNDED = 1e-6  # -, relative: numbers of tables are written with nine digits
+
+
+@pytest.fixture(scope="module", autouse=True)
+def small_pictures():
+    """Figures place pictures by their shape; with how many pixels does not matter here."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(views, "LONGEST", 250)
+        yield
 
 
 @pytest.fixture(scope="module")
