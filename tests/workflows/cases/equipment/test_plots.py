@@ -22,6 +22,12 @@ PIXELS = 0.03  # -, of an area seen in a few thousand pixels
 SHADE = 0.02  # -, of a colour: light falls square on the face
 
 
+@pytest.fixture(autouse=True)
+def small_pictures(monkeypatch):
+    """Figures place pictures by their shape; with how many pixels does not matter here."""
+    monkeypatch.setattr(views, "LONGEST", 250)
+
+
 def facing(mesh, normal):
     """Weight 1 of the faces that look along a normal."""
     return (unit_normals(mesh.points, mesh.triangles) @ np.array(normal) > 0.9).astype(float)
