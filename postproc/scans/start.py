@@ -48,7 +48,9 @@ def rough_positions(scan: np.ndarray, mesh: SurfaceMesh, seed: int = 0) -> list[
     trial, step = (scan[generator.permutation(len(scan))[:count]] for count in (TRIAL_POINTS, STEP_POINTS))
     starts = _starts(scan, points, extent, generator)
     far = FAR * extent
-    misfits = np.array([_misfit(_nearest(tree, start(trial), far)[0]) for start in starts])
+    turned = (starts[first : first + SHIFTS**2] for first in range(0, len(starts), SHIFTS**2))
+    placed = (np.stack([start(trial) for start in alike]) for alike in turned)
+    misfits = np.concatenate([_misfit(_nearest(tree, each, far)[0]) for each in placed])
     moved = [_closer(starts[place], step, tree, normals, far) for place in np.argsort(misfits)[:MOVED]]
     moved.sort(key=lambda each: each[0])
     different: list[tuple[float, RigidMotion]] = []
@@ -111,17 +113,19 @@ def _starts(scan: np.ndarray, points: np.ndarray, extent: float, generator: np.r
 
 
 def _nearer(distance: np.ndarray) -> np.ndarray:
-    """Mask of the points that count."""
-    return distance <= np.quantile(distance, NEARER)
+    """Mask (..., k) of the points that count."""
+    return distance <= np.quantile(distance, NEARER, axis=-1, keepdims=True)
 
 
-def _misfit(distance: np.ndarray) -> float:
-    """Root mean square (m) of the nearer part of distances (k,) m."""
-    return float(np.sqrt(np.mean(distance[_nearer(distance)] ** 2)))
+def _misfit(distance: np.ndarray) -> np.ndarray:
+    """Root mean square (...,) m of the nearer part of distances (..., k) m."""
+    return np.sqrt(np.mean(distance**2, axis=-1, where=_nearer(distance)))
 
 
 def _nearest(tree: cKDTree, placed: np.ndarray, far: float) -> tuple[np.ndarray, np.ndarray]:
-    """Distance (k,) m, at most `far` (m), and number (k,) of the nearest point of the tree; 0 where all are far."""
+    """Distance (..., k) m of points (..., k, 3) m, at most `far` (m), and number (..., k) of the nearest point of the
+    tree; 0 where all are far.
+    """
     distance, nearest = tree.query(placed, distance_upper_bound=far)
     return np.minimum(distance, far), np.where(nearest < tree.n, nearest, 0)
 
