@@ -31,6 +31,7 @@ LONGEST_FIRST = (  # measured on two cores: half a minute to minutes each, most 
     "test_equipment_motion.py",
     "engine/test_contact_model.py",
     "test_chains.py",
+    "forecast/test_forecast.py",
 )
 FIRST = (*COMPILE, *LONGEST_FIRST)
 TOGETHER = (  # folders with a fixture of their own that takes seconds
