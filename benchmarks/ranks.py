@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
-from benchmarks.ledger_overhead import PARTICLE_SCALE, QUICK_PARTICLE_SCALE, Variant, seconds, variants
+from benchmarks.ledger_overhead import PARTICLE_SCALE, QUICK_PARTICLE_SCALE, seconds, variants
 from benchmarks.measure import Measure, in_turn, measured
 from benchmarks.runs import cycle_deck, particles_of, prepared_chain
 from bulkwear.workflows.engine.chain import Chain
@@ -26,7 +25,7 @@ GRIDS = {ONE: "1 1 1", ACROSS: "2 1 1", ALONG: "1 2 1", WIDER: "2 1 1"}
 def measures(folder: Path, quick: bool) -> list[Measure]:
     """Return the wall time of the time steps on each grid, and of two ranks the efficiency as their ratio."""
     scale, steps = (QUICK_PARTICLE_SCALE, QUICK_STEPS) if quick else (PARTICLE_SCALE, STEPS)
-    chain, wider = prepared_chain(folder, scale), prepared_chain(folder / "wider", scale, wider=2)
+    chain, wider = (prepared_chain(folder, scale, wider) for wider in (1, 2))
     found = in_turn(
         {name: way(wider if name == WIDER else chain, name, steps) for name in GRIDS},
         QUICK_ROUNDS if quick else ROUNDS,
@@ -46,6 +45,6 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
 def way(chain: Chain, name: str, steps: int) -> Callable[[], float]:
     """Return what runs so many time steps of a chain on a grid of `GRIDS`, and gives their wall time (s)."""
     deck = variants(chain, steps)["solver"]
-    variant: Variant = replace(deck, deck=PROCESSORS.sub(f"processors {GRIDS[name]}", deck.deck))
     cycle, _, _ = cycle_deck(chain, "ranks")
-    return lambda: seconds(cycle, variant, ranks=1 if name == ONE else 2)[0]
+    on_grid = PROCESSORS.sub(f"processors {GRIDS[name]}", deck)
+    return lambda: seconds(cycle, on_grid, ranks=1 if name == ONE else 2)[0]

@@ -59,11 +59,12 @@ def simulated_run(chain: Chain, bed_name: str) -> Chain:
 def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain:
     """Return the chain of the case; fills its bed and runs it in unless that was done in this folder before.
 
-    wider: as many times as wide are bed and sample, and so many ranks prepare them
+    wider: as many times as wide are bed and sample, and so many ranks prepare them. Each case has a folder of its own.
     """
     study = case_study(particle_scale, wider)
     parameters, bed_name = study.run(RUN).parameters, study.bed_of(RUN)
-    bed_folder, surface = folder / "bed", folder / RUN / "surface.vtu"
+    place = folder / f"particle_scale_{particle_scale:g}_width_{wider}"
+    bed_folder, surface = place / "bed", place / RUN / "surface.vtu"
     if not (bed_folder / "bed.restart").exists():
         fill_bed(study.case, bed_name, study.beds[bed_name], bed_folder, ranks=wider)
     if not surface.exists():

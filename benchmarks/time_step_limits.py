@@ -186,8 +186,11 @@ def publish(output: Path, table: pd.DataFrame) -> str:
     """Write figure and page of the runs; return the page. table: as from `table_of`."""
     page = results_page(table)
     (output / PAGE).write_text(page, encoding="utf-8")
-    packings = table.groupby("model")["seed"].nunique()
-    counted = ", ".join(f"{model} {number}" for model, number in packings.items())
+    packings = table.groupby(["model", "surface", "rayleigh_fraction"], sort=False)["seed"].nunique()
+    ranges = packings.groupby("model", sort=False).agg(["min", "max"])
+    counted = ", ".join(
+        f"{model} {least}" + (f" to {most}" if most > least else "") for model, least, most in ranges.itertuples()
+    )
     remarks = [
         f"against the shortest time step; packings: {counted}; bars: 95 % intervals; grey: up to {PERCENT * LIMIT:g} %",
         f"made by benchmarks/time_step_limits.py, {date.today():%Y-%m-%d}",

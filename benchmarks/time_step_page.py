@@ -84,7 +84,7 @@ def said_of(model: str, found: Answers, row: pd.Series) -> str:
     widest = max(((told["change_high"] - told["change_low"]) / 2.0).max() for told in own)
     return (
         f"`{model}`: that all stays within {PERCENT * LIMIT:g} % is shown of no step longer than {shortest:g} of the"
-        f" Rayleigh time; {shown}. Intervals reach {PERCENT * widest:.1g} % to either side: what is undecided takes"
+        f" Rayleigh time; {shown}. Intervals reach {PERCENT * widest:.0f} % to either side: what is undecided takes"
         " more packings"
     )
 

@@ -19,7 +19,7 @@ def decks():
     study, run = tiny_study(), "R9_convex"
     bed = study.beds[study.bed_of(run)]
     chain = Chain(run, Path(run), study.case, study.run(run).parameters, Path("surface.vtu"), bed, Path("bed.restart"))
-    return {name: variant.deck for name, variant in variants(chain, STEPS).items()}
+    return variants(chain, STEPS)
 
 
 def lines(deck: str) -> set[str]:
