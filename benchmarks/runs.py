@@ -16,7 +16,7 @@ from bulkwear.workflows.config.patterns import sample_surface
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
 from bulkwear.workflows.engine.cycles import fill_bed, run_chain, run_cycle
-from bulkwear.workflows.engine.inputs import inputs_digest
+from bulkwear.workflows.engine.inputs import bed_digest, inputs_digest, run_digest, surface_from
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.schedule import first_span
 from bulkwear.workflows.engine.solver import LOG
@@ -25,6 +25,7 @@ STUDY, RUN, TESTER = "demo", "R5_convex", "circular_tester"
 SMALL_BUMPS = {"rows": ["R9"]}  # a pattern for samples smaller than the demo's
 STRAIGHT_RAMP = {"height_above_floor_mm": 0.1, "skirt_radius_mm": 0}  # of a sample that is no faster than 1 m/s
 PUBLISHED_PAIR = "river_gravel_published"  # of all rolling models alike; the recommended one is of own_spin alone
+DIGITS = 12  # of a hash, in the name of a folder
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
 
 
@@ -59,12 +60,12 @@ def simulated_run(chain: Chain, bed_name: str) -> Chain:
 def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain:
     """Return the chain of the case; fills its bed and runs it in unless that was done in this folder before.
 
-    wider: as many times as wide are bed and sample, and so many ranks prepare them. Each case has a folder of its own.
+    wider: as many times as wide are bed and sample, and so many ranks prepare them
     """
     study = case_study(particle_scale, wider)
     parameters, bed_name = study.run(RUN).parameters, study.bed_of(RUN)
-    place = folder / f"particle_scale_{particle_scale:g}_width_{wider}"
-    bed_folder, surface = place / "bed", place / RUN / "surface.vtu"
+    place, bed_folder = own_folders(folder, study, RUN)
+    surface = place / RUN / "surface.vtu"
     if not (bed_folder / "bed.restart").exists():
         fill_bed(study.case, bed_name, study.beds[bed_name], bed_folder, ranks=wider)
     if not surface.exists():
@@ -82,16 +83,28 @@ def prepared_tester(folder: Path, particle_scale: float, surface: str = PLAIN) -
     """Return the chain of a plain or convex sample in the circular tester's channel, filled and run in."""
     study = load_study(TESTER, overrides={"fidelity": "quick", "particle_scale": particle_scale})
     run = study.run(surface)
-    file, bed = folder / run.name / "surface.vtu", study.bed_of(run.name)
+    place, bed_folder = own_folders(folder, study, run.name)
+    file, bed = place / run.name / "surface.vtu", study.bed_of(run.name)
     if not file.exists():
         file.parent.mkdir(parents=True, exist_ok=True)
         write_surface(file, study.case.surface_mesh(run.parameters))
-    restart = folder / "bed" / "bed.restart"
+    restart = bed_folder / "bed.restart"
     chain = Chain(run.name, file.parent, study.case, run.parameters, file, study.beds[bed], restart)
     with_bed(chain, bed)
     if not (state.cycle_folder(chain.folder, 0) / RESTART).exists():
         run_cycle(chain, None, inputs_digest(chain), Progress(run.name, run_in_steps(chain)))
     return chain
+
+
+def own_folders(folder: Path, study: Study, run: str) -> tuple[Path, Path]:
+    """Return the folders of a run that is prepared and of its bed, others wherever anything else would be simulated."""
+    parameters, bed = study.run(run).parameters, study.beds[study.bed_of(run)]
+    found = {
+        "bed": bed_digest(study.case, bed),
+        "surface": surface_from(study.case, parameters),
+        "run": run_digest(study.case, parameters, bed),
+    }
+    return folder / state.digest(found)[:DIGITS], folder / found["bed"][:DIGITS]
 
 
 def case_study(particle_scale: float, wider: int = 1) -> Study:

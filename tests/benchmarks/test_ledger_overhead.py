@@ -6,7 +6,7 @@ import pytest
 
 from benchmarks.ledger_overhead import variants
 from benchmarks.ranks import GRIDS, PROCESSORS
-from benchmarks.runs import RUN, case_study
+from benchmarks.runs import RUN, case_study, own_folders
 from bulkwear.workflows.engine.chain import Chain
 from tests.support.tiny import tiny_study
 
@@ -50,6 +50,14 @@ def test_each_grid_is_written_into_the_deck(decks):
     """The deck's own choice is replaced, once."""
     for grid in GRIDS.values():
         assert PROCESSORS.sub(f"processors {grid}", decks["solver"]).count(f"processors {grid} ") == 1
+
+
+def test_no_benchmark_takes_what_another_prepared(tmp_path):
+    """Another size of particles or width has folders of its own, the same study the same ones."""
+    cases = [case_study(4.0), case_study(3.4), case_study(4.0, 2), case_study(4.0)]
+    runs, beds = zip(*(own_folders(tmp_path, study, RUN) for study in cases), strict=True)
+    assert len(set(runs)) == len(set(beds)) == len(cases) - 1
+    assert (runs[0], beds[0]) == (runs[-1], beds[-1])
 
 
 def test_a_bed_twice_as_wide_has_twice_the_work():
