@@ -39,7 +39,7 @@ CONVEX = "convex"
 BED_THICKNESS = 0.022  # m: four layers, because only the lowest wear the sample
 ELEMENT_SIZE = 0.005  # m, of the plain sample, coarser than studies allow: the sum over the sample is all that counts
 VELOCITY = 2.0  # m/s, the fastest of the study `screening`
-FRACTION, MODULUS = 0.2, 7.0e7  # -, Pa: those of the studies
+FRACTION, MODULUS = 0.2, 7.0e7  # -, Pa: of filling the beds, and of runs that vary the other one
 MINUTES = 60.0  # of processor time
 MOST_PACKINGS = 12
 PERCENT = 100.0
@@ -115,7 +115,7 @@ def with_derived(run: Run, fraction: float, modulus: float, seed: int) -> Run:
 def chain_of(variant: Variant, folder: Path) -> Chain:
     """Return the chain of a variant; its surface is made and its bed filled unless that was done before.
 
-    All variants of a packing start from the bed that was filled with time step and modulus of the studies: the same
+    All variants of a packing start from the bed that was filled with one time step and modulus: the same
     particles.
     """
     study = load_study(STUDY, overrides=CASE)
@@ -219,7 +219,7 @@ def setting(table: pd.DataFrame) -> str:
 def draw(table: pd.DataFrame, path: Path) -> None:
     """Write the figure: changes against time step and against modulus."""
     found = answers(table)
-    marks = {"studies": FRACTION, f"source, {SOURCE_STEP:g} s at real size": source_fraction()}
+    marks = {"studies": default_fraction(), f"source, {SOURCE_STEP:g} s at real size": source_fraction()}
     panels = [
         Panel("Time step over Rayleigh time (-), plain", found["rayleigh_fraction"], marks),
         Panel("Time step over Rayleigh time (-), convex", found[CONVEX], marks),
@@ -255,8 +255,8 @@ def page(table: pd.DataFrame) -> str:
             "",
             prose(
                 f"{phrase[:1].upper()}{phrase[1:]}. Rolling friction is `{rolling}`. All runs of a packing start from"
-                " one bed, which was filled with time step and modulus of the studies. What is compared is the sliding"
-                " work on the sample, to which Archard's wear is proportional."
+                f" one bed, filled with {FRACTION:g} of the Rayleigh time and {MODULUS:.2g} Pa. What is compared is the"
+                " sliding work on the sample, to which Archard's wear is proportional."
             ),
             "",
             *step_table("plain sample", steps, columns),
@@ -279,10 +279,16 @@ def step_table(name: str, steps: pd.DataFrame, columns: str) -> list[str]:
     ]
 
 
+def default_fraction() -> float:
+    """Return the time step over the Rayleigh time (-) that sliding samples have unless a study says otherwise."""
+    return float(load_study(STUDY).settings["solver"]["rayleigh_fraction"])
+
+
 def conclusions(steps: pd.DataFrame, convex: pd.DataFrame, moduli: pd.DataFrame) -> list[str]:
     """Return how far each choice can go, and the defaults beside it."""
     scatter, limit = max(table["scatter"].max() for table in (steps, convex, moduli)), f"{PERCENT * LIMIT:g} %"
-    step = steps.set_index("value")["time_step_s"][FRACTION]
+    default = default_fraction()
+    step = steps.set_index("value")["time_step_s"][default]
     softened = PERCENT * moduli.set_index("value")["change"][MODULUS]
     off = "" if moduli["value"][0] == MODULUS else f", whose wear is {softened:+.1f} % off"
     return [
@@ -294,7 +300,7 @@ def conclusions(steps: pd.DataFrame, convex: pd.DataFrame, moduli: pd.DataFrame)
         bullet(
             f"Time step, plain sample: against {steps['value'][0]:g} of the Rayleigh time of the smallest particle,"
             f" wear is within {limit}, its 95 % interval included, up to {within(steps):g}; {beyond(steps)}. Default:"
-            f" `solver.rayleigh_fraction: {FRACTION:g}`, here {step:.2g} s; the source's {SOURCE_STEP:g} s are"
+            f" `solver.rayleigh_fraction: {default:g}`, here {step:.2g} s; the source's {SOURCE_STEP:g} s are"
             f" {source_fraction():.2g} of that time at its particle size."
         ),
         bullet(f"Time step, convex sample: within {limit} up to {within(convex):g}; {beyond(convex)}."),

@@ -106,7 +106,7 @@ def run_of(case: Case, fraction: float) -> Run:
 def chain_of(case: Case, folder: Path) -> Chain:
     """Return the chain of a case; nothing is made but its folder.
 
-    All runs of a packing under a model start from one bed, filled above the bumps with the time step of the studies.
+    All runs of a packing under a model start from one bed, filled above the bumps with one time step.
     """
     study, place = load_study(STUDY, overrides=CASE), folder / case.folder
     at_rest = [run_of(Case(case.model, case.seed, surface, FRACTION), FRACTION) for surface in SURFACES]

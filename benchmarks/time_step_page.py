@@ -78,7 +78,10 @@ def said_of(model: str, found: Answers, row: pd.Series) -> str:
     if math.isnan(limit):
         return f"`{model}`: not known, fewer than {ENOUGH} packings of every time step have run"
     if limit > shortest:
-        return f"`{model}`: within {PERCENT * LIMIT:g} % with 95 % confidence up to {limit:g} of the Rayleigh time"
+        return (
+            f"`{model}`: at {limit:g} of the Rayleigh time all is within {PERCENT * LIMIT:g} % with 95 % confidence,"
+            " and no shorter step is shown to be beyond"
+        )
     shown = row.drop(["model", "all of them"])
     shown = ", ".join(f"of {name} up to {value:g}" for name, value in shown.items() if value > shortest) or "of nothing"
     widest = max(((told["change_high"] - told["change_low"]) / 2.0).max() for told in own)
@@ -104,8 +107,9 @@ def results_page(table: pd.DataFrame) -> str:
             f"A bed of some {first['particles']:.0f} particles of twice the real size slides at 2 m/s over"
             f" {first['travel_m']:g} m of channel, over a plain sample and over a convex one, whose front ends"
             " particles strike. Sliding work is what Archard's law is proportional to, impact energy what laws of"
-            " impacts are. Change: against the shortest time step that ran, packings taken as blocks. A limit is told"
-            f" where every time step ran with {ENOUGH} packings at least."
+            " impacts are. Change: against the shortest time step that ran, packings taken as blocks. A limit is the"
+            " longest step that is shown to be within, where no shorter one is shown to be beyond; of shorter ones with"
+            f" few packings more is not known. It is told where every time step ran with {ENOUGH} packings at least."
         ),
         markdown(told),
         prose(f"Processor time of the solver at equal time steps, over `{first['model']}`: {cost}; not run in turn."),

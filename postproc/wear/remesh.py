@@ -122,8 +122,8 @@ def _improved(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, old: OldSur
 
 
 def _attempts(mesh: SurfaceMesh, faults: MeshFaults, bounds: Bounds, old: OldSurface, repair: bool, counts):
-    """(mesh, volume worn ahead in m3, faults) after attempts on so many rings each, after repair if wanted; what repair
-    leaves tangled is not attempted again, as it was before.
+    """(mesh, volume worn ahead in m3, faults) after attempts on so many rings each, after repair if wanted; where that
+    leaves a tangle there are no attempts, for they have had their turn before it.
     """
     ahead = 0.0
     if repair:

@@ -20,7 +20,7 @@ TINY = {
     },
     "bed": {"material": OF_ANY_MODEL, "width_mm": 60, "ahead_mm": 20, "behind_mm": 20},
     "sliding": {"run_in_mm": 10, "travel_mm": 20, "cycles": 2},
-    "solver": {"rayleigh_fraction": 0.4},  # half as many steps as in studies
+    "solver": {"rayleigh_fraction": 0.4},  # as in studies
 }
 
 

