@@ -16,7 +16,7 @@ from bulkwear.workflows.engine.worn_pair import BESIDE
 
 HEADROOM_DIAMETERS = 0.1  # between the sample's highest point and the bed that settles above it, in largest diameters
 STRIP_DIAMETERS = 2.0  # of the strip that is held in a window, in largest diameters: nothing reaches through it
-SKIN_OVER_RADIUS = 0.4  # -, neighbour skin over the smallest radius; a list then lasts about 60 steps at 1 m/s
+SKIN_OVER_RADIUS = 0.6  # -, neighbour skin over the smallest radius; a list then lasts about 90 steps at 1 m/s
 ADAPTIVE = "adaptive"  # value of sliding.cycles: each cycle as long as its predecessor lets expect
 OF_WEAR = ("hardness_pa", "wear")  # keys of a wall: no bed is filled again for them
 ROUNDING = 1e-9  # relative; keeps rounding from turning exactly three layers into fewer, n samples into n + 1

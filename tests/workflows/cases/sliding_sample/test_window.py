@@ -20,7 +20,7 @@ from bulkwear.workflows.cases.sliding_sample.decks import exchange_steps, lowere
 from bulkwear.workflows.cases.sliding_sample.work import run_stages
 from bulkwear.workflows.engine import cycles
 from bulkwear.workflows.engine.chain import write_cycle
-from bulkwear.workflows.engine.derived import window_lengths
+from bulkwear.workflows.engine.derived import SKIN_OVER_RADIUS, window_lengths
 from bulkwear.workflows.engine.inputs import inputs_digest
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.ledgers import summed_by_solver
@@ -105,7 +105,7 @@ def test_the_window_is_as_long_whatever_the_travel():
     """Behind 40, sample 40, ahead 160, exchange 40 mm, a held strip of two of the largest particles and room of one
     and the neighbour skin off the wake; runs of all travels and velocities share the bed."""
     largest, smallest = 6 * 1.2 * 2.65e-3, 6 * 0.8 * 2.65e-3
-    expected = 0.04 + 0.04 + 0.16 + 0.04 + 3.0 * largest + 0.2 * smallest
+    expected = 0.04 + 0.04 + 0.16 + 0.04 + 3.0 * largest + 0.5 * SKIN_OVER_RADIUS * smallest
     studies = [window_study(sliding={"run_in_mm": 60, "travel_mm": travel, "cycles": 2}) for travel in (120, 12000)]
     for study in studies:
         derived = study.run("R9_convex").parameters["derived"]
