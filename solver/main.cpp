@@ -1,7 +1,8 @@
 // LIGGGHTS with a load ledger and rolling models: the solver of the shared library, unchanged, plus a fix style
 // (load/ledger) and two models of rolling friction (own_spin, rvd).
 // Used like the plain program: liggghts-ledger -in deck.in; -search stock leaves the search for contacts with meshes to
-// the library; -own-kernels FILE adds contact kernels that a project has compiled of its own.
+// the library, -order stock the order of particles in memory; -own-kernels FILE adds contact kernels that a project has
+// compiled of its own.
 // liggghts-ledger -kernels lists its contact kernels: name, column of the ledger, parameters; -rolling its models of
 // rolling friction.
 
@@ -17,6 +18,7 @@
 #include "lammps.h"
 #include "modify.h"
 #include "own_kernels.h"
+#include "particle_order.h"
 #include "private_member.h"
 #include "rolling/fix_spin_friction.h"
 #include "rolling/rolling_models.h"
@@ -50,17 +52,17 @@ void list_kernels() {
   }
 }
 
-// Takes "-search ours" or "-search stock" out of the words, which the solver would not know. Returns whether they are well.
-bool take_search(int& argc, char** argv) {
+// Takes "NAME ours" or "NAME stock" out of the words, which the solver would not know. Returns whether they are well.
+bool take_choice(const char* name, void (*use_stock)(), int& argc, char** argv) {
   for (int k = 1; k + 1 < argc; ++k) {
-    if (std::strcmp(argv[k], "-search")) continue;
+    if (std::strcmp(argv[k], name)) continue;
     const bool stock = !std::strcmp(argv[k + 1], wall_search::STOCK);
     if (!stock && std::strcmp(argv[k + 1], wall_search::OURS)) {
-      std::fprintf(stderr, "-search: found %s, allowed are %s and %s.\n", argv[k + 1], wall_search::OURS,
+      std::fprintf(stderr, "%s: found %s, allowed are %s and %s.\n", name, argv[k + 1], wall_search::OURS,
                    wall_search::STOCK);
       return false;
     }
-    if (stock) wall_search::use_stock();
+    if (stock) use_stock();
     std::copy(argv + k + 2, argv + argc, argv + k);
     argc -= 2;
     return true;
@@ -103,7 +105,8 @@ int main(int argc, char** argv) {
     for (const char* name : rolling::MODELS) std::printf("%s\n", name);
     return 0;
   }
-  if (!take_search(argc, argv)) return 1;
+  if (!take_choice("-search", wall_search::use_stock, argc, argv)) return 1;
+  if (!take_choice("-order", particle_order::use_stock, argc, argv)) return 1;
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // or a fatal message would vanish in a pipe
   handle_signals();
   MPI_Init(&argc, &argv);
