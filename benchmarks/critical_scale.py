@@ -7,8 +7,8 @@ chooses, and, for their size, some things that are published.
     python -m benchmarks.critical_scale --redraw
 
 Runs stay in `--folder`, where a stopped one goes on; more packings, scales and candidates are added to those that are
-there. Writes into docs: critical_scale.csv (every run), figure and critical_scale_results.md; `--redraw` makes the last
-two from the first.
+there, and to those of the table that an earlier version of the code simulated. Writes into docs: critical_scale.csv
+(every run), figure and critical_scale_results.md; `--redraw` makes the last two from the first.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from benchmarks.plots.figures import ratio_by_candidate
 from benchmarks.ratios import ASSUMED, ratio_intervals
 from benchmarks.runs import simulated_run, with_bed
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
-from benchmarks.scale_page import results_page, source_ratio
+from benchmarks.scale_page import BY, results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
 from bulkwear.postproc.plots.style import save
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing, crossing
@@ -46,11 +46,13 @@ from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
 from bulkwear.workflows.engine.chain import Chain
 from bulkwear.workflows.engine.solver import SolverError, die_with
 from bulkwear.workflows.engine.state import StateError
+from bulkwear.workflows.report.simulated import versions_of
 
 FAILED = "failed.txt"  # in the folder of a run whose simulation failed, with the reason
 SCALES, PACKINGS, OF_REFERENCE = (6,), 1, 3
 LEVEL = 0.95  # of intervals
 MM3 = 1e9  # mm3 in a m3
+KEYS = ["particle_scale", "candidate", "surface", "seed"]  # of a row in the table of every run
 PERCENT = 100.0
 
 
@@ -107,7 +109,7 @@ def run_row(case: Case, chain: Chain) -> dict[str, Any]:
 
     Wear per metre of counted travel (mm3/m), whole and of the bumps; mean normal force (N); slip_percent: sliding work
     per metre over that force, the mean velocity of contacts over the sample's; velocity_percent: of the bed over the
-    sample, likewise (Yan 2022, Eq 4.10); processor_s: of the solver
+    sample, likewise (Yan 2022, Eq 4.10); processor_s: of the solver; simulated_by: version of the code
     """
     found, cost = run_summary(pd.read_csv(chain.folder / "wear.csv")), pd.read_csv(chain.folder / "cost.csv")
     flow, travel = RunFlow(**flow_measures(chain.parameters)), found["travel_m"]
@@ -127,6 +129,7 @@ def run_row(case: Case, chain: Chain) -> dict[str, Any]:
         "particles": int(cost["particles"].iloc[-1]),
         "triangles": int(cost["triangles"].iloc[-1]),
         "processor_s": cost["processor_s"].sum(),
+        BY: " and ".join(sorted(version.name for version in versions_of([chain.folder]))),
     }
 
 
@@ -276,8 +279,19 @@ def main() -> None:
 
 
 def write_table(file: Path, wanted: Sequence[Case], folder: Path) -> None:
-    """Write the rows of the runs that are finished."""
-    finished(wanted, folder).to_csv(file, index=False, float_format="%.6g")
+    """Write the rows of the runs that are finished, beside those of earlier runs that are not among them."""
+    found = finished(wanted, folder)
+    merged(pd.read_csv(file) if file.is_file() else found.iloc[:0], found).to_csv(
+        file, index=False, float_format="%.6g"
+    )
+
+
+def merged(before: pd.DataFrame, now: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of two tables of runs, those of `now` where both have one, by scale, candidate and packing."""
+    table = pd.concat([before, now], ignore_index=True).drop_duplicates(KEYS, keep="last")
+    place = table["candidate"].map(list(CANDIDATES).index)
+    order = ["particle_scale", "seed", "place", "surface"]
+    return table.assign(place=place).sort_values(order, ignore_index=True).drop(columns="place")
 
 
 if __name__ == "__main__":

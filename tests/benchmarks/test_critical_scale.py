@@ -44,6 +44,7 @@ def study_loaded_once():
 def rows(ratios=((REFERENCE, (0.5, 0.5 * np.e)), (OTHER, (1.0,)))):
     """Runs whose convex sample wears so many times as much as the plain one; half of it on the bumps."""
     told = {"normal_force_N": 10.0, "slip_percent": 50.0, "velocity_percent": 40.0, "processor_s": 1.0}
+    told[scale_page.BY] = "commit a"
     return pd.DataFrame(
         {
             **{"particle_scale": 6, "candidate": name, "surface": surface, "seed": seed},
@@ -167,6 +168,18 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     critical_scale.attempted(broken, lambda: (_ for _ in ()).throw(ValueError("no bed")))
     assert (broken.folder.parent / critical_scale.FAILED).read_text() == "no bed"
     critical_scale.attempted(broken, lambda: pytest.fail("failed before"))
+
+
+def test_rows_of_earlier_runs_stay(tmp_path):
+    """One that was simulated again is replaced; the page says which version simulated which scale, where two did."""
+    before, now = rows(), rows(((REFERENCE, (0.7,)),)).assign(**{scale_page.BY: "commit b"})
+    added = now.assign(particle_scale=3)
+    table = critical_scale.merged(before, pd.concat([now, added]))
+    assert table["particle_scale"].tolist() == [3, 3] + [6] * 6
+    wear = table.set_index(critical_scale.KEYS)["wear_mm3_per_m"]
+    assert [wear[6, REFERENCE, "convex", seed] for seed in (0, 1)] == pytest.approx([1.4, np.e])
+    assert scale_page.versions_words(table) == " Simulated scale 3, 6 by commit b; scale 6 by commit a."
+    assert scale_page.versions_words(before) == ""
 
 
 def table_of(ends):
