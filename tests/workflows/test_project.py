@@ -253,7 +253,7 @@ LAW, CASE, MINE = "laws/hardened.py", "cases/dimpled/case.py", "config/studies/m
     [
         (MINE, f"deck: {{remark: {WORD}}}\n", "", f"{TEMPLATE}: parameter remark is not given, allowed are its deck's"),
         (LAW, ', unit="-"', "", f"{LAW}: parameter hardening of the law hardened has no unit, allowed is the one that"),
-        (LAW, '"-"', '"N"', "law hardened: the unit of its parameter hardening is 'N', allowed is '-', by the end of"),
+        (LAW, '"-"', '"N"', f"{LAW}: law hardened: the unit of its parameter hardening is 'N', allowed is '-', by"),
         (LAW, "LAW = ", "RULE = ", f"{LAW}: there is no LAW in it, allowed is a module with LAW = Law(...)."),
         (
             LAW,

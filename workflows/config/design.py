@@ -65,7 +65,7 @@ from bulkwear.workflows.config.validation import (
 from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.derived import laws_beside
-from bulkwear.workflows.engine.project import LAWS, Project, current_project
+from bulkwear.workflows.engine.project import Project, current_project
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 
@@ -280,11 +280,12 @@ def _told(
 
 def _check_own_code(study: Study, layers: tuple[Layer, ...]) -> None:
     """Check a project's own laws, and its words of templates on the first run. Raises ConfigError."""
-    first, own = study.runs[0], dict(current_project().own_laws)
-    case, runs = study.case, [run.parameters for run in study.runs] if own else []
+    first, project = study.runs[0], current_project()
+    case, runs = study.case, [run.parameters for run in study.runs] if project.own_laws else []
     given = {law: values for run in runs for law, values in (*case.laws(run), *laws_beside(run))}
-    for law in own.keys() & given:
-        check_volume(law, given[law], f"{LAWS}/{own[law].name}")
+    for law, values in given.items():
+        if file := project.law_file(law):
+            check_volume(law, values, file)
     decks = partial(sample_decks, study.case, first.parameters, study.beds.get(study.bed_of(first.name)))
     check_own_words(layers, study.case, study.settings.get("deck", {}), decks)
 

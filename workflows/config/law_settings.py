@@ -17,6 +17,7 @@ from bulkwear.postproc.wear.ledger import LEDGER_FIELDS, MEAN_FIELDS
 from bulkwear.workflows.config.layers import ConfigError, KeyPath, Layer, dotted
 from bulkwear.workflows.config.schema import without_required
 from bulkwear.workflows.config.validation import UNIT_OF_SUFFIX, allowed_text, check_layer, locate, show, unknown_key
+from bulkwear.workflows.engine.project import current_project
 
 WEAR, LAW, PARAMETERS = "wear", "law", "parameters"
 PROPORTIONAL = 1e-9  # relative; rounding of a law's function, far below any power but 1
@@ -32,8 +33,9 @@ def parameters_schema(law: str) -> dict[str, Any]:
         suffix = max((s for s in UNIT_OF_SUFFIX if parameter.name.endswith(f"_{s}")), key=len, default="")
         unit = UNIT_OF_SUFFIX.get(suffix, "-")
         if parameter.unit != unit:
+            where = ": ".join(filter(None, [current_project().law_file(law), f"law {law}"]))
             raise ConfigError(
-                f"law {law}: the unit of its parameter {parameter.name} is {parameter.unit!r}, allowed is {unit!r}, by "
+                f"{where}: the unit of its parameter {parameter.name} is {parameter.unit!r}, allowed is {unit!r}, by "
                 f"the end of its name; names end in {', '.join(UNIT_OF_SUFFIX)}, or in none of a pure number."
             )
         properties[parameter.name] = {

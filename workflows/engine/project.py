@@ -69,6 +69,11 @@ class Project:
         """Return the names of all files in a folder of project and package."""
         return sorted({path.name for root in self.folders for path in (root / folder).glob(f"*{suffix}")})
 
+    def law_file(self, law: str) -> str:
+        """Return the file of a wear law of the project's own, within its folder; nothing of one of the package."""
+        found = dict(self.own_laws).get(law)
+        return f"{LAWS}/{found.name}" if found else ""
+
     def substitutes(self) -> list[str]:
         """Return a sentence for each file of the project that stands before one of the package."""
         if self.is_package:
