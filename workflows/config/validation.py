@@ -62,6 +62,7 @@ NEEDED = "x-needed"  # of the schema of a block: keys that a study gives, for wh
 NUMBERS = ("number", "integer")  # types of the schemas that have a range and a unit
 LONGEST_ROW = 60  # letters of a row's name
 LONGEST_VALUE = 60  # characters of a value that a message shows
+ALIKE, ALIKE_PATHS = 0.6, 0.7  # -, least likeness of a key and of its whole path to a known one that is named instead
 
 
 def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
@@ -231,10 +232,11 @@ def unknown_key(path: KeyPath, schema: dict[str, Any], found: str = "", noun: st
 def _nearest(path: KeyPath, known: dict[str, Any], schema: dict[str, Any]) -> str:
     """Return the known key that resembles an unknown one, in its own block first, or all that are allowed."""
     parent, key = path[:-1], str(path[-1])
-    near = [dotted((*parent, name)) for name in difflib.get_close_matches(key, known, n=1, cutoff=0.6)]
+    near = [dotted((*parent, name)) for name in difflib.get_close_matches(key, known, n=1, cutoff=ALIKE)]
     everywhere = {dotted(p): str(p[-1]) for p, _ in leaves(schema)}
     near += [full for full, leaf in everywhere.items() if leaf == key]
-    near += difflib.get_close_matches(dotted(path), everywhere, n=1, cutoff=0.7)
+    paths = difflib.get_close_matches(dotted(path), everywhere, n=1, cutoff=ALIKE_PATHS)
+    near += [full for full in paths if difflib.get_close_matches(key, [everywhere[full]], cutoff=ALIKE)]
     return f"the nearest is {near[0]}" if near else f"allowed are {', '.join(known)}"
 
 

@@ -52,6 +52,13 @@ BAD_KEYS = [
     (
         STUDY,
         "width_mm: 80",
+        "area_mm: 80",
+        f"{QUICK}: sample.area_mm (80) is no known key, allowed are width_mm, length_mm, element_size_mm,"
+        " height_above_floor_mm, skirt_slope_deg, skirt_radius_mm, material.",
+    ),
+    (
+        STUDY,
+        "width_mm: 80",
         "width: 80",
         f"{QUICK}: sample.width has no unit, write sample.width_mm (found width: 80).",
     ),
