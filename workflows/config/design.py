@@ -89,8 +89,8 @@ class Study:
     factors: {short name: column of the design} of the regression of its results; empty without one
     head: the keys of its file that are the study's own, no settings
     confirms: the study whose best designs this one simulates, "" for all others
-    first_packings: {setting: packings that are simulated first}; with `until` and `optimise` runs are all that there
-        may be
+    first_packings: {chosen setting: packings that are simulated first}; with `until` and `optimise` runs are all that
+        there may be
     search_digest: of what proposals of its search depend on besides results
     runs_of: the checked runs of any further row of its design
     until: how narrow intervals shall be, None where packings are a fixed number
@@ -262,7 +262,7 @@ def load_study(name: str, project: Project | None = None, overrides: dict[str, A
         paper_settings=_told(sources, paper, sources.merged(paper), materials),
         materials=materials,
         head=head,
-        first_packings=designed.first(settings),
+        first_packings=designed.first(settings, rows),
         confirms=confirms,
         search_digest=digest,
         runs_of=checked_runs,

@@ -35,11 +35,14 @@ class Packings:
     packing_of: dict[str, int]
     added: frozenset[str] = frozenset()
 
-    def first(self, settings: Mapping[str, Any]) -> dict[str, int]:
-        """Return how many packings of each setting are simulated first; `until` and `optimise` add the others."""
-        found: dict[str, list[Layer]] = {}
-        for row in self.rows:
-            found.setdefault(self.setting_of[_name(row)], []).append(row)
+    def first(self, settings: Mapping[str, Any], chosen: Sequence[Layer]) -> dict[str, int]:
+        """Return how many packings of each setting are simulated first; `until` and `optimise` add the others.
+
+        chosen: rows that are run; settings of which none is have no number
+        """
+        found: dict[str, list[Layer]] = {self.setting_of[_name(row)]: [] for row in chosen}
+        for row in (row for row in self.rows if self.setting_of[_name(row)] in found):
+            found[self.setting_of[_name(row)]].append(row)
         written = {name: sum(_name(row) not in self.added for row in rows) for name, rows in found.items()}
         own = {name: any(PACKINGS in row.values for row in rows) for name, rows in found.items()}
         given = {
