@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
+from bulkwear.workflows.cases.sliding_sample.decks import bed_mass, lowered_bed, settled_bed, sliding_sample
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.config.sources import list_studies, read_sources
 from bulkwear.workflows.engine import decks as deck
@@ -12,6 +12,7 @@ from bulkwear.workflows.engine.beds import bed_fault
 from bulkwear.workflows.engine.cycles import fill_bed
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.schedule import known_spans
+from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, LOG, run_deck
 from bulkwear.workflows.engine.templates import DeckError, render
 from tests import DATA
 from tests.support.law_cases import long_slip_registered, wear_settings
@@ -242,3 +243,19 @@ def test_a_settled_bed_has_its_mass_and_level(tmp_path, ends):
     halved = study.case.bed_measures({**bed, "thickness_m": 0.5 * bed["thickness_m"]}, tmp_path / "log.liggghts")
     assert [each.missed for each in halved] == [True, True]
     assert "mass" in bed_fault(halved) and "level" in bed_fault(halved)
+
+
+@pytest.mark.solver
+def test_a_large_bed_of_equal_spheres_is_poured_whole(tmp_path):
+    """Of 28,000 all find room, though the last ones only after hundreds of places."""
+    parameters, bed = run_and_bed(
+        load_study("particle_size", overrides={"fidelity": "quick", "rows": ["S3"], "packings": 1}), "S3_plain"
+    )
+    particle = parameters["particle"]
+    equal = {"diameters_m": [particle["median_diameter_m"]], "mass_fractions": [1.0]}
+    text = render("settled_bed", settled_bed({**bed, "particle": {**bed["particle"], **equal}}))
+    (tmp_path / "deck.in").write_text(text[: text.index("unfix           pour")])
+    run_deck(tmp_path, executable=LEDGER_EXECUTABLE)
+    (poured,) = re.findall(r"inserted (\d+) particle templates \(mass (\S+)\) at step 1", (tmp_path / LOG).read_text())
+    assert int(poured[0]) > 20_000
+    assert float(poured[1]) == pytest.approx(bed_mass(bed), rel=1e-3)
