@@ -26,7 +26,7 @@ from tests.verification.pin_cases import DISC_RADIUS, INNER_RADIUS, TRACK_RADIUS
 DEMO_SCALE, TESTER_SCALE = 3.4, 6.0  # -, of particles; those of the studies at quick
 ELEMENT, BAND = 1e-4, 0.8e-3  # m; some 80,000 triangles
 QUICK_DEMO_SCALE, QUICK_ELEMENT = 4.0, 4e-4
-FEW, MANY, QUICK_MANY = 100, 1600, 200  # time steps
+FEW, MANY, QUICK_MANY = 100, 900, 200  # time steps
 ROUNDS, QUICK_ROUNDS = 5, 1
 FORMER_SKIN = 0.4  # -, of neighbour lists over the smallest radius, of beds before our search
 SKIN = re.compile(r"^(variable\s+skin\s+equal )(\S+)", re.MULTILINE)
