@@ -202,10 +202,16 @@ def critical_scales(runs: pd.DataFrame, table: pd.DataFrame) -> pd.DataFrame:
         ends = {"interval_low": found.low, "interval_high": found.high}
         said = where_it_lies(found, table[table["candidate"] == candidate])
         rows.append(
-            {"candidate": candidate, "scales": ", ".join(f"{scale:g}" for scale in scales), "packings": found.packings}
+            {"candidate": candidate, "scales": ", ".join(f"{scale:g}" for scale in scales), "packings": packings_of(of)}
             | {"critical_scale": found.value, **ends, "forms": found.forms, "where": said}
         )
     return pd.DataFrame(rows)
+
+
+def packings_of(pairs: pd.DataFrame) -> str:
+    """Return how many packings the scales of a candidate have, least and most."""
+    counts = pairs.groupby("particle_scale")["seed"].nunique()
+    return f"{counts.min()}" if counts.min() == counts.max() else f"{counts.min()} to {counts.max()}"
 
 
 def where_it_lies(found: Crossing, rows: pd.DataFrame) -> str:
@@ -215,10 +221,12 @@ def where_it_lies(found: Crossing, rows: pd.DataFrame) -> str:
     if not math.isnan(found.low):
         low = f"{found.low:.3g}" if math.isfinite(found.low) else f"below {least:g}"
         return f"{low} to {found.high:.3g}" if math.isfinite(found.high) else f"{low} to beyond {most:g}"
-    if (rows["ratio_high"] < 1.0).all():
-        return f"above {most:g}, if anywhere: the convex sample wears less at every scale"
-    if (rows["ratio_low"] > 1.0).all():
-        return f"below {least:g}, if anywhere: the convex sample wears more at every scale"
+    single = rows["ratio_low"].isna()
+    by_one = f" (at {', '.join(f'{scale:g}' for scale in scales[single])} in its one packing)" if single.any() else ""
+    if (rows["ratio_high"].fillna(rows["wear_over_plain"]) < 1.0).all():
+        return f"above {most:g}, if anywhere: the convex sample wears less at every scale{by_one}"
+    if (rows["ratio_low"].fillna(rows["wear_over_plain"]) > 1.0).all():
+        return f"below {least:g}, if anywhere: the convex sample wears more at every scale{by_one}"
     return f"not told: {found.reason}"
 
 
@@ -234,7 +242,8 @@ def remarks(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
         f" {', '.join(f'{scale:g}' for scale in runs['particle_scale'].unique())}, wear over 800 mm of travel after"
         " 500 mm",
         "green line: the source's lines, whose reading of the pattern and whose code are not known",
-        f"{packings[REFERENCE].max()} packings of the study's runs, {others.max() if len(others) else 0} of the others;"
+        f"at most {packings[REFERENCE].max()} packings of the study's runs, {others.max() if len(others) else 0} of the"
+        " others;"
         + (
             f" bars: {PERCENT * LEVEL:g} % intervals, {ASSUMED} candidates; without a bar: {UNKNOWN}"
             if table["ratio_low"].notna().any()

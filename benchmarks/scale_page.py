@@ -80,7 +80,7 @@ def conclusion(rows: pd.DataFrame) -> str:
         return head
     ranked = others.sort_values("over_reference", ascending=False)
     moved = [f"{row.candidate} ({row.over_reference:.2f})" for row in ranked.itertuples()]
-    reach = [row.candidate for row in ranked.itertuples() if max(row.wear_over_plain, row.ratio_high) >= source]
+    reach = [row.candidate for row in ranked.itertuples() if row.ratio_high >= source]
     sure = [row.candidate for row in ranked.itertuples() if row.wear_over_plain >= source]
     return (
         f"{head} Over the study's ratio, largest first: {', '.join(moved)}. The source's ratio is reached by"

@@ -140,7 +140,7 @@ def test_page_and_figure(tmp_path, monkeypatch):
     assert table["ratio_low"].isna().all()
     assert f"reached by {OTHER}" in conclusion(table)
     said = " ".join(remarks(single, table))
-    assert "1 packings of the study's runs" in said and "not known" in said
+    assert "at most 1 packings of the study's runs" in said and "not known" in said
     assert "not known" in scale_page.scatter_words(table) and "bumps turned" not in page
 
 
@@ -184,8 +184,8 @@ def test_rows_of_earlier_runs_stay(tmp_path):
 
 def table_of(ends):
     """Of `comparison`, what tells a side: lowest and highest ratio of each candidate at scales 4 and 8."""
-    rows = [(name, scale, low, high) for name, (low, high) in ends.items() for scale in (4, 8)]
-    return pd.DataFrame(rows, columns=["candidate", "particle_scale", "ratio_low", "ratio_high"])
+    rows = [(name, scale, (low + high) / 2.0, low, high) for name, (low, high) in ends.items() for scale in (4, 8)]
+    return pd.DataFrame(rows, columns=["candidate", "particle_scale", "wear_over_plain", "ratio_low", "ratio_high"])
 
 
 @pytest.mark.parametrize(
@@ -203,6 +203,17 @@ def test_an_open_end_is_told_with_its_side(low, high, ends, words):
     """An end beyond the scales, and no crossing at all, say on which side of them it would be."""
     found = Crossing(np.nan, low, high, np.nan, np.nan, 3, 3, 2, "none between the places" if np.isnan(low) else "")
     assert where_it_lies(found, table_of({REFERENCE: ends})) == words
+
+
+def test_a_scale_of_one_packing_counts_by_its_value():
+    """The convex sample wears more at both, at 4 by one packing alone; less there, and nothing is told."""
+    found = Crossing(np.nan, np.nan, np.nan, np.nan, np.nan, 3, 3, 2, "none between the places")
+    table = table_of({REFERENCE: (1.1, 2.0)})
+    table.loc[0, ["ratio_low", "ratio_high"]] = np.nan
+    said = "below 4, if anywhere: the convex sample wears more at every scale (at 4 in its one packing)"
+    assert where_it_lies(found, table) == said
+    table.loc[0, "wear_over_plain"] = 0.9
+    assert where_it_lies(found, table).startswith("not told")
 
 
 def test_a_candidate_has_a_critical_scale():
