@@ -203,7 +203,7 @@ def ratio_by_candidate(table: pd.DataFrame, source: Mapping[int, float], remarks
         axes.set(xlim=(0.0, 1.08 * largest))
         axes.set_title(f"particle scale {scale:g}", loc="left")
         axes.grid(axis="y", visible=False)
-    figure.supxlabel("Wear, convex over plain (-)", fontsize="medium")
+    panels[0].set_xlabel("Wear, convex over plain (-)", loc="left")  # below each panel the words would meet
     panels[0].set_yticks(range(len(names)), names)
     panels[0].set_ylim(len(names) - 0.5, -0.5)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
