@@ -10,6 +10,7 @@ from benchmarks import travelling_window
 from benchmarks.ratios import ratio_intervals
 from benchmarks.travelling_window import BLOCK, at_source_size, comparison, publish, run_row
 from benchmarks.window_case import BEDS, FULL, OWN_SEARCH, SOURCE_FRACTION, Case, chain_of, packing, said_beforehand
+from bulkwear.workflows.engine.derived import SKIN_OVER_RADIUS
 from tests.support.loaded_once import loaded_once
 
 WINDOW, COARSE = "window 100 + 50", "window 150 + 200, time step 0.4"
@@ -139,7 +140,7 @@ def test_page_and_figure_show_both_surfaces(tmp_path):
 def test_a_row_at_the_sources_size_is_several_times_cheaper():
     """Sample, bed ahead and behind, 20 mm between exchanges, three particles and their skin; and longer steps."""
     rows = at_source_size().set_index("bed")
-    short = 0.2 + 0.1 + 0.05 + 0.02 + 3 * 1.2 * 2.65e-3 + 0.2 * 0.8 * 2.65e-3
+    short = 0.2 + 0.1 + 0.05 + 0.02 + 3 * 1.2 * 2.65e-3 + 0.5 * SKIN_OVER_RADIUS * 0.8 * 2.65e-3
     length = short + 0.2  # 150 and 200 mm in place of 100 and 50
     assert rows["length_m"][COARSE] == pytest.approx(length, rel=1e-9)
     assert rows["length_m"][WINDOW] == pytest.approx(short, rel=1e-9)
