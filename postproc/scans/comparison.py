@@ -18,7 +18,8 @@ from bulkwear.postproc.mesh import SurfaceMesh, area_vectors, centroids, unit_no
 from bulkwear.postproc.scans.start import RigidMotion
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
 from bulkwear.postproc.wear.depth import height_loss
-from bulkwear.postproc.wear.remesh_patch import ON_EDGE, OldSurface, barycentric, neighbours
+from bulkwear.postproc.wear.old_surface import ON_EDGE, OldSurface
+from bulkwear.postproc.wear.remesh_patch import barycentric, neighbours
 
 CELL = 0.5e-3  # m, side of the cells of the map
 STEP = 0.25e-3  # m, along a section

@@ -24,7 +24,7 @@ from bulkwear.postproc.scans.start import (
     truncated_misfit,
     turned_about,
 )
-from bulkwear.postproc.wear.remesh_patch import OldSurface
+from bulkwear.postproc.wear.old_surface import OldSurface
 
 HOLDER, EVERYTHING = "holder", "all"  # what may decide
 RIM_MARGIN = 0.5e-3  # m, of the holder's surface beside what wears that does not count: there scans are round

@@ -83,6 +83,19 @@ def angles(points, triangles) -> np.ndarray:
     return result
 
 
+@njit(cache=True)
+def faces_in_box(points, triangles, low, high) -> np.ndarray:
+    """Mask (m,) of the triangles whose own boxes reach into that from `low` (3,) m to `high` (3,) m, or touch it."""
+    result = np.ones(len(triangles), dtype=np.bool_)
+    for row in range(len(triangles)):
+        a, b, c = triangles[row]
+        for axis in range(3):
+            lowest = min(points[a, axis], points[b, axis], points[c, axis])
+            highest = max(points[a, axis], points[b, axis], points[c, axis])
+            result[row] &= highest >= low[axis] and lowest <= high[axis]
+    return result
+
+
 def corner_words(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Coordinates of the corners of each face as unsigned words, (m, 9), to compare them bit for bit."""
     return np.ascontiguousarray(points[triangles].reshape(-1, WORDS)).view(np.uint64)

@@ -23,8 +23,9 @@ from bulkwear.postproc.wear.mesh_faults import (
     tangle_message,
     with_target_edges,
 )
+from bulkwear.postproc.wear.old_surface import OldSurface
 from bulkwear.postproc.wear.remesh_operations import LARGEST_OUTWARD, OUTWARD_BY_OPERATIONS, Limits, improve
-from bulkwear.postproc.wear.remesh_patch import OldSurface, rings
+from bulkwear.postproc.wear.remesh_patch import rings
 from bulkwear.postproc.wear.remesh_piece import piece_round
 from bulkwear.postproc.wear.remesh_repair import RemeshError, badness, faults_after, untangled
 from bulkwear.postproc.wear.remesh_transfer import cut_out, transferred
@@ -82,7 +83,7 @@ def remesh(mesh: SurfaceMesh, bounds: Bounds = DEFAULT_BOUNDS, moved: np.ndarray
     if not faults.faces.any():
         return Remeshed(mesh, 0, 0.0, 0.0, 0.0, faults)
     start, tangled, advanced = present, faults.tangled, 0.0
-    old = OldSurface(start.points, start.triangles)
+    old = OldSurface(start.points, start.triangles, faults.faces)
     for widen in (None, *UNTRUSTED_RINGS):
         if widen is not None and not faults.tangled.any():
             break

@@ -16,6 +16,7 @@ import numpy as np
 
 from bulkwear.postproc.wear.edge_kernels import common_neighbours
 from bulkwear.postproc.wear.face_kernels import acute_faces, angles
+from bulkwear.postproc.wear.old_surface import OldSurface
 from bulkwear.postproc.wear.remesh_kernels import (
     centroid_probes,
     operations_of,
@@ -30,7 +31,6 @@ from bulkwear.postproc.wear.remesh_patch import (
     FIXED,
     INNER,
     Edges,
-    OldSurface,
     Patch,
     edges_of,
     freedom,

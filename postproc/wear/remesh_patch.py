@@ -1,27 +1,16 @@
-"""A patch cut out of a worn surface: its triangles, edges and stars, and how far a new one stands off the old one."""
+"""A patch cut out of a worn surface: its triangles, edges and stars."""
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
-from bulkwear.postproc.mesh import unit_normals
 from bulkwear.postproc.wear.edge_kernels import edge_table, on_border, sorted_edges
 from bulkwear.postproc.wear.face_kernels import any_corner
-from bulkwear.postproc.wear.remesh_kernels import (
-    edge_normals,
-    heights,
-    node_normals_by_angle,
-    opposite_areas,
-    probes,
-    ranges,
-)
+from bulkwear.postproc.wear.remesh_kernels import opposite_areas
 
 INNER, CURVE, FIXED = 0, 1, 2  # freedom of a node: anywhere, along the curve between two labels, nowhere
-ON_EDGE = 1e-6  # -, barycentric: closer to an edge or a corner, its own normal tells inside from outside
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,60 +87,6 @@ def rings(triangles: np.ndarray, faces: np.ndarray, count: int, allowed: np.ndar
         near[triangles[mask]] = True
         mask = any_corner(near, triangles) & allowed
     return mask
-
-
-class OldSurface:
-    """The surface before remeshing, to measure how far a new one stands outside or inside it.
-
-    The sign comes from the normal of the closest face, edge or corner, weighted by angle at a corner (J. A. Baerentzen
-    and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243). Faces that are folded or cut others bound no body:
-    nothing counts as outside of those marked `tangled` (m,), see `without`.
-    """
-
-    def __init__(self, points: np.ndarray, triangles: np.ndarray):
-        import igl  # only a surface that really is remeshed needs it
-
-        self.points, self.triangles = points, triangles
-        self.tangled = np.zeros(len(triangles), dtype=bool)
-        self._tree = igl.AABB()
-        self._tree.init(points, triangles)
-
-    def without(self, tangled: np.ndarray) -> OldSurface:
-        """The same surface, with other faces (m,) that bound no body."""
-        other = copy(self)
-        other.tangled = tangled
-        return other
-
-    @cached_property
-    def _normals(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Normals of the faces (m, 3), of their edges by the opposite corner (m, 3, 3) and of the nodes (n, 3)."""
-        of_face = np.nan_to_num(unit_normals(self.points, self.triangles))
-        edges = sorted_edges(self.triangles, len(self.points), False)
-        of_edge = edge_normals(of_face, *edges)
-        return of_face, of_edge, node_normals_by_angle(self.points, self.triangles, of_face)
-
-    def nearest(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Square of the distance (k,) m2, the closest face (k,) and the closest point (k, 3) m."""
-        if not len(places):
-            return np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 3))
-        return self._tree.squared_distance(self.points, self.triangles, places)
-
-    def closest(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Signed distance (k,) m, outside > 0, the closest face (k,) and the closest point (k, 3) m."""
-        square, face, point = self.nearest(places)
-        above = heights(places, point, face, self.points, self.triangles, *self._normals, ON_EDGE)
-        return np.copysign(np.sqrt(square), above), face, point
-
-    def range_over_faces(self, points: np.ndarray, triangles: np.ndarray, size: np.ndarray, held=probes) -> np.ndarray:
-        """Smallest and largest signed distance of each face over its mean target edge, (k, 2).
-
-        Taken at the corners, the middles of the edges and the centroid, or at what else `held` gives as `probes` does.
-        `size` (n,) m: target edge at the nodes.
-        """
-        places, at = held(points, triangles)
-        distance, face, _ = self.closest(places)
-        distance = np.where(self.tangled[face], np.minimum(distance, 0.0), distance)
-        return ranges(distance, at, triangles, size)
 
 
 def barycentric(places: np.ndarray, corners: np.ndarray) -> np.ndarray:

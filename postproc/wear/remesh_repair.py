@@ -21,6 +21,7 @@ from bulkwear.postproc.wear.mesh_faults import (
     folded_faces,
     mesh_faults,
 )
+from bulkwear.postproc.wear.old_surface import OldSurface
 from bulkwear.postproc.wear.remesh_operations import (
     LARGEST_OUTWARD,
     OUTWARD_BY_OPERATIONS,
@@ -31,7 +32,6 @@ from bulkwear.postproc.wear.remesh_operations import (
 )
 from bulkwear.postproc.wear.remesh_patch import (
     FIXED,
-    OldSurface,
     Patch,
     edges_of,
     freedom,

@@ -8,7 +8,8 @@ from scipy.spatial import cKDTree
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.fields import CARRIED_VOLUME
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE
-from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch, barycentric, border_nodes
+from bulkwear.postproc.wear.old_surface import OldSurface
+from bulkwear.postproc.wear.remesh_patch import Patch, barycentric, border_nodes
 
 WIDEST = 4  # integers per face, between the lowest and the highest, for which no sorting is needed
 

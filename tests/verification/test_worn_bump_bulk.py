@@ -14,8 +14,8 @@ from bulkwear.postproc.mesh_checks import intersecting_faces
 from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.postproc.wear.balance import lost_volume
 from bulkwear.postproc.wear.mesh_faults import TARGET_EDGE, folded_faces, with_target_edges
+from bulkwear.postproc.wear.old_surface import OldSurface
 from bulkwear.postproc.wear.pattern_left import pattern_volume
-from bulkwear.postproc.wear.remesh_patch import OldSurface
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.cycles import run_chain
 from tests.support.tiny import tiny_chain

@@ -7,7 +7,7 @@ from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.scans import registration
 from bulkwear.postproc.scans.registration import CELL, position_error, register, symmetries
 from bulkwear.postproc.scans.start import IDENTITY, RigidMotion, largest_distance, plane_step, turned_about
-from bulkwear.postproc.wear.remesh_patch import OldSurface
+from bulkwear.postproc.wear.old_surface import OldSurface
 from tests.support import scanned_sample as sample
 
 POSITION = 20e-6  # m, asked of a registration: the accuracy of the scanner

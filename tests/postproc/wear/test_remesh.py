@@ -22,9 +22,10 @@ from bulkwear.postproc.mesh import (
 )
 from bulkwear.postproc.wear.depth import height_loss
 from bulkwear.postproc.wear.mesh_faults import DEFAULT_BOUNDS, TARGET_EDGE, mesh_faults, with_target_edges
+from bulkwear.postproc.wear.old_surface import OldSurface
 from bulkwear.postproc.wear.remesh import RINGS, RemeshError, remesh
 from bulkwear.postproc.wear.remesh_operations import Limits, flip
-from bulkwear.postproc.wear.remesh_patch import OldSurface, Patch
+from bulkwear.postproc.wear.remesh_patch import Patch
 from bulkwear.postproc.wear.remesh_repair import repair_cost
 from bulkwear.postproc.wear.remesh_transfer import labels_at_nodes
 from bulkwear.postproc.wear.update import wear_update
