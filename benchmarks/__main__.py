@@ -31,6 +31,7 @@ MODULES = (
     *("dry_run", "contact_reader", "displacement", "remesh", "wear_steps", "meshing", "own_mesh", "study_share"),
     *("ledger_overhead", "solver_speed", "ranks", "full_size"),
 )
+BY_STUDY = "study_share"  # whose lines of a study begin with its name and fidelity, up to a comma
 BUSY = 0.5  # -, load of the machine, in processes, above which wall times mean little
 
 
@@ -50,16 +51,23 @@ def lines_of(module: str, folder: Path, quick: bool) -> pd.DataFrame:
 
 def replaced(before: pd.DataFrame, now: Sequence[pd.DataFrame]) -> pd.DataFrame:
     """Return the table with the lines of the benchmarks that were run now instead of their earlier ones, in order; one
-    that found nothing to measure, as without finished studies, leaves them.
+    that found nothing to measure, as without finished studies, leaves them, and studies without results here keep
+    theirs.
     """
     now = [table for table in now if len(table)]
     if not now:
         return before
     names = {name for table in now for name in table["benchmark"]}
-    kept = [before[~before["benchmark"].isin(names)]] if len(before) else []
+    kept = [before[~before["benchmark"].isin(names) | _of_other_studies(before, now)]] if len(before) else []
     whole = pd.concat([*kept, *now], ignore_index=True)
     order = whole["benchmark"].map({name: place for place, name in enumerate(MODULES)})
     return whole.loc[order.sort_values(kind="stable").index].reset_index(drop=True)
+
+
+def _of_other_studies(before: pd.DataFrame, now: Sequence[pd.DataFrame]) -> pd.Series:
+    """Return the mask of the lines of studies that were not looked at now."""
+    seen = {name.split(",")[0] for table in now for name in table["name"]}
+    return (before["benchmark"] == BY_STUDY) & ~before["name"].str.split(",").str[0].isin(seen)
 
 
 def main() -> None:

@@ -25,7 +25,7 @@ def page(table: pd.DataFrame, machine: Mapping[str, Any]) -> str:
     ]
     for name, lines in table.groupby("benchmark", sort=False):
         said = inspect.getdoc(importlib.import_module(f"benchmarks.{name}")).strip()
-        when = f"{lines['date'].iloc[0]}, load {lines['load_before'].iloc[0]:g}; `--only {name}`"
+        when = f"{span(lines['date'])}, load {span(lines['load_before'])}; `--only {name}`"
         parts += [f"## {name.replace('_', ' ').capitalize()}", said, f"({when})", markdown(HEAD, cells(lines))]
     cost = measured_cost(table)
     if cost is not None:
@@ -69,6 +69,12 @@ def cells(lines: pd.DataFrame) -> list[list[str]]:
         ]
         for row in lines.to_dict("records")
     ]
+
+
+def span(values: pd.Series) -> str:
+    """Return the least and the largest of dates or numbers, one where they are the same."""
+    ends = (values.min(), values.max())
+    return " to ".join(dict.fromkeys(each if isinstance(each, str) else f"{each:g}" for each in ends))
 
 
 def scatter(low: float, high: float, repeats: int) -> str:

@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import pandas as pd
 
-from benchmarks.__main__ import MODULES, lines_of, replaced, there, write_page
+from benchmarks.__main__ import BY_STUDY, MODULES, lines_of, replaced, there, write_page
 from benchmarks.measure import measured
 from benchmarks.page import page, table_text
 from benchmarks.ranks import ACROSS
@@ -59,6 +59,19 @@ def test_lines_are_replaced_by_benchmark():
     assert replaced(pd.DataFrame(), [ranks(0.9)])["ratio"].tolist() == [0.9]
     nothing = pd.DataFrame()  # as of `study_share` where no study is finished
     assert replaced(before, [nothing]).equals(before) and len(table_text(nothing).splitlines()) == 1
+
+
+def test_studies_without_results_here_keep_their_lines():
+    """Of the shares of studies those that were looked at are replaced; the page says from when to when all are."""
+    share = "{} (quick), outside the solver"
+    before = table(BY_STUDY, measured(share.format("mill"), "%", [3.0]), measured(share.format("screw"), "%", [4.0]))
+    now = table(BY_STUDY, measured(share.format("mill"), "%", [2.0])).assign(date="2026-11-27", load_before=2.5)
+    after = replaced(before, [now])
+    assert dict(zip(after["name"], after["value"], strict=True)) == {
+        share.format("mill"): 2.0,
+        share.format("screw"): 4.0,
+    }
+    assert "(2026-11-21 to 2026-11-27, load 0.1 to 2.5; `--only study_share`)" in page(after, MACHINE)
 
 
 def test_the_page_can_be_written_again(tmp_path):

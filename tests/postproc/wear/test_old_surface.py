@@ -61,8 +61,8 @@ def test_a_part_with_most_faces_is_not_cut_out(box):
 def test_what_is_tangled_bounds_nothing_whatever_was_asked_before(box):
     """Surfaces with other tangled faces share the distances that are known, not what counts as outside."""
     old = OldSurface(box.points, box.triangles).without(np.zeros(len(box.triangles), dtype=bool))
-    above, size = box.points + [0.0, 0.0, 1e-3], np.full(len(box.points), ELEMENT)
-    top = box.triangles[(centroids(box.points, box.triangles)[:, 2] > box.points[:, 2].max() - SAME)]
+    above, size = box.points + np.array([0.0, 0.0, 1e-3]), np.full(len(box.points), ELEMENT)
+    top = box.triangles[centroids(box.points, box.triangles)[:, 2] > box.points[:, 2].max() - SAME]
     assert old.range_over_faces(above, top, size)[:, 1] == pytest.approx(1e-3 / ELEMENT)
     tangled = old.without(np.ones(len(box.triangles), dtype=bool))
     assert tangled.range_over_faces(above, top, size)[:, 1].max() == 0.0
