@@ -2,8 +2,8 @@
 
 Ours differs in the search for contacts with meshes, which gives the same ledger to the last bit (checked in every
 round), in the order of particles in memory, and decks let lists of neighbours last longer than they did. Told is what
-each saves alone, and all of them together. Each way runs over few and over more time steps; the difference of the
-processor times is that of the steps alone.
+each saves alone, and all of them together, by switches of our program and of decks. Each way runs over few and over
+more time steps; the difference of the processor times is that of the steps alone.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ FORMER_SKIN = 0.4  # -, of neighbour lists over the smallest radius, of beds bef
 SKIN = re.compile(r"^(variable\s+skin\s+equal )(\S+)", re.MULTILINE)
 OF_SEARCH, OF_ORDER = ("-search", "stock"), ("-order", "stock")
 OURS, SEARCH, ORDER = "ours", "the library's search", "the library's order of particles"
-FORMER = "search, order and skin as they were"
-WAYS = {OURS: (), SEARCH: OF_SEARCH, ORDER: OF_ORDER, FORMER: (*OF_SEARCH, *OF_ORDER)}
+THINNER, FORMER = "the former skin of lists", "search, order and skin as they were"
+WAYS = {OURS: (), SEARCH: OF_SEARCH, ORDER: OF_ORDER, THINNER: (), FORMER: (*OF_SEARCH, *OF_ORDER)}
 PIN = "pin on a whole disc"
 LENGTH = re.compile(r"^(variable\s+(?:end_step|cycle_steps)\s+equal )\d+", re.MULTILINE)
 
@@ -89,16 +89,18 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
     for name, here in decks(folder, quick).items():
         deck = (here / "deck.in").read_text()
 
-        def way(named: str, deck: str = deck, here: Path = here, pin: bool = name == PIN) -> tuple[float, bytes]:
-            of_then = named == FORMER and not pin  # the pin's skin is as it was
-            given = with_former_skin(deck) if of_then else deck
+        thinner = () if name == PIN else (THINNER, FORMER)  # the pin's skin is as it was
+        ways = [named for named in WAYS if name != PIN or named != THINNER]
+
+        def way(named: str, deck: str = deck, here: Path = here, thinner: tuple = thinner) -> tuple[float, bytes]:
+            given = with_former_skin(deck) if named in thinner else deck
             return steps_alone(here, given, WAYS[named], QUICK_MANY if quick else MANY)
 
-        found = in_turn({named: partial(way, named) for named in WAYS}, QUICK_ROUNDS if quick else ROUNDS)
+        found = in_turn({named: partial(way, named) for named in ways}, QUICK_ROUNDS if quick else ROUNDS)
         if len({ledger for named in (OURS, SEARCH) for _, ledger in found[named]}) > 1:
             raise SearchError(f"{here}: the ledgers of our search and the library's differ.")
         times = {named: [time for time, _ in each] for named, each in found.items()}
         told += [measured(f"{name}, {OURS}", "ms a step", times[OURS])]
-        others = [named for named in WAYS if named != OURS]
+        others = [named for named in ways if named != OURS]
         told += [measured(f"{name}, {named}", "ms a step", times[named], OURS, times[OURS]) for named in others]
     return told

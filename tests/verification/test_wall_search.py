@@ -78,6 +78,7 @@ def wavy(mesh: SurfaceMesh) -> SurfaceMesh:
         pytest.param(wavy(PLATE), (DRAG,), 1, marks=pytest.mark.verify),
         pytest.param(closed_box(0.02, 0.02, 0.004, 1.5e-3), (TURN,), 1, marks=pytest.mark.verify),
         pytest.param(wavy(PLATE), (SWING,), 2, marks=pytest.mark.verify),
+        pytest.param(wavy(PLATE), (TURN,), 4, marks=pytest.mark.verify),
     ],
 )
 def test_same_to_the_last_bit(tmp_path, mesh, lines, ranks):

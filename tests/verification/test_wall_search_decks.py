@@ -52,6 +52,8 @@ SLIDING = {
     "in a window that travels": window_study,
     "clumps": clumps,
 }
+SMALL_DRAW_DOWN = {"length_mm": 250, "fill_height_mm": 100, "fill_mass_kg_per_m": 35.0}
+SMALL_DRAW_DOWN |= {"lower_height_mm": 150, "opening_mm": 80}
 TUTORIALS = {"chute_wear": "granwalls", "conveyor": "wall", "meshGran": "granwalls", "movingMeshGran": "bucket_wall"}
 TUTORIAL_STEPS = 40_000  # of each `run` at most
 LAST_STATE = (
@@ -133,10 +135,11 @@ def test_same_bed_of_the_tester(tmp_path):
     assert found["ours"] and found["ours"] == found["stock"]
 
 
-@pytest.mark.parametrize("kind", ["shear_box", "wall_shear"])
+@pytest.mark.parametrize("kind", ["shear_box", "draw_down", "wall_shear"])
 def test_same_bulk_test(tmp_path, kind):
-    """A box that is opened, and one whose plate is dragged."""
-    run = load_study("calibration", overrides={"fidelity": "quick", "wall_shear": SMALL}).all_runs[0].parameters
+    """A box that is opened, one whose slot is, and one whose plate is dragged."""
+    asked = {"fidelity": "quick", "wall_shear": SMALL, "draw_down": SMALL_DRAW_DOWN}
+    run = load_study("calibration", overrides=asked).all_runs[0].parameters
     test, found = small() if kind == "shear_box" else bulk_test_of(run, kind, PAIR, SEED), {}
     for search in SEARCHES:
         write_test(test, tmp_path / search)

@@ -266,8 +266,8 @@ def own_kernels(chain: Chain) -> Path | None:
 
 
 def cycle_executable(chain: Chain) -> str:
-    """Return the program that simulates the cycles of a run. Cycle 0 has no ledger, but walls as the others have: the
-    program with our search for contacts takes a third of the time for it.
+    """Return the program that simulates the cycles of a run. Cycle 0 has no ledger, but walls as the others have,
+    and the program with our search for contacts takes less time for it.
     """
     return executable_of(chain.parameters, wears=True)
 
