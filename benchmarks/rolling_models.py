@@ -3,6 +3,7 @@ under each of our four models: the responses that it prints beside ours.
 
     python -m benchmarks.rolling_models --cores 2    # in the root of the repository
     python -m benchmarks.rolling_models --models own_spin epsd2    # these before the others
+    python -m benchmarks.rolling_models --pairs calibrated --tests shear_box --packings 3
     python -m benchmarks.rolling_models --finished   # while it runs, or after it was stopped: of the simulations so far
     python -m benchmarks.rolling_models --redraw
 
@@ -45,8 +46,12 @@ KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN), "calibrated"  # the pair of Table 3.
 FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
 
 
-def wanted(packings: int, models: Sequence[str] = MODELS) -> list[dict[str, Any]]:
+def wanted(
+    packings: int, models: Sequence[str] = MODELS, kinds: Sequence[str] = KINDS, pairs: Sequence[str] = ()
+) -> list[dict[str, Any]]:
     """Return what is to be simulated: model, test, pair, packing, frictions; `asked` is the test itself.
+
+    kinds: the tests; pairs: rows of the published table, all where none is named
 
     In an order in which models stand beside one another early: a packing of all before the next, the calibrated pair in
     all tests before the other pairs, a pair under all models before the next pair.
@@ -59,7 +64,11 @@ def wanted(packings: int, models: Sequence[str] = MODELS) -> list[dict[str, Any]
     }
     published = pd.read_csv(pairs_file(next(iter(studies.values()))))
     asked = [
-        (packing, kind, pair) for packing in range(packings) for kind in KINDS for pair in pairs_of(published, kind)
+        (packing, kind, pair)
+        for packing in range(packings)
+        for kind in kinds
+        for pair in pairs_of(published, kind)
+        if not pairs or pair in pairs
     ]
     asked.sort(key=lambda each: (each[0], each[2] != CALIBRATED))
     for packing, kind, pair in asked:
@@ -121,10 +130,13 @@ def publish(output: Path, runs: pd.DataFrame, published: pd.DataFrame) -> str:
 
 def main() -> None:
     """Simulate what is missing, then write table, figure and page."""
+    published = pd.read_csv(pairs_file(load_study("calibration")))
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}")
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
+    parser.add_argument("--tests", nargs="+", choices=KINDS, default=KINDS, help="else both")
+    parser.add_argument("--pairs", nargs="+", choices=published["row"], default=(), help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/rolling_models"))
     parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take what is finished")
@@ -132,10 +144,9 @@ def main() -> None:
     given = parser.parse_args()
     file = given.output / FILE
     if not given.redraw:
-        rows = wanted(given.packings, given.models)
+        rows = wanted(given.packings, given.models, given.tests, given.pairs)
         rows = finished(rows, given.folder) if given.finished else rows
         simulated(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
-    published = pd.read_csv(pairs_file(load_study("calibration")))
     print(publish(given.output, pd.read_csv(file), published), flush=True)
 
 

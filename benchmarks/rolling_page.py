@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.flow.bulk_test import RESPONSES
-from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, estimate
+from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
 from bulkwear.workflows.cases.calibration.responses import response_name
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 MODELS = ("cdt", "epsd2", "own_spin", "rvd")  # of docs/rolling_friction.md
 ALL_RESPONSES = tuple(name for responses in RESPONSES.values() for name in responses)
+NEAREST, APART, ALIKE, OPEN = "nearest", "yes", "no", "unknown"  # whether a model is told from the nearest one
 
 
 def differences(runs: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
@@ -38,21 +38,34 @@ def of_shared_pairs(found: pd.DataFrame) -> pd.DataFrame:
 
 def summary(found: pd.DataFrame) -> pd.DataFrame:
     """Return a row per response and model: how many pairs, mean difference with its interval over packings (a packing
-    counts by the mean of its pairs), and the root of the mean square of the pairs' differences.
+    counts by the mean of its pairs), the root of the mean square of the pairs' differences, and whether the mean
+    difference is told from that of the model of which that root is least.
 
     found: as from `differences`
     """
     rows = []
-    for (response, model), of in found.groupby(["response", "model"], sort=False):
-        mean = mean_difference(of)
-        low, high = mean.interval()
-        by_pair = of.groupby("pair")["difference"].mean()
-        rows.append(
-            {"response": response, "model": model, "pairs": len(by_pair), "packings": mean.packings}
-            | {"mean_difference": mean.value, "low": low, "high": high}
-            | {"root_mean_square": float(np.sqrt((by_pair**2).mean()))}
-        )
+    for response, of_response in found.groupby("response", sort=False):
+        means = {model: mean_difference(of) for model, of in of_response.groupby("model", sort=False)}
+        by_pair = of_response.groupby(["model", "pair"])["difference"].mean()
+        off = (by_pair**2).groupby("model").mean() ** 0.5
+        for model, mean in means.items():
+            low, high = mean.interval()
+            rows.append(
+                {"response": response, "model": model, "pairs": len(by_pair[model]), "packings": mean.packings}
+                | {"mean_difference": mean.value, "low": low, "high": high, "root_mean_square": float(off[model])}
+                | {"told_from_nearest": _told_from(means[off.idxmin()], mean)}
+            )
     return pd.DataFrame(rows)
+
+
+def _told_from(nearest: Estimate, mean: Estimate) -> str:
+    """Return whether the mean difference of a model is told from that of the nearest one."""
+    if mean is nearest:
+        return NEAREST
+    low, high = difference(mean, nearest).interval()
+    if math.isnan(low):
+        return OPEN
+    return ALIKE if low <= 0.0 <= high else APART
 
 
 def mean_difference(of: pd.DataFrame) -> Estimate:
@@ -77,6 +90,8 @@ def nearest(table: pd.DataFrame, response: str) -> str:
         said = f"the interval of the mean difference holds 0 for {', '.join(holding['model'])}"
     else:
         said = "no interval of a mean difference holds 0"
+    alike = rows.loc[rows["told_from_nearest"] == ALIKE, "model"]
+    said += f"; not told from it: {', '.join(alike)}" if len(alike) else ""
     return (
         f"{unit}: {best['model']} is nearest (off by {best['root_mean_square']:.2g}, root mean square of"
         f" {best['pairs']:.0f} pair{'s' if best['pairs'] > 1 else ''}; mean {best['mean_difference']:+.2g}),"
@@ -110,7 +125,8 @@ def results_page(runs: pd.DataFrame, published: pd.DataFrame) -> str:
             " whose rolling model it says no more than type A. The particles here are four times as large, and the"
             " opening of the draw-down test is an assumption, a slot: the discharge time tells of that first. Compared"
             " are the pairs that were simulated under every model of a response. Low and high: 95 % interval of the"
-            " mean difference over packings. `cdt` has 0.1 of the Rayleigh time, the others 0.25."
+            " mean difference over packings; told from the nearest: where the 95 % interval of the difference to that"
+            " model's mean does not hold 0. `cdt` has 0.1 of the Rayleigh time, the others 0.25."
         ),
         markdown(table.assign(response=table["response"].map(response_name))),
         "![Ours over what the source simulated](rolling_models.png)",

@@ -51,6 +51,13 @@ def test_every_published_pair_is_simulated_under_every_model(published):
     assert len({row["asked"]["seed"] for row in rows}) == 2
 
 
+def test_pairs_and_tests_are_chosen():
+    rows = wanted(3, ["cdt"], ["shear_box"], [CALIBRATED])
+    assert [(row["model"], row["test"], row["pair"], row["packing"]) for row in rows] == [
+        ("cdt", "shear_box", CALIBRATED, packing) for packing in (1, 2, 3)
+    ]
+
+
 def test_nothing_is_taken_for_finished_that_was_not_simulated(tmp_path):
     assert finished(wanted(1), tmp_path) == []
 
@@ -93,6 +100,21 @@ def test_the_nearest_model_is_named(published):
     assert "holds 0 for own_spin" in wide and "rvd" in wide
     one = nearest(summary(differences(runs_off_by(published, packings=1), published)), "draw_down_shear_angle_deg")
     assert one.endswith(f"{UNKNOWN}.")
+
+
+def test_models_within_the_scatter_are_not_told_apart(published):
+    """Welch's interval of two packings that are 1 degree apart reaches 3.0 degrees, with two degrees of freedom: from
+    0.5 off 4 off is told, 6 below too, 2 off is not. The sentence names it; of one packing nothing is told."""
+    runs = runs_off_by(published)
+    near = runs["model"] == "rvd"
+    runs.loc[near, "draw_down_shear_angle_deg"] -= OFF["rvd"] - 2.0
+    table = summary(differences(runs, published))
+    assert dict(zip(table["model"], table["told_from_nearest"], strict=True)) == {
+        **{"cdt": "yes", "epsd2": "yes", "own_spin": "nearest", "rvd": "no"}
+    }
+    assert nearest(table, "draw_down_shear_angle_deg").endswith("not told from it: rvd.")
+    one = summary(differences(runs_off_by(published, packings=1), published))
+    assert set(one["told_from_nearest"]) == {"nearest", "unknown"}
 
 
 def test_page_and_figure(tmp_path, published):
