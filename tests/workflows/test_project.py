@@ -140,6 +140,7 @@ def test_nothing_is_left_to_do_after_a_study(finished):
     assert len(list((finished["mine"] / f"results/{SECOND}/beds").iterdir())) == 1
 
 
+@pytest.mark.verify
 @pytest.mark.solver
 def test_killed_snakemake_started_again_gives_the_same_summary(finished, tmp_path):
     """kill -9 of everything during a wear cycle; a plain second call ends in the same summary.csv. Surfaces and bed are

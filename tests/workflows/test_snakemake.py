@@ -104,7 +104,6 @@ def test_ctrl_c_says_how_to_go_on(tmp_path):
     assert process.returncode != 0
     assert STOPPED in output
     assert "Traceback" not in output
-    finish(snakemake(folder, "results/tiny/beds/bed_1/bed.restart"))
 
 
 @pytest.mark.verify
@@ -172,11 +171,18 @@ def test_an_edited_template_renders_again(tmp_path):
     assert deck.read_text().endswith("# the end\n")
 
 
-def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):
-    """Without the program that its wear cycles need a study is planned and rendered, but no bed is filled for it."""
+@pytest.mark.verify
+def test_a_study_is_planned_without_a_solver(tmp_path):
+    """Without the program that its wear cycles need a study is planned all the same."""
     folder = workspace(tmp_path)
     (folder / "solver").unlink()
     finish(snakemake(folder, "tiny", "--dry-run"))
+
+
+def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):
+    """Without the program that its wear cycles need no bed is filled for a study."""
+    folder = workspace(tmp_path)
+    (folder / "solver").unlink()
     process = snakemake(folder, "tiny")
     output, _ = process.communicate(timeout=TIMEOUT)
     assert process.returncode != 0

@@ -247,7 +247,7 @@ def worn(tmp_path_factory):
     [
         *(("cohesion", name) for name in CHOICES["cohesion"][1:2]),
         *(pytest.param("cohesion", name, marks=pytest.mark.verify) for name in CHOICES["cohesion"][2:]),
-        HOOKE,
+        pytest.param(*HOOKE, marks=pytest.mark.verify),
     ],
 )
 def test_a_sample_slides_under_another_model(worn, key, model):
