@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import SurfaceMesh, read_surface, worn_faces
 from bulkwear.postproc.readers.mesh_loads import read_mesh_loads
 from bulkwear.postproc.wear.thickness import through_phrase
-from bulkwear.workflows.engine.case import CycleError
+from bulkwear.workflows.engine.case import CycleError, Piece
 from bulkwear.workflows.engine.chain import SURFACE, WORN_THROUGH, Chain
 from bulkwear.workflows.engine.ledgers import producer
 from bulkwear.workflows.engine.schedule import Span
@@ -28,8 +29,9 @@ def account_and_wear(chain: Chain, span: Span, folder: Path, surface: SurfaceMes
     """
     source, case = producer(chain.parameters), chain.case
     ledger_bytes = source.written_bytes(folder)
-    ledger = account(chain, span, folder, surface)
-    wear_history(chain, span, folder, surface, ledger).to_csv(folder / HISTORY, index=False)
+    pieces = case.pieces(chain.parameters, span, surface)
+    ledger = account(chain, span, folder, pieces)
+    wear_history(chain, span, folder, surface, pieces, ledger).to_csv(folder / HISTORY, index=False)
     case.forces(chain.parameters, span, folder).to_csv(folder / case.forces_table, index=False)
     own = case.own_columns(chain.parameters, span, folder)
     if fault := case.cycle_fault(chain.parameters, own):
@@ -51,14 +53,15 @@ def worn_through_words(nodes: int, worn: SurfaceMesh) -> str:
     return through_phrase(worn) or f"worn through at {nodes} nodes, which remeshing has merged with their neighbours"
 
 
-def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.DataFrame:
+def account(chain: Chain, span: Span, folder: Path, pieces: Sequence[Piece]) -> pd.DataFrame:
     """Write a cycle's ledger, the solver's own measures beside it, and return it. Raises the producer's errors.
 
-    It has a row per triangle that the solver got, under its number on the whole surface.
+    It has a row per triangle that the solver got, under its number on the whole surface; pieces: the meshes of these,
+    as from `Case.pieces`.
     """
     last = chain.case.piece_ends(chain.parameters, chain.bed, span)[-1]
     ledgers = []
-    for piece in chain.case.pieces(chain.parameters, span, surface):
+    for piece in pieces:
         columns = producer(chain.parameters).columns(chain, span, folder, piece)
         own = read_mesh_loads(folder / f"{piece.loads}_{last}.vtk", len(piece.triangles))
         ledgers.append(pd.DataFrame({"triangle": piece.triangles[own.pop("triangle")], **columns, **own}))
@@ -70,14 +73,16 @@ def account(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh) -> pd.
     return ledger
 
 
-def wear_history(chain: Chain, span: Span, folder: Path, surface: SurfaceMesh, ledger: pd.DataFrame) -> pd.DataFrame:
+def wear_history(
+    chain: Chain, span: Span, folder: Path, surface: SurfaceMesh, pieces: Sequence[Piece], ledger: pd.DataFrame
+) -> pd.DataFrame:
     """Return the wear of a cycle from look to look, without reading anything between two steps twice.
 
     A row per stretch: cycle, time_s and the case's travel at its end, and of the stretch sliding_work_J,
     worn_volume_m3, the case's columns by label and mean_normal_force_N, as in wear.csv, whose row they add up to.
     Raises the producer's errors.
     """
-    parameters, pieces = chain.parameters, chain.case.pieces(chain.parameters, span, surface)
+    parameters = chain.parameters
     steps, sums = [0], []
     looks = [producer(parameters).history(chain, span, folder, piece) for piece in pieces]
     for together in zip(*looks, strict=True):

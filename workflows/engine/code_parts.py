@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -36,6 +36,9 @@ ASIDE = {  # files that change no number of a run
 ASIDE_OF_CASES = {"checks.py", "evaluation.py", "machine_checks.py", "study.py", "volume.py", "work.py"}
 ROOTS = ("case.py", "decks.py", "driver.py", "simulations.py")  # of a case's folder, whence its code is found
 PACKAGE_NAME = "bulkwear"
+STATEMENTS = ("body", "orelse", "finalbody")  # of a statement, where it holds others
+BLOCKS = (*STATEMENTS, "handlers", "cases")
+SIMPLE = (ast.Expr, ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Return, ast.Import, ast.ImportFrom, ast.Raise)
 # of Python: texts, within which a # begins no comment, and comments
 TEXT_OR_COMMENT = re.compile(
     r"""("{3}|'{3})(?:\\.|(?!\1).)*\1|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|\#[^\n]*""", re.DOTALL
@@ -47,7 +50,12 @@ def part_hashes(cases: Iterable[str], root: Path = PACKAGE) -> dict[str, str]:
 
     root: folder of the package, or of another version of it
     """
-    return {part: _hash_of(root, files) for part, files in part_files(tuple(cases), root).items()}
+    return hashes_of(part_files(tuple(cases), root), root)
+
+
+def hashes_of(files: Mapping[str, Iterable[str]], root: Path = PACKAGE) -> dict[str, str]:
+    """Return {part: hash} of parts whose files are known, as from `part_files`."""
+    return {part: _hash_of(root, names) for part, names in files.items()}
 
 
 def part_files(cases: Iterable[str], root: Path = PACKAGE) -> dict[str, list[str]]:
@@ -81,13 +89,20 @@ def case_files(case: str, root: Path = PACKAGE) -> list[str]:
 
 def _imported(path: Path, root: Path) -> Iterator[Path]:
     """Yield the files of the package that a module imports, at its top or within its functions, for types alone not."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for_types = {each for node in ast.walk(tree) if _is_for_types(node) for each in ast.walk(node)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node not in for_types and (node.module or "").startswith(PACKAGE_NAME):
-            folder = root.joinpath(*node.module.split(".")[1:])
-            names = [folder.with_suffix(".py"), *(folder / f"{name.name}.py" for name in node.names)]
-            yield from (file for file in names if file.is_file())
+    for node in _imports(ast.parse(path.read_text(encoding="utf-8")).body):
+        folder = root.joinpath(*node.module.split(".")[1:])
+        names = [folder.with_suffix(".py"), *(folder / f"{name.name}.py" for name in node.names)]
+        yield from (file for file in names if file.is_file())
+
+
+def _imports(block: Iterable[ast.AST]) -> Iterator[ast.ImportFrom]:
+    """Yield the imports from the package in a block of statements and in the blocks within it, for types alone not."""
+    for each in block:
+        if isinstance(each, ast.ImportFrom) and (each.module or "").startswith(PACKAGE_NAME):
+            yield each
+        elif not isinstance(each, SIMPLE) and not _is_for_types(each):
+            for name in BLOCKS:
+                yield from _imports(getattr(each, name, ()))
 
 
 def _is_for_types(node: ast.AST) -> bool:
@@ -118,10 +133,15 @@ def essence(text: str) -> str:
     return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
-def _docstrings(node: ast.AST) -> Iterator[ast.expr]:
+def _docstrings(node: ast.Module | ast.stmt) -> Iterator[ast.expr]:
     """Yield what documents a module, its classes and functions; a text below a constant counts as such."""
-    for each in ast.iter_child_nodes(node):
-        if isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant) and isinstance(each.value.value, str):
-            yield each.value
-        elif isinstance(each, ast.stmt):
-            yield from _docstrings(each)
+    for name in STATEMENTS:
+        for each in getattr(node, name, ()):
+            if (
+                isinstance(each, ast.Expr)
+                and isinstance(each.value, ast.Constant)
+                and isinstance(each.value.value, str)
+            ):
+                yield each.value
+            elif not isinstance(each, SIMPLE):
+                yield from _docstrings(each)

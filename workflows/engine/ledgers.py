@@ -64,21 +64,25 @@ def producer(parameters: Mapping[str, Any]) -> Producer:
 
 def summed_by_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Columns:
     """Return the ledger that the solver has summed. Raises LoadLedgerError where it is not that of this cycle."""
-    return _columns_of_file(folder / mesh.ledger, chain, span, mesh, span.solver_steps)
+    return _columns_of_file(folder / mesh.ledger, chain, span, mesh, span.solver_steps, _corners(mesh))
 
 
 def history_of_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Iterator[tuple[int, Columns]]:
     """Yield steps of a cycle and what the solver had summed until then. Raises LoadLedgerError."""
+    corners = _corners(mesh)
     for steps in sorted(int(path.suffix[1:]) for path in folder.glob(f"{mesh.ledger}.*")):
-        yield steps, _columns_of_file(folder / f"{mesh.ledger}.{steps}", chain, span, mesh, steps)
+        yield steps, _columns_of_file(folder / f"{mesh.ledger}.{steps}", chain, span, mesh, steps, corners)
 
 
-def _columns_of_file(path: Path, chain: Chain, span: Span, mesh: Mesh, steps: int) -> Columns:
+def _columns_of_file(path: Path, chain: Chain, span: Span, mesh: Mesh, steps: int, corners: np.ndarray) -> Columns:
     loads = read_load_ledger(path, mesh=f"{mesh.name}_{span.cycle}", n_triangles=len(mesh.triangles), steps=steps)
+    return columns_of_solver(loads.columns, corners, chain.case.kernels(chain.parameters))
+
+
+def _corners(mesh: Mesh) -> np.ndarray:
+    """Return the corners (m, 3, 3) m of a mesh's facets as the solver got them, in the frame of its ledger."""
     facets = mesh.frame or mesh.mesh
-    return columns_of_solver(
-        loads.columns, stl_corners(facets.points, facets.triangles), chain.case.kernels(chain.parameters)
-    )
+    return stl_corners(facets.points, facets.triangles)
 
 
 def summed_from_dumps(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Columns:

@@ -1,7 +1,7 @@
 """Room in the solver's lists of neighbours, from the sizes of particles and of the triangles that they touch.
 
 The solver keeps one list of particles and one of triangles per particle, on pages of fixed size, and ends a run in
-which one does not fit. Pages take memory as far as they are filled, so ample ones cost nothing.
+which one does not fit. Pages take memory as far as they are filled; what ample ones cost: docs/decisions.md.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from typing import Any
 from bulkwear.postproc.wear import WEAR_VERSION
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.cases import case_folders
-from bulkwear.workflows.engine.code_parts import part_files, part_hashes
+from bulkwear.workflows.engine.code_parts import hashes_of, part_files
 from bulkwear.workflows.engine.machine import interpreter, machine_facts, program_hashes
 from bulkwear.workflows.engine.own_code import code_of_case
 from bulkwear.workflows.engine.project import CASES_OF_PACKAGE, PACKAGE
@@ -51,14 +51,15 @@ def package_cases(case: Case) -> tuple[str, ...]:
 @cache
 def code_of_cases(cases: tuple[str, ...]) -> dict[str, Any]:
     """Return `simulating_code` of the package's own cases by their names."""
-    files = [file for found in part_files(cases).values() for file in found]
+    parts = part_files(cases)
+    files = [file for found in parts.values() for file in found]
     commit = package_commit()
     return {
         "version": package_version(),
         "wear_version": WEAR_VERSION,
         "commit": commit,
         "changed": bool(git(PACKAGE, "status", "--porcelain", "--", *files)) if commit else None,
-        "parts": part_hashes(cases),
+        "parts": hashes_of(parts),
     }
 
 

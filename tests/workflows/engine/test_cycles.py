@@ -290,7 +290,7 @@ def first_ledger(chain, finished) -> pd.DataFrame:
     span = first_span(chain.parameters)
     write_cycle(chain, span, folder, surface)
     cycles.simulate(chain, span, folder, {f"sample_{span.cycle}": len(surface.triangles)}, Progress(chain.name, 1))
-    return account(chain, span, folder, surface)
+    return account(chain, span, folder, chain.case.pieces(chain.parameters, span, surface))
 
 
 def test_two_ranks_write_the_same_ledger(finished, tmp_path):
