@@ -111,7 +111,11 @@ def _uses(template: str, words: Mapping[str, Any]) -> Uses:
     """
     environment = _environment(template_folders())
     stamp = tuple(sorted(_written(environment.loader.searchpath)))
-    return _kept_uses(environment, template, _choices(words), _choices(words.get(SOLVER, {})), stamp)
+    chosen = [(name, value) for name, value in words.items() if name != SOLVER]
+    chosen += [(f"{SOLVER}.{name}", value) for name, value in words.get(SOLVER, {}).items()]
+    choosing = _kept_choosing(environment, template, stamp)
+    decided = sorted(each for each in chosen if each[0] in choosing and isinstance(each[1], str | int))
+    return _kept_uses(environment, template, tuple(decided), stamp)
 
 
 def _written(folders: Iterable[str]) -> Iterator[tuple[str, int]]:
@@ -124,16 +128,19 @@ def _written(folders: Iterable[str]) -> Iterator[tuple[str, int]]:
                     yield path, os.stat(path).st_mtime_ns
 
 
-def _choices(words: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
-    """Return the words that can choose a branch: those that are no numbers with a fraction, lists or blocks."""
-    return tuple(sorted((name, value) for name, value in words.items() if isinstance(value, str | int)))
+@lru_cache(maxsize=64)
+def _kept_choosing(environment: jinja2.Environment, template: str, stamp: tuple[tuple[str, int], ...]) -> set[str]:
+    """Return the names of the words that choose a branch in a template or its partials."""
+    trees = _pruned_trees(environment, template, {})
+    tests = (_choice(branch) for tree in trees.values() for branch in tree.find_all(jinja2.nodes.If))
+    return {test[0] for test in tests if test}
 
 
-@lru_cache(maxsize=256)  # a study asks for the same few templates once per run; `stamp` tells edited files
+@lru_cache(maxsize=256)  # every run and cycle asks for the same few; `stamp` tells edited files
 def _kept_uses(
-    environment: jinja2.Environment, template: str, chosen: tuple, of_solver: tuple, stamp: tuple[tuple[str, int], ...]
+    environment: jinja2.Environment, template: str, chosen: tuple, stamp: tuple[tuple[str, int], ...]
 ) -> Uses:
-    trees = _pruned_trees(environment, template, {**dict(chosen), SOLVER: dict(of_solver)})
+    trees = _pruned_trees(environment, template, dict(chosen))
     settings: dict[str, str] = {}
     for tree in trees.values():
         for name, chosen_by in _solver_settings(tree):
@@ -145,7 +152,7 @@ def _kept_uses(
 def _pruned_trees(
     environment: jinja2.Environment, template: str, words: Mapping[str, Any]
 ) -> dict[str, jinja2.nodes.Template]:
-    """Return {file name: syntax tree} of a template and its partials, see `_uses`."""
+    """Return {file name: syntax tree} of a template and its partials, see `_uses`; words by the names of `_choice`."""
     trees: dict[str, jinja2.nodes.Template] = {}
     names = [f"{template}.in.j2"]
     for name in names:
@@ -165,17 +172,24 @@ def _pruned_trees(
 
 def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> None:
     """Empty the part of a branch that `words` do not take."""
+    test = _choice(branch)
+    if test and test[0] in words:
+        name, operator, value = test
+        taken = TESTS[operator](words[name], value)
+        branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
+
+
+def _choice(branch: jinja2.nodes.If) -> tuple[str, str, Any] | None:
+    """Return (name or solver.name, operator, value) of a branch that a word decides; None of any other one."""
     test = branch.test
     if not isinstance(test, jinja2.nodes.Compare) or len(test.ops) != 1 or test.ops[0].op not in TESTS:
-        return
+        return None
     if not isinstance(test.ops[0].expr, jinja2.nodes.Literal):
-        return
-    name, held = test.expr, words
-    if _is_solver_setting(name):
-        name, held = jinja2.nodes.Name(name.attr, "load"), words.get(SOLVER, {})
-    if isinstance(name, jinja2.nodes.Name) and name.name in held:
-        taken = TESTS[test.ops[0].op](held[name.name], test.ops[0].expr.as_const())
-        branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
+        return None
+    of_solver, name = _is_solver_setting(test.expr), test.expr
+    if not of_solver and not isinstance(name, jinja2.nodes.Name):
+        return None
+    return f"{SOLVER}.{name.attr}" if of_solver else name.name, test.ops[0].op, test.ops[0].expr.as_const()
 
 
 def _is_solver_setting(node: jinja2.nodes.Node) -> bool:
