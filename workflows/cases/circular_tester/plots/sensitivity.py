@@ -16,7 +16,7 @@ from bulkwear.postproc.plots.style import LARGEST_HEIGHT, SMALLEST_FONT, new_fig
 FARTHEST = 2.0  # doublings from the nearest value that agrees at which colours end
 DARK = 0.6  # -, of FARTHEST: from there on text is white
 SHOWN = ("value", "over", "reached")  # columns of the table
-LONGEST_WORD = 6  # characters that fit under a cell; longer ones are smaller
+LONGEST_WORD = 5  # characters, bold, that fit under a cell; longer ones are smaller
 LOOK = {"fontsize": 8.0, "ha": "center", "va": "center"}  # of the text of cells
 
 
