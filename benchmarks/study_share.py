@@ -4,8 +4,9 @@ solver took over its forecast, by the rates of results/<study>/forecast.csv.
 Each job ends its log with its processor time and that of the programs it ran; of jobs that simulate these are the
 solver. Wall times tell the share of studies that earlier versions ran, and mean little where a machine is shared. Of
 wear cycles the share is told by themselves too, also of a run that was stopped after some: in its folder each cycle
-keeps what solver and driver took. `python -m benchmarks.study_share FOLDER` prints a line per study of another folder
-of results.
+keeps what solver and driver took. Where a study is told by its cycles alone, one run of it was simulated as far; its
+first cycle holds what a run does once, as loading what is compiled. `python -m benchmarks.study_share FOLDER` prints a
+line per study of another folder of results.
 """
 
 from __future__ import annotations
