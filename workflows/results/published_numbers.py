@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -61,18 +62,21 @@ def read_published(path: Path) -> pd.DataFrame:
     return table.assign(factor=pd.to_numeric(table["factor"], errors="coerce"))
 
 
-def known_differences(path: Path | None = None) -> list[dict[str, str]]:
-    """Return the lines of differences.yaml. Raises ConfigError for one with keys that a line does not have."""
+def known_differences(path: Path | None = None) -> list[dict[str, Any]]:
+    """Return the lines of differences.yaml, `page` a tuple of names. Raises ConfigError for one with keys that a line
+    does not have.
+    """
     path = Path(path or current_project().path(DIFFERENCES))
     lines = read_yaml(path, current_project().folder).values["differences"]
     for number, line in enumerate(lines, 1):
         if not NEEDED <= line.keys() <= NEEDED | {SHOWN}:
             found, allowed = ", ".join(line), ", ".join(sorted(NEEDED))
             raise ConfigError(f"{path.name}: line {number} has {found}, allowed are {allowed} and, if any, {SHOWN}.")
-    return lines
+    named = [(line["page"],) if isinstance(line["page"], str) else tuple(line["page"]) for line in lines]
+    return [{**line, "page": pages} for line, pages in zip(lines, named, strict=True)]
 
 
-def with_causes(page: str, table: pd.DataFrame, known: Sequence[Mapping[str, str]]) -> pd.DataFrame:
+def with_causes(page: str, table: pd.DataFrame, known: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """Return a page's table with a reason in every row that differs from what is published.
 
     known: as from `known_differences`
@@ -84,7 +88,7 @@ def with_causes(page: str, table: pd.DataFrame, known: Sequence[Mapping[str, str
     return table.assign(reason=reasons)
 
 
-def _cause(page: str, finding: str, known: Sequence[Mapping[str, str]]) -> str:
+def _cause(page: str, finding: str, known: Sequence[Mapping[str, Any]]) -> str:
     for line in known:
         if page.startswith(line["page"]) and finding.startswith(line["finding"]):
             return f"{line['cause']} ([shown]({line[SHOWN]}))" if SHOWN in line else f"candidate: {line['cause']}"

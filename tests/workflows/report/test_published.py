@@ -157,7 +157,7 @@ def test_differences_have_a_reason_or_are_said_to_have_none():
         }
     )
     known = [
-        {"page": "a", "finding": "critical", "cause": "sizes", "shown": "sizes.md"},
+        {"page": ("z", "a"), "finding": "critical", "cause": "sizes", "shown": "sizes.md"},
         {"page": "", "finding": "c", "cause": "beds"},
     ]
     found = with_causes("a_results_quick.md", table, known)["reason"]
@@ -169,7 +169,9 @@ def test_lines_of_differences_are_of_pages_that_there_are(tmp_path):
     """Those that measured a cause too; a line with another key is refused."""
     pages = [path.name for path in DOCS.glob("*.md")]
     for line in known_differences():
-        assert any(page.startswith(line["page"]) for page in pages) and line.get("shown", PAGE) in pages
+        for name in line["page"]:
+            assert any(page.startswith(name) for page in pages)
+        assert line.get("shown", PAGE) in pages
     (tmp_path / "differences.yaml").write_text("differences: [{page: a, finding: b, why: c}]\n")
     with pytest.raises(
         ConfigError, match=r"line 1 has page, finding, why, allowed are cause, finding, page and, if any,"
