@@ -53,30 +53,16 @@ def test_a_change_touches_few_files(patch):
 
 
 @pytest.mark.solver
-def test_all_changes_work_in_one_copy(tmp_path):
-    """Applied to a copy, one after another, with the solver's program built again, the tests of all pass."""
-    tests_of_changes_pass(PATCHES, tmp_path)
-
-
-@pytest.mark.verify
-@pytest.mark.solver
 @pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.stem)
 def test_a_change_works_in_a_copy(patch, tmp_path):
-    """Applied alone, with the solver's program built again where it is concerned, its own tests pass."""
-    tests_of_changes_pass([patch], tmp_path)
-
-
-def tests_of_changes_pass(patches, folder):
-    """Apply patches to a copy in a folder, and run their tests there."""
-    copy = copy_of_the_repository(folder)
+    """Applied to a copy, with the solver's program built again where it is concerned, its own tests pass."""
+    copy = copy_of_the_repository(tmp_path)
     subprocess.run(["git", "init", "--quiet"], cwd=copy, check=True)
-    for patch in patches:
-        subprocess.run(["git", "apply", str(patch)], cwd=copy, check=True)
-    changed = [name for patch in patches for name in files_of(patch)]
-    if any(name.startswith("solver/") for name in changed):
+    subprocess.run(["git", "apply", str(patch)], cwd=copy, check=True)
+    if any(name.startswith("solver/") for name in files_of(patch)):
         subprocess.run(["make", "-s", "-C", "solver"], cwd=copy, check=True, capture_output=True)
         assert (copy / PROGRAM).stat().st_mtime > (REPOSITORY / PROGRAM).stat().st_mtime
-    tests = [name for name in changed if name.startswith("tests/") and Path(name).name.startswith("test_")]
+    tests = [name for name in files_of(patch) if name.startswith("tests/") and Path(name).name.startswith("test_")]
     command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *tests]
     done = subprocess.run(command, cwd=copy, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-4000:]
