@@ -176,7 +176,7 @@ def test_a_study_is_planned_without_a_solver(tmp_path):
     """Without the program that its wear cycles need a study is planned all the same."""
     folder = workspace(tmp_path)
     (folder / "solver").unlink()
-    finish(snakemake(folder, "tiny", "--dry-run"))
+    assert planned_jobs(finish(snakemake(folder, "tiny", "--dry-run")))["worn_run"] > 0
 
 
 def test_a_missing_solver_is_one_sentence_before_any_job(tmp_path):

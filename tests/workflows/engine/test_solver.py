@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from collections import namedtuple
@@ -123,3 +124,17 @@ def test_a_full_disk_is_recognised_behind_other_faults():
     except RuntimeError as fault:
         assert disk.is_full(fault)
     assert not disk.is_full(OSError(disk.errno.EACCES, "no"))
+
+
+@pytest.mark.parametrize("handles", [True, False], ids=["by the kernel's handle", "by looking"])
+def test_the_end_of_a_process_is_seen(monkeypatch, handles):
+    """Where the kernel gives a handle, as here, and where it gives none; what still runs has not ended."""
+    if not handles:
+        monkeypatch.delattr(os, "pidfd_open")
+    monkeypatch.setattr(solver, "POLL_SECONDS", 0.01)
+    with subprocess.Popen(["cat"], stdin=subprocess.PIPE) as process, solver._handle(process) as handle:
+        assert (handle is not None) == handles
+        assert not solver._ended(process, handle)
+        process.stdin.close()
+        monkeypatch.setattr(solver, "POLL_SECONDS", 30.0)
+        assert solver._ended(process, handle) and process.returncode == 0
