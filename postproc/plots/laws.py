@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -28,58 +29,71 @@ from bulkwear.postproc.tables.display import MICROMETRES
 from bulkwear.postproc.tables.law_volumes import LawMap
 
 PANELS = {
-    "over_archard": "Volume over Archard's (-)",
-    "over_first": "Volume over that of the first (-)",
-    "overlap": "Wear where Archard's lies (-)",
-    "front_share": "Share on fronts of bumps (-)",
+    "over_archard": "Volume over\nArchard's (-)",
+    "over_first": "Volume over that\nof the first (-)",
+    "overlap": "Wear where\nArchard's lies (-)",
+    "front_share": "Share on fronts\nof bumps (-)",
 }
 RATIOS = ("over_archard", "over_first")
-MOST_ON_LINEAR = (
-    10.0  # -, largest over smallest ratio; beyond it bars go up and down from 1 on an axis of powers of ten
-)
+MOST_ON_LINEAR = 10.0  # -, largest over smallest ratio; beyond it bars go both ways from 1 on an axis of powers of ten
 TICK_ROOM = 1.1  # times the ends of the bars, how far ticks reach
 FEW_DECADES = 1.5  # within which an axis of powers of ten has ticks at three times these too
 GROUP = 0.8  # of the distance between settings that bars fill
 TOP_SHARE = 0.99  # of the area: more worn spots share the top colour
-FEW_PLACES = 4  # along the axis whose names stand level
 
 
 def law_bars(table: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw a panel per measure, in it a group of bars per setting, one per law, with 95 % intervals over packings.
+    """Draw a panel per measure side by side, in it a group of bars per setting, one per law, from top to bottom, with
+    95 % intervals over packings.
 
     table: as from `tables.law_volumes.laws_of_settings`; measures without a value have no panel
     """
     names = [name for name in PANELS if table[name].notna().any()]
     figure = new_figure(remarks, LARGEST_HEIGHT)
-    grid = figure.subplots(max(len(names), 1), 1, sharex=True, squeeze=False)[:, 0]
-    words = [column for column in ("setting", "surface", "part") if column in table]
-    places = table[words].fillna("").astype(str).agg(lambda row: " ".join(filter(None, row)), axis=1)
-    places = places.str.replace("_", " ")
+    grid = figure.subplots(1, max(len(names), 1), sharey=True, squeeze=False)[0]
+    places = _places(table)
     order, laws = list(dict.fromkeys(places)), list(dict.fromkeys(table["law"]))
-    width = GROUP / len(laws)
+    thick = GROUP / len(laws)
     for axes, name in zip(grid, names, strict=False):
-        positive = table.loc[table[name] > 0.0, name]
-        far = name in RATIOS and positive.max() > MOST_ON_LINEAR * positive.min()
-        if far:
-            axes.set_yscale("log")
-            axes.set_yticks(_log_ticks(positive.min(), positive.max()))
-            axes.yaxis.set(major_formatter="{x:g}", minor_formatter=NullFormatter())
-            axes.axhline(1.0, color="black", linewidth=0.8)
+        base = _ratios_from_one(axes, table[name]) if name in RATIOS else 0.0
         for number, law in enumerate(laws):
             rows = table[(table["law"] == law) & table[name].notna()]
-            at = np.array([order.index(place) for place in places[rows.index]]) + (number + 0.5) * width - GROUP / 2.0
+            at = np.array([order.index(place) for place in places[rows.index]]) + (number + 0.5) * thick - GROUP / 2.0
             value = rows[name].to_numpy()
             ends = np.abs(rows[[f"{name}_low", f"{name}_high"]].to_numpy(float).T - value)
-            known = {"yerr": ends} if np.isfinite(ends).any() else {}
+            known = {"xerr": ends} if np.isfinite(ends).any() else {}
             look = {"color": SERIES_COLOURS[number % len(SERIES_COLOURS)], "label": law.replace("_", " ")}
-            base = 1.0 if far else 0.0
-            axes.bar(at, value - base, width, base, error_kw={"elinewidth": 0.9, "capsize": 2}, **known, **look)
-        axes.set_title(PANELS[name], loc="left", fontsize=SMALLEST_FONT)  # panels are too low for words at their side
-        if not far:
-            axes.set_ylim(bottom=0.0)
-    grid[-1].set_xticks(range(len(order)), order, rotation=0 if len(order) <= FEW_PLACES else 90)
+            axes.barh(at, value - base, thick, base, error_kw={"elinewidth": 0.9, "capsize": 2}, **known, **look)
+        axes.set_title(PANELS[name], loc="left", fontsize=SMALLEST_FONT)
+        axes.tick_params(axis="y", length=0)
+        axes.grid(visible=False, axis="y")
+        if base == 0.0:
+            axes.set_xlim(left=0.0)
+    grid[0].set_yticks(range(len(order)), order)
+    grid[0].set_ylim(len(order) - 0.5, -0.5)  # the first on top
     figure.legend(*named_once(grid), loc="outside upper left", ncols=len(laws))
     return figure
+
+
+def _places(table: pd.DataFrame) -> pd.Series:
+    """Return what stands beside each row's bars: setting and, where a setting has several, surface or part."""
+    words = [column for column in ("setting", "surface", "part") if column in table]
+    told = table[words].fillna("").astype(str)
+    if told.drop_duplicates()["setting"].is_unique:
+        told = told[["setting"]]
+    return told.agg(lambda row: " ".join(filter(None, row)), axis=1).str.replace("_", " ")
+
+
+def _ratios_from_one(axes: Axes, ratios: pd.Series) -> float:
+    """Return where bars of ratios begin: at 0, or at 1 on an axis of powers of ten that they ask for."""
+    positive = ratios[ratios > 0.0]
+    if not positive.max() > MOST_ON_LINEAR * positive.min():
+        return 0.0
+    axes.set_xscale("log")
+    axes.set_xticks(_log_ticks(positive.min(), positive.max()))
+    axes.xaxis.set(major_formatter="{x:g}", minor_formatter=NullFormatter())
+    axes.axvline(1.0, color="black", linewidth=0.8)
+    return 1.0
 
 
 def _log_ticks(least: float, most: float) -> list[float]:

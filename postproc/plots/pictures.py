@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -21,12 +22,14 @@ from bulkwear.postproc.plots.scene import (
     trimmed,
     worn_side,
 )
-from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, new_figure, picture, scaled
+from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, SMALLEST_FONT, WIDTH, new_figure, picture, scaled
 from bulkwear.postproc.tables.depths import area_quantile, depth_quantity, face_depth
 from bulkwear.postproc.tables.display import MICROMETRES, SQUARE_MILLIMETRES, in_display_units
 
-ROWS_PER_LINE = 7  # design rows side by side in small multiples
-SINGLES_PER_LINE = 3  # of them where each has one run
+SCALE_ROOM = 1.1  # inches, of a figure's width for its colour bar
+TITLE_LINE = 0.16  # inches, of a line of a title
+TITLE_CHARACTERS = 14.0  # of a title per inch
+TITLE_LINES = 3  # of a title at most
 MAPS_HEIGHT = 4.4  # inches, of a figure with maps side by side
 MOST_VIEWS = 4  # surfaces obliquely side by side
 TOP_SHARE = 0.99  # of the worn area: deeper spots share the top colour
@@ -57,10 +60,11 @@ def worn_surface(
 
     meshes: by run; runs: run, row, surface; depths: as from `tables.depths.depth_table`; quantity: what the colour is.
     """
-    figure = new_figure(remarks, LARGEST_HEIGHT)
+    several = runs["row"].nunique() > 1
+    figure = new_figure(remarks, LARGEST_HEIGHT, compressed=several)
     limits, bounds = colour_limits(depths), common_bounds(meshes.values())
     unit, ticks = scaled("µm", limits[1])
-    if runs["row"].nunique() > 1:
+    if several:
         grid = _small_multiples(figure, meshes, runs, deformed, limits)
         _colour_bar(figure, grid, limits, f"{quantity} ({unit})", ticks)
         return figure
@@ -136,21 +140,45 @@ def _small_multiples(
     """Draw all runs from above without skirt, those of a design row below each other; return the axes."""
     rows, lines = list(dict.fromkeys(runs["row"])), runs.groupby("row").cumcount()
     deep = int(lines.max()) + 1
-    blocks = math.ceil(len(rows) / (ROWS_PER_LINE if deep > 1 else SINGLES_PER_LINE))
-    columns = math.ceil(len(rows) / blocks)
-    grid = figure.subplots(blocks * deep, columns, squeeze=False)
+    plans = {run: surface_plan(meshes[run], deformed, limits, 300, skirt=False)[0] for run in runs["run"]}
+    height, width = np.max([pixels.shape[:2] for pixels in plans.values()], axis=0)
+    room = figure.get_figheight() * figure.get_layout_engine().get()["rect"][3]
+    columns = _columns(rows, deep, width / height, (WIDTH - SCALE_ROOM, room))
+    wrapped = _wrapped(rows, columns, WIDTH - SCALE_ROOM)
+    grid = figure.subplots(math.ceil(len(rows) / columns) * deep, columns, squeeze=False)
     for axes in grid.ravel():
         axes.set_axis_off()
     for run, line in zip(runs.itertuples(), lines, strict=True):
         block, column = divmod(rows.index(run.row), columns)
         axes = grid[block * deep + line, column]
-        picture(axes, surface_plan(meshes[run.run], deformed, limits, 300, skirt=False)[0])
+        picture(axes, plans[run.run])
         if line == 0:
-            axes.set_title(run.row, fontsize=SMALLEST_FONT, pad=3)
+            axes.set_title(wrapped[run.row], fontsize=SMALLEST_FONT, pad=3)
         if column == 0 and deep > 1:
             place = {"rotation": 90, "va": "center", "ha": "right", "fontsize": SMALLEST_FONT}
             axes.text(-0.06, 0.5, run.surface, transform=axes.transAxes, **place)
     return grid
+
+
+def _columns(rows: Sequence[str], deep: int, aspect: float, room: tuple[float, float]) -> int:
+    """Return how many columns of pictures make them largest, their titles included.
+
+    deep: pictures of a row below each other; aspect: width over height of a picture; room: width, height, inches
+    """
+
+    def height(columns: int) -> float:
+        lines = max(name.count("\n") + 1 for name in _wrapped(rows, columns, room[0]).values())
+        blocks = math.ceil(len(rows) / columns)
+        return min(room[0] / columns / aspect, (room[1] / blocks - lines * TITLE_LINE) / deep)
+
+    return max(range(1, len(rows) + 1), key=height)
+
+
+def _wrapped(names: Sequence[str], columns: int, width: float) -> dict[str, str]:
+    """Return names in as many lines as their column asks for; width: inches, of all columns."""
+    letters = max(int(width / columns * TITLE_CHARACTERS), 1)
+    wide = [max(letters, math.ceil(len(name) / TITLE_LINES)) for name in names]
+    return {name: "\n".join(textwrap.wrap(name, most)) for name, most in zip(names, wide, strict=True)}
 
 
 def wear_maps(

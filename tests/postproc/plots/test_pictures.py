@@ -1,5 +1,7 @@
 """Rendered pictures: right place, right colour, right scale. One sample is rendered for all tests."""
 
+from itertools import combinations
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -16,6 +18,7 @@ REMARKS = ["particles at scale 4", "sample 40 x 40 mm of 200 x 200 mm"]
 WIDTH = 0.04  # m
 DEPTH = 2e-6  # m
 COLOUR_TOLERANCE = 0.12  # -, of full scale: light dims the colours of the map a little
+FILLED = 0.45  # -, of a page by its pictures, at least
 PIXEL = 1.5  # pixels: edges fall within one and are drawn with a line
 
 
@@ -115,6 +118,20 @@ def test_many_rows_share_one_scale(mesh):
     first, second = (axes.images[0].get_array() for axes in figure.axes[:2])
     assert (np.asarray(first) != np.asarray(second)).any()
     assert np.ptp(first[first.shape[0] // 2, -3].astype(float)) > 40.0
+
+
+def test_names_of_many_settings_stay_in_their_columns(mesh):
+    """Pictures of eighteen settings with long names are as large as the page lets them be, and no name is covered."""
+    names = [f"friction-rolling-thin-convex-{k}" for k in range(18)]
+    runs = pd.DataFrame({"run": names, "row": names, "surface": "convex"})
+    meshes = dict.fromkeys(names, mesh)
+    figure = pictures.worn_surface(meshes, runs, True, depth_table(meshes, True), "Wear depth", REMARKS)
+    figure.draw_without_rendering()
+    *views, bar = figure.axes
+    boxes = [axes.title.get_window_extent() for axes in views] + [bar.get_window_extent()]
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+    assert [axes.title.get_text().replace("\n", "") for axes in views] == names
+    assert 18 * views[0].get_window_extent().width ** 2 > FILLED * figure.bbox.width * figure.bbox.height
 
 
 def test_figure_of_the_bed(mesh):

@@ -37,26 +37,34 @@ def test_bars_are_the_means_with_intervals_over_packings():
     """A panel per measure that there is; Finnie's volume is not shown, where it lies is."""
     table = laws_of_settings(volumes("part", front=False))
     figure = law_bars(table, ["said"])
-    upper, middle, lower = figure.axes
-    heights = [bar.get_height() for bar in upper.patches]
-    assert heights == pytest.approx([1.0, 1.0, *[np.prod([0.31, 0.32, 0.33]) ** (1 / 3)] * 2])
-    assert [bar.get_height() for bar in middle.patches] == pytest.approx([2.0, 2.0, 4.0])  # of B, per block
-    assert len(lower.patches) == 6
-    assert [text.get_text() for text in lower.get_xticklabels()] == ["A liner", "B liner"]
+    left, middle, right = figure.axes
+    lengths = [bar.get_width() for bar in left.patches]
+    assert lengths == pytest.approx([1.0, 1.0, *[np.prod([0.31, 0.32, 0.33]) ** (1 / 3)] * 2])
+    assert [bar.get_width() for bar in middle.patches] == pytest.approx([2.0, 2.0, 4.0])  # of B, per block
+    assert len(right.patches) == 6
+    assert [text.get_text() for text in left.get_yticklabels()] == ["A", "B"]
     assert remarks_of(figure) == "said"
     assert laws_apart(table).startswith("By finnie 10 % of the wear lies where Archard's does, at B liner")
 
 
 def test_ratios_of_orders_of_magnitude_are_seen_from_one():
-    """Where one law takes a hundred times what another does, bars go up and down from 1 on an axis of powers of ten."""
+    """Where one law takes a hundred times what another does, bars go both ways from 1 on an axis of powers of ten."""
     table = volumes("part", front=False)
     table.loc[(table["law"] == "finnie") & (table["setting"] == "B"), "worn_volume_m3"] *= 50.0
-    upper, middle, _ = law_bars(laws_of_settings(table), ["said"]).axes
-    assert (upper.get_yscale(), middle.get_yscale()) == ("linear", "log")
-    assert list(middle.get_yticks()) == [1.0, 10.0, 100.0]
-    assert [(bar.get_y(), bar.get_y() + bar.get_height()) for bar in middle.patches] == [
-        (1.0, pytest.approx(top)) for top in (2.0, 2.0, 200.0)
+    left, middle, _ = law_bars(laws_of_settings(table), ["said"]).axes
+    assert (left.get_xscale(), middle.get_xscale()) == ("linear", "log")
+    assert list(middle.get_xticks()) == [1.0, 10.0, 100.0]
+    assert [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in middle.patches] == [
+        (1.0, pytest.approx(end)) for end in (2.0, 2.0, 200.0)
     ]
+
+
+def test_a_bar_is_named_by_its_part_where_its_setting_has_several():
+    """From top to bottom in the order of the table."""
+    table = laws_of_settings(pd.concat([volumes("part", front=False), volumes("part", front=False).assign(part="lip")]))
+    left = law_bars(table, []).axes[0]
+    assert [text.get_text() for text in left.get_yticklabels()] == ["A liner", "B liner", "A lip", "B lip"]
+    assert left.yaxis_inverted()
 
 
 def test_the_design_on_which_laws_disagree_is_named():
