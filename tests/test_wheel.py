@@ -110,6 +110,7 @@ def test_importing_costs_nothing(python, tmp_path):
     assert said.split() == ["False", "False"]
 
 
+@pytest.mark.verify
 def test_the_notebook_of_the_docs_runs(python, tmp_path):
     """A ledger read, a surface worn and drawn; on a uniformly loaded plate the depth is the law's."""
     run_folder = tmp_path / "results/demo/R5_convex"

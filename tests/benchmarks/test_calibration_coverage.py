@@ -10,7 +10,8 @@ FEW = 10  # calibrations; of 200 the benchmark tells
 BIASED = "2 deviations, each up or down"
 
 
-@pytest.mark.parametrize(("bias", "least"), [pytest.param("none", 9, marks=pytest.mark.verify), (BIASED, 8)])
+@pytest.mark.verify
+@pytest.mark.parametrize(("bias", "least"), [("none", 9), (BIASED, 8)])
 def test_regions_hold_the_truth(bias, least):
     """Of ten seeded calibrations nine or ten are meant to hold it, with noise and with a bias of two deviations."""
     found = pd.DataFrame([one((bias, MODEL_DISCREPANCY, seed)) for seed in range(FEW)])

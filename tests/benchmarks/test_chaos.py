@@ -56,6 +56,7 @@ def test_mutated_files_are_read_or_refused(tmp_path, chance):
     assert nothing_bad(chaos_files.mutated_files(samples, here, READS, chance, "files"))
 
 
+@pytest.mark.verify
 def test_mutated_configurations_are_loaded_or_refused(tmp_path, chance):
     """Each study in turn loads, or one sentence says what is wrong with it."""
     project = spoilt_project(tmp_path / "project")

@@ -125,6 +125,7 @@ def test_failed_runs_are_told():
     assert np.isnan(table["change"].iloc[2])
 
 
+@pytest.mark.verify
 def test_the_interval_covers_the_true_change_as_often_as_it_says():
     """95 of 100 intervals of normal logarithms with a true change of 3 % hold it, whatever the packings do."""
     random = np.random.default_rng(20220317)

@@ -112,10 +112,8 @@ def plain_liner_mm3():
     return (chute.WIDTH - 2.0 * chute.GAP) * section
 
 
-@pytest.mark.parametrize(
-    ("pattern", "rows", "bumps"),
-    [("r5", 13, 26), pytest.param("r9", 13, 78, marks=pytest.mark.verify)],  # three times the bumps to mesh
-)
+@pytest.mark.verify
+@pytest.mark.parametrize(("pattern", "rows", "bumps"), [("r5", 13, 26), ("r9", 13, 78)])
 def test_patterns_add_half_ellipsoids(drawn, pattern, rows, bumps):
     """As many as there are places, each 2/3 pi a b h above the plate; meshed coarsely they keep most of that."""
     places = np.array(chute.bump_places(pattern))
@@ -143,6 +141,7 @@ def test_bumps_are_those_of_the_source_enlarged(pattern):
     assert clear >= chute.RIM
 
 
+@pytest.mark.verify
 def test_chute_is_assembled_without_touching(drawn):
     """Liner, plate and walls share no place, and the plate stands a gap proud of the wall above it."""
     files = [drawn[0] / "chute" / f"{name}.step" for name in ("walls", "impact_plate", "liner_r5")]
@@ -208,6 +207,7 @@ def test_trough_has_the_volume_of_its_walls(drawn):
     assert volume_m3(drawn[0] / "screw" / "trough.step") == pytest.approx(1e-9 * expected, rel=OF_CURVED)
 
 
+@pytest.mark.verify
 def test_flight_and_trough_stay_apart_as_meshed(drawn):
     """The trough's facets are chords of its circle: at the edge of the study they leave the flight free."""
     surface = found(drawn, "screw/trough", PLANNED_M["trough"]).surface

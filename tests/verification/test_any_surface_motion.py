@@ -123,7 +123,9 @@ def chained_runs(folder: Path, motion: Motion, steps=STEPS, ranks: int = 1) -> n
     return found[np.argsort(found[:, 6])]
 
 
-@pytest.mark.parametrize(("name", "ranks"), [*((name, 1) for name in MOTIONS), ("planet", 2)])
+@pytest.mark.parametrize(
+    ("name", "ranks"), [*((name, 1) for name in MOTIONS), pytest.param("planet", 2, marks=pytest.mark.verify)]
+)
 def test_pose_after_a_restart_is_the_closed_form(tmp_path, name, ranks):
     """After two chained runs, each with a mesh id of its own, the part stands and moves as its closed form says."""
     motion = MOTIONS[name]

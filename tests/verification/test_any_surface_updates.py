@@ -66,7 +66,7 @@ def way(motion: Motion, point: np.ndarray) -> float:
         (swing, WORK_TOLERANCE),
         (turn, WORK_TOLERANCE),
         (rocking_turn, SWINGING_AXIS_TOLERANCE),
-        (push_and_turn, WORK_TOLERANCE),
+        pytest.param(push_and_turn, WORK_TOLERANCE, marks=pytest.mark.verify),
     ],
 )
 def test_worn_volume_is_load_times_way(tmp_path, make, tolerance):

@@ -30,7 +30,7 @@ from tests.verification.equipment_stream import (
     stream,
 )
 
-pytestmark = pytest.mark.solver
+pytestmark = [pytest.mark.solver, pytest.mark.verify]
 
 BLOCKS = 8
 # Relative; what the solver's set-up takes at the start of a block: it damps sliding contacts by more than friction can,
@@ -123,7 +123,6 @@ def test_alpha_and_hours_do_exactly_what_they_must(once):
     np.testing.assert_allclose(many, 2.0 * few, rtol=ROUND_OFF)
 
 
-@pytest.mark.verify
 def test_twice_the_tonnes_wear_twice_as_fast(once, tmp_path):
     """Within the interval of the two runs' ratio."""
     with machine_study(tmp_path, machine=stream(BLOCKS), inlet={"rate_t_per_h": 2.0 * RATE}) as study:
@@ -141,7 +140,6 @@ def test_twice_the_tonnes_wear_twice_as_fast(once, tmp_path):
 # ---------------------------------------------------------------- life
 
 
-@pytest.mark.verify
 def test_intervals_of_life_hold_the_long_answer_as_often_as_they_say(tmp_path):
     """Twenty packings, each with an interval of its few blocks: of the life by mass, which thickness over rate is, and
     of that of the place which decides, whose long answer all packings give together."""

@@ -74,7 +74,7 @@ def test_particles_lie_along_the_curve(tmp_path, fallen):
     np.testing.assert_array_equal(ours, stock)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])
 def test_the_same_bed(tmp_path, fallen, ranks):
     """A bed at rest stays where it is by either order, but for rounding; so no contact's history is another's."""
     found = {order: resumed(tmp_path / order, fallen, order, ranks)[1] for order in ORDERS}

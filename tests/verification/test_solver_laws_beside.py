@@ -34,6 +34,7 @@ def maps_of(study, chain, folder):
     return maps, law_maps(chain.folder, worn)
 
 
+@pytest.mark.verify
 def test_one_rigid_run_has_the_maps_of_all_laws(tmp_path):
     """Triangle by triangle, to the last bit, what a run worn by that law alone has; and each law draws a map."""
     chain = tiny_chain(rigid(), tmp_path)

@@ -106,6 +106,7 @@ def plate():
     return mesh
 
 
+@pytest.mark.verify
 def test_dragged_bed_agrees_with_dumps_of_every_step(tmp_path):
     """Totals of both producers agree within the deviation between blocks of travel: they saw one trajectory."""
     mesh = plate()

@@ -112,6 +112,7 @@ def test_ledger_is_the_sum_of_the_contacts(dragged):
     assert np.count_nonzero(time) > CLUMPS
 
 
+@pytest.mark.verify
 def test_both_searches_find_the_same_contacts(dragged, tmp_path):
     """The wall search of this program and the solver's own: every column of the ledger, to the last bit."""
     folder, ledger, plate = dragged

@@ -22,7 +22,7 @@ from tests.verification.ledger_cases import (
     write_case,
 )
 
-pytestmark = pytest.mark.solver
+pytestmark = [pytest.mark.solver, pytest.mark.verify]  # a program is built
 
 LIST = "constexpr Kernel KERNELS[] = {\n"
 KERNEL = """\

@@ -76,7 +76,7 @@ def test_four_processes_give_the_ledger_of_one(tmp_path):
     assert_same_ledger(four, one)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])
 def test_totals_for_thermo_output(tmp_path, ranks):
     """f_load_ledger and f_load_ledger[1] ... [7] are the sums of the file's columns, on any number of processes."""
     names = (*SUMS, *WORKS)
@@ -113,6 +113,7 @@ def test_two_meshes_have_a_ledger_each(tmp_path):
     assert total(first, "impact_energy_J") == 0.0
 
 
+@pytest.mark.verify
 def test_turning_disc_on_two_processes(tmp_path):
     """A disc whose triangles wander from process to process under a pin at rest near the border: the same ledger."""
     mesh, steps, time_step = ring(0.0214, 0.0226, 0.5e-3), 800, 5e-6

@@ -90,6 +90,7 @@ def test_same_to_the_last_bit(tmp_path, mesh, lines, ranks):
     assert work > 0.0
 
 
+@pytest.mark.verify
 def test_same_to_the_last_bit_on_two_ranks(tmp_path):
     """The same of a bed that is poured just above the mesh, over fewer steps: where cores are few, ranks wait."""
     found, work = by_both(tmp_path, wavy(PLATE), (TURN,), 2, {**FALLEN, "settling": SOON, "steps": BRIEF})

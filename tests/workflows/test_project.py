@@ -59,6 +59,14 @@ def read_only() -> list[str]:
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
+    """A project whose two studies ran by --directory; the package could not be written to meanwhile."""
+    mine = own_project(tmp_path_factory.mktemp("with a space") / "my project")
+    outside = (*outside_of(mine), "--cores", "1", STUDY, SUMMARY)
+    return {"mine": mine, "said": finish(snakemake(mine.parent, *outside, before=read_only()))}
+
+
+@pytest.fixture(scope="module")
+def at_the_same_time(tmp_path_factory):
     """Two projects on one package, all at the same time: one runs two studies at once by --directory, the other is a
     Snakefile of its own that takes the workflow as a module. The package cannot be written to meanwhile.
     """
@@ -96,6 +104,7 @@ def test_figures_are_made_by_one_process(finished):
     assert len(memory) > 1 and memory["max_rss"].max() < WITHOUT_LIBRARIES
 
 
+@pytest.mark.verify
 @pytest.mark.solver
 def test_a_finished_study_has_further_reports(finished):
     """Its page as PDF, where there is a browser; and Snakemake's own report with a description, its tables by name and
@@ -116,11 +125,12 @@ def test_a_finished_study_has_further_reports(finished):
     assert '"labels": {"figure": "Wear against travel"}' in text
 
 
+@pytest.mark.verify
 @pytest.mark.solver
-def test_two_studies_at_once_from_one_folder(finished):
+def test_two_studies_at_once_from_one_folder(at_the_same_time):
     """Each ends in its summary."""
     for name, runs in ((STUDY, ["A_plain"]), (SECOND, RUNS)):
-        assert list(pd.read_csv(finished["mine"] / f"results/{name}/summary.csv")["run"]) == runs
+        assert list(pd.read_csv(at_the_same_time["mine"] / f"results/{name}/summary.csv")["run"]) == runs
 
 
 @pytest.mark.solver
@@ -165,18 +175,19 @@ def test_killed_snakemake_started_again_gives_the_same_summary(finished, tmp_pat
         assert (folder / path).read_bytes() == (finished["mine"] / path).read_bytes()
 
 
+@pytest.mark.verify
 @pytest.mark.solver
-def test_rules_on_top_take_results_on(finished):
+def test_rules_on_top_take_results_on(at_the_same_time):
     """With a prefix on our rules: its own rule is made by default, from tables and a figure of ours; the results are
     those of the other project. Only the other figures and the page are left to make.
     """
-    results = finished["other"] / "results"
+    results = at_the_same_time["other"] / "results"
     assert (results / "ranking.txt").read_text() == "A_plain\n"
     path = f"results/{STUDY}/summary.csv"
-    assert (finished["other"] / path).read_bytes() == (finished["mine"] / path).read_bytes()
-    assert "Wear cycles of A_plain" in finished["said"]["module"]
-    assert "Forecast of mine" in finished["said"]["module"]
-    left = planned_jobs(said_of(finished["other"], *PROFILE, f"bw_{STUDY}", "--dry-run"))
+    assert (at_the_same_time["other"] / path).read_bytes() == (at_the_same_time["mine"] / path).read_bytes()
+    assert "Wear cycles of A_plain" in at_the_same_time["said"]["module"]
+    assert "Forecast of mine" in at_the_same_time["said"]["module"]
+    left = planned_jobs(said_of(at_the_same_time["other"], *PROFILE, f"bw_{STUDY}", "--dry-run"))
     assert left.pop(f"bw_{STUDY}") == left.pop("bw_report") == 1 and left, left
     assert (
         all(rule.startswith(("bw_figure_", "bw_tables_")) for rule in left)
@@ -187,10 +198,10 @@ def test_rules_on_top_take_results_on(finished):
 @pytest.mark.solver
 def test_the_log_says_which_file_won(finished):
     """Once, and of those only that the package has as well."""
-    for said in finished["said"].values():
-        assert said.count("config/materials.yaml: this project's, over the package's") == 1
-        assert said.count("templates/sliding_sample/sliding_sample.in.j2: this project's, not the package's") == 1
-        assert said.count(": this project's") == 2
+    said = finished["said"]
+    assert said.count("config/materials.yaml: this project's, over the package's") == 1
+    assert said.count("templates/sliding_sample/sliding_sample.in.j2: this project's, not the package's") == 1
+    assert said.count(": this project's") == 2
 
 
 @pytest.mark.solver

@@ -89,6 +89,7 @@ def finish(process: subprocess.Popen) -> str:
     return output
 
 
+@pytest.mark.verify
 @pytest.mark.solver
 def test_ctrl_c_says_how_to_go_on(tmp_path):
     """What a terminal sends with Ctrl-C, while the solver works: the job says in a line how to go on, without a

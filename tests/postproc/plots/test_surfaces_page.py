@@ -104,6 +104,7 @@ def test_views_differences_and_sections_say_what_they_show(page, tmp_path):
     assert carried == pytest.approx([CARRIED * 1e6 * DEPTHS["R9"]] * 4, abs=1e-3)
 
 
+@pytest.mark.verify
 @NEEDS_BROWSER
 def test_nobody_is_kept_from_it(page, tmp_path):
     """axe-core finds nothing that keeps people from choosing and reading, the section drawn."""

@@ -126,7 +126,7 @@ def cells(path):
 
 
 @pytest.mark.solver
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.verify)])
 def test_ids_are_the_facets_of_the_stl_file_also_under_mpi(tmp_path, ranks):
     """LIGGGHTS itself, a plate moving across the ranks: all ids count the facets of the STL file."""
     contacts, path = run_bed(tmp_path, ranks)

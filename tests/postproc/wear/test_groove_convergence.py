@@ -161,6 +161,7 @@ def test_the_rule_of_single_triangles_does_not_converge():
     assert differences(ours).max() < CONVERGED
 
 
+@pytest.mark.verify
 def test_a_conforming_groove_converges():
     """A sphere in its own groove touches dozens of triangles: depth and width agree within 5 %."""
     radius = np.sqrt(0.5) * FLAT_CONTACT  # of the Hertz contact that overlaps so far

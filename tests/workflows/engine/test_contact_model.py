@@ -241,15 +241,9 @@ def worn(tmp_path_factory):
     return table
 
 
+@pytest.mark.verify
 @pytest.mark.solver
-@pytest.mark.parametrize(
-    ("key", "model"),
-    [
-        *(("cohesion", name) for name in CHOICES["cohesion"][1:2]),
-        *(pytest.param("cohesion", name, marks=pytest.mark.verify) for name in CHOICES["cohesion"][2:]),
-        pytest.param(*HOOKE, marks=pytest.mark.verify),
-    ],
-)
+@pytest.mark.parametrize(("key", "model"), [*(("cohesion", name) for name in CHOICES["cohesion"][1:]), HOOKE])
 def test_a_sample_slides_under_another_model(worn, key, model):
     """A bed, its run-in and two cycles, which begin with restart files, run under the model, and wear otherwise."""
     before, after = worn(), worn(**{key: model})

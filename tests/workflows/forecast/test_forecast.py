@@ -90,11 +90,13 @@ def forecasts():
         return shipped_forecasts(), triangles, read, commands
 
 
+@pytest.mark.verify
 def test_the_page_of_forecasts_is_up_to_date(forecasts):
     """docs/forecast_studies.md is what `python -m bulkwear.workflows.forecast.shipped` writes."""
     assert PAGE.read_text(encoding="utf-8") == page(forecasts[0])
 
 
+@pytest.mark.verify
 def test_every_study_at_every_fidelity(forecasts):
     """Each has jobs that cost something, with names that differ, and each starts after jobs that are there."""
     for table in forecasts[0].values():
@@ -105,6 +107,7 @@ def test_every_study_at_every_fidelity(forecasts):
         assert set(table["needs"]) - {""} <= set(table["job"])
 
 
+@pytest.mark.verify
 def test_no_surface_is_meshed_and_nothing_simulated_for_it(forecasts):
     """But the tester's block, a few triangles; CAD is drawn and its areas are read, and no other program starts."""
     _, triangles, read, commands = forecasts
@@ -115,6 +118,7 @@ def test_no_surface_is_meshed_and_nothing_simulated_for_it(forecasts):
     assert {Path(command[1]).name for command in others} == {"draw.py"}
 
 
+@pytest.mark.verify
 def test_fidelities_cost_more_and_more(forecasts):
     """Of studies of samples and boxes; a pin's `paper` is its `standard`."""
     for name in {name for name, _ in forecasts[0]}:

@@ -81,6 +81,7 @@ def worn_by_chance(depth: float, random: np.random.Generator) -> SurfaceMesh:
     return SurfaceMesh(points, fine.triangles, {"part": np.zeros(len(fine.triangles), dtype=int)} | faces, nodes)
 
 
+@pytest.mark.verify
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
 def test_a_page_of_many_runs_is_small_and_finds_one(config, tmp_path):
     """Four cycles of 26 runs at the demo's mesh; rows are sifted by words, all runs can be compared, nothing is

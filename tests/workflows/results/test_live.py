@@ -46,6 +46,7 @@ def test_the_page_tells_what_the_terminal_does(study, tmp_path):
     assert [path.name for path in (study / "demo").glob("live*")] == ["live.html"]
 
 
+@pytest.mark.verify
 @NEEDS_BROWSER
 def test_nobody_is_kept_from_it(study, tmp_path):
     """axe-core finds nothing."""

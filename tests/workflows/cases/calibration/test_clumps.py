@@ -41,6 +41,7 @@ def test_a_shear_box_of_clumps(tmp_path):
     assert 15.0 < measured(test, folder).responses["shear_angle_deg"] < 50.0
 
 
+@pytest.mark.verify
 def test_clumps_that_slide_have_the_friction_of_the_plate(tmp_path):
     """Under a plate that is drawn they slide, as they cannot roll: the wall friction angle is atan mu."""
     test = with_values(box("wall_shear", length_m=0.06, fill_height_m=0.06, drag_m=0.02), {WALL: WALL_FRICTION})

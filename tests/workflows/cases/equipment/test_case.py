@@ -318,7 +318,7 @@ SHORT = {
 THIN = 1e-5  # m, of the liner: an update is deeper
 
 
-@pytest.mark.parametrize("then", [None, "cap", "go_on"])
+@pytest.mark.parametrize("then", [None, *(pytest.param(each, marks=pytest.mark.verify) for each in ("cap", "go_on"))])
 def test_run_whose_liner_is_worn_through_ends_or_goes_on(tmp_path, capsys, then):
     """It ends after that update unless it is told to go on, at the back or beyond it; the answer tells hours and place,
     a node of the liner.
@@ -362,6 +362,7 @@ MOMENTS = {
 }
 
 
+@pytest.mark.verify
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_killed_and_started_again_is_the_undisturbed_run(finished, tmp_path, moment):
     """kill -9 and a second start: tables, phases and surface to the last bit."""

@@ -328,8 +328,9 @@ def test_a_cycle_in_smaller_time_steps_is_the_same_cycle(finished, tmp_path):
     np.testing.assert_allclose(tables[0]["angle_deg"], tables[1]["angle_deg"], rtol=ROUND_OFF)
 
 
+@pytest.mark.verify
 @pytest.mark.solver
-@pytest.mark.parametrize("cycle", [2, pytest.param(4, marks=pytest.mark.verify)])
+@pytest.mark.parametrize("cycle", [2, 4])
 def test_killed_and_started_again_gives_the_same_tables(finished, tmp_path, cycle):
     """kill -9 in a cycle, start again: the same wear.csv and worn surface, bit for bit."""
     folder = tmp_path / ROW
