@@ -122,10 +122,34 @@ def against_measured(done: Calibrated) -> list[Block]:
     """Return both pairs beside the measured bands, as a table and in words."""
     table = done.statements.drop(columns=done.problem.names)
     return [
-        Table(_named(table), "statements", INSIDE),
+        Table(_named(table), "statements", INSIDE, beside_source=measured_beside(done.statements, _sources(done))),
         Points([*(_pair_sentence(done, pair) for pair in (RECOMMENDED, done.compared)), *sentences(done)]),
         Pictures(["pairs_against_bands"]),
     ]
+
+
+def measured_beside(statements: pd.DataFrame, sources: Mapping[str, str]) -> pd.DataFrame:
+    """Return measured responses as published values beside the means of the pairs that were simulated over packings.
+
+    statements: as from `responses.statement_table`; sources: of the measurements, by response
+    """
+    rows = []
+    for row in statements[(statements["seeds"] > 0) & statements["measured"].notna()].to_dict("records"):
+        name, _, unit = response_name(row["response"]).removesuffix(")").rpartition(" (")
+        low, high = Estimate(row["simulated"], row["simulated_uncertainty"], row["seeds"] - 1, row["seeds"]).interval()
+        rows.append(
+            {"quantity": f"{name}, measured", "setting": f"{row['pair'].replace('_', ' ')} pair", "unit": unit}
+            | {"published_value": row["measured"], "margin": MARGIN_DEVIATIONS * row["measured_deviation"]}
+            | {"computed_value": row["simulated"], "computed_low": low, "computed_high": high}
+            | {"packings": row["seeds"], "source": sources.get(row["response"], "")}
+        )
+    return pd.DataFrame(rows)
+
+
+def _sources(done: Calibrated) -> dict[str, str]:
+    """Return the sources of the measurements, by response."""
+    table = pd.read_csv(current_project().file(f"{PUBLISHED}/{done.parameters['calibration']['measured']}"))
+    return dict(zip(table["response"], table["source"], strict=True)) if "source" in table else {}
 
 
 def _pair_sentence(done: Calibrated, pair: str) -> str:

@@ -67,6 +67,18 @@ def _outer_bumps(seen: Observed, claim: Claim) -> Evidence:
     return Evidence({f"column {row}": estimate(each, log=True) for row, each in ratio.groupby("row")})
 
 
+def _bump_volumes(odd: bool) -> Builder:
+    """Return what finds the least and the largest volume that a bump of the odd or of the even columns has lost."""
+
+    def found(seen: Observed, claim: Claim) -> Evidence:
+        of_packing = seen.bumps[seen.bumps["row"] % 2 == int(odd)].groupby(PACKING)["volume_mm3"]
+        ends = {"least": of_packing.min(), "largest": of_packing.max()}
+        reach = reached(of_surface(seen.of_main(seen.increments), PATTERNED))
+        return Evidence({name: estimate(each, log=True) for name, each in ends.items()}, reach)
+
+    return found
+
+
 # ---------------------------------------------------------------- flow
 
 
@@ -118,6 +130,8 @@ ON_FLOW: Mapping[str, Builder] = {
     "plain_columns": _plain_columns,
     "plain_even": _plain_even,
     "outer_bumps": _outer_bumps,
+    "odd_bumps": _bump_volumes(odd=True),
+    "even_bumps": _bump_volumes(odd=False),
     "steady": _steady,
     "spin": _over_plain(SPIN),
     "spin_falls": _falls(SPIN),

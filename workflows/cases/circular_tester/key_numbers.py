@@ -13,7 +13,7 @@ import pandas as pd
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
-from bulkwear.postproc.tables.summary import patterned_name, read_summary
+from bulkwear.postproc.tables.summary import patterned_name, published_value, read_summary
 from bulkwear.postproc.wear.prediction import Prediction, joined
 from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
 from bulkwear.workflows.cases.circular_tester.flow import steady_revolutions
@@ -33,7 +33,8 @@ from bulkwear.workflows.report.published import GIVEN
 from bulkwear.workflows.report.sections import Block, Cards, Table, Text
 from bulkwear.workflows.report.text import number
 
-PUBLISHED_FITS = PACKAGE / "config" / "published" / "circular_tester_volume.csv"
+PUBLISHED = PACKAGE / "config" / "published" / "circular_tester.csv"
+PUBLISHED_FITS = PUBLISHED.with_name("circular_tester_volume.csv")
 FIT_DIGITS = 5
 FIT_HEADS = {
     TERMS[0]: ("linear", "mm³ per revolution"),
@@ -58,7 +59,9 @@ STEADY_HEADS = {
     "drift_low": ("drift, interval from", "%"),
     "drift_high": ("to", "%"),
 }
-EXPERIMENT = "Yan 2022, section 6.2.3"
+EXPERIMENT, MODEL = "Yan 2022, section 6.2.3", "Yan 2022, section 6.4.1"
+UNLIKE_ITS_SUM = "seven of them are not the volume that is printed of 56 h"
+UNLIKE_ITS_EQUATIONS = "said of particle scale 1; the source's own Eq 6.2 and 6.3 make 58 % of it"
 PER_REVOLUTION = "worn volume per revolution"
 INTERVALS = "Intervals: 95 %, over packings; of one packing the scatter is unknown."
 REDUCED = "At the reduced scale told at the top of the page: a finding that is contradicted here is not thereby wrong."
@@ -109,23 +112,40 @@ def beside_the_experiment(folder: Path) -> list[Block]:
 
 
 def measured_beside_ours(compared: pd.DataFrame) -> pd.DataFrame:
-    """Return the measured volumes of the comparison as values beside values; the one that sets the scale of time is
-    given. Reductions stand among the findings.
+    """Return what was measured of the comparison as values beside values, volumes after hours and per weighing; the
+    volume that sets the scale of time is given. Measured reductions stand among the findings, the model's here.
     """
     measured = compared[compared[LABORATORY].notna() & (compared["unit"] == "mm3")]
-    hours = measured["hours"]
-    sets_scale = (measured["quantity"] == f"{PLAIN} volume") & (hours == hours.min())
-    return pd.DataFrame(
-        {
-            "quantity": measured["quantity"],
-            "setting": [f"experiment after {each:g} h" for each in hours],
-            "unit": "mm³",
-            "published_value": measured[LABORATORY],
-            **{"computed_value": measured[OURS], "computed_low": measured[LOW], "computed_high": measured[HIGH]},
-            **{"packings": measured["packings"], "reason": measured["note"], "source": EXPERIMENT},
-            GIVEN: np.where(sets_scale, "yes", ""),
-        }
+    first = measured["hours"] == measured["hours"].min()
+    sets_scale = first & (measured["quantity"] == f"{PLAIN} volume")
+    said = measured.assign(
+        setting=[f"experiment after {each:g} h" for each in measured["hours"]],
+        published_value=measured[LABORATORY],
+        **{GIVEN: np.where(sets_scale, "yes", ""), "source": EXPERIMENT},
     )
+    table = pd.concat([said, _per_weighing(said[first]), _of_the_model(compared)], ignore_index=True)
+    names = {OURS: "computed_value", LOW: "computed_low", HIGH: "computed_high", "note": "reason"}
+    columns = ["quantity", "setting", "unit", "published_value", *names, "packings", "source", GIVEN]
+    return table[columns].replace({"unit": {"mm3": "mm³"}}).rename(columns=names)
+
+
+def _per_weighing(measured: pd.DataFrame) -> pd.DataFrame:
+    """Return what was lost between two weighings of the short test, beside as large a share of ours."""
+    published = pd.read_csv(PUBLISHED)
+    hours = published_value(published, "interval", "laboratory")
+    quantities = [f"{row.quantity.replace(' ', '_')}_per_interval" for row in measured.itertuples()]
+    values = [published_value(published, each, "laboratory") for each in quantities]
+    told = measured.assign(published_value=values, setting=f"experiment per {hours:g} h", note=UNLIKE_ITS_SUM)
+    ours = told[[OURS, LOW, HIGH]].mul(hours / told["hours"], axis=0)
+    return told.assign(**ours)
+
+
+def _of_the_model(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return the reduction that the source prints of its model, beside ours."""
+    short = compared[(compared["quantity"] == "reduction") & (compared["hours"] == compared["hours"].min())]
+    value = published_value(pd.read_csv(PUBLISHED), "reduction_56_h", "simulation")
+    told = {"setting": "model after 56 h, particle scale 1", "published_value": value, "note": UNLIKE_ITS_EQUATIONS}
+    return short.assign(**told, source=MODEL, **{GIVEN: ""})
 
 
 def time_words(scale: pd.Series) -> str:

@@ -94,6 +94,13 @@ def _less(seen: Observed, claim: Claim) -> Evidence:
     return Evidence(found, (0.0, ended), further)
 
 
+def _at_first(seen: Observed, claim: Claim) -> Evidence:
+    """Return patterned over plain, lost in the revolutions of the claim's range."""
+    rows = seen.of_main(seen.ratios)
+    inside = rows[rows["end"] <= claim.reach[1]]
+    return Evidence({"": ratio_of_sums(inside)} if len(inside) else {}, reached(rows))
+
+
 def _scales(seen: Observed, surface: str) -> dict[float, Estimate]:
     """Return the volume that a surface loses over the revolutions which all particle scales have, by scale."""
     rows = of_surface(seen.of_sizes(chosen(seen.lost, VOLUME, SIZE)), surface)
@@ -145,6 +152,7 @@ ON_VOLUMES: Mapping[str, Builder] = {
     "convex_quadratic": _convex_quadratic,
     "less_short": _less,
     "less_long": _less,
+    "less_at_first": _at_first,
     "plain_sizes": lambda seen, claim: _by_size(seen, PLAIN, every=True),
     "convex_sizes": lambda seen, claim: _by_size(seen, PATTERNED, every=False),
     "overtakes": _overtakes,

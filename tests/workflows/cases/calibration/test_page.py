@@ -4,6 +4,7 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure
 
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration.boxes import SIMULATIONS
-from bulkwear.workflows.cases.calibration.findings import DISCHARGE, opening_words, sizes_beside_source
+from bulkwear.workflows.cases.calibration.findings import DISCHARGE, measured_beside, opening_words, sizes_beside_source
 from bulkwear.workflows.cases.calibration.page import remarks
 from bulkwear.workflows.cases.calibration.responses import RECOMMENDED
 from bulkwear.workflows.report import markdown
@@ -55,6 +56,22 @@ def test_published_angles_of_shorter_boxes_stand_beside_ours(tmp_path):
     assert middle["computed_value"] == 30.0 and middle["margin"] == 1.0
     assert middle["computed_high"] - 30.0 == pytest.approx(12.7062 * 0.5 / 2**0.5, rel=1e-5)
     assert pd.isna(found.loc["box of 100 mm", "computed_value"])
+
+
+def test_measured_responses_stand_beside_the_simulated_pairs():
+    """The mean over packings with its interval (t of two degrees of freedom: 4.303), margin two measured deviations; a
+    response that is predicted alone is none.
+    """
+    alike = {"pair": "recommended", "measured": 36.0, "measured_deviation": 0.4, "simulated_uncertainty": 0.5}
+    rows = [
+        {**alike, "response": "shear_angle_deg", "simulated": 35.2, "seeds": 3},
+        {**alike, "response": "repose_angle_deg", "simulated": np.nan, "seeds": 0},
+        {**alike, "response": "slope", "measured": np.nan, "simulated": 1.0, "seeds": 3},
+    ]
+    (row,) = measured_beside(pd.DataFrame(rows), {"shear_angle_deg": "Table 3.1"}).to_dict("records")
+    assert (row["quantity"], row["setting"]) == ("Shear angle, shear box, measured", "recommended pair")
+    assert (row["published_value"], row["margin"], row["source"]) == (36.0, 0.8, "Table 3.1")
+    assert row["computed_high"] - row["computed_value"] == pytest.approx(4.3027 * 0.5, rel=1e-4)
 
 
 def make(product, folder):

@@ -62,15 +62,26 @@ def test_notes_say_what_is_extrapolated_and_what_is_not_sure():
 
 
 def test_measured_volumes_are_published_numbers():
-    """The experiment's four volumes; that which sets the scale of time is given, one not reached is missing."""
+    """The experiment's volumes and the model's reduction; that which sets the scale of time is given, as is its share
+    of eight hours; one not reached is missing."""
     table = measured_beside_ours(compared(revolutions=3, packings=3, scatter=0.02).reset_index())
     found = {(row.quantity, row.setting): row for row in table.itertuples()}
     measured = {name: row.published_value for name, row in found.items()}
-    assert sorted(measured.values()) == pytest.approx([82.8, 145.2, 240.3, 474.5])
-    assert table.loc[table["given"] == "yes", "published_value"].tolist() == [145.2]
+    assert sorted(measured.values()) == pytest.approx([10.2, 17.9, 68.9, 82.8, 145.2, 240.3, 474.5])
+    assert table.loc[table["given"] == "yes", "published_value"].tolist() == [145.2, 17.9]
     early, late = (found["convex volume", f"experiment after {hours} h"] for hours in (56, 184))
     assert early.computed_low < early.computed_value < early.computed_high and early.packings == 3
     assert np.isnan(late.computed_value) and "more than 2 times" in late.reason
+    share, model = (
+        found["convex volume", "experiment per 8 h"],
+        found["reduction", "model after 56 h, particle scale 1"],
+    )
+    assert [share.computed_value, share.computed_high] == pytest.approx(
+        [early.computed_value / 7.0, early.computed_high / 7.0]
+    )
+    assert model.unit == "%" and model.computed_value == pytest.approx(
+        100.0 * (1.0 - early.computed_value / found["plain volume", "experiment after 56 h"].computed_value), rel=0.02
+    )
 
 
 def test_losses_stand_beside_the_scanned_ones():
