@@ -252,18 +252,21 @@ def drawn(finished, tables):
     return names
 
 
+@pytest.mark.verify
 def test_every_figure_has_its_table(finished, drawn):
     """A study of one pair has fourteen figures of its own and two of several laws, and a table beside each."""
     there = {path.name for path in (finished.folder / "figures").iterdir()}
     assert there >= {f"{name}.{ending}" for name in drawn for ending in ("png", "csv")} and len(drawn) == 16
 
 
+@pytest.mark.verify
 def test_contacts_never_outrun_the_trough(finished, drawn, tables):
     """Sliding over travel is between 0 and 1 for every run."""
     told = result_table(pd.read_csv(finished.folder / "summary.csv"))
     assert told["sliding_over_travel"].between(0.0, 1.0, inclusive="neither").all()
 
 
+@pytest.mark.verify
 def test_every_figure_has_its_section(finished, drawn):
     """Sections name all figures of the study but the wear updates; no section is there for a series that no row has."""
     shown = sections(page_parameters(finished.study), finished.folder)
@@ -278,6 +281,7 @@ def test_every_figure_has_its_section(finished, drawn):
     ]  # whatever tables an earlier choice of rows has left
 
 
+@pytest.mark.verify
 def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
     """It shows every figure and says what was found, without a section for a pattern that no row wears off."""
     figures = finished.folder / "figures"
