@@ -155,10 +155,11 @@ def element_increments(volumes: pd.DataFrame) -> pd.DataFrame:
 def mean_increments(lost: pd.DataFrame) -> pd.DataFrame:
     """What each setting loses in each revolution, over its packings.
 
-    lost: at whole revolutions. Columns: those of SETTING, revolution (the earlier of both), increment_mm3, those of
+    lost: at whole revolutions. Columns: those of SETTING, revolution (counted from 1), increment_mm3, those of
     `over_packings`, element_increment_mm3.
     """
     grown, keys = element_increments(lost), [*SETTING, "revolution"]
+    grown["revolution"] = grown["end"]
     of_elements = grown.groupby(keys, sort=False)["element_increment_mm3"].mean().reset_index()
     return over_packings(grown, keys, "increment_mm3").merge(of_elements, on=keys)
 
