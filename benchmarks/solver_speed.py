@@ -16,7 +16,7 @@ from pathlib import Path
 from benchmarks.ledger_overhead import PARTICLE_SCALE as LARGER_BED_SCALE
 from benchmarks.measure import Measure, in_turn, measured
 from benchmarks.runs import cycle_deck, particles_of, prepared_chain, prepared_tester
-from benchmarks.time_step_and_stiffness import CONVEX
+from benchmarks.stiffness import CONVEX
 from bulkwear.meshes.disc import track_disc
 from bulkwear.postproc.mesh import PLAIN, write_stl
 from bulkwear.workflows.engine.derived import SKIN_OVER_RADIUS

@@ -27,7 +27,7 @@ import pandas as pd
 from benchmarks.plots.time_step_limits import changes_by_model
 from benchmarks.rolling_page import MODELS
 from benchmarks.runs import FIRST_SEED, changed, simulated_run
-from benchmarks.time_step_and_stiffness import (
+from benchmarks.stiffness import (
     BED_THICKNESS,
     CASE,
     CONVEX,

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from benchmarks.changes import BEYOND, FAILED, UNDECIDED, WITHIN, changes
-from benchmarks.time_step_and_stiffness import LIMIT, PERCENT
+from benchmarks.stiffness import LIMIT, PERCENT
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 RESPONSES = {"sliding_work_J_per_m": "sliding work", "impact_energy_J_per_m": "impact energy"}  # that wear follows

@@ -101,7 +101,7 @@ def _numbers(axes: Axes, table: pd.DataFrame) -> None:
 
 @dataclass(frozen=True)
 class Panel:
-    """A choice: its axis, its rows of `time_step_and_stiffness.changes`, and values worth a line, by name."""
+    """A choice: its axis, its rows of `changes.changes`, and values worth a line, by name."""
 
     label: str
     changes: pd.DataFrame

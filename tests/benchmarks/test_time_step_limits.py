@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.changes import BEYOND, UNDECIDED, WITHIN
 from benchmarks.rolling_page import MODELS
-from benchmarks.time_step_and_stiffness import CONVEX, FRACTION
+from benchmarks.stiffness import CONVEX, FRACTION
 from benchmarks.time_step_limits import (
     FAILED,
     FRACTIONS,
