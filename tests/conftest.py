@@ -24,6 +24,18 @@ COMPILE = (  # nearly all that numba compiles, each another part; what comes aft
 LONGEST_FIRST = (  # measured on two cores: half a minute to minutes each, most of it waiting where a cluster is asked
     "test_slurm.py",
     "workflows/test_project.py",
+    "test_chains.py",
+    "engine/test_cycles.py",
+    "test_solver_ledger_ranks.py",
+    "test_read.py",
+    "report/test_accessibility.py",
+    "docs/test_site.py",
+    "report/test_figure_process.py",
+    "test_wheel.py",
+)
+FIRST = (  # measured on two cores: half a minute to minutes each, most of it waiting where a cluster is asked
+    "test_slurm.py",
+    "workflows/test_project.py",
     "workflows/test_snakemake.py",
     "engine/test_cycles.py",
     "test_solver_ledger_ranks.py",

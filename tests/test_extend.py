@@ -14,7 +14,6 @@ from tests.test_house import name_of, tracked
 
 PATCHES = sorted((REPOSITORY / "docs" / "extend").glob("*.patch"))
 MOST_FILES = {"wear_law": 5, "figure": 2, "pattern": 4, "solver_option": 4}  # of the product, tests not counted
-LONG = {"wear_law": pytest.mark.verify, "pattern": pytest.mark.verify}  # simulate
 GENERATED = "config/README.md"  # by a command, from what the other files say
 COMPILED = ("bulkwear", "workflows", "meshes", "postproc", "tests")  # folders of modules
 PROGRAM = "solver/build/liggghts-ledger"
@@ -53,8 +52,9 @@ def test_a_change_touches_few_files(patch):
     assert len(changed) > len(product)
 
 
+@pytest.mark.verify
 @pytest.mark.solver
-@pytest.mark.parametrize("patch", [pytest.param(each, marks=LONG.get(each.stem, ()), id=each.stem) for each in PATCHES])
+@pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.stem)
 def test_a_change_works_in_a_copy(patch, tmp_path):
     """Applied to a copy, with the solver's program built again where it is concerned, its own tests pass."""
     copy = copy_of_the_repository(tmp_path)

@@ -152,6 +152,7 @@ def test_large_particles_touch_more_triangles(monkeypatch):
     assert (small >= 1.0).all() and (large > small).all()
 
 
+@pytest.mark.verify
 def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     """Tiny runs, both surfaces; what is finished is not simulated again, and a failure stops nothing else."""
     monkeypatch.setattr(critical_scale, "SETTINGS", TINY)

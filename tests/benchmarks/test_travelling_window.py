@@ -193,6 +193,7 @@ def as_it_is(case, folder, settings):
     return case
 
 
+@pytest.mark.verify
 def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     """What is finished is not simulated again; a tiny bed, one window, both looked at block by block."""
     tiny = {

@@ -69,6 +69,7 @@ def worn(mesh: SurfaceMesh, flip: bool = False):
     return lost_volume(start, present)[0], place, np.nanmax(fields["normal_depth_m"]), left
 
 
+@pytest.mark.verify
 def test_stl_step_and_flipped_wear_the_same(step_file, tmp_path):
     """A spot of wear on a liner: the same volume, place, depth and remaining thickness whatever file it came from."""
     cad = own_mesh(step_file, "mm", edges=TARGET).surface

@@ -22,7 +22,7 @@ from tests.support.own_solids import box
 from tests.support.stl import stl_facets
 from tests.verification.equipment_stream import DIAMETER, MATERIALS
 
-pytestmark = pytest.mark.solver
+pytestmark = [pytest.mark.solver, pytest.mark.verify]
 
 BLOCKS = 6
 END = 2e-3  # relative; contacts with the face at the end of a belt, whose surface goes along that face; seen 9e-4

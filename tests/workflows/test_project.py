@@ -59,9 +59,9 @@ def read_only() -> list[str]:
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """A project whose two studies ran by --directory; the package could not be written to meanwhile."""
+    """A project whose study ran by --directory; the package could not be written to meanwhile."""
     mine = own_project(tmp_path_factory.mktemp("with a space") / "my project")
-    outside = (*outside_of(mine), "--cores", "1", STUDY, SUMMARY)
+    outside = (*outside_of(mine), "--cores", "1", STUDY)
     return {"mine": mine, "said": finish(snakemake(mine.parent, *outside, before=read_only()))}
 
 
@@ -133,10 +133,11 @@ def test_two_studies_at_once_from_one_folder(at_the_same_time):
         assert list(pd.read_csv(at_the_same_time["mine"] / f"results/{name}/summary.csv")["run"]) == runs
 
 
+@pytest.mark.verify
 @pytest.mark.solver
-def test_a_design_row_becomes_a_summary(finished):
+def test_a_design_row_becomes_a_summary(at_the_same_time):
     """One row and two surfaces give two runs, each with its wear; the plain run is its own reference."""
-    table = pd.read_csv(finished["mine"] / SUMMARY).set_index("run")
+    table = pd.read_csv(at_the_same_time["mine"] / SUMMARY).set_index("run")
     assert (table["worn_volume_m3"] > 0).all()
     assert table.loc["A_plain", "wear_over_plain"] == 1.0
     assert table.loc["A_plain", "pattern_worn_volume_m3"] == 0.0 < table.loc["A_convex", "pattern_worn_volume_m3"]
@@ -144,19 +145,19 @@ def test_a_design_row_becomes_a_summary(finished):
 
 @pytest.mark.solver
 def test_nothing_is_left_to_do_after_a_study(finished):
-    """Started again, Snakemake finds everything up to date; the settled bed was filled once for both runs."""
+    """Started again, Snakemake finds everything up to date; the settled bed was filled once for its run."""
     outside = (*PROFILE, "--snakefile", str(PACKAGE / "Snakefile"))
-    assert "Nothing to be done" in said_of(finished["mine"], *outside, SUMMARY)
-    assert len(list((finished["mine"] / f"results/{SECOND}/beds").iterdir())) == 1
+    assert "Nothing to be done" in said_of(finished["mine"], *outside, f"results/{STUDY}/summary.csv")
+    assert len(list((finished["mine"] / f"results/{STUDY}/beds").iterdir())) == 1
 
 
 @pytest.mark.verify
 @pytest.mark.solver
-def test_killed_snakemake_started_again_gives_the_same_summary(finished, tmp_path):
+def test_killed_snakemake_started_again_gives_the_same_summary(at_the_same_time, tmp_path):
     """kill -9 of everything during a wear cycle; a plain second call ends in the same summary.csv. Surfaces and bed are
     there already.
     """
-    folder = shutil.copytree(finished["mine"], tmp_path / "killed", symlinks=True)
+    folder = shutil.copytree(at_the_same_time["mine"], tmp_path / "killed", symlinks=True)
     (folder / SUMMARY).unlink()
     for run in RUNS:
         shutil.rmtree(folder / f"results/{SECOND}" / run)
@@ -172,7 +173,7 @@ def test_killed_snakemake_started_again_gives_the_same_summary(finished, tmp_pat
     finish(snakemake(folder, *outside))
     for name in ("summary.csv", *(f"{run}/wear.csv" for run in RUNS)):
         path = Path(f"results/{SECOND}") / name
-        assert (folder / path).read_bytes() == (finished["mine"] / path).read_bytes()
+        assert (folder / path).read_bytes() == (at_the_same_time["mine"] / path).read_bytes()
 
 
 @pytest.mark.verify
@@ -356,6 +357,7 @@ def test_a_bad_file_of_a_project_is_one_sentence(tmp_path, file, text, sentence)
     assert sentence in told_of(folder)
 
 
+@pytest.mark.verify
 def test_studies_of_the_package_are_planned_in_a_project(tmp_path):
     """With the published tables that they are compared with, and those of the project where it has some."""
     folder = own_project(tmp_path / "my project")
@@ -432,6 +434,7 @@ def test_a_wrong_key_is_one_sentence_before_any_job(tmp_path):
     assert "Traceback" not in output and not (folder / "results").exists()
 
 
+@pytest.mark.verify
 def test_a_fault_in_one_study_leaves_the_others_running(tmp_path):
     """A study that is not asked for is not read; where all are listed one with a fault is left out with its words."""
     folder = own_project(tmp_path / "my project")

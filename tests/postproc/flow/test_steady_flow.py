@@ -132,6 +132,7 @@ def test_no_time_is_steady_while_a_machine_fills():
     assert math.isnan(first_steady_time(table_of(20.0, 18.0), 0.2))
 
 
+@pytest.mark.verify
 def test_errors_are_rare():
     """Of flows out of balance by the tolerance at most ERROR_RATE are called steady, of those in balance drifting."""
     random, trials = np.random.default_rng(3), 300

@@ -81,6 +81,7 @@ def least():
     return response(every).min()
 
 
+@pytest.mark.verify
 def test_most_searches_find_the_least_that_keeps_to_the_limit(searches, least):
     """In twenty simulations; the best of as many at random is farther off in each."""
     best = np.array([search.best_predicted(CHANCE) for search in searches])
@@ -91,6 +92,7 @@ def test_most_searches_find_the_least_that_keeps_to_the_limit(searches, least):
     assert not any(response(values).min() - least <= FOUND for values in sound)
 
 
+@pytest.mark.verify
 def test_proposals_are_values_within_the_ranges_each_once(searches):
     """On the steps, allowed, and none that was tried before."""
     for search in searches:
@@ -101,6 +103,7 @@ def test_proposals_are_values_within_the_ranges_each_once(searches):
             assert np.allclose(steps, np.round(steps))
 
 
+@pytest.mark.verify
 def test_the_same_results_give_the_same_proposals(searches):
     """However often a search was interrupted; with another result they are others."""
     search = searches[0]
@@ -122,6 +125,7 @@ def test_a_limit_that_nothing_keeps_to_is_approached():
     assert best_of(tried, points, 0.5) == 3
 
 
+@pytest.mark.verify
 def test_the_interval_holds_the_response_of_most_designs(searches):
     """95 % of it, of designs that were tried; at least four in five of all seeds together."""
     held = []

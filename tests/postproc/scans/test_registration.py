@@ -46,6 +46,7 @@ def test_known_motion_is_recovered(seed, pattern):
     assert found.symmetric == (2 if pattern else 4)
 
 
+@pytest.mark.verify
 def test_half_a_sample_is_enough(pristine):
     """One half is missing, bumps and holder: no row of bumps beside, and within the stated uncertainty."""
     motion = sample.any_motion(6)

@@ -60,6 +60,7 @@ def test_lack_of_fit_is_the_f_test():
     assert curved.set_index("form").loc["ratio, line", "rejected"]
 
 
+@pytest.mark.verify
 def test_intervals_hold_the_crossing():
     """Of a line, of its own form as often as it says, over all forms at least so."""
     one = several = answered = 0

@@ -113,6 +113,7 @@ def test_leverages_add_up_to_the_coefficients(filtration, carbon):
         assert abs(model.residuals @ model.fitted) < ROUNDING * model.total_sum
 
 
+@pytest.mark.verify
 def test_intervals_cover():
     """Of 95 % intervals of coefficients, of the mean and of one further run, 95 % contain the truth (seeded trials)."""
     rng = np.random.default_rng(11)

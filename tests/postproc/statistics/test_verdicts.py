@@ -100,6 +100,7 @@ def test_ends_are_judged_as_they_stand():
         judged(claim, {name: Ends(4.0, 3.6, 4.4, 3) for name in "abc"})
 
 
+@pytest.mark.verify
 def test_false_verdicts_are_rare():
     """On the edge of every claim each false answer has its rate, for two packings as for five."""
     for row in verdict_rows(TRIALS):

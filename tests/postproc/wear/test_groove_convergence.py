@@ -169,6 +169,7 @@ def test_a_conforming_groove_converges():
     assert differences(grooves).max() < CONVERGED
 
 
+@pytest.mark.verify
 def test_a_conforming_groove_is_several_times_too_deep_by_single_triangles():
     """Yan 2022, Eq 5.7, in such a groove: more than four times the volume of the law, hence twice its depth."""
     area = SPHERE_AREA / 4.0  # with all of it faces turn over

@@ -503,6 +503,7 @@ def test_a_fault_while_a_cycle_is_accounted_costs_no_simulation(in_pieces, tmp_p
     assert left == expected
 
 
+@pytest.mark.verify
 def test_a_simulation_in_pieces_is_the_simulation(tmp_path):
     """From the same restart, a cycle in pieces has the ledger of the whole one, Finnie's wear and history included.
 

@@ -46,6 +46,7 @@ PARTICLES = 2e-3  # relative; numbers of each size are rounded
 TRIANGLE = 2  # gmsh's number of the element
 OF_BLOCK = 100  # triangles; the tester's block has 42, the smallest sample thousands
 RATES = dict.fromkeys(TERMS, 0.0) | {"particle_steps": 1e-6, "triangle_steps": 1e-7, "cycles": 2.0, "jobs": 1.0}
+OF_CAD = ("chute", "which_law", "screw", "mill")  # studies of several drawings
 SHORT = 40  # letters, of what Snakemake shows of jobs
 PROFILES = REPOSITORY / "profiles"
 # Particles that LIGGGHTS 3.8.0 counted in beds at quick fidelity.
@@ -286,7 +287,9 @@ def test_damaged_rates_do_not_stop_a_study(repository, tmp_path, monkeypatch):
     assert announcement(study, {"worn_run_R5_plain"}, 2).startswith(f"No forecast: {tmp_path}/cost_rates.json: no file")
 
 
-@pytest.mark.parametrize("name", list_studies())
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.verify if name in OF_CAD else ()) for name in list_studies()]
+)
 def test_every_job_asks_for_more_than_its_forecast(name):
     """All beds, runs and calibrations of a study are there, each with more time and memory than it is forecast to need,
     and with half as much again and a start-up at most twice over."""

@@ -73,12 +73,14 @@ def test_what_figures_need_is_there_before_it_forks():
     assert done.stdout.split() == ["True", "0", "True"]
 
 
+@pytest.mark.verify
 def test_it_makes_what_is_asked(process, project):
     """In the folder of who asks, and with the log of the job."""
     assert job(project, process[1]).wait(TIMEOUT) == 0
     assert made(project) and "--- started" in (project / "job.log").read_text()
 
 
+@pytest.mark.verify
 def test_without_it_a_job_works_by_itself(project):
     """Where none is named, and where the named one is gone."""
     assert job(project, {key: value for key, value in os.environ.items() if key != VARIABLE}).wait(TIMEOUT) == 0

@@ -94,6 +94,7 @@ def test_the_bed_is_as_asked(finished):
     assert re.fullmatch(f"the bed is not as asked: {words}", fault)
 
 
+@pytest.mark.verify
 def test_a_longer_run_goes_on_from_a_shorter_one(finished, tmp_path):
     """Shortened, a run keeps its first cycles, without the solver; lengthened again, also where nothing but those is
     left, it ends in the very table of the run that was that long from the start.

@@ -318,6 +318,7 @@ def test_interval_of_one_packing_holds_its_life():
     assert held >= 33  # fewer of 40 come once in 10,000 times where each interval holds at 95 %
 
 
+@pytest.mark.verify
 def test_interval_holds_the_life_as_often_as_it_says(lives):
     """Of twenty studies of three packings 95 % of the intervals hold the life; of fewer than 15 something is wrong."""
     held = 0

@@ -99,6 +99,7 @@ def test_a_wrong_unit_is_named_with_the_one_that_makes_sense(tmp_path, unit, sca
     )
 
 
+@pytest.mark.verify
 def test_a_chute_of_three_kilometres_as_step(tmp_path):
     """A CAD file says its unit itself; drawn in thousandths of it, it is too large before anything is meshed."""
     (tmp_path / "meshes").mkdir()

@@ -345,6 +345,7 @@ def test_killed_and_started_again_gives_the_same_tables(finished, tmp_path, cycl
     np.testing.assert_array_equal(found.points, expected.points)
 
 
+@pytest.mark.verify
 @pytest.mark.solver
 def test_a_damaged_newest_cycle_is_done_again_from_what_was_kept(finished, tmp_path):
     """Without its newest cycle a run goes back to the last one that still has its surface, and ends the same."""

@@ -157,7 +157,12 @@ def test_load_is_that_of_each_scheme(pins):
     assert lines == [5.0, 4.0]
 
 
-@pytest.mark.parametrize("missing", [["d"], ["b", "d", "f"], ["a", "c", "e", "g", "h"]])
+OTHERS_MISSING = (["d"], ["a", "c", "e", "g", "h"])  # rows
+
+
+@pytest.mark.parametrize(
+    "missing", [["b", "d", "f"], *(pytest.param(each, marks=pytest.mark.verify) for each in OTHERS_MISSING)]
+)
 def test_designs_with_one_scheme_are_drawn(pins, missing, tmp_path):
     """A coefficient that only one scheme has, or a study of one scheme alone: every figure is drawn that has runs."""
     figures = pin_study.drawn(pin_study.without(pins[0], missing, tmp_path))

@@ -75,6 +75,7 @@ def test_a_scheme_without_runs_has_no_card(summarised):
     assert page.cards(results[results["series"] == "mesh"]) == []
 
 
+@pytest.mark.verify
 def test_only_sections_with_a_figure_are_there(pins, tmp_path):
     """A study without series of meshes and sizes has no section on them; every figure that it has is in one."""
     folder = pin_study.without(pins[0], ["e", "f", "g"], tmp_path)

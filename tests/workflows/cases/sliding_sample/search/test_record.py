@@ -44,6 +44,7 @@ def results(finished, tmp_path_factory):
     return study, folder, decided
 
 
+@pytest.mark.verify
 def test_the_record_has_every_pattern_with_its_prediction(results):
     """In the order of the rounds; the first ones were not predicted, the others near to what they wear."""
     _, folder, decided = results
@@ -66,6 +67,7 @@ def test_the_record_has_every_pattern_with_its_prediction(results):
     assert none == f"{len(record)} patterns were tried; of none is enough left."
 
 
+@pytest.mark.verify
 def test_key_numbers_are_those_of_the_best_confirmed(results):
     """Not of a pattern that was lower in fewer packings; a study that looks for nothing keeps all its runs."""
     _, folder, _ = results
@@ -75,6 +77,7 @@ def test_key_numbers_are_those_of_the_best_confirmed(results):
     assert len(page.of_best(summary, folder / "search")) == len(summary)
 
 
+@pytest.mark.verify
 def test_confirmed_patterns_stand_beside_the_reference(results):
     """The best wears less than R5 by what their heights make, in the same packings."""
     _, folder, decided = results
@@ -97,6 +100,7 @@ def test_the_best_is_one_of_which_enough_may_be_left():
     assert best_confirmed(table.assign(enough_left="no"))["setting"] == "O1"
 
 
+@pytest.mark.verify
 def test_the_surrogate_is_drawn_along_every_factor(results):
     """Least near the best height; the other factor changes nothing."""
     _, folder, _ = results
@@ -108,6 +112,7 @@ def test_the_surrogate_is_drawn_along_every_factor(results):
     assert all((folder / "figures" / f"{name}.png").stat().st_size > 1000 for name in FIGURES)
 
 
+@pytest.mark.verify
 def test_the_height_decides_wear(results):
     """Of wear, which the other measure has no part in; the loss per hour is that of all patterns over their volumes."""
     _, folder, _ = results
@@ -118,6 +123,7 @@ def test_the_height_decides_wear(results):
     assert set(table.index.get_level_values(0)) == {"ln wear over plain", "ln loss of the pattern per hour"}
 
 
+@pytest.mark.verify
 def test_the_page_answers_which_pattern_is_best(results):
     """With its measures, beside plain and the reference, as predicted, and what is left of it."""
     study, folder, decided = results
@@ -131,6 +137,7 @@ def test_the_page_answers_which_pattern_is_best(results):
     assert page.answers(folder / "figures") == []
 
 
+@pytest.mark.verify
 def test_a_whole_page_has_the_search(results, tmp_path):
     """Beside all that any study of samples has: the confirmed patterns for download, reasons, figures."""
     study, folder, decided = results
