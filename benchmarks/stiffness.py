@@ -200,8 +200,9 @@ def page(table: pd.DataFrame) -> str:
     """Return the page of the answers (Markdown)."""
     found, phrase = answers(table), setting(table)
     rolling = load_study(STUDY, overrides=CASE).settings["solver"]["rolling_friction"]
-    scatter = max(each["scatter"].max() for each in found.values())
-    chance = "unknown, of one packing" if math.isnan(scatter) else f"{PERCENT * scatter:.1f} % (standard deviation)"
+    scatter = {surface: PERCENT * each["scatter"].max() for surface, each in found.items()}
+    told = ", ".join(f"{surface} {value:.1f} %" for surface, value in scatter.items() if not math.isnan(value))
+    chance = f"{told} (standard deviation)" if told else "unknown, of one packing"
     lines = [
         "# Softness of the particles",
         "",
