@@ -128,20 +128,25 @@ def publish(output: Path, runs: pd.DataFrame, published: pd.DataFrame) -> str:
     return page
 
 
-def main() -> None:
-    """Simulate what is missing, then write table, figure and page."""
-    published = pd.read_csv(pairs_file(load_study("calibration")))
+def parser_of(published: pd.DataFrame) -> argparse.ArgumentParser:
+    """Return the command line, which knows the pairs of the published table by name."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}")
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
     parser.add_argument("--tests", nargs="+", choices=KINDS, default=KINDS, help="else both")
-    parser.add_argument("--pairs", nargs="+", choices=published["row"], default=(), help="else all")
+    parser.add_argument("--pairs", nargs="+", choices=list(published["row"]), default=(), help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/rolling_models"))
     parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
     parser.add_argument("--finished", action="store_true", help="simulate nothing, take what is finished")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
-    given = parser.parse_args()
+    return parser
+
+
+def main() -> None:
+    """Simulate what is missing, then write table, figure and page."""
+    published = pd.read_csv(pairs_file(load_study("calibration")))
+    given = parser_of(published).parse_args()
     file = given.output / FILE
     if not given.redraw:
         rows = wanted(given.packings, given.models, given.tests, given.pairs)

@@ -33,18 +33,6 @@ LONGEST_FIRST = (  # measured on two cores: half a minute to minutes each, most 
     "report/test_figure_process.py",
     "test_wheel.py",
 )
-FIRST = (  # measured on two cores: half a minute to minutes each, most of it waiting where a cluster is asked
-    "test_slurm.py",
-    "workflows/test_project.py",
-    "workflows/test_snakemake.py",
-    "engine/test_cycles.py",
-    "test_solver_ledger_ranks.py",
-    "test_extend.py",
-    "test_equipment_motion.py",
-    "engine/test_contact_model.py",
-    "test_chains.py",
-    "forecast/test_forecast.py",
-)
 FIRST = (*COMPILE, *LONGEST_FIRST)
 TOGETHER = (  # folders with a fixture of their own that takes seconds
     "tests/workflows/cases/calibration/",

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks.rolling_models import CALIBRATED, KINDS, SETTINGS, finished, pairs_of, publish, wanted
+from benchmarks.rolling_models import CALIBRATED, KINDS, SETTINGS, finished, pairs_of, parser_of, publish, wanted
 from benchmarks.rolling_page import MODELS, by_pair, differences, nearest, of_shared_pairs, results_page, summary
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.calibration.case import pairs_file
@@ -49,6 +49,13 @@ def test_every_published_pair_is_simulated_under_every_model(published):
         assert contact["sliding_friction"] == row["sliding_friction"] == of["particle.contact.sliding_friction"]
         assert contact["rolling_friction"] == row["rolling_friction"] == of["particle.contact.rolling_friction"]
     assert len({row["asked"]["seed"] for row in rows}) == 2
+
+
+def test_pairs_are_chosen_by_name_on_the_command_line(published, capsys):
+    assert parser_of(published).parse_args(["--pairs", CALIBRATED, "size-test"]).pairs == [CALIBRATED, "size-test"]
+    with pytest.raises(SystemExit):
+        parser_of(published).parse_args(["--pairs", "none"])
+    assert CALIBRATED in capsys.readouterr().err
 
 
 def test_pairs_and_tests_are_chosen():
