@@ -11,6 +11,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import Field, field, fields
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -235,6 +236,7 @@ def _overlap_fault(pattern: Pattern, width: float, length: float) -> str | None:
     )
 
 
+@lru_cache(maxsize=256)  # rows of a design, and packings of a row, have few patterns
 def narrowest_gap(pattern: Pattern, width: float, length: float) -> float:
     """Smallest distance (m) between the feet of a pattern on a `width` by `length` m sample, inf of a single one.
 

@@ -32,12 +32,14 @@ def shaped(particle: Mapping[str, Any], shape: str, setting: str = SETTING) -> d
 def find_clump(shape: str, setting: str = SETTING) -> Clump | None:
     """Return the clump that particles are, None for spheres; setting: that gives the shape. Raises ConfigError."""
     project = current_project()
-    shapes = [ROUND, *(name.removesuffix(".csv") for name in project.names(CLUMPS, ".csv"))]
-    if f"{ROUND}.csv" in project.names(CLUMPS, ".csv"):
+    if project.every(f"{CLUMPS}/{ROUND}.csv"):
         raise ConfigError(f"{CLUMPS}/{ROUND}.csv: found a clump of that name, allowed is another name.")
+    if shape == ROUND:
+        return None
+    shapes = [ROUND, *(name.removesuffix(".csv") for name in project.names(CLUMPS, ".csv"))]
     if shape not in shapes:
         raise ConfigError(f"{setting} is {show(shape)}, allowed is one of {', '.join(shapes)}.")
-    return None if shape == ROUND else read_clump(project.file(f"{CLUMPS}/{shape}.csv"), project.folder)
+    return read_clump(project.file(f"{CLUMPS}/{shape}.csv"), project.folder)
 
 
 def read_clump(path: Path, root: Path) -> Clump:

@@ -66,6 +66,7 @@ from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.derived import laws_beside
 from bulkwear.workflows.engine.project import Project, current_project
+from bulkwear.workflows.engine.templates import templates_read_once
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 
@@ -191,7 +192,8 @@ class Study:
 
     @cached_property
     def _beds(self) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
-        return self.case.beds(self.all_runs)
+        with templates_read_once():
+            return self.case.beds(self.all_runs)
 
     @property
     def beds(self) -> dict[str, dict[str, Any]]:
@@ -209,6 +211,7 @@ class Study:
         return self._beds[1].get(self.run(run_name).name)
 
 
+@templates_read_once()
 def load_study(name: str, project: Project | None = None, overrides: dict[str, Any] | None = None) -> Study:
     """Return a checked study of a project, by default the current one, or of the package, with all its runs.
 

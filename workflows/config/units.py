@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 SECONDS_PER_HOUR = 3600.0
@@ -31,10 +32,16 @@ def to_si(values: Any) -> Any:
     return {**_in_si(values), **({"deck": values["deck"]} if "deck" in values else {})}
 
 
+@cache
+def _end(key: str) -> str:
+    """Return the unit that a key ends in, one of TO_SI; nothing where it ends in none."""
+    return next((end for end in TO_SI if key.endswith(f"_{end}")), "")
+
+
 def _in_si(values: dict[str, Any]) -> dict[str, Any]:
     converted = {}
     for key, value in values.items():
-        end = next((end for end in TO_SI if key.endswith(f"_{end}")), "")
+        end = _end(key)
         if isinstance(value, dict) or not end:
             converted[key] = _in_si(value) if isinstance(value, dict) else value
             continue

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bulkwear.workflows.config.bounded import LONGEST_NUMBER
 from bulkwear.workflows.config.layers import (
@@ -25,6 +25,9 @@ from bulkwear.workflows.config.layers import (
     read_csv_rows,
 )
 from bulkwear.workflows.config.schema import leaves, subschema, validator
+
+if TYPE_CHECKING:
+    from jsonschema import ValidationError
 
 # Suffix of a key -> unit as written in the schemas (x-unit); no suffix: "-".
 UNIT_OF_SUFFIX = {
@@ -67,8 +70,9 @@ ALIKE, ALIKE_PATHS = 0.6, 0.7  # -, least likeness of a key and of its whole pat
 
 def check_layer(layer: Layer, schema: dict[str, Any]) -> None:
     """Raise ConfigError for the first fault of a layer against a schema by lines, missing keys last."""
-    faults = [(path, said, False) for path, said in _faults(layer.values, schema)]
-    faults += [(path, said, True) for path, said in _missing(layer.values, schema)]
+    errors = list(validator()(schema).iter_errors(layer.values))
+    faults = [(path, said, False) for path, said in _faults(errors, schema)]
+    faults += [(path, said, True) for path, said in _missing(errors)]
     if faults:
         path, said, _ = min(faults, key=lambda item: (item[2], layer.line(item[0]), dotted(item[0])))
         raise ConfigError(f"{layer.where(path)}: {said()}.")
@@ -85,9 +89,9 @@ def check_alternatives(layer: Layer, alternatives: Sequence[KeyPath], required: 
         raise ConfigError(f"{where}: {names} {found}, allowed is one of them.")
 
 
-def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
+def _faults(errors: Sequence[ValidationError], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
     """Yield (key path, what makes the sentence without its end) for every value that is wrong and every unknown key."""
-    for error in validator()(schema).iter_errors(values):
+    for error in errors:
         path = tuple(error.absolute_path)
         if error.validator == "additionalProperties":
             for key in [key for key in error.instance if key not in error.schema.get("properties", {})]:
@@ -96,9 +100,9 @@ def _faults(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[Ke
             yield path, partial(wrong_value, path, error.instance, error.schema)
 
 
-def _missing(values: dict[str, Any], schema: dict[str, Any]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
+def _missing(errors: Sequence[ValidationError]) -> Iterator[tuple[KeyPath, Callable[[], str]]]:
     """Yield (path of the block, what makes the sentence) for every block in which a key is missing."""
-    for error in validator()(schema).iter_errors(values):
+    for error in errors:
         if error.validator == "required":
             path = tuple(error.absolute_path)
             key = next(key for key in error.validator_value if key not in error.instance)

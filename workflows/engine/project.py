@@ -11,6 +11,7 @@ import os
 import sys
 import traceback
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import ModuleType
 
@@ -42,7 +43,7 @@ class Project:
     package: Path = PACKAGE
     own_laws: tuple[tuple[str, Path], ...] = ()
 
-    @property
+    @cached_property
     def is_package(self) -> bool:
         """Return whether the package is its own project."""
         return self.folder.resolve() == self.package.resolve()
@@ -110,12 +111,13 @@ def template_files(root: Path) -> dict[str, Path]:
     return {name: Path(TEMPLATES) / path for name, path in reversed(named)}
 
 
+ITS_OWN = Project(PACKAGE)
 _entered: list[Project] = []
 
 
 def current_project() -> Project:
     """Return the project that this process works in: the one it entered last, else the package itself."""
-    return _entered[-1] if _entered else Project(PACKAGE)
+    return _entered[-1] if _entered else ITS_OWN
 
 
 def enter_project(folder: Path) -> Project:

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
@@ -92,6 +94,10 @@ def particles_and_walls(particles: float, walls: float, type_names: Sequence[str
     return [[particles if i == j == 0 else walls for j, _ in enumerate(type_names)] for i, _ in enumerate(type_names)]
 
 
+Templates = tuple[jinja2.Environment, tuple[tuple[str, int], ...]]  # and (path, time in ns) of each
+_HELD: ContextVar[Templates | None] = ContextVar("templates", default=None)
+
+
 @dataclass(frozen=True)
 class Uses:
     """What a template and its partials use.
@@ -109,13 +115,27 @@ def _uses(template: str, words: Mapping[str, Any]) -> Uses:
     That is decided for branches `{% if name == "word" %}` whose name, or `solver.name`, `words` has, and for those with
     `!=` and `in ("word", "other")`; all others count as taken.
     """
-    environment = _environment(template_folders())
-    stamp = tuple(sorted(_written(environment.loader.searchpath)))
+    environment, stamp = _HELD.get() or _templates_now()
     chosen = [(name, value) for name, value in words.items() if name != SOLVER]
     chosen += [(f"{SOLVER}.{name}", value) for name, value in words.get(SOLVER, {}).items()]
     choosing = _kept_choosing(environment, template, stamp)
     decided = sorted(each for each in chosen if each[0] in choosing and isinstance(each[1], str | int))
     return _kept_uses(environment, template, tuple(decided), stamp)
+
+
+def _templates_now() -> Templates:
+    environment = _environment(template_folders())
+    return environment, tuple(sorted(_written(environment.loader.searchpath)))
+
+
+@contextmanager
+def templates_read_once() -> Iterator[None]:
+    """Look once at which templates there are and when they were written, for all that is asked within."""
+    token = _HELD.set(_HELD.get() or _templates_now())
+    try:
+        yield
+    finally:
+        _HELD.reset(token)
 
 
 def _written(folders: Iterable[str]) -> Iterator[tuple[str, int]]:
@@ -131,8 +151,8 @@ def _written(folders: Iterable[str]) -> Iterator[tuple[str, int]]:
 @lru_cache(maxsize=64)
 def _kept_choosing(environment: jinja2.Environment, template: str, stamp: tuple[tuple[str, int], ...]) -> set[str]:
     """Return the names of the words that choose a branch in a template or its partials."""
-    trees = _pruned_trees(environment, template, {})
-    tests = (_choice(branch) for tree in trees.values() for branch in tree.find_all(jinja2.nodes.If))
+    with _pruned_trees(environment, template, {}, stamp) as trees:
+        tests = [_choice(branch) for tree in trees.values() for branch in tree.find_all(jinja2.nodes.If)]
     return {test[0] for test in tests if test}
 
 
@@ -140,43 +160,61 @@ def _kept_choosing(environment: jinja2.Environment, template: str, stamp: tuple[
 def _kept_uses(
     environment: jinja2.Environment, template: str, chosen: tuple, stamp: tuple[tuple[str, int], ...]
 ) -> Uses:
-    trees = _pruned_trees(environment, template, dict(chosen))
     settings: dict[str, str] = {}
-    for tree in trees.values():
-        for name, chosen_by in _solver_settings(tree):
-            settings[name] = chosen_by if settings.get(name, chosen_by) else ""
-    variables = {file: frozenset(jinja2.meta.find_undeclared_variables(tree)) for file, tree in trees.items()}
+    with _pruned_trees(environment, template, dict(chosen), stamp) as trees:
+        for tree in trees.values():
+            for name, chosen_by in _solver_settings(tree):
+                settings[name] = chosen_by if settings.get(name, chosen_by) else ""
+        variables = {file: frozenset(jinja2.meta.find_undeclared_variables(tree)) for file, tree in trees.items()}
     return Uses(variables, settings)
 
 
+@contextmanager
 def _pruned_trees(
-    environment: jinja2.Environment, template: str, words: Mapping[str, Any]
-) -> dict[str, jinja2.nodes.Template]:
-    """Return {file name: syntax tree} of a template and its partials, see `_uses`; words by the names of `_choice`."""
+    environment: jinja2.Environment, template: str, words: Mapping[str, Any], stamp: Iterable[tuple[str, int]]
+) -> Iterator[dict[str, jinja2.nodes.Template]]:
+    """Give {file name: syntax tree} of a template and its partials, see `_uses`; words by the names of `_choice`.
+
+    The trees are kept for the next words: their branches are pruned within the context only.
+    """
+    written = dict(stamp)
     trees: dict[str, jinja2.nodes.Template] = {}
     names = [f"{template}.in.j2"]
-    for name in names:
-        shown = shown_template(name.removesuffix(".in.j2"))
-        try:
-            trees[name] = environment.parse(template_file(name).read_text(encoding="utf-8-sig"))
-        except jinja2.TemplateSyntaxError as fault:
-            raise DeckError(f"{shown}, line {fault.lineno}: {fault.message}.") from fault
-        except UnicodeDecodeError as fault:
-            raise DeckError(f"{shown}: byte {fault.start} is not UTF-8, allowed is UTF-8 text.") from fault
-        for branch in trees[name].find_all(jinja2.nodes.If):
-            _prune(branch, words)
-        found = jinja2.meta.find_referenced_templates(trees[name])
-        names.extend(part for part in found if part and part not in names)
-    return trees
+    with ExitStack() as pruned:
+        for name in names:
+            path = template_file(name)
+            trees[name] = _parsed(environment, name, path, written[str(path)])
+            for branch in trees[name].find_all(jinja2.nodes.If):
+                pruned.callback(_prune(branch, words))
+            found = jinja2.meta.find_referenced_templates(trees[name])
+            names.extend(part for part in found if part and part not in names)
+        yield trees
 
 
-def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> None:
-    """Empty the part of a branch that `words` do not take."""
-    test = _choice(branch)
+@lru_cache(maxsize=256)
+def _parsed(environment: jinja2.Environment, name: str, path: Path, _written: int) -> jinja2.nodes.Template:
+    """Return the syntax tree of a file; _written: when, in ns. Raises DeckError."""
+    shown = shown_template(name.removesuffix(".in.j2"))
+    try:
+        return environment.parse(path.read_text(encoding="utf-8-sig"))
+    except jinja2.TemplateSyntaxError as fault:
+        raise DeckError(f"{shown}, line {fault.lineno}: {fault.message}.") from fault
+    except UnicodeDecodeError as fault:
+        raise DeckError(f"{shown}: byte {fault.start} is not UTF-8, allowed is UTF-8 text.") from fault
+
+
+def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> Callable[[], None]:
+    """Empty the part of a branch that `words` do not take; return what fills it again."""
+    test, whole = _choice(branch), (branch.body, branch.else_)
     if test and test[0] in words:
         name, operator, value = test
         taken = TESTS[operator](words[name], value)
         branch.body, branch.else_ = (branch.body, []) if taken else ([], branch.else_)
+
+    def fill() -> None:
+        branch.body, branch.else_ = whole
+
+    return fill
 
 
 def _choice(branch: jinja2.nodes.If) -> tuple[str, str, Any] | None:
