@@ -18,9 +18,8 @@ export VTK_DEFAULT_OPENGL_WINDOW ?= vtkOSOpenGLRenderWindow
 
 PROFILE := workflows/profiles/default
 SNAKEMAKE := .venv/bin/snakemake --workflow-profile $(PROFILE) --cores $(CORES)
-# one file's tests stay on one process (some folders': tests/conftest.py), so that what they share is made once; one
-# process more than cores, because some tests wait for a cluster
-PYTEST := .venv/bin/pytest --numprocesses $(shell expr $(CORES) + 1) --maxprocesses 8 --dist loadfile --no-loadscope-reorder
+# one file's tests stay on one process (some folders': tests/conftest.py), so that what they share is made once
+PYTEST := .venv/bin/pytest --numprocesses $(CORES) --maxprocesses 8 --dist loadfile --no-loadscope-reorder
 SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)

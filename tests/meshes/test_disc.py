@@ -118,7 +118,7 @@ def test_senseless_sizes_are_refused(place, name):
 # --- stretches
 
 REACH = 0.001  # m
-ARCS = [(0.3, 1.1), (-0.2, 0.4), (3.0, 3.5), (2.0 * math.pi + 1.0, 2.0 * math.pi + 1.5), (0.0, 5.9), (1.0, 1.0)]
+ARCS = [(0.3, 1.1), (-0.2, 0.4), (2.0 * math.pi + 1.0, 2.0 * math.pi + 1.5), (0.0, 5.9), (1.0, 1.0)]
 
 
 def points_of(mesh):
@@ -135,7 +135,7 @@ def test_a_stretch_has_every_triangle_within_reach(meshes, start, end):
     mesh = meshes[5e-4]
     chosen = track_stretch(mesh, TRACK, start, end, REACH)
     angle = np.linspace(start, end, 4000)
-    arc = TRACK * np.column_stack([np.cos(angle), np.sin(angle)])
+    arc = np.unique(TRACK * np.column_stack([np.cos(angle), np.sin(angle)]), axis=0)
     nearest = cKDTree(arc).query(points_of(mesh))[0].min(axis=1)
     spacing = TRACK * (end - start) / 4000
     needed = np.flatnonzero(nearest <= REACH - spacing)

@@ -17,10 +17,8 @@ from bulkwear.meshes.which_law import draw as which_law
 from bulkwear.postproc.mesh import area_vectors
 
 SCRIPTS = {"chute": chute, "mill": mill, "screw": screw, "which_law": which_law}
-BODIES = (
-    *("chute/walls", "chute/impact_plate", "chute/liner_plain", "screw/screw", "screw/trough"),
-    *("which_law/plate_15", "which_law/slide"),
-)
+BODIES = ("chute/walls", "screw/screw")
+MORE_BODIES = ("chute/impact_plate", "chute/liner_plain", "screw/trough", "which_law/plate_15", "which_law/slide")
 LONGEST_S = 10.0  # s of the processor, of a script: each takes about one
 LARGEST_BYTES = 1_000_000  # of a drawing
 OF_CURVED = 1e-3  # -, of a volume with curved faces: OpenCASCADE's quadrature, and a loft in place of a helix
@@ -80,7 +78,7 @@ def test_equal_drawings_are_equal_files(drawn, tmp_path):
         assert path.read_bytes() == (drawn[0] / "screw" / path.name).read_bytes()
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("name", [*BODIES, *(pytest.param(each, marks=pytest.mark.verify) for each in MORE_BODIES)])
 def test_bodies_are_closed_and_have_the_names_of_their_files(drawn, name):
     (part,) = found(drawn, name).parts
     assert part.name == name.rpartition("/")[2]
@@ -242,6 +240,7 @@ def test_bodies_of_one_file_keep_their_names(tmp_path):
     assert {part.name: part.volume_m3 for part in parts} == pytest.approx({"small": 100e-9, "large": 1600e-9}, rel=1e-9)
 
 
+@pytest.mark.verify
 @pytest.mark.parametrize("angle", which_law.ANGLES)
 def test_plates_of_which_law_stand_at_their_angles_to_the_stream(drawn, angle):
     """The face that a stream along x hits is at that angle to it, upright, and as large as the plate."""

@@ -99,6 +99,7 @@ def wear_without_slurm(folder: Path, elsewhere: Path) -> bytes:
     return (elsewhere / RUN / "wear.csv").read_bytes()
 
 
+@pytest.mark.verify  # waits for a minute
 def test_a_study_runs_on_slurm_and_resumes_after_scancel(cluster, tmp_path):
     """Meshes, bed and run are a submission each. The run is cancelled in its second wear cycle, submitted again,
     resumes after the first, and ends in the table of an undisturbed one."""

@@ -107,17 +107,14 @@ def read_runs(values: Sequence[Mapping[str, Any]], folder: Path) -> Runs:
                 f"{folder / run['run']}: no cycle_*/{missing[0]}.csv found, allowed is a run with wear cycles."
             )
         labels = {name: run[name] for name in ("run", "setting", "packing")}
-        for name in ("patches", "parts"):
-            tables[name] += [pd.read_csv(file).assign(**labels) for file in there[name]]
-        phases = {int(table["cycle"].iloc[0]): table["phase"].iloc[0] for table in tables["parts"] if _of(table, run)}
+        own = {name: [pd.read_csv(file).assign(**labels) for file in there[name]] for name in ("patches", "parts")}
+        phases = {int(table["cycle"].iloc[0]): table["phase"].iloc[0] for table in own["parts"]}
+        for name, read in own.items():
+            tables[name] += read
         for file in there["flow"]:
             cycle = int(file.parent.name.removeprefix("cycle_"))
             tables["flow"].append(pd.read_csv(file).assign(**labels, cycle=cycle, phase=phases.get(cycle, START_UP)))
     return Runs(tuple(values), **{name: pd.concat(found, ignore_index=True) for name, found in tables.items()})
-
-
-def _of(table: pd.DataFrame, run: Mapping[str, Any]) -> bool:
-    return table["run"].iloc[0] == run["run"]
 
 
 def tonnes_per_hour(run: Mapping[str, Any]) -> float:

@@ -178,6 +178,7 @@ def test_the_verdict_answers_without_wear(folder):
     assert "discrepancy of the model" in weightiest.text
 
 
+@pytest.mark.verify
 def test_the_page_in_docs_has_the_same_sections(folder, tmp_path):
     """It names date, version and scale, and its pictures lie beside it."""
     path = markdown.write_results(folder, tmp_path, study())

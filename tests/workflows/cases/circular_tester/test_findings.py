@@ -287,7 +287,10 @@ def five_columns(generator):
 @pytest.mark.parametrize(
     ("key", "false", "make"),
     [
-        ("plain_linear", [AGREES], lambda g: {"increments": increments(g, "plain", 0.10)}),
+        pytest.param(
+            *("plain_linear", [AGREES], lambda g: {"increments": increments(g, "plain", 0.10)}),
+            marks=pytest.mark.verify,
+        ),
         ("force_falls", [OTHER_SIZE, CONTRADICTS], lambda g: {"means": force(g, 0.0)}),
         pytest.param(
             *("plain_linear", [CONTRADICTS], lambda g: {"increments": increments(g, "plain", 0.0)}),

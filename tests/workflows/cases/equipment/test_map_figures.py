@@ -43,7 +43,7 @@ def studies(tmp_path_factory):
     return made
 
 
-@pytest.fixture(scope="module", params=["chute", "drum"])
+@pytest.fixture(scope="module", params=["chute", pytest.param("drum", marks=pytest.mark.verify)])
 def study(request, studies):
     return studies(request.param)
 

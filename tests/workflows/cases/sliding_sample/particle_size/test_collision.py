@@ -184,6 +184,7 @@ def test_a_spread_of_scales_is_measured():
     assert list(spread["measure"]) == ["largest_overlap"] and math.isclose(spread["spread"].iloc[0], 0.02)
 
 
+@pytest.mark.verify
 @pytest.mark.solver
 def test_collisions_of_the_study_are_alike_and_thinned_out(tmp_path):
     """Measures of two scales agree; histories are short enough for a table; the dumps are gone."""

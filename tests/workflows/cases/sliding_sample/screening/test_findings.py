@@ -325,12 +325,12 @@ def at_the_edge(key):
     return lambda: replace(template, rows=rows.assign(**{column: values * np.exp(rng.normal(0.0, SCATTER, len(rows)))}))
 
 
-DEARER = ("r5_lowest", "thickness_strongest")  # claims
+DEARER = ("r5_reduction", "r5_lowest", "thickness_strongest")  # claims
 
 
 @pytest.mark.parametrize(
     "key",
-    ["convex_wears_less", "r5_reduction", *(pytest.param(each, marks=pytest.mark.verify) for each in DEARER)],
+    ["convex_wears_less", *(pytest.param(each, marks=pytest.mark.verify) for each in DEARER)],
 )
 def test_false_verdicts_are_rare(key):
     """Where one row is at the very edge of what is claimed, "agrees" comes in 5 % of studies at most, and a false
