@@ -26,7 +26,7 @@ from bulkwear.workflows.engine.accounting import LEDGER
 from bulkwear.workflows.engine.project import Project, ProjectError
 from bulkwear.workflows.engine.records import read_record
 from bulkwear.workflows.engine.row_check import RowCheck
-from bulkwear.workflows.engine.templates import DeckError
+from bulkwear.workflows.engine.template_files import DeckError
 
 SPINS = "spins.dump"  # is read with contacts
 MACHINES = tuple(f"parts.{kind}" for kind in ("stl", "obj", "ply", "vtk", "vtu", "msh"))  # files of a machine's parts

@@ -27,7 +27,8 @@ from bulkwear.workflows.engine.job import let_jobs_import
 from bulkwear.workflows.engine.project import ProjectError, enter_project
 from bulkwear.workflows.engine.solver import LAUNCHER, cycle_fault, executable_of
 from bulkwear.workflows.engine.study_folder import StudyFolderError, date_back, take
-from bulkwear.workflows.engine.templates import DeckError, templates_digest
+from bulkwear.workflows.engine.template_files import DeckError
+from bulkwear.workflows.engine.templates import templates_digest
 from bulkwear.workflows.engine.terminal import Terminal, listen
 from bulkwear.workflows.forecast.rates import rates_file
 from bulkwear.workflows.report import figure_process

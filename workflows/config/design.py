@@ -66,7 +66,7 @@ from bulkwear.workflows.engine.case import Case, Run
 from bulkwear.workflows.engine.chain import sample_decks
 from bulkwear.workflows.engine.derived import laws_beside
 from bulkwear.workflows.engine.project import Project, current_project
-from bulkwear.workflows.engine.templates import templates_read_once
+from bulkwear.workflows.engine.template_files import templates_read_once
 
 __all__ = ["ConfigError", "Run", "Study", "confirmation_design", "list_studies", "load_study"]
 

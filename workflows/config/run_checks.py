@@ -18,7 +18,8 @@ from bulkwear.workflows.config.patterns import pattern_of
 from bulkwear.workflows.config.schema import load_schema
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.config.validation import allowed_text, files_of, locate, show
-from bulkwear.workflows.engine.templates import DeckError, own_templates, solver_settings, template_variables
+from bulkwear.workflows.engine.template_files import DeckError, own_templates
+from bulkwear.workflows.engine.templates import solver_settings, template_variables
 
 if TYPE_CHECKING:
     from bulkwear.workflows.engine.case import Case, Run

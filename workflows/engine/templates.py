@@ -8,94 +8,34 @@ words.
 from __future__ import annotations
 
 import operator
-import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass
-from functools import cache, lru_cache
-from pathlib import Path
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
 import jinja2
 import jinja2.meta
 
-from bulkwear.workflows.engine.project import TEMPLATES, current_project
 from bulkwear.workflows.engine.state import digest
+from bulkwear.workflows.engine.template_files import (
+    DeckError,
+    own_templates,
+    parsed,
+    shown_template,
+    template_file,
+    templates_read,
+)
 
 SOLVER, OWN = "solver", "deck"  # sections of a run, a bed or a test that reach its templates whole
 TESTS = {"eq": operator.eq, "ne": operator.ne, "in": lambda value, several: value in several}  # of branches
-
-
-class DeckError(ValueError):
-    """A template and its parameters do not fit; the message names the template and the parameter."""
-
-
-def template_folders() -> tuple[Path, ...]:
-    """Return the folders in which a template is found by its name: of the project, each case's, then of the package."""
-    roots = [folder / TEMPLATES for folder in current_project().folders]
-    return tuple(found for root in roots if root.is_dir() for found in (root, *_of_cases(root)))
-
-
-def _of_cases(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.iterdir() if path.is_dir() and not path.name.startswith("_"))
-
-
-def own_templates() -> list[Path]:
-    """Return the templates that are the current project's own, not the package's."""
-    project = current_project()
-    return [] if project.is_package else sorted((project.folder / TEMPLATES).rglob("*.in.j2"))
 
 
 def _is_own(template: str) -> bool:
     """Return whether a template, or a partial that it includes, is the current project's own."""
     own = own_templates()
     return bool(own) and any(template_file(name) in own for name in _uses(template, {}).variables)
-
-
-def template_file(name: str) -> Path:
-    """Return the file that a template of that name is read from. Raises DeckError where there is none."""
-    for folder in template_folders():
-        if (folder / name).is_file():
-            return folder / name
-    raise DeckError(f"{TEMPLATES}/{name}: no such template.")
-
-
-def shown_template(name: str) -> str:
-    """Return the path of a template as messages show it: from the project's folder where it is the project's own.
-
-    name: of its file, without .in.j2
-    """
-    path, folder = template_file(f"{name}.in.j2"), current_project().folder
-    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else str(path)
-
-
-@cache
-def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folders),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    environment.filters |= {"table": pair_table, "particles_and_walls": particles_and_walls}
-    return environment
-
-
-def pair_table(rows: Sequence[Sequence[float]]) -> str:
-    """Return a square table as the continued lines of a LIGGGHTS command."""
-    return " &\n".join("     " + " ".join(f"{value:.9g}" for value in row) for row in rows)
-
-
-def particles_and_walls(particles: float, walls: float, type_names: Sequence[str]) -> list[list[float]]:
-    """Return the table of a property of all contacts between particles, the first type, and of all others."""
-    return [[particles if i == j == 0 else walls for j, _ in enumerate(type_names)] for i, _ in enumerate(type_names)]
-
-
-Templates = tuple[jinja2.Environment, tuple[tuple[str, int], ...]]  # and (path, time in ns) of each
-_HELD: ContextVar[Templates | None] = ContextVar("templates", default=None)
 
 
 @dataclass(frozen=True)
@@ -115,37 +55,12 @@ def _uses(template: str, words: Mapping[str, Any]) -> Uses:
     That is decided for branches `{% if name == "word" %}` whose name, or `solver.name`, `words` has, and for those with
     `!=` and `in ("word", "other")`; all others count as taken.
     """
-    environment, stamp = _HELD.get() or _templates_now()
+    environment, stamp = templates_read()
     chosen = [(name, value) for name, value in words.items() if name != SOLVER]
     chosen += [(f"{SOLVER}.{name}", value) for name, value in words.get(SOLVER, {}).items()]
     choosing = _kept_choosing(environment, template, stamp)
     decided = sorted(each for each in chosen if each[0] in choosing and isinstance(each[1], str | int))
     return _kept_uses(environment, template, tuple(decided), stamp)
-
-
-def _templates_now() -> Templates:
-    environment = _environment(template_folders())
-    return environment, tuple(sorted(_written(environment.loader.searchpath)))
-
-
-@contextmanager
-def templates_read_once() -> Iterator[None]:
-    """Look once at which templates there are and when they were written, for all that is asked within."""
-    token = _HELD.set(_HELD.get() or _templates_now())
-    try:
-        yield
-    finally:
-        _HELD.reset(token)
-
-
-def _written(folders: Iterable[str]) -> Iterator[tuple[str, int]]:
-    """Yield (path, time in ns) of every template; asked for at each use, where pathlib would take most of the time."""
-    for folder in folders:
-        for place, _, names in os.walk(folder):
-            for name in names:
-                if name.endswith(".in.j2"):
-                    path = os.path.join(place, name)
-                    yield path, os.stat(path).st_mtime_ns
 
 
 @lru_cache(maxsize=64)
@@ -183,24 +98,12 @@ def _pruned_trees(
     with ExitStack() as pruned:
         for name in names:
             path = template_file(name)
-            trees[name] = _parsed(environment, name, path, written[str(path)])
+            trees[name] = parsed(environment, name, path, written.get(str(path), 0))
             for branch in trees[name].find_all(jinja2.nodes.If):
                 pruned.callback(_prune(branch, words))
             found = jinja2.meta.find_referenced_templates(trees[name])
             names.extend(part for part in found if part and part not in names)
         yield trees
-
-
-@lru_cache(maxsize=256)
-def _parsed(environment: jinja2.Environment, name: str, path: Path, _written: int) -> jinja2.nodes.Template:
-    """Return the syntax tree of a file; _written: when, in ns. Raises DeckError."""
-    shown = shown_template(name.removesuffix(".in.j2"))
-    try:
-        return environment.parse(path.read_text(encoding="utf-8-sig"))
-    except jinja2.TemplateSyntaxError as fault:
-        raise DeckError(f"{shown}, line {fault.lineno}: {fault.message}.") from fault
-    except UnicodeDecodeError as fault:
-        raise DeckError(f"{shown}: byte {fault.start} is not UTF-8, allowed is UTF-8 text.") from fault
 
 
 def _prune(branch: jinja2.nodes.If, words: Mapping[str, Any]) -> Callable[[], None]:
@@ -320,6 +223,6 @@ def render(template: str, parameters: Mapping[str, Any]) -> str:
         if names:
             raise DeckError(f"{shown_template(template)}: parameter {', '.join(sorted(names))} {fault}.")
     try:
-        return _environment(template_folders()).get_template(f"{template}.in.j2").render({**given, **own})
+        return templates_read()[0].get_template(f"{template}.in.j2").render({**given, **own})
     except Exception as fault:  # what is computed in a template may fail in any way
         raise DeckError(f"{shown_template(template)}: {type(fault).__name__}: {fault}.") from fault

@@ -8,11 +8,12 @@ import pytest
 from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine import templates
+from bulkwear.workflows.engine import template_files
 from bulkwear.workflows.engine.chain import bed_deck_text
 from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.schedule import known_spans
-from bulkwear.workflows.engine.templates import DeckError, render, template_sources, template_variables
+from bulkwear.workflows.engine.template_files import DeckError, template_file
+from bulkwear.workflows.engine.templates import render, template_sources, template_variables
 from tests import REPOSITORY
 from tests.support.tiny import tiny_study
 
@@ -45,7 +46,7 @@ def test_every_variable_of_the_templates_is_in_their_readme():
 )
 def test_a_branch_not_taken_asks_for_nothing(tmp_path, monkeypatch, words, used):
     """Only what the branch taken uses is wanted, its partials included; other conditions count as taken."""
-    monkeypatch.setattr(templates, "current_project", lambda: Project(tmp_path, package=tmp_path))
+    monkeypatch.setattr(template_files, "current_project", lambda: Project(tmp_path, package=tmp_path))
     (tmp_path / "templates").mkdir()
     (tmp_path / "templates/case.in.j2").write_text(
         '{% if kind == "one" %}{% include "part.in.j2" %}{% else %}{{ b }}{% endif %}\n'
@@ -94,7 +95,7 @@ def test_random_seeds_are_primes_above_ten_thousand():
 def edited(tmp_path, monkeypatch):
     """A function that adds a line to a template of a copy, from which decks are made during a test."""
     shutil.copytree(TEMPLATES, tmp_path / "templates")
-    monkeypatch.setattr(templates, "current_project", lambda: Project(tmp_path, package=tmp_path))
+    monkeypatch.setattr(template_files, "current_project", lambda: Project(tmp_path, package=tmp_path))
 
     def add(name, line):
         (path,) = (tmp_path / "templates").glob(f"*/{name}.in.j2")
@@ -151,7 +152,7 @@ def test_a_word_of_ours_is_refused(name, word, template):
     with pytest.raises(ConfigError) as caught:
         load_study(name, overrides={"deck": {word: 3}})
     fault = f"parameter {word} is one of ours, no word of deck may be called so."
-    shown = templates.template_file(f"{template}.in.j2").relative_to(REPOSITORY)
+    shown = template_file(f"{template}.in.j2").relative_to(REPOSITORY)
     assert str(caught.value) == f"command line: {shown}: {fault}"
 
 

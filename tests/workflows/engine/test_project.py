@@ -21,7 +21,8 @@ from bulkwear.workflows.engine.project import (
     leave_project,
 )
 from bulkwear.workflows.engine.state import cycle_folder
-from bulkwear.workflows.engine.templates import shown_template, template_sources, template_variables
+from bulkwear.workflows.engine.template_files import shown_template
+from bulkwear.workflows.engine.templates import template_sources, template_variables
 from tests.support.own_project import STUDY, TEMPLATE, own_project
 
 LAW, CASE = "hardened", "dimpled"

@@ -127,6 +127,7 @@ def test_without_room_for_a_socket_jobs_work_by_themselves(tmp_path, monkeypatch
     assert VARIABLE not in os.environ and not list(folder.iterdir())
 
 
+@pytest.mark.verify
 def test_a_module_of_the_project_is_not_taken_for_pythons(project, monkeypatch):
     """The process starts in the user's folder, whose files are not its own."""
     (project / "random.py").write_text("raise SystemExit('a module of the project ran')")

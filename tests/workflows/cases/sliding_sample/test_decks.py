@@ -13,7 +13,8 @@ from bulkwear.workflows.engine.cycles import fill_bed
 from bulkwear.workflows.engine.project import current_project
 from bulkwear.workflows.engine.schedule import known_spans
 from bulkwear.workflows.engine.solver import LEDGER_EXECUTABLE, LOG, run_deck
-from bulkwear.workflows.engine.templates import DeckError, render
+from bulkwear.workflows.engine.template_files import DeckError
+from bulkwear.workflows.engine.templates import render
 from tests import DATA
 from tests.support.law_cases import long_slip_registered, wear_settings
 from tests.support.tiny import OF_ANY_MODEL, tiny_study

@@ -26,7 +26,8 @@ from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.ledgers import summed_by_solver
 from bulkwear.workflows.engine.schedule import first_span, known_spans
 from bulkwear.workflows.engine.solver import run_deck
-from bulkwear.workflows.engine.templates import _environment, render, template_folders
+from bulkwear.workflows.engine.template_files import templates_read
+from bulkwear.workflows.engine.templates import render
 from bulkwear.workflows.engine.work import builds_per_step
 from tests.support.tiny import tiny_chain, tiny_study
 
@@ -167,7 +168,7 @@ class Window:
             "period_m": period,
             "packing_file": "packing.dump",
         }
-        text = _environment(template_folders()).get_template("_shared/fresh_bed.in.j2").render(words)
+        text = templates_read()[0].get_template("_shared/fresh_bed.in.j2").render(words)
         command = re.search(r"^shell +(awk .*?fresh_bed\.data\")$", text.replace("&\n", ""), re.MULTILINE)[1]
         self.command = command.replace("\"'", "'").replace("'\"", "'").replace('"> ', "> ").removesuffix('"')
 

@@ -57,6 +57,7 @@ def test_a_stopped_search_goes_on_as_if_it_had_not_been(finished, tmp_path):
     assert json.loads((rounds / "round_1.json").read_text()) == json.loads(json.dumps(decided[0]))
 
 
+@pytest.mark.verify
 def test_a_round_that_the_budget_does_not_hold_is_not_begun(tmp_path):
     """Ten runs of patterns, two plain twins and two beds are done; a round and the confirmation would exceed the
     quarter of an hour asked for, the confirmation alone does not.
