@@ -28,7 +28,8 @@ def sobol_indices(values: Values, names: Sequence[str], power: int = POWER, seed
     """Return COLUMNS of each factor: indices (-) of first and total order with their 95 % intervals.
 
     names: of the p factors; power: 2^power points; seeded. Value: median of the draws; interval: quantiles over
-    RESAMPLES of the points, each of one draw, so that the error of the sample and that of the surrogate are in it.
+    RESAMPLES of the points, each of one draw, so that the error of the sample and that of the surrogate are in it. Both
+    are held between 0 and 1, where parts of a variance lie: the estimators pass them by the error of the sample.
     Raises ValueError for a response that does not vary, or is not a finite number everywhere.
     """
     from SALib.sample.sobol import sample  # slow to import
@@ -45,7 +46,7 @@ def sobol_indices(values: Values, names: Sequence[str], power: int = POWER, seed
     blocks = (centred / deviation).reshape(2**power, len(names) + 2, -1)
     whole = np.median(_indices(blocks), axis=-1)
     low, high = np.quantile(_resampled(blocks, seed), [0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE], axis=0)
-    columns = [part for k in range(2) for part in (whole[k], low[k], high[k])]
+    columns = [np.clip(part, 0.0, 1.0) for k in range(2) for part in (whole[k], low[k], high[k])]
     return pd.DataFrame(dict(zip(COLUMNS, [list(names), *columns], strict=True)))
 
 

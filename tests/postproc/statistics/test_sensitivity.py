@@ -29,6 +29,13 @@ def test_ishigamis_function():
         assert (found[f"{index}_low"] <= found[index]).all() and (found[index] <= found[f"{index}_high"]).all()
 
 
+def test_parts_and_their_intervals_lie_between_nothing_and_all():
+    """Also where one factor makes all of the variance and another one none of it."""
+    found = sobol_indices(lambda points: points[:, 0], ["all", "none"])
+    assert found.drop(columns="factor").stack().between(0.0, 1.0).all()
+    assert (found.loc[0, "first_low"], found.loc[0, "first_high"]) == (pytest.approx(1.0, abs=2.0 * SAMPLED), 1.0)
+
+
 def test_an_additive_response():
     """Parts are the squares of the slopes over their sum, first and total order alike; a factor without one has 0."""
     slopes = np.array([3.0, 2.0, 1.0, 0.0])
