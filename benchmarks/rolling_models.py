@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from contextlib import nullcontext
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -92,10 +93,13 @@ def pairs_of(published: pd.DataFrame, kind: str) -> list[str]:
     return sorted(found, key=lambda pair: pair != CALIBRATED)
 
 
-def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int) -> pd.DataFrame:
-    """Return the rows with the responses of each, simulated unless they were before. Raises SolverError."""
+def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int, alone: bool = True) -> pd.DataFrame:
+    """Return the rows with the responses of each, simulated unless they were before. Raises SolverError.
+
+    alone: waits until nobody else simulates in that folder; else what is finished is read beside them
+    """
     say = Progress("rolling models", 1).say
-    with state.only_driver(folder, say):
+    with state.only_driver(folder, say) if alone else nullcontext():
         found = simulate_all([row["asked"] for row in rows], folder, cores, say)
     answers = [answer(each) for each in found]
     return pd.DataFrame([_told(row) | given for row, given in zip(rows, answers, strict=True)])
@@ -151,7 +155,8 @@ def main() -> None:
     if not given.redraw:
         rows = wanted(given.packings, given.models, given.tests, given.pairs)
         rows = finished(rows, given.folder) if given.finished else rows
-        simulated(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
+        table = simulated(rows, given.folder, given.cores, alone=not given.finished)
+        table.to_csv(file, index=False, float_format="%.6g")
     print(publish(given.output, pd.read_csv(file), published), flush=True)
 
 

@@ -4,11 +4,22 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks.rolling_models import CALIBRATED, KINDS, SETTINGS, finished, pairs_of, parser_of, publish, wanted
+from benchmarks.rolling_models import (
+    CALIBRATED,
+    KINDS,
+    SETTINGS,
+    finished,
+    pairs_of,
+    parser_of,
+    publish,
+    simulated,
+    wanted,
+)
 from benchmarks.rolling_page import MODELS, by_pair, differences, nearest, of_shared_pairs, results_page, summary
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.state import only_driver
 
 STUDENT_95_1 = 12.7062  # two-sided 95 % point of Student's t with one degree of freedom; tables
 OFF = {"cdt": -6.0, "epsd2": -3.0, "own_spin": 0.5, "rvd": 4.0}  # degrees, that these models are off by
@@ -63,6 +74,13 @@ def test_pairs_and_tests_are_chosen():
     assert [(row["model"], row["test"], row["pair"], row["packing"]) for row in rows] == [
         ("cdt", "shear_box", CALIBRATED, packing) for packing in (1, 2, 3)
     ]
+
+
+def test_what_is_finished_is_read_beside_who_simulates(tmp_path):
+    """Without waiting for them."""
+    waited = []
+    with only_driver(tmp_path, waited.append):
+        assert simulated([], tmp_path, 1, alone=False).empty and not waited
 
 
 def test_nothing_is_taken_for_finished_that_was_not_simulated(tmp_path):
