@@ -122,9 +122,11 @@ def publish(output: Path, runs: pd.DataFrame, published: pd.DataFrame) -> str:
     """Write figure and page of the simulations; return the page. runs: as from `simulated`."""
     page = results_page(runs, published)
     (output / PAGE).write_text(page, encoding="utf-8")
+    packings = runs.groupby(["model", "test", "pair"])["packing"].nunique()
+    several = f"{packings.min()} to {packings.max()}" if packings.min() < packings.max() else f"{packings.max()}"
     remarks = [
         f"study calibration at {FIDELITY} fidelity, pairs of Tables 3.3, 3.5 and 3.6 of Yan 2022; packings of each:"
-        f" {runs['packing'].nunique()}",
+        f" {several}",
         f"made by benchmarks/rolling_models.py, {date.today():%Y-%m-%d}",
     ]
     save(against_source(runs, published, remarks), output / FIGURE)
