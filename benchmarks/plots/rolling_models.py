@@ -35,7 +35,8 @@ def against_source(runs: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
         for model, (colour, marker) in LOOKS.items():
             some = of[of["model"] == model]
             axes.plot(some["published"], some["ours"], marker, color=colour, markersize=5.0, alpha=0.8, label=model)
-        axes.set(xlabel=f"{response_name(response)}, Yan 2022", ylabel="Ours")
+        name = response_name(response)  # ends with its unit in brackets
+        axes.set(xlabel=f"{name}, Yan 2022", ylabel=f"Ours, mean ({name.rpartition('(')[2]}")
     for axes in panels[len(responses) :]:
         axes.set_axis_off()
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(MODELS))
