@@ -1,19 +1,22 @@
-"""The figure of `benchmarks.rolling_models`."""
+"""The figures of `benchmarks.rolling_models` and `benchmarks.tilted_bed`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from benchmarks.rolling_page import MODELS, differences
 from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, new_figure
+from bulkwear.postproc.statistics.intervals import Estimate
 from bulkwear.workflows.cases.calibration.responses import response_name
 
 LOOKS = dict(zip(MODELS, ((BLUE, "o"), (ORANGE, "s"), ("#009E73", "^"), (OTHER_COLOUR, "D")), strict=True))
 HEIGHT = 6.2  # inches
 ROOM = 0.08  # -, of the range of a panel
+LOW = 2.8  # inches, of a figure of one panel
+BESIDE = 0.12  # of the distance of two models, packings beside their mean
 
 
 def against_source(runs: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
@@ -40,4 +43,25 @@ def against_source(runs: pd.DataFrame, published: pd.DataFrame, remarks: Sequenc
     for axes in panels[len(responses) :]:
         axes.set_axis_off()
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(MODELS))
+    return figure
+
+
+def packings_by_model(
+    runs: pd.DataFrame, column: str, label: str, means: Mapping[str, Estimate], remarks: Sequence[str]
+) -> Figure:
+    """Draw a column of runs by model: packings, and beside them their mean with its 95 % interval, where it is known.
+
+    runs: model and that column, a row per packing; label: of the axis, with its unit
+    """
+    figure = new_figure(remarks, LOW)
+    axes = figure.subplots()
+    for place, (model, mean) in enumerate(means.items()):
+        colour, marker = LOOKS[model]
+        values = runs.loc[runs["model"] == model, column]
+        axes.plot([place - BESIDE] * len(values), values, marker, color=colour, markersize=3.0, alpha=0.6)
+        reach = [[mean.value - mean.interval()[0]], [mean.interval()[1] - mean.value]] if mean.known else None
+        axes.errorbar(place + BESIDE, mean.value, reach, marker=marker, color=colour, markersize=6.0, capsize=4.0)
+    axes.set_xticks(range(len(means)), list(means))
+    axes.set(xlabel="Rolling model", ylabel=label, xlim=(-0.5, len(means) - 0.5))
+    axes.grid(axis="x", visible=False)
     return figure

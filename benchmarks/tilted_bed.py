@@ -1,0 +1,271 @@
+"""At which slope does a bed begin to flow? A layer of grains without walls is tilted slowly, under each rolling model.
+
+    python -m benchmarks.tilted_bed --cores 2    # in the root of the repository; an hour
+    python -m benchmarks.tilted_bed --redraw
+
+Its grains are those of `benchmarks.rolling_models`, in the source's calibrated pair. Layers stay in `--folder`; more
+packings are added to those that are there. Writes into docs: tilted_bed.csv (every layer), figure and
+tilted_bed_results.md; `--redraw` makes the last two from the first.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from benchmarks.plots.rolling_models import packings_by_model
+from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX, wanted
+from benchmarks.rolling_page import MODELS
+from bulkwear.postproc.plots.style import save, save_small
+from bulkwear.postproc.readers.solver_log import last_step
+from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
+from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.decks import primes
+from bulkwear.workflows.engine.derived import (
+    neighbour_skin,
+    rolling_coefficient_for_solver,
+    smallest_rayleigh_time,
+    youngs_modulus,
+)
+from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.provenance import PROVENANCE, code_of_cases, provenance
+from bulkwear.workflows.engine.solver import DECK, LOG, executable_of, run_deck
+from bulkwear.workflows.report.markdown import bullet, markdown, prose
+
+LENGTH, WIDTH, GRAINS = 8.0, 6.0, 340  # of the layer, in median diameters, and how many grains: some seven deep
+HELD = 1.0  # median diameters: grains whose centres lie lower are held
+POURED, SETTLED = 12.0, 1.0  # median diameters that grains are poured high, and s in which they come to rest
+START, END, RATE = 20.0, 60.0, 1.0  # degrees, degrees, degrees/s
+LOOK = 0.1  # s between two looks whether it flows, so the answer has steps of 0.1 degrees
+FLOWING = 0.1  # m/s, mean of the grains that are not held
+GRAVITY = 9.81  # m/s2
+PACKINGS = 5
+REFERENCE = "own_spin"  # the studies' own: the others are compared with it
+TRACE, COLUMNS = "tilt.txt", ("angle_deg", "speed_m_per_s")
+CASE = "calibration"  # of the grains, whose code is told in the record
+FILE, PAGE, FIGURE = "tilted_bed.csv", "tilted_bed_results.md", "tilted_bed.png"
+
+
+class TiltError(RuntimeError):
+    """A layer did what cannot be measured; the message says what."""
+
+
+def tilt_deck(test: Mapping[str, Any]) -> str:
+    """Return the deck that pours, settles and tilts the layer of a bulk test's grains; it leaves `TRACE`."""
+    grain, solver = test["particle"], test["solver"]
+    diameter, contact = grain["median_diameter_m"], grain["contact"]
+    length, width, top = LENGTH * diameter, WIDTH * diameter, (POURED + 2.0) * diameter
+    step = solver["rayleigh_fraction"] * smallest_rayleigh_time(grain)
+    rolling = rolling_coefficient_for_solver(contact["rolling_friction"], solver, "particle_particle")
+    young = youngs_modulus(grain["shear_modulus_pa"], grain["poissons_ratio"])
+    model = f"hertz tangential history rolling_friction {solver['rolling_friction']}"
+    shares = " ".join(f"size_{number} {share}" for number, share in enumerate(grain["mass_fractions"]))
+    seeds = primes(test["seed"], len(grain["diameters_m"]) + 2)
+    sizes = [
+        f"fix size_{number} all particletemplate/sphere {seeds[2 + number]} atom_type 1 density constant"
+        f" {grain['density_kg_per_m3']} radius constant {0.5 * size:.9g}"
+        for number, size in enumerate(grain["diameters_m"])
+    ]
+    look = math.ceil(LOOK / step)
+    settle = look * math.ceil(SETTLED / LOOK)
+    lines = [
+        "units si",
+        "atom_style granular",
+        "atom_modify map array",
+        "boundary p p fm",
+        "newton off",
+        "communicate single vel yes",
+        f"region layer block 0.0 {length:.9g} 0.0 {width:.9g} {-diameter:.9g} {top:.9g} units box",
+        "create_box 1 layer",
+        f"fix youngs_modulus all property/global youngsModulus peratomtype {young:.9g}",
+        f"fix poissons_ratio all property/global poissonsRatio peratomtype {grain['poissons_ratio']}",
+        f"fix restitution all property/global coefficientRestitution peratomtypepair 1 {contact['restitution']}",
+        f"fix friction all property/global coefficientFriction peratomtypepair 1 {contact['sliding_friction']}",
+        f"fix rolling all property/global coefficientRollingFriction peratomtypepair 1 {rolling:.9g}",
+        f"pair_style gran model {model}",
+        "pair_coeff * *",
+        f"neighbor {neighbour_skin(grain):.9g} bin",
+        "neigh_modify delay 0",
+        f"timestep {step:.9g}",
+        f"fix floor all wall/gran model {model} primitive type 1 zplane 0.0",
+        *sizes,
+        f"fix sizes all particledistribution/discrete {seeds[1]} {len(sizes)} {shares}",
+        f"region fill block 0.0 {length:.9g} 0.0 {width:.9g} {diameter:.9g} {POURED * diameter:.9g} units box",
+        f"fix pour all insert/pack seed {seeds[0]} distributiontemplate sizes insert_every once overlapcheck yes"
+        f" maxattempt 1000 particles_in_region {GRAINS} region fill",
+        f"fix weight all gravity {GRAVITY} vector 0.0 0.0 -1.0",
+        "fix motion all nve/sphere",
+        "thermo 5000",
+        "run 1",
+        "unfix pour",
+        f"run {settle - 1}",
+        "# --- the lowest grains are held; gravity turns about y",
+        f"region low block INF INF INF INF INF {HELD * diameter:.9g} units box",
+        "group held region low",
+        "group layer subtract all held",
+        "velocity held set 0.0 0.0 0.0",
+        "set group held omegax 0.0 omegay 0.0 omegaz 0.0",
+        "unfix motion",
+        "fix motion layer nve/sphere",
+        "unfix weight",
+        f"variable angle equal {START}+{RATE}*dt*(step-{settle})",
+        f"variable along equal {GRAVITY}*sin(v_angle*PI/180.0)",
+        f"variable down equal -{GRAVITY}*cos(v_angle*PI/180.0)",
+        f"fix weight all gravity {GRAVITY} vector v_along 0.0 v_down",
+        "variable speed equal vcm(layer,x)",
+        "thermo_style custom step atoms ke v_angle v_speed",
+        f"thermo {look}",
+        f'fix trace all print {look} "${{angle}} ${{speed}}" file {TRACE} screen no title "{COLUMNS[0]} {COLUMNS[1]}"',
+        f"variable look loop {math.ceil((END - START) / RATE / LOOK)}",
+        "run 0",
+        "label tilting",
+        f"run {look} pre no post no",
+        f'if "${{speed}} > {FLOWING}" then "jump SELF flows"',
+        "next look",
+        "jump SELF tilting",
+        "label flows",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def flow_angle(trace: Path) -> float:
+    """Return the angle (degrees) at which the bed of a trace first flowed. Raises TiltError."""
+    rows = pd.read_csv(trace, sep=r"\s+")
+    angle, speed = (rows[name] for name in COLUMNS)
+    if not (speed > FLOWING).any():
+        raise TiltError(f"{trace}: the bed does not flow at {angle.iloc[-1]:.1f} degrees, where the run ends.")
+    if speed.iloc[0] > FLOWING:
+        raise TiltError(f"{trace}: the bed flows at {angle.iloc[0]:.1f} degrees already, where the run begins.")
+    return float(angle[(speed > FLOWING).idxmax()])
+
+
+def tilted(test: Mapping[str, Any], root: Path) -> float:
+    """Return the flow angle (degrees) of a layer, tilted unless it was before. Raises SolverError, TiltError."""
+    deck = tilt_deck(test)
+    inputs = state.digest(deck)
+    kept = root / f"tilt_{inputs[: state.DIGEST_LETTERS]}"
+    if state.finished_cycles(kept, inputs) == 0:
+        code = code_of_cases((CASE,))
+        with state.working_folder(kept, 0) as folder:
+            (folder / DECK).write_text(deck, encoding="utf-8")
+            cost = {"solver_s": round(run_deck(folder, executable=executable_of(test)), 3)}
+            cost |= {"steps": last_step(folder / LOG), "particles": GRAINS}
+            record = {"cost": cost, PROVENANCE: provenance(code, executable_of(test), cost)}
+            state.write_state(folder, inputs, (TRACE, LOG), record)
+    return flow_angle(state.cycle_folder(kept, 0) / TRACE)
+
+
+def all_tilted(rows: Sequence[Mapping[str, Any]], root: Path, cores: int) -> pd.DataFrame:
+    """Return model, packing and flow_angle_deg of layers, up to `cores` of them simulated at the same time."""
+    progress, done = Progress("tilted bed", len(rows)), 0
+
+    def one(row: Mapping[str, Any]) -> float:
+        nonlocal done
+        angle = tilted(row["asked"], root)
+        done += 1
+        progress.update(done, f"{row['model']}, packing {row['packing']}: flows at {angle:.1f} degrees")
+        return angle
+
+    with ThreadPoolExecutor(cores) as pool:
+        angles = list(pool.map(one, rows))
+    told = [{"model": row["model"], "packing": row["packing"]} for row in rows]
+    return pd.DataFrame(told).assign(flow_angle_deg=angles)
+
+
+def means(runs: pd.DataFrame) -> dict[str, Estimate]:
+    """Return the mean flow angle (degrees) of each model over its packings."""
+    return {model: estimate(of["flow_angle_deg"].to_numpy()) for model, of in runs.groupby("model", sort=False)}
+
+
+def summary(found: Mapping[str, Estimate]) -> pd.DataFrame:
+    """Return a row per model: its mean with interval, and what it is more or less than REFERENCE, with interval."""
+    rows = []
+    for model, mean in found.items():
+        low, high = mean.interval()
+        rows.append({"model": model, "packings": mean.packings, "flow_angle_deg": mean.value, "low": low, "high": high})
+        if REFERENCE in found and model != REFERENCE:
+            less = difference(mean, found[REFERENCE])
+            ends = dict(zip(("less_low", "less_high"), less.interval(), strict=True))
+            rows[-1] |= {"less_reference_deg": less.value, **ends}
+    return pd.DataFrame(rows)
+
+
+def said_of(model: str, mean: Estimate, reference: Estimate) -> str:
+    """Return in a sentence at what slope a model's bed flows, and whether that is told from the reference's."""
+    if not mean.known:
+        return f"`{model}`: {mean.value:.1f} degrees ({UNKNOWN})."
+    low, high = mean.interval()
+    said = f"`{model}`: {mean.value:.1f} degrees (95 %: {low:.1f} to {high:.1f})"
+    if mean is reference or not reference.known:
+        return f"{said}."
+    less = difference(mean, reference)
+    low, high = less.interval()
+    told = "not told from" if low <= 0.0 <= high else f"{less.value:+.1f} ({low:+.1f} to {high:+.1f}) of"
+    return f"{said}, {told} `{REFERENCE}`."
+
+
+def results_page(runs: pd.DataFrame) -> str:
+    """Return the page; runs: as from `all_tilted`."""
+    found = means(runs)
+    reference = found.get(REFERENCE, next(iter(found.values())))
+    parts = [
+        "# At which slope does a bed begin to flow?",
+        prose(
+            "Generated by `python -m benchmarks.tilted_bed`; not to be edited. The models are those of [rolling"
+            " friction](rolling_friction.md). [Every layer](tilted_bed.csv)."
+        ),
+        "\n".join(bullet(said_of(model, mean, reference)) for model, mean in found.items()),
+        f"![Slope at which a bed flows, by rolling model]({FIGURE})",
+        prose(
+            f"A layer of {GRAINS} grains, {LENGTH:g} by {WIDTH:g} median diameters, lies on grains that are held, and"
+            " is periodic along and across; the material and time steps of [the rolling models]"
+            "(rolling_models_results.md), with the source's calibrated pair. After rest it is tilted from"
+            f" {START:g} degrees by {RATE:g} degree/s until its grains move downhill at {1e3 * FLOWING:g} mm/s in the"
+            f" mean, looked at every {LOOK * RATE:g} degrees. It has neither walls nor a toe: that is no angle of"
+            " repose, and tells what a model does alone."
+        ),
+        markdown(summary(found)),
+    ]
+    return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
+
+
+def publish(output: Path, runs: pd.DataFrame) -> str:
+    """Write figure and page of the layers; return the page."""
+    page = results_page(runs)
+    (output / PAGE).write_text(page, encoding="utf-8")
+    remarks = [
+        f"layers of {GRAINS} grains on held ones, periodic; small: packings, large: mean and its 95 % interval",
+        f"made by benchmarks/tilted_bed.py, {date.today():%Y-%m-%d}",
+    ]
+    figure = packings_by_model(runs, "flow_angle_deg", "Slope at which the bed flows (degrees)", means(runs), remarks)
+    save(figure, output / FIGURE)
+    save_small(output / FIGURE, output / FIGURE)
+    return page
+
+
+def main() -> None:
+    """Simulate what is missing, then write table, figure and page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--output", type=Path, default=Path("docs"))
+    parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each model, else {PACKINGS}")
+    parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
+    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/tilted_bed"))
+    parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
+    parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
+    given = parser.parse_args()
+    file = given.output / FILE
+    if not given.redraw:
+        rows = wanted(given.packings, given.models, (SHEAR_BOX,), (CALIBRATED,))
+        all_tilted(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
+    print(publish(given.output, pd.read_csv(file)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

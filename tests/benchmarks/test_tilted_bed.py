@@ -1,0 +1,87 @@
+"""The slope at which a bed flows: what is simulated, what is read of a trace, intervals, page and figure."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from benchmarks import tilted_bed
+from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX, wanted
+from benchmarks.rolling_page import MODELS
+from benchmarks.tilted_bed import PACKINGS, REFERENCE, TiltError, flow_angle, means, publish, said_of, summary
+from bulkwear.postproc.statistics.intervals import UNKNOWN, estimate
+
+STUDENT_95_4 = 2.7764  # two-sided 95 % point of Student's t with four degrees of freedom; tables
+FLOWS_AT = {"cdt": 35.0, "epsd2": 36.0, "own_spin": 38.0, "rvd": 38.1}  # degrees, made up
+SPREAD = (-0.4, -0.2, 0.0, 0.2, 0.4)  # degrees, of five packings
+
+
+def made_up(packings=PACKINGS):
+    return pd.DataFrame(
+        {"model": model, "packing": number + 1, "flow_angle_deg": angle + SPREAD[number]}
+        for model, angle in FLOWS_AT.items()
+        for number in range(packings)
+    )
+
+
+def written_trace(path, angles, speeds):
+    rows = "\n".join(f"{angle} {speed}" for angle, speed in zip(angles, speeds, strict=True))
+    path.write_text(f"angle_deg speed_m_per_s\n{rows}\n")
+    return path
+
+
+def test_the_angle_is_that_of_the_first_look_that_finds_flow(tmp_path):
+    """A slip that stops again before is none."""
+    trace = written_trace(tmp_path / "tilt.txt", [20.1, 20.2, 20.3, 20.4], [0.001, 0.09, 0.0002, 0.11])
+    assert flow_angle(trace) == 20.4
+    slow = written_trace(tmp_path / "slow.txt", [20.1, 60.0], [0.0, 0.09])
+    with pytest.raises(TiltError, match=r"slow.txt: the bed does not flow at 60.0 degrees"):
+        flow_angle(slow)
+    fast = written_trace(tmp_path / "fast.txt", [20.1, 20.2], [0.2, 0.3])
+    with pytest.raises(TiltError, match=r"fast.txt: the bed flows at 20.1 degrees already"):
+        flow_angle(fast)
+
+
+def test_intervals_are_over_packings():
+    """By Student's t with four degrees of freedom; a difference of two models adds their errors' squares."""
+    table = summary(means(made_up())).set_index("model")
+    error = np.std(SPREAD, ddof=1) / math.sqrt(len(SPREAD))
+    assert table.loc["cdt", "flow_angle_deg"] == pytest.approx(35.0)
+    assert table.loc["cdt", "high"] - 35.0 == pytest.approx(STUDENT_95_4 * error, rel=1e-4)
+    assert table.loc["cdt", "less_reference_deg"] == pytest.approx(-3.0)
+    assert table.loc["cdt", "less_low"] < -3.0 < table.loc["cdt", "less_high"] < 0.0
+    assert np.isnan(table.loc[REFERENCE, "less_reference_deg"])
+
+
+def test_one_packing_has_no_interval():
+    one = estimate(np.array([35.0]))
+    assert said_of("cdt", one, one) == f"`cdt`: 35.0 degrees ({UNKNOWN})."
+
+
+def test_page_and_figure(tmp_path):
+    """The page tells of each model whether it is told from the reference; the figure is there."""
+    page = publish(tmp_path, made_up())
+    assert "`rvd`: 38.1 degrees" in page and "not told from `own_spin`" in page
+    assert "`cdt`: 35.0 degrees (95 %: 34.6 to 35.4), -3.0 (-3.5 to -2.5) of `own_spin`" in page
+    assert (tmp_path / "tilted_bed.png").stat().st_size > 0
+    assert "scatter unknown" in publish(tmp_path, made_up(1))
+
+
+@pytest.mark.solver
+def test_a_small_layer_flows_and_is_not_simulated_again(tmp_path, monkeypatch):
+    """Tilted fast from a steep slope, on the real solver; the second time nothing runs."""
+    for name, value in {"LENGTH": 5.0, "WIDTH": 4.0, "GRAINS": 90, "START": 25.0, "RATE": 20.0}.items():
+        monkeypatch.setattr(tilted_bed, name, value)
+    asked = wanted(1, ("epsd2",), (SHEAR_BOX,), (CALIBRATED,))[0]["asked"]
+    angle = tilted_bed.tilted(asked, tmp_path)
+    assert 25.0 < angle < 60.0
+    monkeypatch.setattr(tilted_bed, "run_deck", None)
+    assert tilted_bed.tilted(asked, tmp_path) == angle
+
+
+def test_every_model_has_its_layers():
+    """No two of one deck."""
+    rows = wanted(PACKINGS, MODELS, (SHEAR_BOX,), (CALIBRATED,))
+    decks = {tilted_bed.tilt_deck(row["asked"]) for row in rows}
+    assert len(decks) == len(rows) == PACKINGS * len(MODELS)
