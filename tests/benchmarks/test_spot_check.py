@@ -50,9 +50,16 @@ def test_the_version_that_is_older_is_checked_once(monkeypatch, now, page, tmp_p
     assert module.wanted(replace(page, study=""), tmp_path) == []
 
 
-def test_another_number_in_the_last_digit_is_a_difference(monkeypatch, page, tmp_path):
+def test_a_sum_in_another_order_is_no_difference(monkeypatch, page, tmp_path):
+    """Numbers are the same but for round-off."""
+    simulated(monkeypatch, tmp_path, before=1.25, today=1.25 * (1.0 + 0.5 * module.ROUND_OFF))
+    assert module.check_pages([page], tmp_path, tmp_path)
+    assert read_checks(tmp_path)[0].difference == ""
+
+
+def test_another_number_is_a_difference(monkeypatch, page, tmp_path):
     """It is kept with its table, and asked for again."""
-    simulated(monkeypatch, tmp_path, before=1.25, today=1.25 + 1e-15)
+    simulated(monkeypatch, tmp_path, before=1.25, today=1.25 * (1.0 + 2.0 * module.ROUND_OFF))
     assert not module.check_pages([page], tmp_path, tmp_path)
     assert "wear.csv: volume_m3 differs" in read_checks(tmp_path)[0].difference
     assert module.wanted(page, tmp_path) == ["before"]
@@ -83,3 +90,14 @@ def test_the_runs_of_one_packing_of_the_first_row_are_asked_for(monkeypatch, tmp
     assert {"results/demo/R5_convex/wear.csv", "results/demo/R5_plain/wear.csv", "packings=1"} <= set(command)
     with pytest.raises(module.VersionError, match=r"calibration: its runs make no wear\.csv"):
         module.runs_of_first_row("calibration")
+
+
+def test_a_search_chooses_its_rows_itself(monkeypatch, tmp_path):
+    """Its first row is asked for in one packing, and the command names no rows."""
+    called = []
+    monkeypatch.setattr(module, "_call", lambda command, where: called.append(command))
+    row, runs = module.runs_of_first_row("optimised_pattern")
+    assert (row, runs) == ("R5", ["R5_convex", "R5_plain"])
+    (tmp_path / "before").mkdir()
+    module.solved("before", "optimised_pattern", row, runs, tmp_path)
+    assert not any(word.startswith("rows=") for word in called[-1])

@@ -29,7 +29,7 @@ class SpotCheck:
     study, fidelity, row: what was simulated, one packing
     before, after: commits; code: what `provenance.simulating_code` says of the later one
     date: day, UTC; tables: of its runs, how many were compared
-    difference: "" where all of their numbers are the same to the last digit, else in which tables they are not
+    difference: "" where all of their numbers are the same but for round-off, else in which tables they are not
     """
 
     study: str
