@@ -45,10 +45,10 @@ class VersionError(RuntimeError):
 
 def wanted(origin: Origin, docs: Path) -> list[str]:
     """Return the commits that simulated a page and are older than today's code, those that passed a check not."""
-    if not origin.study:
+    if not origin.checked_by:
         return []
     now, checks = code_of_cases((origin.case,)), read_checks(docs)
-    found = [as_new_as(each, passed(each, origin.study, checks)) for each in versions_in(origin)]
+    found = [as_new_as(each, passed(each, origin.checked_by, checks)) for each in versions_in(origin)]
     old = [each for each in found if newer_parts(each, now) and each.found]
     return list(dict.fromkeys(str(each.found["commit"]) for each in old if each.found["commit"]))
 
@@ -97,15 +97,15 @@ def spot_check(origin: Origin, before: str, folder: Path) -> SpotCheck:
     code = code_of_cases((origin.case,))
     if code["commit"] is None or code["changed"]:
         raise VersionError(f"{PACKAGE}: files that matter are not committed, allowed is a commit of git.")
-    row, runs = runs_of_first_row(origin.study)
-    old, new = (solved(commit, origin.study, row, runs, folder) for commit in (before, code["commit"]))
+    row, runs = runs_of_first_row(origin.checked_by)
+    old, new = (solved(commit, origin.checked_by, row, runs, folder) for commit in (before, code["commit"]))
     compared = {run: tables(old / run) for run in runs}
     if missing := [run for run, found in compared.items() if WEAR not in found]:
         raise VersionError(f"{old}: found no {WEAR} of {', '.join(missing)}, allowed is one of each run.")
     faults = [f"{run}/{fault}" for run in runs for fault in compare(old / run, new / run, {}, ROUND_OFF)]
     count = sum(len(found) for found in compared.values())
     day = f"{datetime.now(UTC):%Y-%m-%d}"
-    return SpotCheck(origin.study, FIDELITY, row, before, code["commit"], code, day, count, "; ".join(faults))
+    return SpotCheck(origin.checked_by, FIDELITY, row, before, code["commit"], code, day, count, "; ".join(faults))
 
 
 def check_pages(origins: Iterable[Origin], docs: Path, folder: Path) -> bool:

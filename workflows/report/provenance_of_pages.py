@@ -25,6 +25,7 @@ from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, failed, 
 FILE, CHANGES = "results.json", "results_changes.csv"  # in docs
 LINE = 118  # characters of a line of prose
 BEGIN, END = "<!-- older than the code -->", "<!-- end -->"
+STANDS_FOR = {"sliding_sample": "demo"}  # case -> study whose spot checks speak for pages of commands
 BLOCK = re.compile(rf"{BEGIN}\n.*?{END}\n\n", re.DOTALL)
 
 
@@ -65,6 +66,11 @@ class Origin:
     def overrides(self) -> dict[str, Any]:
         """Return the settings that a study is loaded with."""
         return {**({"fidelity": self.fidelity} if self.fidelity else {}), **self.settings}
+
+    @property
+    def checked_by(self) -> str:
+        """Return the study whose spot checks concern the page, "" where there is none."""
+        return self.study or STANDS_FOR.get(self.case, "")
 
 
 @dataclass(frozen=True)
@@ -149,9 +155,9 @@ def older(
         versions = versions_in(origin)
         if not warnings_of(versions, now, [origin.case]):
             return []
-        checked = [as_new_as(each, passed(each, origin.study, checks)) for each in versions]
+        checked = [as_new_as(each, passed(each, origin.checked_by, checks)) for each in versions]
         found = warnings_of(checked, now, [origin.case])
-        return [*found, *failed(versions, origin.study, checks), *known]
+        return [*found, *failed(versions, origin.checked_by, checks), *known]
     return [_unrecorded(origin), *known, *_touched(origin)]
 
 

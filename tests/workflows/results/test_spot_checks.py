@@ -29,6 +29,14 @@ def test_checks_that_lead_to_todays_code_make_a_page_as_new():
     assert older(ORIGIN, [], NOW, [replace(TO_SECOND, study="mills"), TO_NOW]) == older(ORIGIN, [], NOW)
 
 
+def test_the_demo_speaks_for_benchmarks_of_sliding_samples():
+    """Their pages are of no study; of a case without such a study no check says anything."""
+    bench = replace(ORIGIN, case="sliding_sample", study="", command="make it")
+    checks = [replace(each, study="demo") for each in (TO_SECOND, TO_NOW)]
+    assert older(bench, [], NOW, checks) == []
+    assert older(replace(bench, case="calibration"), [], NOW, checks)
+
+
 def test_other_numbers_are_told_and_lead_nowhere():
     """A page whose check failed stays older than the code, and names the tables that differ."""
     differs = replace(TO_NOW, before="first", difference="pins/plain/wear.csv: volume differs by 0.01 of itself")
