@@ -15,7 +15,8 @@ from the first.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from datetime import date
 from pathlib import Path
@@ -24,7 +25,7 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.plots.rolling_models import against_source
-from benchmarks.rolling_page import MODELS, results_page
+from benchmarks.rolling_page import MODELS, NO_REST, results_page
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.plots.style import save, save_small
@@ -36,6 +37,7 @@ from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulation_folder
 from bulkwear.workflows.engine.job import Progress
+from bulkwear.workflows.engine.solver import SolverError
 
 # A slope under the constant torque of `cdt` creeps, the faster the larger the time step (docs/calibration.md).
 SETTINGS = {model: {"rolling_friction": model} for model in MODELS} | {
@@ -44,6 +46,7 @@ SETTINGS = {model: {"rolling_friction": model} for model in MODELS} | {
 FIDELITY = "standard"  # the largest particles that the slot lets pass
 PACKINGS = 2
 KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN), "calibrated"  # the pair of Table 3.6
+RESTLESS = "did not come to rest"  # in the words of `bulk_simulations.check_rest`
 FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
 
 
@@ -94,23 +97,44 @@ def pairs_of(published: pd.DataFrame, kind: str) -> list[str]:
 
 
 def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int, alone: bool = True) -> pd.DataFrame:
-    """Return the rows with the responses of each, simulated unless they were before. Raises SolverError.
+    """Return the rows with the responses of each, simulated unless they were before; a test that never came to rest
+    has the solver's words in NO_REST instead. Raises SolverError.
 
     alone: waits until nobody else simulates in that folder; else what is finished is read beside them
     """
     say = Progress("rolling models", 1).say
-    with state.only_driver(folder, say) if alone else nullcontext():
-        found = simulate_all([row["asked"] for row in rows], folder, cores, say)
-    answers = [answer(each) for each in found]
+    with state.only_driver(folder, say) if alone else nullcontext(), ThreadPoolExecutor(cores) as pool:
+        answers = list(pool.map(lambda row: answer_of(row["asked"], folder, say), rows))
     return pd.DataFrame([_told(row) | given for row, given in zip(rows, answers, strict=True)])
 
 
+def answer_of(test: dict[str, Any], folder: Path, say: Callable[[str], None]) -> dict[str, Any]:
+    """Return the responses of a test, or that it never came to rest, which is kept: to try again delete that file."""
+    kept = restless_file(test, folder)
+    if not kept.is_file():
+        try:
+            return answer(simulate_all([test], folder, 1, say)[0])
+        except SolverError as fault:
+            if RESTLESS not in str(fault):
+                raise
+            kept.write_text(f"{fault}\n", encoding="utf-8")
+    words = kept.read_text(encoding="utf-8").strip()
+    say(f"{words} ({kept})")
+    return {NO_REST: words.partition(": ")[2].partition(" (")[0]}
+
+
+def restless_file(test: dict[str, Any], folder: Path) -> Path:
+    """Return the file that says that a test never came to rest."""
+    return simulation_folder(test, folder).with_suffix(".txt")
+
+
 def finished(rows: Sequence[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
-    """Return those rows whose simulation is there."""
+    """Return those rows whose simulation is there, or was given up."""
     return [
         row
         for row in rows
-        if state.finished_cycles(simulation_folder(row["asked"], folder), inputs_digest(row["asked"])) > 0
+        if restless_file(row["asked"], folder).is_file()
+        or state.finished_cycles(simulation_folder(row["asked"], folder), inputs_digest(row["asked"])) > 0
     ]
 
 

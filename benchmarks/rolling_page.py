@@ -13,6 +13,7 @@ from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 MODELS = ("cdt", "epsd2", "own_spin", "rvd")  # of docs/rolling_friction.md
 ALL_RESPONSES = tuple(name for responses in RESPONSES.values() for name in responses)
+NO_REST = "no_rest"  # column with the words of a test that has no responses
 NEAREST, APART, ALIKE, OPEN = "nearest", "yes", "no", "unknown"  # whether a model is told from the nearest one
 
 
@@ -100,6 +101,17 @@ def nearest(table: pd.DataFrame, response: str) -> str:
     )
 
 
+def restless(runs: pd.DataFrame) -> list[str]:
+    """Return a sentence for each model and test of which packings never came to rest."""
+    if NO_REST not in runs:
+        return []
+    given_up = runs[runs[NO_REST].notna()].groupby(["model", "test", "pair", NO_REST], sort=False)["packing"].nunique()
+    return [
+        f"`{model}`, {test.replace('_', ' ')}, pair {pair}, packings: {count}; {words}, so it has no angle."
+        for (model, test, pair, words), count in given_up.items()
+    ]
+
+
 def by_pair(found: pd.DataFrame, response: str) -> pd.DataFrame:
     """Return a row per pair: published, and the mean of the packings under every model."""
     of = found[found["response"] == response]
@@ -119,7 +131,7 @@ def results_page(runs: pd.DataFrame, published: pd.DataFrame) -> str:
             " [rolling friction](rolling_friction.md). [Every simulation](rolling_models.csv)."
         ),
         "## Nearest to what the source simulated",
-        "\n".join(bullet(nearest(table, response)) for response in responses),
+        "\n".join(bullet(said) for said in (*(nearest(table, response) for response in responses), *restless(runs))),
         prose(
             "The source simulated these pairs of frictions itself (Yan 2022, Tables 3.3, 3.5 and 3.6), with a code of"
             " whose rolling model it says no more than type A. The particles here are four times as large, and the"

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from benchmarks import rolling_models
 from benchmarks.rolling_models import (
     CALIBRATED,
     KINDS,
@@ -15,10 +16,21 @@ from benchmarks.rolling_models import (
     simulated,
     wanted,
 )
-from benchmarks.rolling_page import MODELS, by_pair, differences, nearest, of_shared_pairs, results_page, summary
+from benchmarks.rolling_page import (
+    MODELS,
+    by_pair,
+    differences,
+    nearest,
+    of_shared_pairs,
+    restless,
+    results_page,
+    summary,
+)
+from bulkwear.postproc.flow.bulk_test import Measurement
 from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.engine.solver import SolverError
 from bulkwear.workflows.engine.state import only_driver
 
 STUDENT_95_1 = 12.7062  # two-sided 95 % point of Student's t with one degree of freedom; tables
@@ -81,6 +93,31 @@ def test_what_is_finished_is_read_beside_who_simulates(tmp_path):
     waited = []
     with only_driver(tmp_path, waited.append):
         assert simulated([], tmp_path, 1, alone=False).empty and not waited
+
+
+def test_a_test_that_never_rests_does_not_end_the_others(tmp_path, monkeypatch):
+    """It is told, kept and not tried again; another fault of the solver ends the benchmark."""
+    rows, tried = wanted(1, ["cdt", "own_spin"], ["draw_down"], [CALIBRATED]), []
+
+    def simulate(tests, *_):
+        tried.append(tests[0]["solver"]["rolling_friction"])
+        if tried[-1] == "cdt":
+            raise SolverError("log.liggghts: the heap did not come to rest in 20 s (rest.longest_s); rest is ...")
+        return [Measurement({"repose_angle_deg": 30.0}, {}, 0)]
+
+    monkeypatch.setattr(rolling_models, "simulate_all", simulate)
+    for _ in range(2):
+        table = simulated(rows, tmp_path, 1).set_index("model")
+        assert table.loc["own_spin", "repose_angle_deg"] == 30.0 and np.isnan(table.loc["cdt", "repose_angle_deg"])
+    assert tried == ["cdt", "own_spin", "own_spin"]
+    assert [row["model"] for row in finished(rows, tmp_path)] == ["cdt"]
+    assert restless(table.reset_index()) == [
+        "`cdt`, draw down, pair calibrated, packings: 1; the heap did not come to rest in 20 s, so it has no angle."
+    ]
+    monkeypatch.setattr(rolling_models, "RESTLESS", "never")
+    (tmp_path / "other").mkdir()
+    with pytest.raises(SolverError):
+        simulated(rows, tmp_path / "other", 1)
 
 
 def test_nothing_is_taken_for_finished_that_was_not_simulated(tmp_path):
