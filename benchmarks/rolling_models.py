@@ -1,5 +1,6 @@
 """Which rolling model did the source run? Pairs of frictions that it simulated, in its shear box and draw-down test,
-under each of our four models: the responses that it prints beside ours.
+under each of our four models: the responses that it prints beside ours. And what a wall shear test, which it does not
+have, shows of a plate under each of them.
 
     python -m benchmarks.rolling_models --cores 2    # in the root of the repository
     python -m benchmarks.rolling_models --models own_spin epsd2    # these before the others
@@ -25,11 +26,11 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.plots.rolling_models import against_source
-from benchmarks.rolling_page import MODELS, NO_REST, results_page
+from benchmarks.rolling_page import MODELS, NO_REST, PLATE, results_page
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.plots.style import save, save_small
-from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SHEAR_BOX, test_of
+from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SHEAR_BOX, WALL_SHEAR, test_of
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.cases.calibration.driver import FIRST_REPEAT, pair_of
 from bulkwear.workflows.cases.calibration.simulations import answer, simulate_all
@@ -45,7 +46,7 @@ SETTINGS = {model: {"rolling_friction": model} for model in MODELS} | {
 }
 FIDELITY = "standard"  # the largest particles that the slot lets pass
 PACKINGS = 2
-KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN), "calibrated"  # the pair of Table 3.6
+KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN, WALL_SHEAR), "calibrated"  # the pair of Table 3.6
 RESTLESS = "did not come to rest"  # in the words of `bulk_simulations.check_rest`
 FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
 
@@ -53,7 +54,8 @@ FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling
 def wanted(
     packings: int, models: Sequence[str] = MODELS, kinds: Sequence[str] = KINDS, pairs: Sequence[str] = ()
 ) -> list[dict[str, Any]]:
-    """Return what is to be simulated: model, test, pair, packing, frictions; `asked` is the test itself.
+    """Return what is to be simulated: model, test, pair, packing, frictions, of a wall shear test the plate's too;
+    `asked` is the test itself.
 
     kinds: the tests; pairs: rows of the published table, all where none is named
 
@@ -82,18 +84,22 @@ def wanted(
             seed = packing_seed(run["calibration"]["seed"], FIRST_REPEAT + packing)
             values = pair_of(published, pair, names, run)
             told = {name.rpartition(".")[2]: value for name, value in values.items()}
+            asked_test = test_of(run, kind, values, seed)
+            if kind == WALL_SHEAR:
+                told[PLATE] = asked_test["wall_material"]["contact"]["sliding_friction"]
             rows.append(
-                {"model": model, "test": kind, "pair": pair, "packing": packing + 1, **told}
-                | {"asked": test_of(run, kind, values, seed)}
+                {"model": model, "test": kind, "pair": pair, "packing": packing + 1, **told, "asked": asked_test}
             )
     return rows
 
 
 def pairs_of(published: pd.DataFrame, kind: str) -> list[str]:
-    """Return the pairs of which the source prints a response of a test, its calibrated one first."""
+    """Return the pairs of which the source prints a response of a test, its calibrated one first; that one alone where
+    it prints none.
+    """
     names = [name for name in RESPONSES[kind] if name in published]
     found = published.loc[published[names].notna().any(axis=1), "row"]
-    return sorted(found, key=lambda pair: pair != CALIBRATED)
+    return sorted(found, key=lambda pair: pair != CALIBRATED) or [CALIBRATED]
 
 
 def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int, alone: bool = True) -> pd.DataFrame:
@@ -164,7 +170,7 @@ def parser_of(published: pd.DataFrame) -> argparse.ArgumentParser:
     parser.add_argument("--output", type=Path, default=Path("docs"))
     parser.add_argument("--packings", type=int, default=PACKINGS, help=f"of each pair, model and test, else {PACKINGS}")
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
-    parser.add_argument("--tests", nargs="+", choices=KINDS, default=KINDS, help="else both")
+    parser.add_argument("--tests", nargs="+", choices=KINDS, default=KINDS, help="else all")
     parser.add_argument("--pairs", nargs="+", choices=list(published["row"]), default=(), help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/rolling_models"))
     parser.add_argument("--cores", type=int, default=1, help="simulations side by side")

@@ -13,6 +13,8 @@ from bulkwear.workflows.report.markdown import bullet, markdown, prose
 
 MODELS = ("cdt", "epsd2", "own_spin", "rvd")  # of docs/rolling_friction.md
 ALL_RESPONSES = tuple(name for responses in RESPONSES.values() for name in responses)
+PLATE = "plate_sliding_friction"  # column, the coefficient (-) of particles and plate of a wall shear test
+(WALL_ANGLE,) = RESPONSES["wall_shear"]  # of which the source prints nothing
 NO_REST = "no_rest"  # column with the words of a test that has no responses
 NEAREST, APART, ALIKE, OPEN = "nearest", "yes", "no", "unknown"  # whether a model is told from the nearest one
 
@@ -112,6 +114,19 @@ def restless(runs: pd.DataFrame) -> list[str]:
     ]
 
 
+def wall_friction(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return a row per model: packings, wall friction angle with its interval, and that of the plate's coefficient."""
+    if WALL_ANGLE not in runs:
+        return pd.DataFrame()
+    rows = []
+    for model, of in runs.dropna(subset=[WALL_ANGLE]).groupby("model", sort=False):
+        mean = estimate(of[WALL_ANGLE].to_numpy())
+        low, high = mean.interval()
+        rows.append({"model": model, "packings": mean.packings, WALL_ANGLE: mean.value, "low": low, "high": high})
+        rows[-1]["angle_of_the_coefficient_deg"] = math.degrees(math.atan(of[PLATE].iloc[0]))
+    return pd.DataFrame(rows)
+
+
 def by_pair(found: pd.DataFrame, response: str) -> pd.DataFrame:
     """Return a row per pair: published, and the mean of the packings under every model."""
     of = found[found["response"] == response]
@@ -145,4 +160,11 @@ def results_page(runs: pd.DataFrame, published: pd.DataFrame) -> str:
     ]
     for response in responses:
         parts += [f"## {response_name(response)}", markdown(by_pair(found, response))]
+    walls = wall_friction(runs)
+    if len(walls):
+        said = (
+            "No measurement and nothing of the source's stands beside it. The plate, drawn away under a filled box, has"
+            " the coefficient whose angle is the last column; what the bed shows is less where particles roll on it."
+        )
+        parts += [f"## {response_name(WALL_ANGLE)}, of a wall shear test", prose(said), markdown(walls)]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"

@@ -18,6 +18,7 @@ from benchmarks.rolling_models import (
 )
 from benchmarks.rolling_page import (
     MODELS,
+    PLATE,
     by_pair,
     differences,
     nearest,
@@ -25,9 +26,11 @@ from benchmarks.rolling_page import (
     restless,
     results_page,
     summary,
+    wall_friction,
 )
 from bulkwear.postproc.flow.bulk_test import Measurement
 from bulkwear.postproc.statistics.intervals import UNKNOWN
+from bulkwear.workflows.cases.calibration.boxes import WALL_SHEAR
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.solver import SolverError
@@ -61,9 +64,8 @@ def test_every_published_pair_is_simulated_under_every_model(published):
     assert {row["pair"] for row in rows[: len(KINDS) * len(MODELS)]} == {CALIBRATED}
     assert {row["model"] for row in rows} == set(MODELS) == set(SETTINGS)
     assert [row["packing"] for row in rows] == sorted(row["packing"] for row in rows)
-    assert len(rows) == 2 * len(MODELS) * (
-        len(pairs_of(published, "shear_box")) + len(pairs_of(published, "draw_down"))
-    )
+    assert len(rows) == 2 * len(MODELS) * sum(len(pairs_of(published, kind)) for kind in KINDS)
+    assert pairs_of(published, WALL_SHEAR) == [CALIBRATED]
     for row in rows:
         asked = row["asked"]
         of = published.set_index("row").loc[row["pair"]]
@@ -71,6 +73,8 @@ def test_every_published_pair_is_simulated_under_every_model(published):
         assert asked["kind"] == row["test"] and asked["solver"]["rolling_friction"] == row["model"]
         assert contact["sliding_friction"] == row["sliding_friction"] == of["particle.contact.sliding_friction"]
         assert contact["rolling_friction"] == row["rolling_friction"] == of["particle.contact.rolling_friction"]
+        plate = asked["wall_material"]["contact"]["sliding_friction"] if row["test"] == WALL_SHEAR else None
+        assert row.get(PLATE) == plate
     assert len({row["asked"]["seed"] for row in rows}) == 2
 
 
@@ -189,3 +193,19 @@ def test_page_and_figure(tmp_path, published):
     assert list(found) == ["pair", "published", *MODELS]
     assert found["own_spin"].to_numpy() == pytest.approx(found["published"].to_numpy() + OFF["own_spin"])
     assert (tmp_path / "rolling_models.png").stat().st_size > 0
+
+
+def test_wall_friction_stands_beside_the_coefficient(published):
+    """Its mean over packings and the angle of the plate's coefficient; without such a test the page has no section."""
+    runs = runs_off_by(published)
+    assert wall_friction(runs).empty and "wall shear" not in results_page(runs, published)
+    walls = pd.DataFrame(
+        {"model": "rvd", "test": WALL_SHEAR, "pair": CALIBRATED, "packing": number, PLATE: 1.0}
+        | {"wall_friction_angle_deg": 40.0 + number}
+        for number in (1, 2, 3)
+    )
+    both = pd.concat([runs, walls])
+    (row,) = wall_friction(both).to_dict("records")
+    assert row["wall_friction_angle_deg"] == pytest.approx(42.0) and row["packings"] == 3
+    assert row["angle_of_the_coefficient_deg"] == pytest.approx(45.0) and row["low"] < 42.0 < row["high"]
+    assert "of a wall shear test" in results_page(both, published)
