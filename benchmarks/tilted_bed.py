@@ -59,23 +59,23 @@ class TiltError(RuntimeError):
 
 def tilt_deck(test: Mapping[str, Any]) -> str:
     """Return the deck that pours, settles and tilts the layer of a bulk test's grains; it leaves `TRACE`."""
+    step = test["solver"]["rayleigh_fraction"] * smallest_rayleigh_time(test["particle"])
+    return "\n".join([*_material(test, step), *_poured(test, step), *_tilting(test, step)]) + "\n"
+
+
+def _look_steps(step: float) -> int:
+    return math.ceil(LOOK / step)
+
+
+def _material(test: Mapping[str, Any], step: float) -> list[str]:
+    """Return the lines of domain, contact model and floor; step: s."""
     grain, solver = test["particle"], test["solver"]
     diameter, contact = grain["median_diameter_m"], grain["contact"]
-    length, width, top = LENGTH * diameter, WIDTH * diameter, (POURED + 2.0) * diameter
-    step = solver["rayleigh_fraction"] * smallest_rayleigh_time(grain)
     rolling = rolling_coefficient_for_solver(contact["rolling_friction"], solver, "particle_particle")
     young = youngs_modulus(grain["shear_modulus_pa"], grain["poissons_ratio"])
     model = f"hertz tangential history rolling_friction {solver['rolling_friction']}"
-    shares = " ".join(f"size_{number} {share}" for number, share in enumerate(grain["mass_fractions"]))
-    seeds = primes(test["seed"], len(grain["diameters_m"]) + 2)
-    sizes = [
-        f"fix size_{number} all particletemplate/sphere {seeds[2 + number]} atom_type 1 density constant"
-        f" {grain['density_kg_per_m3']} radius constant {0.5 * size:.9g}"
-        for number, size in enumerate(grain["diameters_m"])
-    ]
-    look = math.ceil(LOOK / step)
-    settle = look * math.ceil(SETTLED / LOOK)
-    lines = [
+    length, width, top = LENGTH * diameter, WIDTH * diameter, (POURED + 2.0) * diameter
+    return [
         "units si",
         "atom_style granular",
         "atom_modify map array",
@@ -95,6 +95,22 @@ def tilt_deck(test: Mapping[str, Any]) -> str:
         "neigh_modify delay 0",
         f"timestep {step:.9g}",
         f"fix floor all wall/gran model {model} primitive type 1 zplane 0.0",
+    ]
+
+
+def _poured(test: Mapping[str, Any], step: float) -> list[str]:
+    """Return the lines that pour the layer and let it come to rest."""
+    grain = test["particle"]
+    diameter = grain["median_diameter_m"]
+    seeds = primes(test["seed"], len(grain["diameters_m"]) + 2)
+    shares = " ".join(f"size_{number} {share}" for number, share in enumerate(grain["mass_fractions"]))
+    sizes = [
+        f"fix size_{number} all particletemplate/sphere {seeds[2 + number]} atom_type 1 density constant"
+        f" {grain['density_kg_per_m3']} radius constant {0.5 * size:.9g}"
+        for number, size in enumerate(grain["diameters_m"])
+    ]
+    length, width = LENGTH * diameter, WIDTH * diameter
+    return [
         *sizes,
         f"fix sizes all particledistribution/discrete {seeds[1]} {len(sizes)} {shares}",
         f"region fill block 0.0 {length:.9g} 0.0 {width:.9g} {diameter:.9g} {POURED * diameter:.9g} units box",
@@ -105,9 +121,20 @@ def tilt_deck(test: Mapping[str, Any]) -> str:
         "thermo 5000",
         "run 1",
         "unfix pour",
-        f"run {settle - 1}",
+        f"run {_settling_steps(step) - 1}",
+    ]
+
+
+def _settling_steps(step: float) -> int:
+    return _look_steps(step) * math.ceil(SETTLED / LOOK)  # looks come at whole multiples
+
+
+def _tilting(test: Mapping[str, Any], step: float) -> list[str]:
+    """Return the lines that hold the lowest grains and turn gravity about y until the others flow."""
+    look = _look_steps(step)
+    return [
         "# --- the lowest grains are held; gravity turns about y",
-        f"region low block INF INF INF INF INF {HELD * diameter:.9g} units box",
+        f"region low block INF INF INF INF INF {HELD * test['particle']['median_diameter_m']:.9g} units box",
         "group held region low",
         "group layer subtract all held",
         "velocity held set 0.0 0.0 0.0",
@@ -115,7 +142,7 @@ def tilt_deck(test: Mapping[str, Any]) -> str:
         "unfix motion",
         "fix motion layer nve/sphere",
         "unfix weight",
-        f"variable angle equal {START}+{RATE}*dt*(step-{settle})",
+        f"variable angle equal {START}+{RATE}*dt*(step-{_settling_steps(step)})",
         f"variable along equal {GRAVITY}*sin(v_angle*PI/180.0)",
         f"variable down equal -{GRAVITY}*cos(v_angle*PI/180.0)",
         f"fix weight all gravity {GRAVITY} vector v_along 0.0 v_down",
@@ -132,7 +159,6 @@ def tilt_deck(test: Mapping[str, Any]) -> str:
         "jump SELF tilting",
         "label flows",
     ]
-    return "\n".join(lines) + "\n"
 
 
 def flow_angle(trace: Path) -> float:

@@ -22,7 +22,9 @@ import pandas as pd
 from bulkwear.postproc.plots.style import save_small
 from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.readers.solver_log import solver_version
+from bulkwear.workflows.config.chosen import ROWS
 from bulkwear.workflows.config.design import Study, load_study
+from bulkwear.workflows.config.packings import PACKINGS
 from bulkwear.workflows.config.rounds import rounds_of
 from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
@@ -213,21 +215,30 @@ def versions_in_folder(folder: Path, study: Study) -> list[Simulated]:
 
 def origin_of(page: str, folder: Path, study: Study) -> Origin:
     """Return where the page of a study that was run comes from."""
-    rows = list(dict.fromkeys(run.row for run in study.runs))
-    whole = study.optimise or len(study.runs) == len(study.all_runs)
     jobs = jobs_of(page_parameters(study), folder) if study.case.wears else None
     return Origin(
         page=page,
         case=next(iter(package_cases(study.case)), ""),
         study=study.name,
         fidelity=study.fidelity,
-        settings={} if whole else {"rows": rows},
+        settings=_rows_and_packings(study),
         simulated=simulated_between(states_of(folder, study)),
         versions=recorded(versions_in_folder(folder, study)),
         commits=[],
         page_by=package_version(),
         core_hours=None if jobs is None else round(float(jobs["processor_s"].sum()) / SECONDS_PER_HOUR, 2),
     )
+
+
+def _rows_and_packings(study: Study) -> dict[str, Any]:
+    """Return the rows and packings of a study where they are not its own; a search decides them itself."""
+    if study.optimise:
+        return {}
+    whole = len(study.runs) == len(study.all_runs)
+    rows = {} if whole else {ROWS: list(dict.fromkeys(run.row for run in study.runs))}
+    own = load_study(study.name, overrides={"fidelity": study.fidelity}).settings.get(PACKINGS)
+    ran = study.settings.get(PACKINGS)
+    return {**rows, **({} if ran == own else {PACKINGS: ran})}
 
 
 def durations(folder: Path, page: Mapping[str, Any]) -> list[Block]:
@@ -258,7 +269,7 @@ def study_that_was_run(folder: Path, fidelity: str) -> Study:
     if study.optimise:
         return as_decided(study, folder)
     runs = pd.read_csv(folder / "design.csv", dtype={"row": str})
-    chosen = {"rows": runs["row"].unique().tolist(), "packings": int(runs["packing"].max())}
+    chosen = {ROWS: runs["row"].unique().tolist(), PACKINGS: int(runs["packing"].max())}
     return load_study(folder.name, overrides={"fidelity": fidelity, **chosen})
 
 

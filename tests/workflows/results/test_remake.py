@@ -113,6 +113,14 @@ def test_what_is_known_of_a_page_is_renewed_but_its_settings_stay(tmp_path):
         read_origins(tmp_path)
 
 
+def test_a_study_that_ran_more_rows_is_known_by_those(tmp_path):
+    """Once whole it has no rows: it would be written of the first ones alone again. Other settings stay."""
+    few = replace(OLD, study="demo", settings={"rows": ["R5"], "packings": 1, "solver": {"search": "ours"}})
+    write_origins(tmp_path, [few])
+    keep_origin(tmp_path, replace(few, settings={"packings": 2}))
+    assert read_origins(tmp_path)[0].settings == {"solver": {"search": "ours"}, "packings": 2}
+
+
 def test_pending_files_are_those_of_the_summary_that_would_be_made():
     """Rule and file of each line with an update planned."""
     head = "output_file\tdate\trule\tlog-file(s)\tstatus\tplan"
