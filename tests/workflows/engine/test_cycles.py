@@ -739,16 +739,17 @@ def test_a_second_driver_waits_for_the_first(finished, tmp_path):
     lock = chain.folder / ".lock"
     while not (lock.exists() and lock.read_text()):
         time.sleep(0.01)
-    second = subprocess.run(
-        [sys.executable, "-c", DRIVER, str(tmp_path / "chain.pickle")],
-        cwd=REPOSITORY,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert first.wait() == 0
-    assert f"process {first.pid} works on {chain.folder}; waiting for it to end" in second.stderr
-    assert "cycle 1" not in second.stderr
+    first.send_signal(signal.SIGSTOP)  # until the second one waits, however slowly it starts
+    with open(tmp_path / "second.txt", "w+") as said:
+        command = [sys.executable, "-c", DRIVER, str(tmp_path / "chain.pickle")]
+        second = subprocess.Popen(command, cwd=REPOSITORY, stderr=said)
+        while second.poll() is None and "waiting" not in (tmp_path / "second.txt").read_text():
+            time.sleep(0.05)
+        first.send_signal(signal.SIGCONT)
+        assert (first.wait(), second.wait()) == (0, 0)
+    told = (tmp_path / "second.txt").read_text()
+    assert f"process {first.pid} works on {chain.folder}; waiting for it to end" in told
+    assert "cycle 1" not in told
     assert (chain.folder / "wear.csv").read_bytes() == (finished.folder / "wear.csv").read_bytes()
 
 
