@@ -19,11 +19,9 @@ import sys
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
 from benchmarks.same_results import compare, tables
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.config.optimise import OPTIMISE
 from bulkwear.workflows.engine.project import PACKAGE, work_here
 from bulkwear.workflows.engine.provenance import code_of_cases
 from bulkwear.workflows.report.provenance_of_pages import Origin, read_origins, versions_in
@@ -57,17 +55,11 @@ def runs_of_first_row(study: str) -> tuple[str, list[str]]:
     """Return the first row of a study's design, which most designs begin with what others are held against, and the
     names of its runs. Raises VersionError where nothing wears.
     """
-    whole = load_study(study, overrides={"fidelity": FIDELITY, **ONE_PACKING})
-    if WORN_RUN not in whole.case.solver_rules:
+    row = str(load_study(study, overrides={"fidelity": FIDELITY, **ONE_PACKING}).design_rows[0]["row"])
+    chosen_alone = load_study(study, overrides={"fidelity": FIDELITY, **ONE_PACKING, "rows": [row]})
+    if WORN_RUN not in chosen_alone.case.solver_rules:
         raise VersionError(f"{study}: its runs make no {WEAR}, allowed is a study of worn runs; redo its page.")
-    row = str(whole.design_rows[0]["row"])
-    return row, [run.name for run in load_study(study, overrides=settings_of(study, row)).runs if run.row == row]
-
-
-def settings_of(study: str, row: str) -> dict[str, Any]:
-    """Return the settings under which a row of a study runs; a search chooses its rows itself."""
-    kept = {"fidelity": FIDELITY, **ONE_PACKING}
-    return kept if OPTIMISE in load_study(study, overrides=kept).settings else {**kept, "rows": [row]}
+    return row, [run.name for run in chosen_alone.runs]
 
 
 def solved(commit: str, study: str, row: str, runs: Sequence[str], folder: Path) -> Path:
@@ -79,8 +71,8 @@ def solved(commit: str, study: str, row: str, runs: Sequence[str], folder: Path)
     _call(["make", "--silent", "setup"], clone)
     command = [".venv/bin/snakemake", "--workflow-profile", "workflows/profiles/default"]
     wanted_files = [f"results/{study}/{run}/{WEAR}" for run in runs]
-    settings = [f"{key}={json.dumps(value)}" for key, value in settings_of(study, row).items()]
-    _call([*command, *wanted_files, "--config", *settings], clone)
+    settings = {"fidelity": FIDELITY, **ONE_PACKING, "rows": [row]}
+    _call([*command, *wanted_files, "--config", *(f"{key}={json.dumps(it)}" for key, it in settings.items())], clone)
     return clone / "results" / study
 
 

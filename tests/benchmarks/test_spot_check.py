@@ -90,14 +90,3 @@ def test_the_runs_of_one_packing_of_the_first_row_are_asked_for(monkeypatch, tmp
     assert {"results/demo/R5_convex/wear.csv", "results/demo/R5_plain/wear.csv", "packings=1"} <= set(command)
     with pytest.raises(module.VersionError, match=r"calibration: its runs make no wear\.csv"):
         module.runs_of_first_row("calibration")
-
-
-def test_a_search_chooses_its_rows_itself(monkeypatch, tmp_path):
-    """Its first row is asked for in one packing, and the command names no rows."""
-    called = []
-    monkeypatch.setattr(module, "_call", lambda command, where: called.append(command))
-    row, runs = module.runs_of_first_row("optimised_pattern")
-    assert (row, runs) == ("R5", ["R5_convex", "R5_plain"])
-    (tmp_path / "before").mkdir()
-    module.solved("before", "optimised_pattern", row, runs, tmp_path)
-    assert not any(word.startswith("rows=") for word in called[-1])

@@ -27,7 +27,7 @@ from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, failed, 
 FILE, CHANGES = "results.json", "results_changes.csv"  # in docs
 LINE = 118  # characters of a line of prose
 BEGIN, END = "<!-- older than the code -->", "<!-- end -->"
-STANDS_FOR = {"sliding_sample": "demo"}  # case -> study whose spot checks speak for pages of commands
+STANDS_FOR = {"sliding_sample": "demo"}  # case -> its cheapest study, whose spot checks speak for all of its pages
 BLOCK = re.compile(rf"{BEGIN}\n.*?{END}\n\n", re.DOTALL)
 
 
@@ -72,7 +72,7 @@ class Origin:
     @property
     def checked_by(self) -> str:
         """Return the study whose spot checks concern the page, "" where there is none."""
-        return self.study or STANDS_FOR.get(self.case, "")
+        return STANDS_FOR.get(self.case, self.study)
 
 
 @dataclass(frozen=True)

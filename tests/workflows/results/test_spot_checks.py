@@ -29,11 +29,11 @@ def test_checks_that_lead_to_todays_code_make_a_page_as_new():
     assert older(ORIGIN, [], NOW, [replace(TO_SECOND, study="mills"), TO_NOW]) == older(ORIGIN, [], NOW)
 
 
-def test_the_demo_speaks_for_benchmarks_of_sliding_samples():
-    """Their pages are of no study; of a case without such a study no check says anything."""
+def test_the_demo_speaks_for_pages_of_sliding_samples():
+    """Of benchmarks, which are of no study, and of other studies; of a benchmark of another case none says anything."""
     bench = replace(ORIGIN, case="sliding_sample", study="", command="make it")
     checks = [replace(each, study="demo") for each in (TO_SECOND, TO_NOW)]
-    assert older(bench, [], NOW, checks) == []
+    assert older(bench, [], NOW, checks) == older(replace(bench, study="screening"), [], NOW, checks) == []
     assert older(replace(bench, case="calibration"), [], NOW, checks)
 
 
