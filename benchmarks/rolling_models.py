@@ -156,7 +156,7 @@ def publish(output: Path, runs: pd.DataFrame, published: pd.DataFrame) -> str:
     several = f"{packings.min()} to {packings.max()}" if packings.min() < packings.max() else f"{packings.max()}"
     remarks = [
         f"study calibration at {FIDELITY} fidelity, pairs of Tables 3.3, 3.5 and 3.6 of Yan 2022; packings of each:"
-        f" {several}",
+        f" {several}; bars are 95 % intervals, models stand beside one another",
         f"made by benchmarks/rolling_models.py, {date.today():%Y-%m-%d}",
     ]
     save(against_source(runs, published, remarks), output / FIGURE)

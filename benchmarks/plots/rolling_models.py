@@ -9,37 +9,44 @@ from matplotlib.figure import Figure
 
 from benchmarks.rolling_page import MODELS, differences
 from bulkwear.postproc.plots.style import BLUE, ORANGE, OTHER_COLOUR, new_figure
-from bulkwear.postproc.statistics.intervals import Estimate
+from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.workflows.cases.calibration.responses import response_name
 
 LOOKS = dict(zip(MODELS, ((BLUE, "o"), (ORANGE, "s"), ("#009E73", "^"), (OTHER_COLOUR, "D")), strict=True))
 HEIGHT = 6.2  # inches
 ROOM = 0.08  # -, of the range of a panel
+APART = 0.015  # of that range, models beside one another
 LOW = 2.8  # inches, of a figure of one panel
 BESIDE = 0.12  # of the distance of two models, packings beside their mean
 
 
 def against_source(runs: pd.DataFrame, published: pd.DataFrame, remarks: Sequence[str]) -> Figure:
-    """Draw a panel per response: ours over the source's, a mark per pair and model (mean of packings); on the line
-    both are alike.
+    """Draw a panel per response: ours over the source's, a mark per pair and model (mean of packings, with its 95 %
+    interval where there are several; a wide one leaves the panel); on the line both are alike.
 
     runs, published: as in `rolling_page.differences`
     """
     found = differences(runs, published)
-    means = found.groupby(["response", "model", "pair", "published"], sort=False)["ours"].mean().reset_index()
+    keys = ["response", "model", "pair", "published"]
+    means = found.groupby(keys, sort=False)["ours"].apply(lambda ours: estimate(ours.to_numpy())).reset_index()
+    means["mean"] = [each.value for each in means["ours"]]
     figure = new_figure(remarks, HEIGHT)
     responses = list(dict.fromkeys(means["response"]))
     panels = figure.subplots(-(-len(responses) // 2), 2, squeeze=False).ravel()
     for axes, response in zip(panels, responses, strict=False):
         of = means[means["response"] == response]
-        low, high = (getattr(of[["published", "ours"]].to_numpy(), end)() for end in ("min", "max"))
+        low, high = (getattr(of[["published", "mean"]].to_numpy(), end)() for end in ("min", "max"))
         room = ROOM * (high - low or high)
         axes.plot([low - room, high + room], [low - room, high + room], color="#a0a0a0", linewidth=0.8)
-        for model, (colour, marker) in LOOKS.items():
+        for number, (model, (colour, marker)) in enumerate(LOOKS.items()):
             some = of[of["model"] == model]
-            axes.plot(some["published"], some["ours"], marker, color=colour, markersize=5.0, alpha=0.8, label=model)
+            places = some["published"] + APART * (number - 0.5 * (len(LOOKS) - 1)) * (high - low or high)
+            axes.plot(places, some["mean"], marker, color=colour, markersize=5.0, alpha=0.8, label=model)
+            for at, mean in zip(places, some["ours"], strict=True):
+                axes.vlines(at, *mean.interval(), color=colour, linewidth=0.8)  # nothing where it is unknown
         name = response_name(response)  # ends with its unit in brackets
         axes.set(xlabel=f"{name}, Yan 2022", ylabel=f"Ours, mean ({name.rpartition('(')[2]}")
+        axes.set(ylim=(low - 2.0 * room, high + 2.0 * room))
     for axes in panels[len(responses) :]:
         axes.set_axis_off()
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(MODELS))
