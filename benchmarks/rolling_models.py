@@ -26,7 +26,7 @@ from typing import Any
 import pandas as pd
 
 from benchmarks.plots.rolling_models import against_source
-from benchmarks.rolling_page import MODELS, NO_REST, PLATE, results_page
+from benchmarks.rolling_page import MODELS, NO_REST, PLATE, differences, results_page
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.plots.style import save, save_small
@@ -149,9 +149,14 @@ def _told(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def publish(output: Path, runs: pd.DataFrame, published: pd.DataFrame) -> str:
-    """Write figure and page of the simulations; return the page. runs: as from `simulated`."""
+    """Write page and figure, which needs something of the source's, of the simulations; return the page.
+
+    runs: as from `simulated`
+    """
     page = results_page(runs, published)
     (output / PAGE).write_text(page, encoding="utf-8")
+    if differences(runs, published).empty:
+        return page
     packings = runs.groupby(["model", "test", "pair"])["packing"].nunique()
     several = f"{packings.min()} to {packings.max()}" if packings.min() < packings.max() else f"{packings.max()}"
     remarks = [

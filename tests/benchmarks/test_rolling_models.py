@@ -195,8 +195,9 @@ def test_page_and_figure(tmp_path, published):
     assert (tmp_path / "rolling_models.png").stat().st_size > 0
 
 
-def test_wall_friction_stands_beside_the_coefficient(published):
-    """Its mean over packings and the angle of the plate's coefficient; without such a test the page has no section."""
+def test_wall_friction_stands_beside_the_coefficient(published, tmp_path):
+    """Its mean over packings and the angle of the plate's coefficient; without such a test the page has no section, and
+    of such tests alone no other one."""
     runs = runs_off_by(published)
     assert wall_friction(runs).empty and "wall shear" not in results_page(runs, published)
     walls = pd.DataFrame(
@@ -209,3 +210,6 @@ def test_wall_friction_stands_beside_the_coefficient(published):
     assert row["wall_friction_angle_deg"] == pytest.approx(42.0) and row["packings"] == 3
     assert row["angle_of_the_coefficient_deg"] == pytest.approx(45.0) and row["low"] < 42.0 < row["high"]
     assert "of a wall shear test" in results_page(both, published)
+    alone = publish(tmp_path, walls, published)
+    assert "by 3 degrees at most" in alone and "Nearest" not in alone
+    assert not (tmp_path / "rolling_models.png").exists()
