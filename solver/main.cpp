@@ -7,10 +7,12 @@
 // rolling friction.
 
 #include <mpi.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "fix_load_ledger.h"
@@ -85,12 +87,34 @@ bool take_own_kernels(int& argc, char** argv) {
   return true;
 }
 
+void say(int where, const char* text) {
+  if (write(where, text, std::strlen(text)) < 0) return;  // nothing else can be done in a handler
+}
+
 // As the plain program does: a first signal ends the run after the next step, with a restart file if the deck asks for
-// one.
+// one. The library's handlers allocate memory: where the signal interrupts an allocation they wait for ever.
+void end_soon(int) {
+  using namespace LAMMPS_NS::SignalHandler;
+  if (request_quit) {
+    say(STDERR_FILENO, "\nSecond SIGINT/SIGTERM caught - Force quitting.\n");
+    std::_Exit(EXIT_FAILURE);
+  }
+  request_write_restart = enable_restart_writing;
+  request_quit = true;
+  say(STDOUT_FILENO, enable_restart_writing
+                         ? "\nSIGINT/SIGTERM caught - Writing restart on next occasion and quitting after that.\n"
+                         : "\nSIGINT/SIGTERM caught - quitting on first occasion.\n");
+}
+
+void write_restart_soon(int) {
+  using namespace LAMMPS_NS::SignalHandler;
+  if (enable_restart_writing) request_write_restart = true;
+}
+
 void handle_signals() {
-  std::signal(SIGINT, LAMMPS_NS::SignalHandler::int_handler);
-  std::signal(SIGTERM, LAMMPS_NS::SignalHandler::int_handler);
-  std::signal(SIGUSR1, LAMMPS_NS::SignalHandler::usr1_handler);
+  std::signal(SIGINT, end_soon);
+  std::signal(SIGTERM, end_soon);
+  std::signal(SIGUSR1, write_restart_soon);
 }
 
 }  // namespace

@@ -7,10 +7,10 @@ import pytest
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.inference.posterior import densest, interval
 from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
-from bulkwear.workflows.cases.calibration.case import PUBLISHED
 from bulkwear.workflows.cases.calibration.driver import compared_pairs, read_posterior, run_calibration
 from bulkwear.workflows.cases.calibration.simulations import simulate_all
 from bulkwear.workflows.config.design import load_study
+from tests import PUBLISHED
 
 pytestmark = [pytest.mark.solver, pytest.mark.verify]
 

@@ -225,7 +225,8 @@ def run_deck(
             stdin=subprocess.DEVNULL,
             stdout=screen,
             stderr=subprocess.STDOUT,
-            preexec_fn=die_with(os.getpid()),
+            # a launcher has to stop its ranks; the plain program's handler of SIGTERM may wait for a lock that it holds
+            preexec_fn=die_with(os.getpid(), signal.SIGKILL if ranks == 1 else signal.SIGTERM),
         )
         try:
             _watch(process, folder, on_step, unchecked, Watch(patience))
@@ -340,15 +341,15 @@ def _stop(process: subprocess.Popen) -> None:
                 last_resort()
 
 
-def die_with(parent: int) -> Callable[[], None]:
+def die_with(parent: int, by: signal.Signals = signal.SIGTERM) -> Callable[[], None]:
     """Return what lets the kernel stop a child, such as the solver, when its parent dies; mpirun then stops its ranks.
 
-    To be called in the child; parent: id of the process that starts it
+    To be called in the child; parent: id of the process that starts it; by: what the child then gets
     """
 
     def before_exec() -> None:
         if sys.platform == "linux":
-            ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGTERM)
+            ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, by)
         if os.getppid() != parent:  # it died before the kernel was asked
             os._exit(1)
 

@@ -138,3 +138,38 @@ def test_the_end_of_a_process_is_seen(monkeypatch, handles):
         process.stdin.close()
         monkeypatch.setattr(solver, "POLL_SECONDS", 30.0)
         assert solver._ended(process, handle) and process.returncode == 0
+
+
+DIES_S = 60.0  # s, at most: the kernel does it at once
+PARENT = """\
+import os, signal, subprocess, sys, time
+from bulkwear.workflows.engine.solver import die_with
+deaf = subprocess.Popen(
+    ["sh", "-c", "trap '' TERM; echo; while :; do sleep 1; done"],
+    stdout=subprocess.PIPE,
+    preexec_fn=die_with(os.getpid(), signal.SIGKILL),
+)
+deaf.stdout.readline()
+print(deaf.pid, flush=True)
+time.sleep(600)
+"""
+
+
+def test_a_solver_that_heeds_no_signal_dies_with_its_driver():
+    """As one whose handler of SIGTERM waits for a lock: the kernel kills it."""
+    with subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, text=True) as parent:
+        deaf = int(parent.stdout.readline())
+        parent.kill()
+        parent.wait()
+        deadline = time.monotonic() + DIES_S
+        while is_alive(deaf):
+            assert time.monotonic() < deadline, "it outlived its driver"
+            time.sleep(0.01)
+
+
+def is_alive(process: int) -> bool:
+    """Whether a process is there and no zombie."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False

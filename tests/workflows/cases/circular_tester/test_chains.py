@@ -292,7 +292,7 @@ def test_the_page_of_results_is_made_of_the_tables(finished, drawn, tmp_path):
     words = (
         "| 56 | plain volume | mm3 | 145.2 | 147.3 |",
         "more than 2 times the simulated revolutions; one packing, scatter unknown",
-        "20 cannot be said",
+        f"{len(claims_of('circular_tester'))} {UNSAID}",
         "| Normal force, plain |",
         "Eq 6.6",
         "| channel | 4 | 2 | 1 |",
