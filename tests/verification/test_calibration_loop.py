@@ -8,6 +8,7 @@ from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.inference.posterior import densest, interval
 from bulkwear.workflows.cases.calibration.boxes import test_of as bulk_test_of
 from bulkwear.workflows.cases.calibration.driver import compared_pairs, read_posterior, run_calibration
+from bulkwear.workflows.cases.calibration.responses import FOUND_FIRST
 from bulkwear.workflows.cases.calibration.simulations import simulate_all
 from bulkwear.workflows.config.design import load_study
 from tests import PUBLISHED
@@ -49,4 +50,5 @@ def test_hidden_friction_is_found_by_the_solver(tmp_path):
     for column, hidden in enumerate(HIDDEN.values()):
         low, high = interval(values[:, column], known.weights)
         assert low < hidden < high
-    assert set(compared_pairs(problem, known, run, pd.read_csv(pairs))) == set(repeats["pair"])
+    compared = compared_pairs(problem, known, run, pd.read_csv(pairs))
+    assert set(repeats["pair"]) == {FOUND_FIRST, *compared} and len(set(repeats["pair"])) == REPEATED_PAIRS
