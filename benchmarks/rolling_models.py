@@ -16,8 +16,7 @@ from the first.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from datetime import date
 from pathlib import Path
@@ -27,13 +26,14 @@ import pandas as pd
 
 from benchmarks.plots.rolling_models import against_source
 from benchmarks.rolling_page import MODELS, NO_REST, PLATE, differences, results_page
+from benchmarks.runs import side_by_side
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SHEAR_BOX, WALL_SHEAR, test_of
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.cases.calibration.driver import FIRST_REPEAT, pair_of
-from bulkwear.workflows.cases.calibration.simulations import answer, simulate_all
+from bulkwear.workflows.cases.calibration.simulations import answer, flowing
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulation_folder
@@ -108,9 +108,12 @@ def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int, alone: b
 
     alone: waits until nobody else simulates in that folder; else what is finished is read beside them
     """
-    say = Progress("rolling models", 1).say
-    with state.only_driver(folder, say) if alone else nullcontext(), ThreadPoolExecutor(cores) as pool:
-        answers = list(pool.map(lambda row: answer_of(row["asked"], folder, say), rows))
+    name = "rolling models"
+    say = Progress(name, 1).say
+    with state.only_driver(folder, say) if alone else nullcontext():
+        answers = side_by_side(
+            name, rows, lambda row: is_finished(row, folder), lambda row: answer_of(row["asked"], folder, say), cores
+        )
     return pd.DataFrame([_told(row) | given for row, given in zip(rows, answers, strict=True)])
 
 
@@ -119,7 +122,7 @@ def answer_of(test: dict[str, Any], folder: Path, say: Callable[[str], None]) ->
     kept = restless_file(test, folder)
     if not kept.is_file():
         try:
-            return answer(simulate_all([test], folder, 1, say)[0])
+            return answer(flowing(test, folder, say)[0])
         except SolverError as fault:
             if RESTLESS not in str(fault):
                 raise
@@ -136,12 +139,15 @@ def restless_file(test: dict[str, Any], folder: Path) -> Path:
 
 def finished(rows: Sequence[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
     """Return those rows whose simulation is there, or was given up."""
-    return [
-        row
-        for row in rows
-        if restless_file(row["asked"], folder).is_file()
-        or state.finished_cycles(simulation_folder(row["asked"], folder), inputs_digest(row["asked"])) > 0
-    ]
+    return [row for row in rows if is_finished(row, folder)]
+
+
+def is_finished(row: Mapping[str, Any], folder: Path) -> bool:
+    """Return whether the simulation of a row is there, or was given up."""
+    test = row["asked"]
+    if restless_file(test, folder).is_file():
+        return True
+    return state.finished_cycles(simulation_folder(test, folder), inputs_digest(test)) > 0
 
 
 def _told(row: dict[str, Any]) -> dict[str, Any]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, read_surface, write_surface
 from bulkwear.postproc.readers.solver_log import thermo_table
@@ -26,6 +28,7 @@ SMALL_BUMPS = {"rows": ["R9"]}  # a pattern for samples smaller than the demo's
 STRAIGHT_RAMP = {"height_above_floor_mm": 0.1, "skirt_radius_mm": 0}  # of a sample that is no faster than 1 m/s
 PUBLISHED_PAIR = "river_gravel_published"  # of all rolling models alike; the recommended one is of own_spin alone
 DIGITS = 12  # of a hash, in the name of a folder
+Asked, Answer = TypeVar("Asked"), TypeVar("Answer")
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
 
 
@@ -38,6 +41,33 @@ def changed(run: Run, change: Mapping[str, Any]) -> Run:
     given: dict[str, Any] = {key: value for key, value in run.parameters.items() if key != "derived"}
     given = merge(given, {key: value for key, value in change.items() if given[key] is not None})
     return replace(run, parameters={**given, "derived": derived_parameters(given)})
+
+
+def side_by_side(
+    name: str,
+    asked: Sequence[Asked],
+    is_there: Callable[[Asked], bool],
+    answer: Callable[[Asked], Answer],
+    cores: int,
+) -> list[Answer]:
+    """Return the answer to each that is asked, up to `cores` of them simulated at the same time.
+
+    name: of the benchmark, begins each line of progress, which counts those whose simulation is not there
+    """
+    missing = [not is_there(each) for each in asked]
+    progress, lock, done = Progress(name, sum(missing)), threading.Lock(), 0
+
+    def one(each: Asked, is_missing: bool) -> Answer:
+        nonlocal done
+        found = answer(each)
+        with lock:
+            done += is_missing
+            if is_missing:
+                progress.update(done, f"{done} of {progress.total} simulated")
+        return found
+
+    with ThreadPoolExecutor(cores) as pool:
+        return list(pool.map(one, asked, missing))
 
 
 def with_bed(chain: Chain, bed_name: str) -> Chain:

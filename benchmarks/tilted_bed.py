@@ -1,6 +1,8 @@
-"""At which slope does a bed begin to flow? A layer of grains without walls is tilted slowly, under each rolling model.
+"""At which slope does a bed begin to flow, and does it stand before? A layer of grains without walls is tilted slowly,
+under each rolling model.
 
     python -m benchmarks.tilted_bed --cores 2    # in the root of the repository; an hour
+    python -m benchmarks.tilted_bed --finished    # of the layers so far
     python -m benchmarks.tilted_bed --redraw
 
 Its grains are those of `benchmarks.rolling_models`, in the source's calibrated pair. Layers stay in `--folder`; more
@@ -13,7 +15,6 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ import pandas as pd
 from benchmarks.plots.rolling_models import packings_by_model
 from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX, wanted
 from benchmarks.rolling_page import MODELS
+from benchmarks.runs import side_by_side
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.postproc.readers.solver_log import last_step
 from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
@@ -34,7 +36,6 @@ from bulkwear.workflows.engine.derived import (
     smallest_rayleigh_time,
     youngs_modulus,
 )
-from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.provenance import PROVENANCE, code_of_cases, provenance
 from bulkwear.workflows.engine.solver import DECK, LOG, executable_of, run_deck
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
@@ -45,6 +46,8 @@ POURED, SETTLED = 12.0, 1.0  # median diameters that grains are poured high, and
 START, END, RATE = 20.0, 60.0, 1.0  # degrees, degrees, degrees/s
 LOOK = 0.1  # s between two looks whether it flows, so the answer has steps of 0.1 degrees
 FLOWING = 0.1  # m/s, mean of the grains that are not held
+CREEPING = 5.0  # degrees from START in which creep is measured; no layer flows there
+MILLIMETRES = 1e3  # per metre
 GRAVITY = 9.81  # m/s2
 PACKINGS = 5
 REFERENCE = "own_spin"  # the studies' own: the others are compared with it
@@ -161,22 +164,29 @@ def _tilting(test: Mapping[str, Any], step: float) -> list[str]:
     ]
 
 
-def flow_angle(trace: Path) -> float:
-    """Return the angle (degrees) at which the bed of a trace first flowed. Raises TiltError."""
+def measured(trace: Path) -> dict[str, float]:
+    """Return flow_angle_deg, at which the layer of a trace first flowed, and creep_mm_per_s: how fast it moves downhill
+    before, the median over CREEPING degrees, which slips of a moment do not move. Raises TiltError.
+    """
     rows = pd.read_csv(trace, sep=r"\s+")
     angle, speed = (rows[name] for name in COLUMNS)
-    if not (speed > FLOWING).any():
+    flows = speed > FLOWING
+    if not flows.any():
         raise TiltError(f"{trace}: the bed does not flow at {angle.iloc[-1]:.1f} degrees, where the run ends.")
-    if speed.iloc[0] > FLOWING:
-        raise TiltError(f"{trace}: the bed flows at {angle.iloc[0]:.1f} degrees already, where the run begins.")
-    return float(angle[(speed > FLOWING).idxmax()])
+    flow_angle = float(angle[flows.idxmax()])
+    if flow_angle < START + CREEPING:
+        raise TiltError(
+            f"{trace}: the bed flows at {flow_angle:.1f} degrees, before its creep is measured at"
+            f" {START:g} to {START + CREEPING:g}."
+        )
+    creep = float(speed[angle < START + CREEPING].median())
+    return {"flow_angle_deg": flow_angle, "creep_mm_per_s": MILLIMETRES * creep}
 
 
-def tilted(test: Mapping[str, Any], root: Path) -> float:
-    """Return the flow angle (degrees) of a layer, tilted unless it was before. Raises SolverError, TiltError."""
+def tilted(test: Mapping[str, Any], root: Path) -> dict[str, float]:
+    """Return what is `measured` on a layer, tilted unless it was before. Raises SolverError, TiltError."""
     deck = tilt_deck(test)
-    inputs = state.digest(deck)
-    kept = root / f"tilt_{inputs[: state.DIGEST_LETTERS]}"
+    inputs, kept = state.digest(deck), layer_folder(deck, root)
     if state.finished_cycles(kept, inputs) == 0:
         code = code_of_cases((CASE,))
         with state.working_folder(kept, 0) as folder:
@@ -185,29 +195,38 @@ def tilted(test: Mapping[str, Any], root: Path) -> float:
             cost |= {"steps": last_step(folder / LOG), "particles": GRAINS}
             record = {"cost": cost, PROVENANCE: provenance(code, executable_of(test), cost)}
             state.write_state(folder, inputs, (TRACE, LOG), record)
-    return flow_angle(state.cycle_folder(kept, 0) / TRACE)
+    return measured(state.cycle_folder(kept, 0) / TRACE)
+
+
+def layer_folder(deck: str, root: Path) -> Path:
+    """Return where the layer of a deck is kept."""
+    return root / f"tilt_{state.digest(deck)[: state.DIGEST_LETTERS]}"
+
+
+def is_finished(row: Mapping[str, Any], root: Path) -> bool:
+    """Return whether the layer of a row was tilted."""
+    deck = tilt_deck(row["asked"])
+    return state.finished_cycles(layer_folder(deck, root), state.digest(deck)) > 0
 
 
 def all_tilted(rows: Sequence[Mapping[str, Any]], root: Path, cores: int) -> pd.DataFrame:
-    """Return model, packing and flow_angle_deg of layers, up to `cores` of them simulated at the same time."""
-    progress, done = Progress("tilted bed", len(rows)), 0
-
-    def one(row: Mapping[str, Any]) -> float:
-        nonlocal done
-        angle = tilted(row["asked"], root)
-        done += 1
-        progress.update(done, f"{row['model']}, packing {row['packing']}: flows at {angle:.1f} degrees")
-        return angle
-
-    with ThreadPoolExecutor(cores) as pool:
-        angles = list(pool.map(one, rows))
+    """Return model, packing and what is `measured` of layers, up to `cores` of them simulated at the same time."""
+    found = side_by_side(
+        "tilted bed", rows, lambda row: is_finished(row, root), lambda row: tilted(row["asked"], root), cores
+    )
     told = [{"model": row["model"], "packing": row["packing"]} for row in rows]
-    return pd.DataFrame(told).assign(flow_angle_deg=angles)
+    return pd.DataFrame([row | layer for row, layer in zip(told, found, strict=True)])
 
 
-def means(runs: pd.DataFrame) -> dict[str, Estimate]:
-    """Return the mean flow angle (degrees) of each model over its packings."""
-    return {model: estimate(of["flow_angle_deg"].to_numpy()) for model, of in runs.groupby("model", sort=False)}
+def means(runs: pd.DataFrame, column: str = "flow_angle_deg") -> dict[str, Estimate]:
+    """Return the mean of a column of `all_tilted` of each model over its packings."""
+    return {model: estimate(of[column].to_numpy()) for model, of in runs.groupby("model", sort=False)}
+
+
+def creep_table(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return a row per model: its mean creep (mm/s), and that of the slowest and the fastest packing."""
+    creep = runs.groupby("model", sort=False)["creep_mm_per_s"]
+    return creep.agg(packings="size", creep_mm_per_s="mean", slowest="min", fastest="max").reset_index()
 
 
 def summary(found: Mapping[str, Estimate]) -> pd.DataFrame:
@@ -253,11 +272,18 @@ def results_page(runs: pd.DataFrame) -> str:
             f"A layer of {GRAINS} grains, {LENGTH:g} by {WIDTH:g} median diameters, lies on grains that are held, and"
             " is periodic along and across; the material and time steps of [the rolling models]"
             "(rolling_models_results.md), with the source's calibrated pair. After rest it is tilted from"
-            f" {START:g} degrees by {RATE:g} degree/s until its grains move downhill at {1e3 * FLOWING:g} mm/s in the"
-            f" mean, looked at every {LOOK * RATE:g} degrees. It has neither walls nor a toe: that is no angle of"
-            " repose, and tells what a model does alone."
+            f" {START:g} degrees by {RATE:g} degree/s until its grains move downhill at {MILLIMETRES * FLOWING:g} mm/s"
+            f" in the mean, looked at every {LOOK * RATE:g} degrees. It has neither walls nor a toe: that is no angle"
+            " of repose, and tells what a model does alone."
         ),
         markdown(summary(found)),
+        "## Does it stand before?",
+        prose(
+            f"How fast the layer moves downhill while it is tilted from {START:g} to {START + CREEPING:g} degrees: of"
+            " each packing the median of all looks, which a slip of a moment does not move; the mean, the least and the"
+            " most of the packings."
+        ),
+        markdown(creep_table(runs)),
     ]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
@@ -284,11 +310,13 @@ def main() -> None:
     parser.add_argument("--models", nargs="+", choices=MODELS, default=MODELS, help="else all")
     parser.add_argument("--folder", type=Path, default=Path("results/benchmarks/full/tilted_bed"))
     parser.add_argument("--cores", type=int, default=1, help="simulations side by side")
+    parser.add_argument("--finished", action="store_true", help="simulate nothing, take what is finished")
     parser.add_argument("--redraw", action="store_true", help="from the table of an earlier run")
     given = parser.parse_args()
     file = given.output / FILE
     if not given.redraw:
         rows = wanted(given.packings, given.models, (SHEAR_BOX,), (CALIBRATED,))
+        rows = [row for row in rows if is_finished(row, given.folder)] if given.finished else rows
         all_tilted(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
     print(publish(given.output, pd.read_csv(file)), flush=True)
 

@@ -103,13 +103,13 @@ def test_a_test_that_never_rests_does_not_end_the_others(tmp_path, monkeypatch):
     """It is told, kept and not tried again; another fault of the solver ends the benchmark."""
     rows, tried = wanted(1, ["cdt", "own_spin"], ["draw_down"], [CALIBRATED]), []
 
-    def simulate(tests, *_):
-        tried.append(tests[0]["solver"]["rolling_friction"])
+    def simulate(test, *_):
+        tried.append(test["solver"]["rolling_friction"])
         if tried[-1] == "cdt":
             raise SolverError("log.liggghts: the heap did not come to rest in 20 s (rest.longest_s); rest is ...")
-        return [Measurement({"repose_angle_deg": 30.0}, {}, 0)]
+        return Measurement({"repose_angle_deg": 30.0}, {}, 0), tmp_path
 
-    monkeypatch.setattr(rolling_models, "simulate_all", simulate)
+    monkeypatch.setattr(rolling_models, "flowing", simulate)
     for _ in range(2):
         table = simulated(rows, tmp_path, 1).set_index("model")
         assert table.loc["own_spin", "repose_angle_deg"] == 30.0 and np.isnan(table.loc["cdt", "repose_angle_deg"])

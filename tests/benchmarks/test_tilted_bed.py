@@ -9,17 +9,34 @@ import pytest
 from benchmarks import tilted_bed
 from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX, wanted
 from benchmarks.rolling_page import MODELS
-from benchmarks.tilted_bed import PACKINGS, REFERENCE, TiltError, flow_angle, means, publish, said_of, summary
+from benchmarks.runs import side_by_side
+from benchmarks.tilted_bed import (
+    PACKINGS,
+    REFERENCE,
+    TiltError,
+    creep_table,
+    means,
+    measured,
+    publish,
+    said_of,
+    summary,
+)
 from bulkwear.postproc.statistics.intervals import UNKNOWN, estimate
 
 STUDENT_95_4 = 2.7764  # two-sided 95 % point of Student's t with four degrees of freedom; tables
 FLOWS_AT = {"cdt": 35.0, "epsd2": 36.0, "own_spin": 38.0, "rvd": 38.1}  # degrees, made up
+CREEPS = {"cdt": 0.6, "epsd2": 0.003, "own_spin": 0.002, "rvd": 1.2}  # mm/s, made up
 SPREAD = (-0.4, -0.2, 0.0, 0.2, 0.4)  # degrees, of five packings
 
 
 def made_up(packings=PACKINGS):
     return pd.DataFrame(
-        {"model": model, "packing": number + 1, "flow_angle_deg": angle + SPREAD[number]}
+        {
+            "model": model,
+            "packing": number + 1,
+            "flow_angle_deg": angle + SPREAD[number],
+            "creep_mm_per_s": CREEPS[model] * (1.0 + SPREAD[number]),
+        }
         for model, angle in FLOWS_AT.items()
         for number in range(packings)
     )
@@ -33,14 +50,22 @@ def written_trace(path, angles, speeds):
 
 def test_the_angle_is_that_of_the_first_look_that_finds_flow(tmp_path):
     """A slip that stops again before is none."""
-    trace = written_trace(tmp_path / "tilt.txt", [20.1, 20.2, 20.3, 20.4], [0.001, 0.09, 0.0002, 0.11])
-    assert flow_angle(trace) == 20.4
+    trace = written_trace(tmp_path / "tilt.txt", [20.1, 30.2, 30.3, 30.4], [0.001, 0.09, 0.0002, 0.11])
+    assert measured(trace)["flow_angle_deg"] == 30.4
     slow = written_trace(tmp_path / "slow.txt", [20.1, 60.0], [0.0, 0.09])
     with pytest.raises(TiltError, match=r"slow.txt: the bed does not flow at 60.0 degrees"):
-        flow_angle(slow)
-    fast = written_trace(tmp_path / "fast.txt", [20.1, 20.2], [0.2, 0.3])
-    with pytest.raises(TiltError, match=r"fast.txt: the bed flows at 20.1 degrees already"):
-        flow_angle(fast)
+        measured(slow)
+    fast = written_trace(tmp_path / "fast.txt", [20.1, 24.9], [0.0, 0.3])
+    with pytest.raises(TiltError, match=r"fast.txt: the bed flows at 24.9 degrees, before .* 20 to 25"):
+        measured(fast)
+
+
+def test_creep_is_how_fast_the_layer_moves_before_without_slips(tmp_path):
+    """The median of the first five degrees: one slip and what comes later do not move it."""
+    trace = written_trace(tmp_path / "tilt.txt", [21.0, 22.0, 23.0, 26.0, 30.0], [0.001, 0.05, 0.0012, 0.08, 0.2])
+    assert measured(trace)["creep_mm_per_s"] == pytest.approx(1.2)
+    told = creep_table(made_up()).set_index("model").loc["cdt"]
+    assert (told["creep_mm_per_s"], told["slowest"], told["fastest"]) == pytest.approx((0.6, 0.36, 0.84))
 
 
 def test_intervals_are_over_packings():
@@ -62,6 +87,7 @@ def test_one_packing_has_no_interval():
 def test_page_and_figure(tmp_path):
     """The page tells of each model whether it is told from the reference; the figure is there."""
     page = publish(tmp_path, made_up())
+    assert "| rvd | 5 | 1.2 |" in page
     assert "`rvd`: 38.1 degrees" in page and "not told from `own_spin`" in page
     assert "`cdt`: 35.0 degrees (95 %: 34.6 to 35.4), -3.0 (-3.5 to -2.5) of `own_spin`" in page
     assert (tmp_path / "tilted_bed.png").stat().st_size > 0
@@ -71,13 +97,30 @@ def test_page_and_figure(tmp_path):
 @pytest.mark.solver
 def test_a_small_layer_flows_and_is_not_simulated_again(tmp_path, monkeypatch):
     """Tilted fast from a steep slope, on the real solver; the second time nothing runs."""
-    for name, value in {"LENGTH": 5.0, "WIDTH": 4.0, "GRAINS": 90, "START": 25.0, "RATE": 20.0}.items():
+    for name, value in {
+        "LENGTH": 5.0,
+        "WIDTH": 4.0,
+        "GRAINS": 90,
+        "START": 22.0,
+        "CREEPING": 3.0,
+        "RATE": 20.0,
+    }.items():
         monkeypatch.setattr(tilted_bed, name, value)
     asked = wanted(1, ("epsd2",), (SHEAR_BOX,), (CALIBRATED,))[0]["asked"]
-    angle = tilted_bed.tilted(asked, tmp_path)
-    assert 25.0 < angle < 60.0
+    row = {"model": "epsd2", "packing": 1, "asked": asked}
+    assert not tilted_bed.is_finished(row, tmp_path)
+    layer = tilted_bed.tilted(asked, tmp_path)
+    assert tilted_bed.is_finished(row, tmp_path)
+    assert 25.0 < layer["flow_angle_deg"] < 60.0
     monkeypatch.setattr(tilted_bed, "run_deck", None)
-    assert tilted_bed.tilted(asked, tmp_path) == angle
+    assert tilted_bed.tilted(asked, tmp_path) == layer
+
+
+def test_progress_counts_what_is_missing(capsys):
+    """Answers stand in the order in which they were asked for; what was there before is not counted."""
+    doubled = side_by_side("layers", [1, 2, 3], lambda number: number < 3, lambda number: 2 * number, 2)
+    assert doubled == [2, 4, 6]
+    assert capsys.readouterr().err == "layers: 1 of 1 simulated, 100 % of the run, about 0 s left\n"
 
 
 def test_every_model_has_its_layers():
