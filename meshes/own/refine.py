@@ -15,13 +15,12 @@ from scipy.spatial import cKDTree
 
 from bulkwear.meshes.own.bisection import refine_all, turn_all
 from bulkwear.meshes.own.repairs import Repairs
-from bulkwear.meshes.own.solids import Solids
+from bulkwear.meshes.own.solids import MOST_TRIANGLES, Solids
 from bulkwear.postproc.mesh import centroids, directed_edges, edge_lengths_per_triangle
 
 LONGEST_OVER_TARGET = 1.5  # -, edges above it are halved: what is left has 0.75 to 1.5 targets
 SHORTEST_OVER_TARGET = 0.25  # -, no edge is halved below it for an angle's sake
 WANTED_ANGLE = 15.0  # degrees, as the smallest that remeshing allows a worn surface
-MOST_TRIANGLES = 4_000_000  # more than a solver takes in days
 EQUILATERAL = 0.25 * 3.0**0.5  # -, area over the square of the edge
 MOST_ROUNDS = 30  # of asking for the targets of smaller and smaller triangles
 

@@ -13,6 +13,7 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.304
 PART_DATA = ("part", "gmsh:physical", "region", "solid", "group", "material")  # cell data that tell parts, best first
 OTHERS = "*"  # name that stands for all parts which are not named
 LARGEST_PART, SMALLEST_PART = 1e3, 1e-6  # m, diagonal of a part: beyond them its unit is wrong
+MOST_TRIANGLES = 4_000_000  # of a surface: more than a solver takes in days
 
 
 @dataclass(frozen=True, eq=False)

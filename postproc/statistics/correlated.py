@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy import special  # scipy.stats is slow to import
 
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, Estimate
 
@@ -74,6 +73,8 @@ class CorrelatedFit:
 
     def deviation(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
         """Return the interval of the standard deviation of a value; both ends 0 where nothing is left of the series."""
+        from scipy import special  # slow to import, and many pages read this module
+
         if not self.variances.max() > 0.0:
             return 0.0, 0.0
         squares = self.variances * self.freedom
@@ -155,6 +156,7 @@ def _as_t(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> Estimate
 
 def _reaches(means: np.ndarray, errors: np.ndarray, fit: CorrelatedFit) -> list[float]:
     """Return how far from 0 the shares MATCHED of a mixture reach to both sides."""
+    from scipy import special  # slow to import, and many pages read this module
 
     def inside(tried: float) -> float:
         outer, inner = special.stdtr(fit.freedom, np.array([tried - means, -tried - means]) / errors)
@@ -174,6 +176,8 @@ def _where(rising: Callable[[float], float], share: float, low: float, high: flo
 @cache
 def _ratio_table() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return degrees of freedom, the ratio of the quantiles at MATCHED, falling, and the logarithm of the outer one."""
+    from scipy import special  # slow to import, and many pages read this module
+
     freedoms = np.geomspace(0.3, 1e4, 400)
     inner, outer = (special.stdtrit(freedoms, 0.5 + 0.5 * share) for share in MATCHED)
     return freedoms, outer / inner, np.log(outer)

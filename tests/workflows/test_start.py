@@ -12,22 +12,33 @@ SLOW = (
     *("matplotlib", "pyvista"),
 )
 NEEDED = {
-    "page": {"scipy.special"},  # its verdicts ask for quantiles
+    "study of equipment": {"jsonschema"},
     "study of samples": {"jsonschema", "scipy.spatial", "scipy.special"},  # its schema; bumps ask for their nearest
 }
 IMPORTED = "import sys\n{code}\nprint(*(name for name in {names} if name in sys.modules))"
 STARTS = {
     "every start": "import bulkwear.workflows.config.design, bulkwear.workflows.report.page_parameters",
-    "figures": """
-from bulkwear.workflows.engine.cases import find_case
+    "products": """
+from bulkwear.workflows.engine.cases import case_names, find_case
 from bulkwear.workflows.report.products import products_of
-assert products_of(find_case("sliding_sample"))
+assert all(products_of(find_case(name)) for name in case_names())
 """,
-    "samples": "from bulkwear.workflows.report.page_parameters import page_of; assert page_of('sliding_sample')",
+    "pages": """
+from bulkwear.workflows.engine.cases import case_names
+from bulkwear.workflows.report.page_parameters import page_of
+assert all(page_of(name) for name in case_names())
+""",
     "study of samples": """
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.report.page_parameters import page_parameters
 assert page_parameters(load_study("demo"))["told"]
+""",
+    "study of equipment": """
+from bulkwear.workflows.config.design import load_study
+from bulkwear.workflows.config.run_checks import check_files
+study = load_study("chute")
+check_files(study.name, study.case, study.runs)
+assert all(study.case.run_stages(run.parameters, None) for run in study.runs)
 """,
     "page": "import bulkwear.workflows.report.page",
     "forecast": "import bulkwear.workflows.forecast.forecast, bulkwear.workflows.forecast.limits",

@@ -13,7 +13,6 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, centroids, read_surface, worn_faces
 from bulkwear.postproc.readers.cycle_folders import cycle_folders
-from bulkwear.postproc.scans.comparison import bump_names, bump_sections, largest_losses
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.postproc.tables.depths import WORN_VOLUME
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MICROMETRES, MILLIMETRES
@@ -99,6 +98,8 @@ def wear_by_bump(meshes: Mapping[int, SurfaceMesh]) -> pd.DataFrame:
 
     meshes: worn surfaces by packing, with `worn_volume_m3`.
     """
+    from bulkwear.postproc.scans.comparison import bump_names  # slow to import
+
     parts = []
     for packing, mesh in meshes.items():
         volume = np.bincount(np.maximum(mesh.cell_data["part"], 0), CUBIC_MILLIMETRES * mesh.cell_data[WORN_VOLUME])
@@ -161,6 +162,8 @@ def worn_contours(pristine: SurfaceMesh, worn: Mapping[str, SurfaceMesh], bumps:
 
     Columns: bump, view (side, front), along_mm, name (of the surface; "pristine" first), height_mm.
     """
+    from bulkwear.postproc.scans.comparison import bump_sections  # slow to import
+
     sections = bump_sections(NOTHING, pristine, worn, 0.0)
     sections = sections[sections["bump"].isin(bumps)]
     names = {f"{name}_height_mm": name for name in ("pristine", *worn)}
@@ -172,6 +175,8 @@ def contours_by_mesh(runs: Sequence[TesterRun], revolution: float) -> pd.DataFra
     """Sections of MESH_BUMP (of the first bump where a sample is too small to have it) after a revolution on the meshes
     of runs with a pattern, finest first, as from `worn_contours`.
     """
+    from bulkwear.postproc.scans.comparison import bump_names  # slow to import
+
     runs = sorted((run for run in runs if run.surface != PLAIN), key=lambda run: run.element_size_mm)
     worn = {f"{run.element_size_mm:g} mm": next(iter(cycle_surfaces(run, [revolution]).values())) for run in runs}
     pristine = top_of(read_surface(runs[0].folder / SURFACE))
@@ -181,6 +186,8 @@ def contours_by_mesh(runs: Sequence[TesterRun], revolution: float) -> pd.DataFra
 
 def contour_losses(pristine: SurfaceMesh, worn: SurfaceMesh, bumps: list[str]) -> pd.Series:
     """Largest vertical loss (mm) in the sections of bumps, by bump; flanks too steep for it do not count (Fig 6.5)."""
+    from bulkwear.postproc.scans.comparison import bump_sections, largest_losses  # slow to import
+
     losses = largest_losses(bump_sections(NOTHING, pristine, {"worn": worn}, 0.0)).set_index("bump")["worn_um"]
     return losses[[bump for bump in bumps if bump in losses.index]] * (MILLIMETRES / MICROMETRES)
 

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bulkwear.meshes.own.refine import MOST_TRIANGLES
+from bulkwear.meshes.own.solids import MOST_TRIANGLES
 from bulkwear.workflows.cases.equipment.decks import fall_speed, moving_mesh, skin
 from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing, drawing_digest
 from bulkwear.workflows.engine.work import Stage, bytes_of_run

@@ -12,7 +12,6 @@ import pandas as pd
 from bulkwear.postproc.mesh import read_surface
 from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
 from bulkwear.postproc.tables.summary import published_value, totals_of_runs
-from bulkwear.postproc.wear.balance import lost_volume
 from bulkwear.workflows.cases.pin_on_disc.runs import (
     COEFFICIENT_TOLERANCE,
     SCHEMES,
@@ -65,6 +64,8 @@ def summary_table(
     Columns more: `alpha_F_L_volume_m3`, coefficient times load times distance (Archard 1953); `excess_volume_m3`, taken
     off beyond what the law asks; `removed_volume_m3`, pristine less worn volume; `mean_vertical_force_N`, contacts.
     """
+    from bulkwear.postproc.wear.balance import lost_volume  # slow to import, and every start reads the page
+
     table = totals_of_runs(design, wear_files)
     wear = [pd.read_csv(path) for path in wear_files]
     lost = [
