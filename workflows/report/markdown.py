@@ -30,7 +30,7 @@ from bulkwear.workflows.engine.project import work_here
 from bulkwear.workflows.engine.provenance import package_cases, simulating_code
 from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.report.beside_page import short_sections
-from bulkwear.workflows.report.page import cost_totals, finding_of, jobs_of, package_version
+from bulkwear.workflows.report.page import FORECAST, cost_totals, finding_of, jobs_of, package_version
 from bulkwear.workflows.report.page_parameters import figure_remarks, page_parameters
 from bulkwear.workflows.report.products import figures_of
 from bulkwear.workflows.report.provenance_of_pages import FILE, LINE, Origin, keep_origin, recorded, with_banner
@@ -144,8 +144,13 @@ def write_results(folder: Path, docs: Path, study: Study) -> Path:
 
     Where docs holds a list of the pages of results, what simulated the page is written down there, and its published
     numbers beside ours (`published`). Raises FileNotFoundError, with one sentence, when the study is not finished or
-    a figure is missing.
+    a figure is missing, and ValueError when it was run at another fidelity.
     """
+    if (fidelity := fidelity_that_was_run(folder)) not in (None, study.fidelity):
+        raise ValueError(
+            f"{folder / FORECAST}: the study was run at {fidelity}, found --fidelity {study.fidelity}, allowed is"
+            f" {fidelity}."
+        )
     told = page_parameters(study)
     figures = [name for name, words in told["figures"].items() if words["file"].endswith(".png")]
     kept = [found for section in with_verdict(told, folder) if (found := shown(section, figures))]
@@ -273,6 +278,14 @@ def study_that_was_run(folder: Path, fidelity: str) -> Study:
     return load_study(folder.name, overrides={"fidelity": fidelity, **chosen})
 
 
+def fidelity_that_was_run(folder: Path) -> str | None:
+    """Return the fidelity of a study's runs, by the forecast that was made before them; None where none tells it."""
+    if not (folder / FORECAST).is_file():
+        return None
+    told = pd.read_csv(folder / FORECAST).get("fidelity", pd.Series(dtype=str)).dropna()
+    return str(told.iloc[0]) if len(told) else None
+
+
 def as_decided(study: Study, folder: Path) -> Study:
     """Return a study that searches with the packings that its last round decided; others as they are."""
     decided = list(rounds_of(folder, study.search_digest)) if study.optimise else []
@@ -292,7 +305,7 @@ def main() -> None:
         sys.exit(f"{design} is missing; `snakemake {given.folder.name}` runs the study that has it")
     try:
         print(write_results(given.folder, given.docs, study_that_was_run(given.folder, given.fidelity)))
-    except FileNotFoundError as fault:
+    except (FileNotFoundError, ValueError) as fault:
         sys.exit(str(fault))
 
 

@@ -26,7 +26,14 @@ from bulkwear.workflows.engine.state import STATE
 from bulkwear.workflows.engine.work import Work
 from bulkwear.workflows.forecast.forecast import forecast_table, hours_text, totals, work_of
 from bulkwear.workflows.forecast.rates import rates_file, read_rates
-from bulkwear.workflows.report.markdown import SECONDS_PER_HOUR, as_decided, origin_of, simulated_between, write_results
+from bulkwear.workflows.report.markdown import (
+    SECONDS_PER_HOUR,
+    as_decided,
+    fidelity_that_was_run,
+    origin_of,
+    simulated_between,
+    write_results,
+)
 from bulkwear.workflows.report.page import package_version
 from bulkwear.workflows.report.provenance_of_pages import (
     Origin,
@@ -98,7 +105,9 @@ def cost_words(work: Sequence[Work], cores: int) -> str:
 def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
     """Write the page of a study from its runs; return what was done, or what is missing and what it costs."""
     study = load_study(origin.study, overrides=origin.overrides)
-    pending = pending_of(origin, cores)
+    folder = Path("results") / origin.study
+    ran_here = fidelity_that_was_run(folder) in (None, study.fidelity)
+    pending = pending_of(origin, cores) if ran_here else None
     missing = missing_work(study.foreseen, pending)
     solving = pending is None or any(rule in study.case.solver_rules for rule, _ in pending)
     if solving and not run:
@@ -106,7 +115,6 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
         return f"{what}; redoing costs {cost_words(missing, cores)}: {redo(origin)}"
     if pending or pending is None:
         call(study_command(origin.study, origin, cores))
-    folder = Path("results") / origin.study
     if origin.figure:
         shutil.copyfile(folder / "figures" / f"{origin.figure}.png", docs / origin.page)
         keep_origin(docs, origin_of(origin.page, folder, as_decided(study, folder)))

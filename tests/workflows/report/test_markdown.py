@@ -4,7 +4,16 @@ import pandas as pd
 import pytest
 
 from bulkwear.workflows.config.design import load_study
-from bulkwear.workflows.report.markdown import Caption, durations, markdown, pictures_of, provenance, written
+from bulkwear.workflows.report.markdown import (
+    Caption,
+    durations,
+    fidelity_that_was_run,
+    markdown,
+    pictures_of,
+    provenance,
+    write_results,
+    written,
+)
 from bulkwear.workflows.report.page_parameters import page_parameters
 from bulkwear.workflows.report.sections import Pictures, Section, Text
 from tests.support.finished_runs import leave_runs
@@ -26,6 +35,16 @@ def test_provenance_names_solver_rows_and_remarks(tmp_path):
     said = " ".join(provenance(tmp_path, study).split())
     assert "LIGGGHTS-PUBLIC 3.8.0" in said and "4 runs of 2 rows" in said
     assert "particles at scale 1.25" in said
+
+
+def test_runs_of_another_fidelity_make_no_page(tmp_path):
+    """A page of standard from runs of quick is refused before anything is written."""
+    (tmp_path / "forecast.csv").write_text("job,solver_s,fidelity\nworn_run_R5_plain,60,quick\n")
+    assert fidelity_that_was_run(tmp_path) == "quick"
+    study = load_study("screening", overrides={"fidelity": "standard", "packings": 1})
+    with pytest.raises(ValueError, match=r"the study was run at quick, found --fidelity standard, allowed is quick\."):
+        write_results(tmp_path, tmp_path / "docs", study)
+    assert fidelity_that_was_run(tmp_path / "none") is None
 
 
 def test_numbers_of_a_table_have_few_digits():

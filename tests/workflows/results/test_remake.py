@@ -178,6 +178,14 @@ def test_nothing_is_simulated_unless_asked(monkeypatch, done, pending, run, expe
     assert ("make results RUN=1 PAGE=demo_results_quick" in said and "core hours" in said) == (expected == [])
 
 
+def test_runs_of_another_fidelity_are_not_those_of_the_page(monkeypatch, done, tmp_path):
+    """They are taken for none, however finished."""
+    monkeypatch.setattr(module, "pending_of", lambda origin, cores: [])
+    monkeypatch.setattr(module, "fidelity_that_was_run", lambda folder: "paper")
+    said = module.remake_study(DEMO, tmp_path, 2, False)
+    assert "jobs of the solver are not done in results/demo" in said and done == []
+
+
 def test_a_page_of_a_command_is_renewed_from_its_simulations(done, tmp_path):
     """Written since its last run: their versions and cost are kept; with a newer run it is not its page."""
     code = code_of_cases(("pin_on_disc",)) | {"date": "2026-11-22T10:00:00Z"}
