@@ -218,9 +218,9 @@ def all_tilted(rows: Sequence[Mapping[str, Any]], root: Path, cores: int) -> pd.
     return pd.DataFrame([row | layer for row, layer in zip(told, found, strict=True)])
 
 
-def means(runs: pd.DataFrame, column: str = "flow_angle_deg") -> dict[str, Estimate]:
-    """Return the mean of a column of `all_tilted` of each model over its packings."""
-    return {model: estimate(of[column].to_numpy()) for model, of in runs.groupby("model", sort=False)}
+def means(runs: pd.DataFrame) -> dict[str, Estimate]:
+    """Return the mean flow angle (degrees) of each model over its packings."""
+    return {model: estimate(of["flow_angle_deg"].to_numpy()) for model, of in runs.groupby("model", sort=False)}
 
 
 def creep_table(runs: pd.DataFrame) -> pd.DataFrame:
