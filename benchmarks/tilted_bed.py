@@ -29,6 +29,7 @@ from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.postproc.readers.solver_log import last_step
 from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
 from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.beds import BedMeasure, bed_fault, level_measure, mass_measure
 from bulkwear.workflows.engine.decks import primes
 from bulkwear.workflows.engine.derived import (
     neighbour_skin,
@@ -51,7 +52,7 @@ MILLIMETRES = 1e3  # per metre
 GRAVITY = 9.81  # m/s2
 PACKINGS = 5
 REFERENCE = "own_spin"  # the studies' own: the others are compared with it
-TRACE, COLUMNS = "tilt.txt", ("angle_deg", "speed_m_per_s")
+TRACE, COLUMNS = "tilt.txt", ("angle_deg", "speed_m_per_s", "mass_kg", "level_m")
 CASE = "calibration"  # of the grains, whose code is told in the record
 FILE, PAGE, FIGURE = "tilted_bed.csv", "tilted_bed_results.md", "tilted_bed.png"
 
@@ -150,9 +151,12 @@ def _tilting(test: Mapping[str, Any], step: float) -> list[str]:
         f"variable down equal -{GRAVITY}*cos(v_angle*PI/180.0)",
         f"fix weight all gravity {GRAVITY} vector v_along 0.0 v_down",
         "variable speed equal vcm(layer,x)",
+        "variable mass equal mass(all)",
+        "variable level equal 2.0*xcm(all,z)",
         "thermo_style custom step atoms ke v_angle v_speed",
         f"thermo {look}",
-        f'fix trace all print {look} "${{angle}} ${{speed}}" file {TRACE} screen no title "{COLUMNS[0]} {COLUMNS[1]}"',
+        f'fix trace all print {look} "${{angle}} ${{speed}} ${{mass}} ${{level}}" file {TRACE} screen no'
+        f' title "{" ".join(COLUMNS)}"',
         f"variable look loop {math.ceil((END - START) / RATE / LOOK)}",
         "run 0",
         "label tilting",
@@ -164,12 +168,29 @@ def _tilting(test: Mapping[str, Any], step: float) -> list[str]:
     ]
 
 
-def measured(trace: Path) -> dict[str, float]:
+def layer_measures(grain: Mapping[str, Any], mass: float, level: float) -> tuple[BedMeasure, BedMeasure]:
+    """Return mass and level of a layer of grains at rest, beside those asked; mass: kg, level: m, as found.
+
+    The mass asked is that of `GRAINS` of the grains, the level asked that of the mass found at the bulk density.
+    """
+    density, area = grain["density_kg_per_m3"], LENGTH * WIDTH * grain["median_diameter_m"] ** 2
+    of_each = [density * math.pi / 6.0 * size**3 for size in grain["diameters_m"]]
+    mean = 1.0 / sum(share / one for share, one in zip(grain["mass_fractions"], of_each, strict=True))
+    height = mass / (density * grain["bulk_solid_fraction"] * area)
+    return mass_measure(grain, GRAINS * mean, mass), level_measure(grain, height, level)
+
+
+def measured(trace: Path, grain: Mapping[str, Any]) -> dict[str, float]:
     """Return flow_angle_deg, at which the layer of a trace first flowed, and creep_mm_per_s: how fast it moves downhill
-    before, the median over CREEPING degrees, which slips of a moment do not move. Raises TiltError.
+    before, the median over CREEPING degrees, which slips of a moment do not move; and its level_mm, found and asked.
+
+    Raises TiltError, also where mass or level of the layer are not as asked.
     """
     rows = pd.read_csv(trace, sep=r"\s+")
-    angle, speed = (rows[name] for name in COLUMNS)
+    angle, speed, mass, level = (rows[name] for name in COLUMNS)
+    measures = layer_measures(grain, mass.iloc[0], level.iloc[0])
+    if fault := bed_fault(measures):
+        raise TiltError(f"{trace}: {fault}.")
     flows = speed > FLOWING
     if not flows.any():
         raise TiltError(f"{trace}: the bed does not flow at {angle.iloc[-1]:.1f} degrees, where the run ends.")
@@ -180,7 +201,8 @@ def measured(trace: Path) -> dict[str, float]:
             f" {START:g} to {START + CREEPING:g}."
         )
     creep = float(speed[angle < START + CREEPING].median())
-    return {"flow_angle_deg": flow_angle, "creep_mm_per_s": MILLIMETRES * creep}
+    levels = {"level_mm": MILLIMETRES * measures[1].found, "level_asked_mm": MILLIMETRES * measures[1].asked}
+    return {"flow_angle_deg": flow_angle, "creep_mm_per_s": MILLIMETRES * creep} | levels
 
 
 def tilted(test: Mapping[str, Any], root: Path) -> dict[str, float]:
@@ -195,7 +217,7 @@ def tilted(test: Mapping[str, Any], root: Path) -> dict[str, float]:
             cost |= {"steps": last_step(folder / LOG), "particles": GRAINS}
             record = {"cost": cost, PROVENANCE: provenance(code, executable_of(test), cost)}
             state.write_state(folder, inputs, (TRACE, LOG), record)
-    return measured(state.cycle_folder(kept, 0) / TRACE)
+    return measured(state.cycle_folder(kept, 0) / TRACE, test["particle"])
 
 
 def layer_folder(deck: str, root: Path) -> Path:
@@ -256,6 +278,12 @@ def said_of(model: str, mean: Estimate, reference: Estimate) -> str:
     return f"{said}, {told} `{REFERENCE}`."
 
 
+def level_said(runs: pd.DataFrame) -> str:
+    """Return in a sentence how deep the layers lie, beside what was asked."""
+    low, high = runs["level_mm"].min(), runs["level_mm"].max()
+    return f"Layers lie {low:.1f} to {high:.1f} mm deep at rest; asked are {runs['level_asked_mm'].mean():.1f} mm."
+
+
 def results_page(runs: pd.DataFrame) -> str:
     """Return the page; runs: as from `all_tilted`."""
     found = means(runs)
@@ -274,7 +302,7 @@ def results_page(runs: pd.DataFrame) -> str:
             "(rolling_models_results.md), with the source's calibrated pair. After rest it is tilted from"
             f" {START:g} degrees by {RATE:g} degree/s until its grains move downhill at {MILLIMETRES * FLOWING:g} mm/s"
             f" in the mean, looked at every {LOOK * RATE:g} degrees. It has neither walls nor a toe: that is no angle"
-            " of repose, and tells what a model does alone."
+            f" of repose, and tells what a model does alone. {level_said(runs)}"
         ),
         markdown(summary(found)),
         "## Does it stand before?",
@@ -317,6 +345,8 @@ def main() -> None:
     if not given.redraw:
         rows = wanted(given.packings, given.models, (SHEAR_BOX,), (CALIBRATED,))
         rows = [row for row in rows if is_finished(row, given.folder)] if given.finished else rows
+        if not rows:
+            parser.error(f"{given.folder}: no layer asked for is finished; without --finished they are tilted.")
         all_tilted(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
     print(publish(given.output, pd.read_csv(file)), flush=True)
 

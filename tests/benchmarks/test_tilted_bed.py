@@ -1,6 +1,8 @@
 """The slope at which a bed flows: what is simulated, what is read of a trace, intervals, page and figure."""
 
 import math
+import re
+import sys
 
 import numpy as np
 import pandas as pd
@@ -36,34 +38,69 @@ def made_up(packings=PACKINGS):
             "packing": number + 1,
             "flow_angle_deg": angle + SPREAD[number],
             "creep_mm_per_s": CREEPS[model] * (1.0 + SPREAD[number]),
+            "level_mm": 60.0 + SPREAD[number],
+            "level_asked_mm": 61.0,
         }
         for model, angle in FLOWS_AT.items()
         for number in range(packings)
     )
 
 
-def written_trace(path, angles, speeds):
-    rows = "\n".join(f"{angle} {speed}" for angle, speed in zip(angles, speeds, strict=True))
-    path.write_text(f"angle_deg speed_m_per_s\n{rows}\n")
+GRAIN = {
+    "density_kg_per_m3": 2000.0,
+    "bulk_solid_fraction": 0.6,
+    "median_diameter_m": 0.01,
+    "diameters_m": [0.01],
+    "mass_fractions": [1.0],
+}
+MASS = 340 * 2000.0 * math.pi / 6.0 * 0.01**3  # kg, of as many grains as a layer has
+LEVEL = MASS / (2000.0 * 0.6 * 8.0 * 6.0 * 0.01**2)  # m, over 8 by 6 diameters
+
+
+def written_trace(path, angles, speeds, mass=MASS, level=LEVEL):
+    rows = "\n".join(f"{angle} {speed} {mass} {level}" for angle, speed in zip(angles, speeds, strict=True))
+    path.write_text(f"angle_deg speed_m_per_s mass_kg level_m\n{rows}\n")
     return path
 
 
 def test_the_angle_is_that_of_the_first_look_that_finds_flow(tmp_path):
     """A slip that stops again before is none."""
     trace = written_trace(tmp_path / "tilt.txt", [20.1, 30.2, 30.3, 30.4], [0.001, 0.09, 0.0002, 0.11])
-    assert measured(trace)["flow_angle_deg"] == 30.4
+    assert measured(trace, GRAIN)["flow_angle_deg"] == 30.4
     slow = written_trace(tmp_path / "slow.txt", [20.1, 60.0], [0.0, 0.09])
     with pytest.raises(TiltError, match=r"slow.txt: the bed does not flow at 60.0 degrees"):
-        measured(slow)
+        measured(slow, GRAIN)
     fast = written_trace(tmp_path / "fast.txt", [20.1, 24.9], [0.0, 0.3])
     with pytest.raises(TiltError, match=r"fast.txt: the bed flows at 24.9 degrees, before .* 20 to 25"):
-        measured(fast)
+        measured(fast, GRAIN)
+
+
+@pytest.mark.parametrize(
+    ("mass", "level", "said"),
+    [(0.9 * MASS, 0.9 * LEVEL, "mass 0.3204 kg (asked 0.356 within"), (MASS, 1.3 * LEVEL, "level 0.08036 m (asked")],
+)
+def test_a_layer_that_lacks_grains_or_hangs_loose_is_refused(tmp_path, mass, level, said):
+    """Each of the two is told, asked and found."""
+    trace = written_trace(tmp_path / "tilt.txt", [21.0, 30.0], [0.0, 0.2], mass, level)
+    with pytest.raises(TiltError, match=rf"tilt.txt: the bed is not as asked: .*{re.escape(said)}"):
+        measured(trace, GRAIN)
+    found = measured(written_trace(trace, [21.0, 30.0], [0.0, 0.2]), GRAIN)
+    assert found["level_mm"] == pytest.approx(found["level_asked_mm"]) == pytest.approx(1e3 * LEVEL)
+
+
+def test_finished_layers_alone_need_one(tmp_path, monkeypatch, capsys):
+    """Without any, a sentence that names the folder; nothing is written."""
+    monkeypatch.setattr(sys, "argv", ["tilted_bed", "--finished", "--folder", str(tmp_path), "--output", str(tmp_path)])
+    with pytest.raises(SystemExit):
+        tilted_bed.main()
+    assert f"{tmp_path}: no layer asked for is finished" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
 
 
 def test_creep_is_how_fast_the_layer_moves_before_without_slips(tmp_path):
     """The median of the first five degrees: one slip and what comes later do not move it."""
     trace = written_trace(tmp_path / "tilt.txt", [21.0, 22.0, 23.0, 26.0, 30.0], [0.001, 0.05, 0.0012, 0.08, 0.2])
-    assert measured(trace)["creep_mm_per_s"] == pytest.approx(1.2)
+    assert measured(trace, GRAIN)["creep_mm_per_s"] == pytest.approx(1.2)
     told = creep_table(made_up()).set_index("model").loc["cdt"]
     assert (told["creep_mm_per_s"], told["slowest"], told["fastest"]) == pytest.approx((0.6, 0.36, 0.84))
 
@@ -90,6 +127,7 @@ def test_page_and_figure(tmp_path):
     assert "| rvd | 5 | 1.2 |" in page
     assert "`rvd`: 38.1 degrees" in page and "not told from `own_spin`" in page
     assert "`cdt`: 35.0 degrees (95 %: 34.6 to 35.4), -3.0 (-3.5 to -2.5) of `own_spin`" in page
+    assert "Layers lie 59.6 to 60.4 mm deep at rest; asked are 61.0 mm." in " ".join(page.split())
     assert (tmp_path / "tilted_bed.png").stat().st_size > 0
     assert "scatter unknown" in publish(tmp_path, made_up(1))
 
