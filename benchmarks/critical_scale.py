@@ -27,9 +27,9 @@ import pandas as pd
 
 from benchmarks.plots.figures import ratio_by_candidate
 from benchmarks.ratios import ASSUMED, ratio_intervals
-from benchmarks.runs import simulated_run, with_bed
+from benchmarks.runs import BY, attempted, simulated_by, simulated_run, with_bed, with_earlier
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of, particle_steps
-from benchmarks.scale_page import BY, results_page, source_ratio
+from benchmarks.scale_page import results_page, source_ratio
 from benchmarks.window_case import PARTICLE_STEPS_PER_SECOND
 from bulkwear.postproc.plots.style import save
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, Crossing, crossing
@@ -44,9 +44,8 @@ from bulkwear.workflows.cases.sliding_sample.flow_history import (
 )
 from bulkwear.workflows.cases.sliding_sample.parameters import flow_measures
 from bulkwear.workflows.engine.chain import Chain
-from bulkwear.workflows.engine.solver import SolverError, die_with
+from bulkwear.workflows.engine.solver import die_with
 from bulkwear.workflows.engine.state import StateError
-from bulkwear.workflows.report.simulated import versions_of
 
 FAILED = "failed.txt"  # in the folder of a run whose simulation failed, with the reason
 SCALES, PACKINGS, OF_REFERENCE = (6,), 1, 3
@@ -62,25 +61,23 @@ PERCENT = 100.0
 def filled(case: Case, folder: Path, settings: dict[str, Any]) -> None:
     """Fill the bed of a run unless it is there."""
     chain = chain_of(case, folder, settings)
-    attempted(chain, lambda: with_bed(chain, case.candidate))
+    kept(chain, lambda: with_bed(chain, case.candidate))
 
 
 def simulated(case: Case, folder: Path, settings: dict[str, Any]) -> None:
     """Simulate a run from where it stopped, unless it is finished or failed before."""
     chain = chain_of(case, folder, settings)
-    attempted(chain, lambda: simulated_run(chain, case.candidate))
+    kept(chain, lambda: simulated_run(chain, case.candidate))
 
 
-def attempted(chain: Chain, task: Callable[[], object]) -> None:
-    """Do the task, or leave the reason why it failed: one candidate that cannot be simulated stops no other."""
+def kept(chain: Chain, task: Callable[[], object]) -> None:
+    """Do the task, or say and keep why it failed: one candidate that cannot be simulated stops no other."""
     failed = chain.folder.parent / FAILED
     if failed.exists():
         return
-    try:
-        task()
-    except (SolverError, StateError, ValueError) as fault:
-        failed.write_text(str(fault))
-        print(f"{chain.name} failed: {fault}", flush=True)
+    attempted(task, failed, (StateError, ValueError))
+    if failed.exists():
+        print(f"{chain.name} failed: {failed.read_text(encoding='utf-8')}", flush=True)
 
 
 def simulate_all(wanted: Sequence[Case], folder: Path, cores: int, each: Callable[[], object]) -> None:
@@ -129,7 +126,7 @@ def run_row(case: Case, chain: Chain) -> dict[str, Any]:
         "particles": int(cost["particles"].iloc[-1]),
         "triangles": int(cost["triangles"].iloc[-1]),
         "processor_s": cost["processor_s"].sum(),
-        BY: " and ".join(sorted(version.name for version in versions_of([chain.folder]))),
+        BY: simulated_by(chain.folder),
     }
 
 
@@ -142,9 +139,11 @@ def finished(wanted: Sequence[Case], folder: Path) -> pd.DataFrame:
 def comparison(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per particle scale and candidate: wear, convex over plain, its interval, and over the reference's.
 
-    runs: as from `run_row`. A packing is what is repeated, convex and plain sample together; one scatter is assumed for
-    the candidates of a scale (`ratio_intervals`), and one packing has no interval. Columns in the order of the page.
+    runs: as from `run_row`; those of candidates that there are no more are left out. A packing is what is repeated,
+    convex and plain sample together; one scatter is assumed for the candidates of a scale (`ratio_intervals`), and one
+    packing has no interval. Columns in the order of the page.
     """
+    runs = runs[runs["candidate"].isin(CANDIDATES)]
     pairs = pd.merge(
         *(runs[runs["surface"] == name].drop(columns="surface") for name in ("convex", "plain")),
         on=["particle_scale", "candidate", "seed"],
@@ -174,7 +173,7 @@ def comparison(runs: pd.DataFrame) -> pd.DataFrame:
         parts.append(told.merge(means, on="candidate").assign(particle_scale=scale))
     table = pd.concat(parts, ignore_index=True)
     kinds = table["candidate"].map({name: candidate.kind for name, candidate in CANDIDATES.items()})
-    place = table["candidate"].map(list(CANDIDATES).index)
+    place = table["candidate"].map({name: number for number, name in enumerate(CANDIDATES)})
     return table.assign(kind=kinds, place=place).sort_values(["particle_scale", "place"], ignore_index=True)
 
 
@@ -216,17 +215,20 @@ def packings_of(pairs: pd.DataFrame) -> str:
 
 def where_it_lies(found: Crossing, rows: pd.DataFrame) -> str:
     """Return in words where a ratio passes one; rows: of `comparison`, of one candidate, a scale each."""
-    scales = rows["particle_scale"]
-    least, most = scales.min(), scales.max()
     if not math.isnan(found.low):
+        least, most = rows["particle_scale"].min(), rows["particle_scale"].max()
         low = f"{found.low:.3g}" if math.isfinite(found.low) else f"below {least:g}"
         return f"{low} to {found.high:.3g}" if math.isfinite(found.high) else f"{low} to beyond {most:g}"
-    single = rows["ratio_low"].isna()
-    by_one = f" (at {', '.join(f'{scale:g}' for scale in scales[single])} in its one packing)" if single.any() else ""
-    if (rows["ratio_high"].fillna(rows["wear_over_plain"]) < 1.0).all():
-        return f"above {most:g}, if anywhere: the convex sample wears less at every scale{by_one}"
-    if (rows["ratio_low"].fillna(rows["wear_over_plain"]) > 1.0).all():
-        return f"below {least:g}, if anywhere: the convex sample wears more at every scale{by_one}"
+    known, single = rows[rows["ratio_low"].notna()], rows[rows["ratio_low"].isna()]
+    told = known["particle_scale"]
+    by_one = "".join(
+        f"; in one packing at {row.particle_scale:g} it wears {'more' if row.wear_over_plain > 1.0 else 'less'}"
+        for row in single.itertuples()
+    )
+    if len(known) and (known["ratio_high"] < 1.0).all():
+        return f"above {told.max():g}, if anywhere: the convex sample wears less from {told.min():g} on{by_one}"
+    if len(known) and (known["ratio_low"] > 1.0).all():
+        return f"below {told.min():g}, if anywhere: the convex sample wears more up to {told.max():g}{by_one}"
     return f"not told: {found.reason}"
 
 
@@ -289,16 +291,12 @@ def main() -> None:
 
 def write_table(file: Path, wanted: Sequence[Case], folder: Path) -> None:
     """Write the rows of the runs that are finished, beside those of earlier runs that are not among them."""
-    found = finished(wanted, folder)
-    merged(pd.read_csv(file) if file.is_file() else found.iloc[:0], found).to_csv(
-        file, index=False, float_format="%.6g"
-    )
+    ordered(with_earlier(file, finished(wanted, folder), KEYS)).to_csv(file, index=False, float_format="%.6g")
 
 
-def merged(before: pd.DataFrame, now: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of two tables of runs, those of `now` where both have one, by scale, candidate and packing."""
-    table = pd.concat([before, now], ignore_index=True).drop_duplicates(KEYS, keep="last")
-    place = table["candidate"].map(list(CANDIDATES).index)
+def ordered(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table of runs by scale, packing and candidate; one whose name is no candidate's any more stands last."""
+    place = table["candidate"].map({name: number for number, name in enumerate(CANDIDATES)}).fillna(len(CANDIDATES))
     order = ["particle_scale", "seed", "place", "surface"]
     return table.assign(place=place).sort_values(order, ignore_index=True).drop(columns="place")
 

@@ -8,9 +8,9 @@ have, shows of a plate under each of them.
     python -m benchmarks.rolling_models --finished   # while it runs, or after it was stopped: of the simulations so far
     python -m benchmarks.rolling_models --redraw
 
-Simulations stay in `--folder`, where a stopped one goes on; more packings are added to those that are there. Writes
-into docs: rolling_models.csv (every simulation), figure and rolling_models_results.md; `--redraw` makes the last two
-from the first.
+Simulations stay in `--folder`, where a stopped one goes on. Writes into docs: rolling_models.csv (every simulation;
+what was not asked for stays in it, with the version of the code that simulated it), figure and
+rolling_models_results.md; `--redraw` makes the last two from the first.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ import pandas as pd
 
 from benchmarks.plots.rolling_models import against_source
 from benchmarks.rolling_page import MODELS, NO_REST, PLATE, differences, results_page
-from benchmarks.runs import side_by_side
+from benchmarks.runs import BY, side_by_side, simulated_by, with_earlier
 from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.postproc.inference.loop import packing_seed
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.workflows.cases.calibration.boxes import DRAW_DOWN, SHEAR_BOX, WALL_SHEAR, test_of
 from bulkwear.workflows.cases.calibration.case import pairs_file
 from bulkwear.workflows.cases.calibration.driver import FIRST_REPEAT, pair_of
-from bulkwear.workflows.cases.calibration.simulations import answer, flowing
+from bulkwear.workflows.cases.calibration.simulations import answer, flowing, is_answered
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine import state
-from bulkwear.workflows.engine.bulk_simulations import inputs_digest, simulation_folder
+from bulkwear.workflows.engine.bulk_simulations import simulation_folder
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.solver import SolverError
 
@@ -48,6 +48,7 @@ FIDELITY = "standard"  # the largest particles that the slot lets pass
 PACKINGS = 2
 KINDS, CALIBRATED = (SHEAR_BOX, DRAW_DOWN, WALL_SHEAR), "calibrated"  # the pair of Table 3.6
 RESTLESS = "did not come to rest"  # in the words of `bulk_simulations.check_rest`
+KEYS = ["packing", "pair", "test", "model"]  # of a row in the table of every simulation
 FILE, PAGE, FIGURE = "rolling_models.csv", "rolling_models_results.md", "rolling_models.png"
 
 
@@ -114,7 +115,8 @@ def simulated(rows: Sequence[dict[str, Any]], folder: Path, cores: int, alone: b
         answers = side_by_side(
             name, rows, lambda row: is_finished(row, folder), lambda row: answer_of(row["asked"], folder, say), cores
         )
-    return pd.DataFrame([_told(row) | given for row, given in zip(rows, answers, strict=True)])
+    told = [_told(row) | {BY: version(row, folder)} for row in rows]
+    return pd.DataFrame([row | given for row, given in zip(told, answers, strict=True)])
 
 
 def answer_of(test: dict[str, Any], folder: Path, say: Callable[[str], None]) -> dict[str, Any]:
@@ -132,6 +134,11 @@ def answer_of(test: dict[str, Any], folder: Path, say: Callable[[str], None]) ->
     return {NO_REST: words.partition(": ")[2].partition(" (")[0]}
 
 
+def version(row: Mapping[str, Any], folder: Path) -> str:
+    """Return the version of the code that simulated the packing of a row."""
+    return simulated_by(simulation_folder(row["asked"], folder))
+
+
 def restless_file(test: dict[str, Any], folder: Path) -> Path:
     """Return the file that says that a test never came to rest."""
     return simulation_folder(test, folder).with_suffix(".txt")
@@ -143,11 +150,12 @@ def finished(rows: Sequence[dict[str, Any]], folder: Path) -> list[dict[str, Any
 
 
 def is_finished(row: Mapping[str, Any], folder: Path) -> bool:
-    """Return whether the simulation of a row is there, or was given up."""
+    """Return whether the simulation of a row is there, or was given up.
+
+    Where an arch blocked it, so are those packings that take its place, up to the first one that flowed.
+    """
     test = row["asked"]
-    if restless_file(test, folder).is_file():
-        return True
-    return state.finished_cycles(simulation_folder(test, folder), inputs_digest(test)) > 0
+    return restless_file(test, folder).is_file() or is_answered(test, folder)
 
 
 def _told(row: dict[str, Any]) -> dict[str, Any]:
@@ -193,13 +201,19 @@ def parser_of(published: pd.DataFrame) -> argparse.ArgumentParser:
 def main() -> None:
     """Simulate what is missing, then write table, figure and page."""
     published = pd.read_csv(pairs_file(load_study("calibration")))
-    given = parser_of(published).parse_args()
+    parser = parser_of(published)
+    given = parser.parse_args()
     file = given.output / FILE
     if not given.redraw:
         rows = wanted(given.packings, given.models, given.tests, given.pairs)
         rows = finished(rows, given.folder) if given.finished else rows
-        table = simulated(rows, given.folder, given.cores, alone=not given.finished)
-        table.to_csv(file, index=False, float_format="%.6g")
+        if not rows:
+            none = (
+                f"{given.folder}: none asked for is finished" if given.finished else "--pairs, --tests: none are both"
+            )
+            parser.error(f"{none}; allowed are pairs of which the source prints a response of that test.")
+        found = simulated(rows, given.folder, given.cores, alone=not given.finished)
+        with_earlier(file, found, KEYS).sort_values(KEYS).to_csv(file, index=False, float_format="%.6g")
     print(publish(given.output, pd.read_csv(file), published), flush=True)
 
 

@@ -17,6 +17,7 @@ ALL_RESPONSES = tuple(name for responses in RESPONSES.values() for name in respo
 PLATE = "plate_sliding_friction"  # column, the coefficient (-) of particles and plate of a wall shear test
 (WALL_ANGLE,) = RESPONSES["wall_shear"]  # of which the source prints nothing
 NO_REST = "no_rest"  # column with the words of a test that has no responses
+ENOUGH = 3  # packings that two models share, to be compared one by one
 NEAREST, APART, ALIKE, OPEN = "nearest", "yes", "no", "unknown"  # whether a model is told from the nearest one
 
 
@@ -49,7 +50,8 @@ def summary(found: pd.DataFrame) -> pd.DataFrame:
     """
     rows = []
     for response, of_response in found.groupby("response", sort=False):
-        means = {model: mean_difference(of) for model, of in of_response.groupby("model", sort=False)}
+        packings = {model: by_packing(of) for model, of in of_response.groupby("model", sort=False)}
+        means = {model: estimate(values.to_numpy()) for model, values in packings.items()}
         by_pair = of_response.groupby(["model", "pair"])["difference"].mean()
         off = (by_pair**2).groupby("model").mean() ** 0.5
         for model, mean in means.items():
@@ -57,26 +59,37 @@ def summary(found: pd.DataFrame) -> pd.DataFrame:
             rows.append(
                 {"response": response, "model": model, "pairs": len(by_pair[model]), "packings": mean.packings}
                 | {"mean_difference": mean.value, "low": low, "high": high, "root_mean_square": float(off[model])}
-                | {"told_from_nearest": _told_from(means[off.idxmin()], mean)}
+                | {"told_from_nearest": _told_from(packings[off.idxmin()], packings[model])}
             )
     return pd.DataFrame(rows)
 
 
-def _told_from(nearest: Estimate, mean: Estimate) -> str:
-    """Return whether the mean difference of a model is told from that of the nearest one."""
-    if mean is nearest:
+def less(values: pd.Series, others: pd.Series) -> Estimate:
+    """Return by how much one mean over packings is more than another one; both by packing (index).
+
+    Models have the same packings, which scatter alike under some of them, so those that both have are subtracted one by
+    one. Of fewer than ENOUGH of these that tells less than the two means do, taken as independent.
+    """
+    both = (values - others).dropna()
+    if len(both) >= ENOUGH:
+        return estimate(both.to_numpy())
+    return difference(estimate(values.to_numpy()), estimate(others.to_numpy()))
+
+
+def _told_from(nearest: pd.Series, values: pd.Series) -> str:
+    """Return whether the mean difference of a model is told from that of the nearest one; both by packing."""
+    if values is nearest:
         return NEAREST
-    low, high = difference(mean, nearest).interval()
+    low, high = less(values, nearest).interval()
     if math.isnan(low):
         return OPEN
     return ALIKE if low <= 0.0 <= high else APART
 
 
-def mean_difference(of: pd.DataFrame) -> Estimate:
-    """Return the mean difference over packings that have all pairs; of: rows of one response and model."""
-    pairs = of["pair"].nunique()
-    by_packing = of.groupby("packing")["difference"].agg(["mean", "size"])
-    return estimate(by_packing.loc[by_packing["size"] == pairs, "mean"].to_numpy())
+def by_packing(of: pd.DataFrame) -> pd.Series:
+    """Return the mean difference of each packing that has all pairs; of: rows of one response and model."""
+    found = of.groupby("packing")["difference"].agg(["mean", "size"])
+    return found.loc[found["size"] == of["pair"].nunique(), "mean"]
 
 
 def nearest(table: pd.DataFrame, response: str) -> str:

@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+import pandas as pd
+
 from bulkwear.postproc.mesh import PLAIN, SurfaceMesh, read_surface, write_surface
 from bulkwear.postproc.readers.solver_log import thermo_table
 from bulkwear.workflows.cases.sliding_sample.parameters import derived_parameters
@@ -16,18 +18,21 @@ from bulkwear.workflows.config.design import Run, Study, load_study
 from bulkwear.workflows.config.layers import merge
 from bulkwear.workflows.config.patterns import sample_surface
 from bulkwear.workflows.engine import state
+from bulkwear.workflows.engine.cases import Case
 from bulkwear.workflows.engine.chain import RESTART, Chain, run_in_steps, write_cycle, write_shared_files
 from bulkwear.workflows.engine.cycles import fill_bed, run_chain, run_cycle
 from bulkwear.workflows.engine.inputs import bed_digest, inputs_digest, run_digest, surface_from
 from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.schedule import first_span
-from bulkwear.workflows.engine.solver import LOG
+from bulkwear.workflows.engine.solver import LOG, SolverError, SolverStoppedError
+from bulkwear.workflows.report.simulated import versions_of
 
 STUDY, RUN, TESTER = "demo", "R5_convex", "circular_tester"
 SMALL_BUMPS = {"rows": ["R9"]}  # a pattern for samples smaller than the demo's
 STRAIGHT_RAMP = {"height_above_floor_mm": 0.1, "skirt_radius_mm": 0}  # of a sample that is no faster than 1 m/s
 PUBLISHED_PAIR = "river_gravel_published"  # of all rolling models alike; the recommended one is of own_spin alone
 DIGITS = 12  # of a hash, in the name of a folder
+BY = "simulated_by"  # column of a table of simulations: version of the code
 Asked, Answer = TypeVar("Asked"), TypeVar("Answer")
 FIRST_SEED = 20220317  # of sliding samples in the studies; further packings are SEED_SPACING apart, as theirs
 
@@ -70,6 +75,40 @@ def side_by_side(
         return list(pool.map(one, asked, missing))
 
 
+def attempted(task: Callable[[], object], failed: Path, faults: tuple[type[Exception], ...] = ()) -> None:
+    """Do a task, or leave in a file why its simulation failed: it fails again, so it is not tried another time.
+
+    failed: the file; where it is there nothing is done
+    faults: further errors that are answers, besides those of the solver
+
+    Raises SolverStoppedError: the machine ended that simulation, which may go on.
+    """
+    if failed.exists():
+        return
+    try:
+        task()
+    except SolverStoppedError:
+        raise
+    except (SolverError, *faults) as fault:
+        failed.write_text(str(fault), encoding="utf-8")
+
+
+def simulated_by(folder: Path) -> str:
+    """Return the version of the code that simulated what is in a folder of cycles."""
+    return " and ".join(sorted(version.name for version in versions_of([folder])))
+
+
+def with_earlier(file: Path, found: pd.DataFrame, keys: Sequence[str]) -> pd.DataFrame:
+    """Return a table of simulations, and behind it the rows of an earlier one that it does not have, by their keys.
+
+    Simulations outlive no machine, so their table does not end with the folder that holds them; BY tells who made each.
+    """
+    if not file.is_file():
+        return found
+    earlier = pd.read_csv(file)
+    return pd.concat([found, earlier], ignore_index=True).drop_duplicates(list(keys), keep="first", ignore_index=True)
+
+
 def with_bed(chain: Chain, bed_name: str) -> Chain:
     """Return the chain, its bed filled unless it is there."""
     if not chain.bed_restart.with_name("cost.csv").exists():
@@ -78,13 +117,40 @@ def with_bed(chain: Chain, bed_name: str) -> Chain:
 
 
 def simulated_run(chain: Chain, bed_name: str) -> Chain:
-    """Return the chain, simulated from where it stopped; sample and bed made unless they are there."""
+    """Return the chain, simulated from where it stopped; sample and bed made unless they are there.
+
+    What lies in its folder and was simulated from anything else is moved aside and simulated anew.
+    """
     with_bed(chain, bed_name)
     if not chain.surface.exists():
         write_surface(chain.surface, sample_surface(chain.parameters["sample"], chain.parameters["pattern"]))
-    if not (chain.folder / "wear.csv").exists():
+    if not is_simulated(chain):
         run_chain(chain)
     return chain
+
+
+def is_simulated(chain: Chain) -> bool:
+    """Return whether a run is finished, and from the settings and by the code that the chain has."""
+    needed = (chain.folder / "wear.csv", chain.surface, chain.bed_restart)
+    return all(file.exists() for file in needed) and state.finished_cycles(chain.folder, inputs_digest(chain)) > 0
+
+
+def failure_file(chain: Chain) -> Path:
+    """Return the file that says why a run failed; what has other settings, or other code, has another one."""
+    return chain.folder / f"failed_{run_digest(chain.case, chain.parameters, chain.bed)[:DIGITS]}.txt"
+
+
+def shared_chain(name: str, folder: Path, case: Case, run: Run, bed: Mapping[str, Any]) -> Chain:
+    """Return the chain of a run in a folder of many, nothing made but its own folder, which has its name.
+
+    Runs that stand beside one another share the bed, all of them the surface, in places of other names wherever they
+    are made from anything else.
+    """
+    place = folder / name
+    place.mkdir(parents=True, exist_ok=True)
+    restart = place.parent / f"bed_{state.digest(bed)[:DIGITS]}" / "bed.restart"
+    surface = folder / f"{run.surface}_{state.digest(surface_from(case, run.parameters))[:DIGITS]}.vtu"
+    return Chain(name, place, case, run.parameters, surface, bed, restart)
 
 
 def prepared_chain(folder: Path, particle_scale: float, wider: int = 1) -> Chain:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from benchmarks.ratios import ASSUMED
+from benchmarks.runs import BY
 from benchmarks.scale_case import CANDIDATES, REFERENCE
 from benchmarks.touched import mean_touched, mean_touched_on_flat, met_from_above, met_from_the_front
 from bulkwear.meshes.bump import bump_shell
@@ -20,7 +21,6 @@ from bulkwear.workflows.engine.project import PACKAGE
 from bulkwear.workflows.report.markdown import markdown, prose
 
 LINES = Path("config/published/particle_size_lines.csv")
-BY = "simulated_by"  # column of the table of every run: version of the code
 SCALES = (1, 2, 4, 6, 8)
 EDGE = 1e-3  # m, of the triangles, as on the source's disc; those of its sample are not told
 FLAT_SIDE = 0.03  # m

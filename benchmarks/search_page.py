@@ -2,37 +2,34 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pandas as pd
-from scipy.stats import t
 
 from benchmarks.page import markdown
 from benchmarks.search_truths import HALF
+from bulkwear.postproc.statistics.intervals import estimate
 
 OURS, LIBRARY, SPREAD = "ours", "BoTorch", "spread evenly"
 MARGIN = (
     0.05  # -, of the way from a design at random to the least: what one may miss more than the other and be as good
 )
-LEVEL = 0.95
 HEAD = [
     *("response", "method", "missed of the way to the least (%)", "worst search (%)", "limit kept"),
     *("best in its interval", "processor time of a search (s)"),
 ]
 
 
-def mean_interval(values: np.ndarray) -> tuple[float, float, float]:
-    """Return the mean of values (n,) and both ends of its 95 % interval, by Student's t."""
-    mean = float(np.mean(values))
-    reach = float(t.ppf(0.5 + LEVEL / 2.0, len(values) - 1) * np.std(values, ddof=1) / np.sqrt(len(values)))
-    return mean, mean - reach, mean + reach
-
-
 def difference(table: pd.DataFrame) -> tuple[float, float, float] | None:
-    """Return by how much (-) ours misses more than the library, and both ends of its 95 % interval; pairs are searches
-    of one response with the same first designs and errors. None without the library.
+    """Return by how much (-) ours misses more than the library, and both ends of its 95 % interval. None without the
+    library.
+
+    Pairs are searches of one response with the same first designs and errors. A search has the same ones in all
+    responses, so a search counts by its mean over them.
     """
     missed = table.pivot(index=["response", "search"], columns="method", values="missed")
-    return mean_interval((missed[OURS] - missed[LIBRARY]).to_numpy()) if LIBRARY in missed else None
+    if LIBRARY not in missed:
+        return None
+    mean = estimate((missed[OURS] - missed[LIBRARY]).groupby("search").mean().to_numpy())
+    return mean.value, *mean.interval()
 
 
 def verdict(low: float, high: float) -> str:
@@ -77,7 +74,8 @@ def rows(table: pd.DataFrame) -> list[list[str]]:
     for (response, method), group in table.sort_values("response", kind="stable").groupby(
         ["response", "method"], sort=False
     ):
-        mean, low, high = (100.0 * each for each in mean_interval(group["missed"].to_numpy()))
+        missed = estimate(group["missed"].to_numpy())
+        mean, low, high = (100.0 * each for each in (missed.value, *missed.interval()))
         of = f"of {len(group)}"
         found.append(
             [

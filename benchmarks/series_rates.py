@@ -28,7 +28,6 @@ SCATTER = 0.1  # -, of a block's rate
 PACKING_SCATTER = 0.1  # -, of what packings differ by
 BEYOND = 1.5  # times the run: where is predicted
 VALUES = 74  # of a measure along a travel of 740 mm, each over 10 mm
-FLUCTUATION = 0.07  # -, that the source allows a steady flow (Yan 2022, section 3.4.3)
 BLOCKS, CORRELATIONS = (4, 12, 40), (0.0, 0.5, 0.7)
 
 Row = tuple[str, str, float, float]

@@ -24,14 +24,22 @@ import pandas as pd
 
 from benchmarks.changes import BEYOND, FAILED, WITHIN, changes
 from benchmarks.plots.figures import Panel, deviation_figure
-from benchmarks.runs import FIRST_SEED, PUBLISHED_PAIR, SMALL_BUMPS, changed
-from bulkwear.postproc.mesh import PLAIN, write_surface
+from benchmarks.runs import (
+    FIRST_SEED,
+    PUBLISHED_PAIR,
+    SMALL_BUMPS,
+    attempted,
+    changed,
+    failure_file,
+    is_simulated,
+    shared_chain,
+    simulated_run,
+)
+from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.plots.style import save
 from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine.chain import Chain
-from bulkwear.workflows.engine.cycles import fill_bed, run_chain
-from bulkwear.workflows.engine.solver import SolverError
 from bulkwear.workflows.report.markdown import bullet, prose
 
 STUDY, ROW = "demo", "R9"
@@ -95,7 +103,7 @@ def with_derived(run: Run, modulus: float, seed: int) -> Run:
 
 
 def chain_of(variant: Variant, folder: Path) -> Chain:
-    """Return the chain of a variant; its surface is made and its bed filled unless that was done before.
+    """Return the chain of a variant; nothing is made but its folder.
 
     All variants of a packing start from the bed that was filled with one modulus: the same particles.
     """
@@ -103,26 +111,14 @@ def chain_of(variant: Variant, folder: Path) -> Chain:
     run = with_derived(study.run(f"{ROW}_{variant.surface}"), variant.modulus, variant.seed)
     at_rest = [with_derived(study.run(f"{ROW}_{each}"), MODULUS, variant.seed) for each in SURFACES]
     (bed,) = study.case.beds(at_rest)[0].values()  # settled above the bumps
-    bed_folder = folder / f"seed_{variant.seed}" / "bed"
-    if not (bed_folder / "cost.csv").exists():
-        fill_bed(study.case, "bed", bed, bed_folder)
-    surface = folder / f"{variant.surface}.vtu"
-    if not surface.exists():
-        write_surface(surface, study.case.surface_mesh(run.parameters))
-    place = folder / variant.folder
-    place.mkdir(parents=True, exist_ok=True)
-    return Chain(variant.folder, place, study.case, run.parameters, surface, bed, bed_folder / "bed.restart")
+    return shared_chain(variant.folder, folder, study.case, run, bed)
 
 
 def row_of(variant: Variant, folder: Path) -> dict[str, float]:
     """Return what a variant found, simulated unless that was done before; NaN where the solver failed."""
-    chain, failed = chain_of(variant, folder), folder / variant.folder / "failed.txt"
-    done = folder / variant.folder / "wear.csv"
-    if not done.exists() and not failed.exists():
-        try:
-            run_chain(chain)
-        except SolverError as fault:
-            failed.write_text(str(fault))
+    chain = chain_of(variant, folder)
+    failed = failure_file(chain)
+    attempted(lambda: simulated_run(chain, "bed"), failed)
     derived = chain.parameters["derived"]
     row = {
         "seed": variant.seed,
@@ -134,7 +130,7 @@ def row_of(variant: Variant, folder: Path) -> dict[str, float]:
     }
     if failed.exists():
         return row
-    wear, cost = pd.read_csv(done), pd.read_csv(folder / variant.folder / "cost.csv")
+    wear, cost = (pd.read_csv(chain.folder / name) for name in ("wear.csv", "cost.csv"))
     return row | {
         "sliding_work_J": wear["sliding_work_J"].sum(),
         "first_half_sliding_work_J": wear["sliding_work_J"].iloc[0],
@@ -149,7 +145,7 @@ def rows(folder: Path, minutes: float, packings: int) -> Iterator[dict[str, floa
     spent = 0.0
     for seed in range(FIRST_SEED, FIRST_SEED + SEED_SPACING * packings, SEED_SPACING):
         for variant in variants(seed):
-            if spent > 60.0 * minutes and not (folder / variant.folder / "wear.csv").exists():
+            if spent > 60.0 * minutes and not is_simulated(chain_of(variant, folder)):
                 return
             row = row_of(variant, folder)
             spent += row.get("processor_s", 0.0)
@@ -237,17 +233,16 @@ def page(table: pd.DataFrame) -> str:
 
 def conclusion(surface: str, moduli: pd.DataFrame) -> str:
     """Return how soft particles can be under a sample, and what the studies' modulus changes there."""
-    used = moduli.set_index("value").loc[MODULUS]
-    low, high = PERCENT * used["change_low"], PERCENT * used["change_high"]
-    interval = "one packing" if math.isnan(low) else f"95 %: {low:+.1f} to {high:+.1f}"
     reached = within(moduli)
     sure = (
         f"within {PERCENT * LIMIT:g} % down to {reached:.2g} Pa" if reached < moduli["value"][0] else "not shown of any"
     )
-    return bullet(
-        f"{surface.capitalize()} sample, against {moduli['value'][0]:.2g} Pa: {sure}; {beyond(moduli)}. Studies and"
-        f" source, {MODULUS:.2g} Pa: {PERCENT * used['change']:+.1f} % ({interval})."
-    )
+    said = f"{surface.capitalize()} sample, against {moduli['value'][0]:.2g} Pa: {sure}; {beyond(moduli)}."
+    for used in moduli[moduli["value"] == MODULUS].itertuples():  # none where time was spent before
+        low, high = PERCENT * used.change_low, PERCENT * used.change_high
+        interval = "one packing" if math.isnan(low) else f"95 %: {low:+.1f} to {high:+.1f}"
+        said += f" Studies and source, {MODULUS:.2g} Pa: {PERCENT * used.change:+.1f} % ({interval})."
+    return bullet(said)
 
 
 def cells(row: NamedTuple) -> str:

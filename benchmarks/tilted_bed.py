@@ -5,9 +5,9 @@ under each rolling model.
     python -m benchmarks.tilted_bed --finished    # of the layers so far
     python -m benchmarks.tilted_bed --redraw
 
-Its grains are those of `benchmarks.rolling_models`, in the source's calibrated pair. Layers stay in `--folder`; more
-packings are added to those that are there. Writes into docs: tilted_bed.csv (every layer), figure and
-tilted_bed_results.md; `--redraw` makes the last two from the first.
+Its grains are those of `benchmarks.rolling_models`, in the source's calibrated pair. Layers stay in `--folder`. Writes
+into docs: tilted_bed.csv (every layer; those not asked for stay in it, with the version of the code that tilted them),
+figure and tilted_bed_results.md; `--redraw` makes the last two from the first.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -23,11 +24,11 @@ import pandas as pd
 
 from benchmarks.plots.rolling_models import packings_by_model
 from benchmarks.rolling_models import CALIBRATED, SHEAR_BOX, wanted
-from benchmarks.rolling_page import MODELS
-from benchmarks.runs import side_by_side
+from benchmarks.rolling_page import MODELS, less
+from benchmarks.runs import BY, side_by_side, simulated_by, with_earlier
 from bulkwear.postproc.plots.style import save, save_small
 from bulkwear.postproc.readers.solver_log import last_step
-from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
+from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, estimate
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.beds import BedMeasure, bed_fault, level_measure, mass_measure
 from bulkwear.workflows.engine.decks import primes
@@ -37,6 +38,7 @@ from bulkwear.workflows.engine.derived import (
     smallest_rayleigh_time,
     youngs_modulus,
 )
+from bulkwear.workflows.engine.job import Progress
 from bulkwear.workflows.engine.provenance import PROVENANCE, code_of_cases, provenance
 from bulkwear.workflows.engine.solver import DECK, LOG, executable_of, run_deck
 from bulkwear.workflows.report.markdown import bullet, markdown, prose
@@ -52,6 +54,8 @@ MILLIMETRES = 1e3  # per metre
 GRAVITY = 9.81  # m/s2
 PACKINGS = 5
 REFERENCE = "own_spin"  # the studies' own: the others are compared with it
+REFUSED = "refused"  # column with the reason why nothing is measured on a layer
+KEYS = ["model", "packing"]  # of a row in the table of every layer
 TRACE, COLUMNS = "tilt.txt", ("angle_deg", "speed_m_per_s", "mass_kg", "level_m")
 CASE = "calibration"  # of the grains, whose code is told in the record
 FILE, PAGE, FIGURE = "tilted_bed.csv", "tilted_bed_results.md", "tilted_bed.png"
@@ -231,62 +235,96 @@ def is_finished(row: Mapping[str, Any], root: Path) -> bool:
     return state.finished_cycles(layer_folder(deck, root), state.digest(deck)) > 0
 
 
-def all_tilted(rows: Sequence[Mapping[str, Any]], root: Path, cores: int) -> pd.DataFrame:
-    """Return model, packing and what is `measured` of layers, up to `cores` of them simulated at the same time."""
-    found = side_by_side(
-        "tilted bed", rows, lambda row: is_finished(row, root), lambda row: tilted(row["asked"], root), cores
-    )
-    told = [{"model": row["model"], "packing": row["packing"]} for row in rows]
-    return pd.DataFrame([row | layer for row, layer in zip(told, found, strict=True)])
+def all_tilted(rows: Sequence[Mapping[str, Any]], root: Path, cores: int, alone: bool = True) -> pd.DataFrame:
+    """Return model, packing, what is `measured` of layers, or why it is not (REFUSED), and the version of the code that
+    simulated them, up to `cores` of them at the same time.
+
+    alone: waits until nobody else simulates in that folder; else what is finished is read beside them
+    """
+    name = "tilted bed"
+    with state.only_driver(root, Progress(name, 1).say) if alone else nullcontext():
+        found = side_by_side(name, rows, lambda row: is_finished(row, root), lambda row: told_of(row, root), cores)
+    keys = [{"model": row["model"], "packing": row["packing"]} for row in rows]
+    return pd.DataFrame([row | layer for row, layer in zip(keys, found, strict=True)])
+
+
+def told_of(row: Mapping[str, Any], root: Path) -> dict[str, Any]:
+    """Return what is `measured` on the layer of a row, or why it is not, which ends no other layer; and its version."""
+    try:
+        found: dict[str, Any] = dict(tilted(row["asked"], root))
+    except TiltError as fault:
+        found = {REFUSED: str(fault).partition(": ")[2]}
+    return found | {BY: simulated_by(layer_folder(tilt_deck(row["asked"]), root))}
+
+
+def angles(runs: pd.DataFrame) -> dict[str, pd.Series]:
+    """Return the flow angles (degrees) of each model by packing."""
+    of_packings = runs.dropna(subset=["flow_angle_deg"]).set_index("packing")
+    return {model: of["flow_angle_deg"] for model, of in of_packings.groupby("model", sort=False)}
 
 
 def means(runs: pd.DataFrame) -> dict[str, Estimate]:
     """Return the mean flow angle (degrees) of each model over its packings."""
-    return {model: estimate(of["flow_angle_deg"].to_numpy()) for model, of in runs.groupby("model", sort=False)}
+    return {model: estimate(of.to_numpy()) for model, of in angles(runs).items()}
 
 
 def creep_table(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per model: its mean creep (mm/s), and that of the slowest and the fastest packing."""
     creep = runs.groupby("model", sort=False)["creep_mm_per_s"]
-    return creep.agg(packings="size", creep_mm_per_s="mean", slowest="min", fastest="max").reset_index()
+    return creep.agg(packings="count", creep_mm_per_s="mean", slowest="min", fastest="max").reset_index()
 
 
-def summary(found: Mapping[str, Estimate]) -> pd.DataFrame:
+def summary(runs: pd.DataFrame) -> pd.DataFrame:
     """Return a row per model: its mean with interval, and what it is more or less than REFERENCE, with interval."""
-    rows = []
-    for model, mean in found.items():
+    rows, found = [], angles(runs)
+    for model, mean in means(runs).items():
         low, high = mean.interval()
         rows.append({"model": model, "packings": mean.packings, "flow_angle_deg": mean.value, "low": low, "high": high})
         if REFERENCE in found and model != REFERENCE:
-            less = difference(mean, found[REFERENCE])
-            ends = dict(zip(("less_low", "less_high"), less.interval(), strict=True))
-            rows[-1] |= {"less_reference_deg": less.value, **ends}
+            apart = less(found[model], found[REFERENCE])
+            ends = dict(zip(("less_low", "less_high"), apart.interval(), strict=True))
+            rows[-1] |= {"less_reference_deg": apart.value, **ends}
     return pd.DataFrame(rows)
 
 
-def said_of(model: str, mean: Estimate, reference: Estimate) -> str:
-    """Return in a sentence at what slope a model's bed flows, and whether that is told from the reference's."""
+def said_of(model: str, found: pd.Series, reference: pd.Series) -> str:
+    """Return in a sentence at what slope a model's bed flows, and whether that is told from the reference's.
+
+    found, reference: degrees, by packing
+    """
+    mean = estimate(found.to_numpy())
     if not mean.known:
         return f"`{model}`: {mean.value:.1f} degrees ({UNKNOWN})."
     low, high = mean.interval()
     said = f"`{model}`: {mean.value:.1f} degrees (95 %: {low:.1f} to {high:.1f})"
-    if mean is reference or not reference.known:
+    apart = less(found, reference)
+    if found is reference or not apart.known:
         return f"{said}."
-    less = difference(mean, reference)
-    low, high = less.interval()
-    told = "not told from" if low <= 0.0 <= high else f"{less.value:+.1f} ({low:+.1f} to {high:+.1f}) of"
+    low, high = apart.interval()
+    told = "not told from" if low <= 0.0 <= high else f"{apart.value:+.1f} ({low:+.1f} to {high:+.1f}) of"
     return f"{said}, {told} `{REFERENCE}`."
 
 
+def refused(runs: pd.DataFrame) -> list[str]:
+    """Return a sentence for each layer on which nothing is measured."""
+    if REFUSED not in runs:
+        return []
+    return [
+        f"`{row.model}`, packing {row.packing}: {row.refused}" for row in runs.dropna(subset=[REFUSED]).itertuples()
+    ]
+
+
 def level_said(runs: pd.DataFrame) -> str:
-    """Return in a sentence how deep the layers lie, beside what was asked."""
+    """Return in a sentence how deep the layers lie, beside what was asked; nothing of those that did not tell."""
+    if "level_mm" not in runs:
+        return ""
     low, high = runs["level_mm"].min(), runs["level_mm"].max()
     return f"Layers lie {low:.1f} to {high:.1f} mm deep at rest; asked are {runs['level_asked_mm'].mean():.1f} mm."
 
 
 def results_page(runs: pd.DataFrame) -> str:
     """Return the page; runs: as from `all_tilted`."""
-    found = means(runs)
+    found = angles(runs)
     reference = found.get(REFERENCE, next(iter(found.values())))
     parts = [
         "# At which slope does a bed begin to flow?",
@@ -294,7 +332,7 @@ def results_page(runs: pd.DataFrame) -> str:
             "Generated by `python -m benchmarks.tilted_bed`; not to be edited. The models are those of [rolling"
             " friction](rolling_friction.md). [Every layer](tilted_bed.csv)."
         ),
-        "\n".join(bullet(said_of(model, mean, reference)) for model, mean in found.items()),
+        "\n".join(map(bullet, (*(said_of(model, of, reference) for model, of in found.items()), *refused(runs)))),
         f"![Slope at which a bed flows, by rolling model]({FIGURE})",
         prose(
             f"A layer of {GRAINS} grains, {LENGTH:g} by {WIDTH:g} median diameters, lies on grains that are held, and"
@@ -302,9 +340,9 @@ def results_page(runs: pd.DataFrame) -> str:
             "(rolling_models_results.md), with the source's calibrated pair. After rest it is tilted from"
             f" {START:g} degrees by {RATE:g} degree/s until its grains move downhill at {MILLIMETRES * FLOWING:g} mm/s"
             f" in the mean, looked at every {LOOK * RATE:g} degrees. It has neither walls nor a toe: that is no angle"
-            f" of repose, and tells what a model does alone. {level_said(runs)}"
+            f" of repose, and tells what a model does alone. {level_said(runs)}".rstrip()
         ),
-        markdown(summary(found)),
+        markdown(summary(runs)),
         "## Does it stand before?",
         prose(
             f"How fast the layer moves downhill while it is tilted from {START:g} to {START + CREEPING:g} degrees: of"
@@ -347,7 +385,8 @@ def main() -> None:
         rows = [row for row in rows if is_finished(row, given.folder)] if given.finished else rows
         if not rows:
             parser.error(f"{given.folder}: no layer asked for is finished; without --finished they are tilted.")
-        all_tilted(rows, given.folder, given.cores).to_csv(file, index=False, float_format="%.6g")
+        found = all_tilted(rows, given.folder, given.cores, alone=not given.finished)
+        with_earlier(file, found, KEYS).sort_values(KEYS).to_csv(file, index=False, float_format="%.6g")
     print(publish(given.output, pd.read_csv(file)), flush=True)
 
 

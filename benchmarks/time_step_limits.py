@@ -26,7 +26,15 @@ import pandas as pd
 
 from benchmarks.plots.time_step_limits import changes_by_model
 from benchmarks.rolling_page import MODELS
-from benchmarks.runs import FIRST_SEED, changed, simulated_run
+from benchmarks.runs import (
+    FIRST_SEED,
+    attempted,
+    changed,
+    failure_file,
+    is_simulated,
+    shared_chain,
+    simulated_run,
+)
 from benchmarks.stiffness import (
     BED_THICKNESS,
     CASE,
@@ -48,12 +56,10 @@ from bulkwear.workflows.config.design import Run, load_study
 from bulkwear.workflows.config.packings import SEED_SPACING
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.chain import Chain, total_steps
-from bulkwear.workflows.engine.solver import SolverError, SolverKilledError
 
 FRACTIONS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)  # -, time step over the Rayleigh time of the smallest particle
 SURFACES, PACKINGS = (PLAIN, CONVEX), 3
 TRAVEL = {"run_in_mm": 150, "travel_mm": 400, "cycles": 1}
-FAILED = "failed.txt"  # in the folder of a run whose simulation failed, with the reason
 MINUTES = 240.0  # of processor time
 FILE, PAGE, FIGURE = "time_step_limits.csv", "time_step_limits_results.md", "time_step_limits.png"
 
@@ -108,31 +114,22 @@ def chain_of(case: Case, folder: Path) -> Chain:
 
     All runs of a packing under a model start from one bed, filled above the bumps with one time step.
     """
-    study, place = load_study(STUDY, overrides=CASE), folder / case.folder
+    study = load_study(STUDY, overrides=CASE)
     at_rest = [run_of(Case(case.model, case.seed, surface, FRACTION), FRACTION) for surface in SURFACES]
     (bed,) = study.case.beds(at_rest)[0].values()  # settled above the bumps
-    place.mkdir(parents=True, exist_ok=True)
-    restart = place.parent / "bed" / "bed.restart"
-    surface = folder / f"{case.surface}.vtu"
-    return Chain(case.folder, place, study.case, run_of(case, case.fraction).parameters, surface, bed, restart)
+    return shared_chain(case.folder, folder, study.case, run_of(case, case.fraction), bed)
 
 
 def simulated(case: Case, folder: Path) -> None:
-    """Simulate a run from where it stopped, unless it is finished or failed before."""
-    chain, failed = chain_of(case, folder), folder / case.folder / FAILED
-    if failed.exists():
-        return
-    try:
-        simulated_run(chain, "bed")
-    except SolverKilledError:  # by the machine, not by the time step
-        raise
-    except SolverError as fault:
-        failed.write_text(str(fault))
+    """Simulate a run from where it stopped, unless it is finished or failed before. Raises SolverStoppedError."""
+    chain = chain_of(case, folder)
+    attempted(lambda: simulated_run(chain, "bed"), failure_file(chain))
 
 
 def is_done(case: Case, folder: Path) -> bool:
-    """Return whether a run is finished or failed."""
-    return any((folder / case.folder / name).exists() for name in ("wear.csv", FAILED))
+    """Return whether a run is finished, as it is asked for now, or failed."""
+    chain = chain_of(case, folder)
+    return failure_file(chain).exists() or is_simulated(chain)
 
 
 def row_of(case: Case, folder: Path) -> dict[str, Any]:
@@ -148,7 +145,7 @@ def row_of(case: Case, folder: Path) -> dict[str, Any]:
         "particles": pd.read_csv(chain.bed_restart.with_name("cost.csv"))["particles"].iloc[0],
         "travel_m": travel,
     }
-    if (place / FAILED).exists():
+    if failure_file(chain).exists():
         return row | dict.fromkeys((*RESPONSES, "processor_s"), math.nan)
     ledger, cost = read_ledger(state.cycle_folder(place, 1)), pd.read_csv(place / "cost.csv")
     found = {name: ledger[name.removesuffix("_per_m")].sum() / travel for name in RESPONSES}
@@ -164,7 +161,7 @@ def simulate(wanted: Sequence[Case], folder: Path, minutes: float) -> Iterator[C
         if spent > 60.0 * minutes:
             return
         simulated(case, folder)
-        spent += row_of(case, folder)["processor_s"] if (folder / case.folder / "wear.csv").exists() else 0.0
+        spent += row_of(case, folder)["processor_s"] if is_simulated(chain_of(case, folder)) else 0.0
         yield case
 
 
@@ -221,7 +218,10 @@ def main() -> None:
         if not given.finished:
             for case in simulate(wanted, given.folder, given.minutes):
                 print(f"done: {case.folder}", flush=True)
-        table_of(given.folder).to_csv(given.output / FILE, index=False, float_format="%.6g")
+        table = table_of(given.folder)
+        if table.empty:
+            parser.error(f"{given.folder}: no run is finished; without --finished they are simulated.")
+        table.to_csv(given.output / FILE, index=False, float_format="%.6g")
     print(publish(given.output, pd.read_csv(given.output / FILE)), flush=True)
 
 

@@ -15,9 +15,7 @@ def write_sample(step, rows, force):
     rows: one per particle, the values of `COLUMNS`; force: x, y, z in N, of the particles on the floor
     """
     with STATES.open("a") as file:
-        file.write(
-            f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(rows)}\nITEM: BOX BOUNDS ff ff ff\n0 0\n0 0\n0 0\n"
-        )
+        file.write(f"ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{len(rows)}\n{NO_BOX}")
         file.write(f"ITEM: ATOMS {COLUMNS}\n")
         file.writelines(" ".join(map(repr, row)) + "\n" for row in rows)
     with FORCES.open("a") as file:

@@ -11,12 +11,13 @@ from benchmarks.critical_scale import (
     comparison,
     critical_scales,
     finished,
+    ordered,
     publish,
     remarks,
     simulate_all,
     where_it_lies,
 )
-from benchmarks.runs import FIRST_SEED
+from benchmarks.runs import BY, FIRST_SEED, with_earlier
 from benchmarks.scale_case import CANDIDATES, REFERENCE, SETTINGS, Case, cases, chain_of
 from benchmarks.scale_page import conclusion, needed_factor, source_ratio, touched_by_scale
 from bulkwear.postproc.statistics.crossing import Crossing
@@ -166,16 +167,21 @@ def test_a_stopped_comparison_goes_on(tmp_path, monkeypatch):
     monkeypatch.setattr("benchmarks.runs.run_chain", lambda chain: pytest.fail("was done before"))
     simulate_all(wanted, tmp_path, 1, lambda: None)
     broken = chain_of(replace(wanted[0], seed=1), tmp_path, TINY)
-    critical_scale.attempted(broken, lambda: (_ for _ in ()).throw(ValueError("no bed")))
+    critical_scale.kept(broken, lambda: (_ for _ in ()).throw(ValueError("no bed")))
     assert (broken.folder.parent / critical_scale.FAILED).read_text() == "no bed"
-    critical_scale.attempted(broken, lambda: pytest.fail("failed before"))
+    critical_scale.kept(broken, lambda: pytest.fail("failed before"))
 
 
 def test_rows_of_earlier_runs_stay(tmp_path):
     """One that was simulated again is replaced; the page says which version simulated which scale, where two did."""
-    before, now = rows(), rows(((REFERENCE, (0.7,)),)).assign(**{scale_page.BY: "commit b"})
+    before, now = rows(), rows(((REFERENCE, (0.7,)),)).assign(**{BY: "commit b"})
+    before.assign(candidate=before["candidate"].replace(OTHER, "an older name")).to_csv(
+        tmp_path / "table.csv", index=False
+    )
     added = now.assign(particle_scale=3)
-    table = critical_scale.merged(before, pd.concat([now, added]))
+    table = ordered(with_earlier(tmp_path / "table.csv", pd.concat([now, added]), critical_scale.KEYS))
+    assert "an older name" in set(table["candidate"])  # kept, and on no page
+    assert set(comparison(table)["candidate"]) == {REFERENCE}
     assert table["particle_scale"].tolist() == [3, 3] + [6] * 6
     wear = table.set_index(critical_scale.KEYS)["wear_mm3_per_m"]
     assert [wear[6, REFERENCE, "convex", seed] for seed in (0, 1)] == pytest.approx([1.4, np.e])
@@ -195,8 +201,8 @@ def table_of(ends):
         (4.5, 6.0, (0.5, 2.0), "4.5 to 6"),
         (4.5, np.inf, (0.5, 2.0), "4.5 to beyond 8"),
         (-np.inf, 6.0, (0.5, 2.0), "below 4 to 6"),
-        (np.nan, np.nan, (0.5, 0.9), "above 8, if anywhere: the convex sample wears less at every scale"),
-        (np.nan, np.nan, (1.1, 2.0), "below 4, if anywhere: the convex sample wears more at every scale"),
+        (np.nan, np.nan, (0.5, 0.9), "above 8, if anywhere: the convex sample wears less from 4 on"),
+        (np.nan, np.nan, (1.1, 2.0), "below 4, if anywhere: the convex sample wears more up to 8"),
         (np.nan, np.nan, (0.9, 1.1), "not told: none between the places"),
     ],
 )
@@ -206,15 +212,17 @@ def test_an_open_end_is_told_with_its_side(low, high, ends, words):
     assert where_it_lies(found, table_of({REFERENCE: ends})) == words
 
 
-def test_a_scale_of_one_packing_counts_by_its_value():
-    """The convex sample wears more at both, at 4 by one packing alone; less there, and nothing is told."""
+def test_a_scale_of_one_packing_decides_nothing():
+    """The convex sample wears more at 8; what one packing has at 4 is told and counts for nothing."""
     found = Crossing(np.nan, np.nan, np.nan, np.nan, np.nan, 3, 3, 2, "none between the places")
     table = table_of({REFERENCE: (1.1, 2.0)})
     table.loc[0, ["ratio_low", "ratio_high"]] = np.nan
-    said = "below 4, if anywhere: the convex sample wears more at every scale (at 4 in its one packing)"
-    assert where_it_lies(found, table) == said
+    said = "below 8, if anywhere: the convex sample wears more up to 8; in one packing at 4 it wears"
+    assert where_it_lies(found, table) == f"{said} more"
     table.loc[0, "wear_over_plain"] = 0.9
-    assert where_it_lies(found, table).startswith("not told")
+    assert where_it_lies(found, table) == f"{said} less"
+    table["ratio_low"] = np.nan
+    assert where_it_lies(found, table) == "not told: none between the places"
 
 
 def test_a_candidate_has_a_critical_scale():

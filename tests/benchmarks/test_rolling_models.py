@@ -1,5 +1,7 @@
 """Rolling models beside what the source simulated: what is simulated, differences, the sentence, page and figure."""
 
+import sys
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,6 +12,7 @@ from benchmarks.rolling_models import (
     KINDS,
     SETTINGS,
     finished,
+    main,
     pairs_of,
     parser_of,
     publish,
@@ -92,11 +95,40 @@ def test_pairs_and_tests_are_chosen():
     ]
 
 
-def test_what_is_finished_is_read_beside_who_simulates(tmp_path):
-    """Without waiting for them."""
-    waited = []
-    with only_driver(tmp_path, waited.append):
-        assert simulated([], tmp_path, 1, alone=False).empty and not waited
+def test_what_is_finished_is_read_beside_who_simulates(tmp_path, monkeypatch):
+    """Without waiting for them, which would never end here."""
+    monkeypatch.setattr(rolling_models, "answer_of", lambda test, *_: {"repose_angle_deg": 30.0})
+    rows = wanted(1, ["own_spin"], ["draw_down"], [CALIBRATED])
+    with only_driver(tmp_path, print):
+        assert simulated(rows, tmp_path, 1, alone=False)["repose_angle_deg"].tolist() == [30.0]
+
+
+def test_what_was_not_asked_for_stays_in_the_table(tmp_path, monkeypatch):
+    """A table outlives the folder of its simulations."""
+    monkeypatch.setattr(rolling_models, "answer_of", lambda test, *_: {"shear_angle_deg": 33.0})
+    earlier = pd.DataFrame({"model": ["cdt"], "test": "draw_down", "pair": CALIBRATED, "packing": 1})
+    file = tmp_path / rolling_models.FILE
+    earlier.assign(repose_angle_deg=31.0, simulated_by="commit a").to_csv(file, index=False)
+    given = ["--tests", "shear_box", "--models", "cdt", "--pairs", CALIBRATED, "--packings", "2"]
+    monkeypatch.setattr(sys, "argv", ["models", *given, "--folder", str(tmp_path / "runs"), "--output", str(tmp_path)])
+    main()
+    table = pd.read_csv(file)
+    assert table["test"].tolist() == ["draw_down", "shear_box", "shear_box"]
+    assert table["repose_angle_deg"].tolist()[0] == 31.0 and table["simulated_by"].tolist()[0] == "commit a"
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (["--finished"], "none asked for is finished"),
+        (["--tests", WALL_SHEAR, "--pairs", "size-test"], "none are both"),
+    ],
+)
+def test_nothing_to_tell_leaves_the_table(tmp_path, monkeypatch, capsys, given, words):
+    monkeypatch.setattr(sys, "argv", ["models", *given, "--folder", str(tmp_path), "--output", str(tmp_path)])
+    with pytest.raises(SystemExit):
+        main()
+    assert words in capsys.readouterr().err and not list(tmp_path.iterdir())
 
 
 def test_a_test_that_never_rests_does_not_end_the_others(tmp_path, monkeypatch):

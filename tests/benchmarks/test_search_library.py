@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks import search_library as benchmark
 from benchmarks.search_library import NOISE, State, ask_library, line_of, searches
-from benchmarks.search_page import LIBRARY, MARGIN, OURS, SPREAD, difference, mean_interval, page, verdict
+from benchmarks.search_page import LIBRARY, MARGIN, OURS, SPREAD, difference, page, verdict
 from benchmarks.search_truths import HALF, TRUTHS, branin, hartmann_3, hartmann_6, mean_of_factors
 from tests import REPOSITORY
 
@@ -108,8 +108,16 @@ def test_a_tiny_comparison(library):
 
 
 def test_intervals_and_verdicts():
-    """Student's interval of three values by hand (t = 4.3027 at 2 degrees of freedom), and every verdict."""
-    assert mean_interval(np.array([1.0, 2.0, 3.0])) == pytest.approx((2.0, 2.0 - 2.48414, 2.0 + 2.48414), abs=1e-4)
+    """Student's interval of three values by hand (t = 4.3027 at 2 degrees of freedom): of searches, each of which has
+    the same errors in all responses. And every verdict.
+    """
+    table = pd.DataFrame(
+        {"response": response, "search": search, "method": method, "missed": search if method == OURS else 0.0}
+        for response in ("a", "b")
+        for search in (1, 2, 3)
+        for method in (OURS, LIBRARY)
+    )
+    assert difference(table) == pytest.approx((2.0, 2.0 - 2.48414, 2.0 + 2.48414), abs=1e-4)
     in_words = [
         ((-3, -2), "ours comes nearer"),
         ((2, 3), f"{LIBRARY} comes nearer"),

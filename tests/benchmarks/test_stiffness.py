@@ -82,6 +82,13 @@ def test_a_single_packing_says_that_chance_is_unknown():
     assert "unknown, of one packing" in text and "not shown of any" in text and "nan" not in text
 
 
+def test_a_page_of_few_moduli_says_nothing_of_the_studies_own():
+    """As where `--minutes` were spent before it."""
+    table = rows_of(SEEDS)
+    text = page(table[table["shear_modulus_pa"] < MODULUS])
+    assert "against 2e+07 Pa" in text and "Studies and source" not in text
+
+
 def test_changes_of_known_runs():
     """Two packings with every value: means over them, the interval by hand from what packing and value leave over."""
     noise = 0.01 * np.array([1.0, -1.0, -1.0, 1.0])

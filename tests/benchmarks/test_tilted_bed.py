@@ -17,15 +17,15 @@ from benchmarks.tilted_bed import (
     REFERENCE,
     TiltError,
     creep_table,
-    means,
     measured,
     publish,
     said_of,
     summary,
 )
-from bulkwear.postproc.statistics.intervals import UNKNOWN, estimate
+from bulkwear.postproc.statistics.intervals import UNKNOWN
+from bulkwear.workflows.engine.project import PACKAGE
 
-STUDENT_95_4 = 2.7764  # two-sided 95 % point of Student's t with four degrees of freedom; tables
+STUDENT_95_4, STUDENT_95_8 = 2.7764, 2.3060  # two-sided 95 % points of Student's t by degrees of freedom; tables
 FLOWS_AT = {"cdt": 35.0, "epsd2": 36.0, "own_spin": 38.0, "rvd": 38.1}  # degrees, made up
 CREEPS = {"cdt": 0.6, "epsd2": 0.003, "own_spin": 0.002, "rvd": 1.2}  # mm/s, made up
 SPREAD = (-0.4, -0.2, 0.0, 0.2, 0.4)  # degrees, of five packings
@@ -97,6 +97,29 @@ def test_finished_layers_alone_need_one(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_layer_that_tells_nothing_ends_no_other(tmp_path, monkeypatch):
+    """It has its reason in the table and on the page."""
+
+    def tilted(asked, root):
+        if asked == "loose":
+            raise TiltError("a/tilt.txt: the bed is not as asked.")
+        return {"flow_angle_deg": 35.0, "creep_mm_per_s": 1.0, "level_mm": 60.0, "level_asked_mm": 61.0}
+
+    monkeypatch.setattr(tilted_bed, "tilted", tilted)
+    monkeypatch.setattr(tilted_bed, "tilt_deck", str)
+    monkeypatch.setattr(tilted_bed, "is_finished", lambda row, root: True)
+    rows = [{"model": model, "packing": 1, "asked": asked} for model, asked in (("cdt", "loose"), ("rvd", "sound"))]
+    table = tilted_bed.all_tilted(rows, tmp_path, 1)
+    assert table["flow_angle_deg"].isna().tolist() == [True, False]
+    page = publish(tmp_path, table)
+    assert "`cdt`, packing 1: the bed is not as asked." in page and "`rvd`: 35.0 degrees" in page
+
+
+def test_the_page_is_written_from_its_table(tmp_path):
+    """Of the repository."""
+    assert publish(tmp_path, pd.read_csv(PACKAGE / "docs/tilted_bed.csv")).startswith("# At which slope")
+
+
 def test_creep_is_how_fast_the_layer_moves_before_without_slips(tmp_path):
     """The median of the first five degrees: one slip and what comes later do not move it."""
     trace = written_trace(tmp_path / "tilt.txt", [21.0, 22.0, 23.0, 26.0, 30.0], [0.001, 0.05, 0.0012, 0.08, 0.2])
@@ -106,18 +129,23 @@ def test_creep_is_how_fast_the_layer_moves_before_without_slips(tmp_path):
 
 
 def test_intervals_are_over_packings():
-    """By Student's t with four degrees of freedom; a difference of two models adds their errors' squares."""
-    table = summary(means(made_up())).set_index("model")
+    """By Student's t with four degrees of freedom. Packings that scatter alike under two models tell their difference
+    better than the two means do: here it has no scatter."""
+    table = summary(made_up()).set_index("model")
     error = np.std(SPREAD, ddof=1) / math.sqrt(len(SPREAD))
     assert table.loc["cdt", "flow_angle_deg"] == pytest.approx(35.0)
     assert table.loc["cdt", "high"] - 35.0 == pytest.approx(STUDENT_95_4 * error, rel=1e-4)
     assert table.loc["cdt", "less_reference_deg"] == pytest.approx(-3.0)
-    assert table.loc["cdt", "less_low"] < -3.0 < table.loc["cdt", "less_high"] < 0.0
+    assert [table.loc["cdt", name] for name in ("less_low", "less_high")] == pytest.approx([-3.0, -3.0])
+    apart = made_up().assign(packing=lambda runs: runs["packing"] + 10 * (runs["model"] == "cdt"))
+    reach = STUDENT_95_8 * math.sqrt(2.0) * error
+    found = summary(apart).set_index("model").loc["cdt"]
+    assert [found["less_low"], found["less_high"]] == pytest.approx([-3.0 - reach, -3.0 + reach], rel=1e-4)
     assert np.isnan(table.loc[REFERENCE, "less_reference_deg"])
 
 
 def test_one_packing_has_no_interval():
-    one = estimate(np.array([35.0]))
+    one = pd.Series([35.0], [1])
     assert said_of("cdt", one, one) == f"`cdt`: 35.0 degrees ({UNKNOWN})."
 
 
@@ -125,8 +153,9 @@ def test_page_and_figure(tmp_path):
     """The page tells of each model whether it is told from the reference; the figure is there."""
     page = publish(tmp_path, made_up())
     assert "| rvd | 5 | 1.2 |" in page
-    assert "`rvd`: 38.1 degrees" in page and "not told from `own_spin`" in page
-    assert "`cdt`: 35.0 degrees (95 %: 34.6 to 35.4), -3.0 (-3.5 to -2.5) of `own_spin`" in page
+    assert "`rvd`: 38.1 degrees (95 %: 37.7 to 38.5), +0.1 (+0.1 to +0.1) of `own_spin`" in page
+    assert "`cdt`: 35.0 degrees (95 %: 34.6 to 35.4), -3.0 (-3.0 to -3.0) of `own_spin`" in page
+    assert "not told from `own_spin`" in publish(tmp_path, made_up().query("packing < 3 or model != 'rvd'"))
     assert "Layers lie 59.6 to 60.4 mm deep at rest; asked are 61.0 mm." in " ".join(page.split())
     assert (tmp_path / "tilted_bed.png").stat().st_size > 0
     assert "scatter unknown" in publish(tmp_path, made_up(1))

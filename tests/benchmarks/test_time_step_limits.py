@@ -1,6 +1,7 @@
 """Time steps by rolling model: which runs there are, how far a step may go by their table, and what is not told."""
 
 import math
+import sys
 
 import numpy as np
 import pandas as pd
@@ -8,15 +9,16 @@ import pytest
 
 from benchmarks.changes import BEYOND, UNDECIDED, WITHIN
 from benchmarks.rolling_page import MODELS
+from benchmarks.runs import failure_file
 from benchmarks.stiffness import CONVEX, FRACTION
 from benchmarks.time_step_limits import (
-    FAILED,
     FRACTIONS,
     SURFACES,
     Case,
     cases,
     chain_of,
     forecast,
+    main,
     publish,
     run_of,
     simulate,
@@ -129,9 +131,16 @@ def test_the_table_has_every_run_of_the_folder(tmp_path, monkeypatch):
     monkeypatch.setattr("benchmarks.time_step_limits.row_of", lambda case, folder: {"case": case})
     done = [*cases(MODELS[:1], 1), *cases(MODELS[-1:], 4, [CONVEX], [0.1, 0.4])]
     for case in done:
-        (tmp_path / case.folder).mkdir(parents=True)
-        (tmp_path / case.folder / FAILED).write_text("it did")
+        failure_file(chain_of(case, tmp_path)).write_text("it did")
     assert list(table_of(tmp_path)["case"]) == done
+
+
+def test_without_a_finished_run_the_table_stays(tmp_path, monkeypatch, capsys):
+    """A sentence that names the folder, and nothing is written over."""
+    monkeypatch.setattr(sys, "argv", ["limits", "--finished", "--folder", str(tmp_path), "--output", str(tmp_path)])
+    with pytest.raises(SystemExit):
+        main()
+    assert f"{tmp_path}: no run is finished" in capsys.readouterr().err and not list(tmp_path.glob("*.csv"))
 
 
 def test_a_single_packing_gives_no_verdict(tmp_path):
@@ -145,8 +154,7 @@ def test_only_what_is_missing_is_simulated(tmp_path, monkeypatch):
     """A run that failed is done, with nothing found; a forecast counts the others."""
     wanted, asked = cases(MODELS[:1], 1)[:2], []
     monkeypatch.setattr("benchmarks.time_step_limits.simulated", lambda case, folder: asked.append(case))
-    chain_of(wanted[0], tmp_path)
-    (tmp_path / wanted[0].folder / FAILED).write_text("it did")
+    failure_file(chain_of(wanted[0], tmp_path)).write_text("it did")
     assert forecast(wanted, tmp_path).startswith("1 of 2 runs are missing")
     assert list(simulate(wanted, tmp_path, minutes=1.0)) == asked == wanted[1:]
     assert list(simulate(wanted, tmp_path, minutes=-1.0)) == []

@@ -26,7 +26,6 @@ TIME_STEP = 1.4e-5  # s
 PIN, DISC = {"shear_modulus": 0.1e9, "poissons_ratio": 0.24}, {"shear_modulus": 78e9, "poissons_ratio": 0.3}  # Pa, -
 RAYLEIGH_FRACTION = 0.2  # -, of the time steps where the source gives none
 FRICTION, RESTITUTION = 1.0, 0.5  # -; the table names a restitution without its value: an assumption
-RAYLEIGH_TIME = rayleigh_time(RADIUS, DENSITY, **PIN)  # s
 BAND = 0.5e-3  # m, half the width of the fine band
 SETTLING_TIME = 0.014  # s; the pin's oscillation of 0.34 ms has lost all but 1e-20 of itself
 

@@ -26,8 +26,9 @@ from bulkwear.workflows.engine.provenance import PROVENANCE, provenance, simulat
 from bulkwear.workflows.engine.solver import (
     LOG,
     SCREEN,
+    SolverCrashedError,
     SolverError,
-    SolverKilledError,
+    SolverStoppedError,
     executable_of,
     processor_seconds,
     run_deck,
@@ -71,7 +72,7 @@ def _run(folder: Path, test: Mapping[str, Any]) -> float:
     """Run the deck and return its wall time in s; a deck that gives up without an error found no rest."""
     try:
         return run_deck(folder, executable=executable_of(test))
-    except SolverKilledError:
+    except (SolverStoppedError, SolverCrashedError):
         raise
     except SolverError:
         if (folder / SCREEN).is_file() and failure(folder / SCREEN) is None:

@@ -59,8 +59,14 @@ class SolverError(RuntimeError):
     """LIGGGHTS failed; the message gives its last words and, where known, the cause."""
 
 
-class SolverKilledError(SolverError):
-    """A signal ended LIGGGHTS."""
+class SolverStoppedError(SolverError):
+    """LIGGGHTS was ended from outside, by a signal, a disk that was nearly full or a machine on which it made no step
+    any more: that says nothing of what it simulates.
+    """
+
+
+class SolverCrashedError(SolverError):
+    """A signal of its own ended LIGGGHTS, as SIGSEGV."""
 
 
 def missing_program(executable: str) -> str | None:
@@ -211,7 +217,8 @@ def run_deck(
     search: for contacts with meshes
     own_kernels: library of a project's contact kernels, see `own_kernels`
 
-    Raises SolverError. A solver on a disk that is nearly full is stopped, before it leaves half a file.
+    Raises SolverError, SolverStoppedError where something else than the simulation ended it. A solver on a disk that is
+    nearly full is stopped, before it leaves half a file.
     """
     if missing := missing_program(executable):
         raise SolverError(missing)
@@ -234,7 +241,7 @@ def run_deck(
             _stop(process)
     code = process.returncode or (-signal.SIGTERM if ended_by_signal(folder / SCREEN) else 0)
     if code != 0:
-        raise (SolverKilledError if signal_of(code) else SolverError)(_last_words(folder, code))
+        raise _error_of(code)(_last_words(folder, code))
     if unchecked:
         raise SolverError(f"{folder / SCREEN}: LIGGGHTS did not report the triangles of mesh {', '.join(unchecked)}.")
     return time.monotonic() - started
@@ -245,7 +252,7 @@ def _watch(
 ) -> None:
     """Follow a run until it ends; every mesh is checked once, as soon as the solver has reported it.
 
-    Raises SolverError for a solver that makes no step any more or fills the disk; the caller stops it.
+    Raises SolverStoppedError for a solver that makes no step any more or fills the disk; the caller stops it.
     """
     ended = False
     with _handle(process) as handle:
@@ -257,9 +264,9 @@ def _watch(
             if triangles:
                 _check_triangles(folder, triangles)
             if not ended and (hangs := watch.look(step)):
-                raise SolverError(f"{folder / DECK}: {hangs}; finished cycles and pieces stay, start again.")
+                raise SolverStoppedError(f"{folder / DECK}: {hangs}; finished cycles and pieces stay, start again.")
             if not ended and free_bytes(folder) < RESERVE_BYTES:
-                raise SolverError(f"{folder / DECK}: stopped before its disk is full. {full_sentence(folder)}")
+                raise SolverStoppedError(f"{folder / DECK}: stopped before its disk is full. {full_sentence(folder)}")
 
 
 @contextmanager
@@ -316,6 +323,14 @@ def signal_of(code: int) -> int | None:
     """Return the signal that ended a program, None where none did; a launcher tells that of a rank as 128 plus it."""
     number = -code if code < 0 else code - OF_LAUNCHER
     return number if number in set(signal.Signals) else None
+
+
+def _error_of(code: int) -> type[SolverError]:
+    """Return the kind of error that an exit code is."""
+    number = signal_of(code)
+    if number is None:
+        return SolverError
+    return SolverCrashedError if number in CRASHES else SolverStoppedError
 
 
 def exit_words(code: int) -> str:

@@ -8,6 +8,7 @@ words.
 from __future__ import annotations
 
 import operator
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -29,6 +30,7 @@ from bulkwear.workflows.engine.template_files import (
 )
 
 SOLVER, OWN = "solver", "deck"  # sections of a run, a bed or a test that reach its templates whole
+PRUNING = threading.RLock()  # trees are shared
 TESTS = {"eq": operator.eq, "ne": operator.ne, "in": lambda value, several: value in several}  # of branches
 
 
@@ -90,12 +92,12 @@ def _pruned_trees(
 ) -> Iterator[dict[str, jinja2.nodes.Template]]:
     """Give {file name: syntax tree} of a template and its partials, see `_uses`; words by the names of `_choice`.
 
-    The trees are kept for the next words: their branches are pruned within the context only.
+    The trees are kept for the next words: their branches are pruned within the context only, by one thread at a time.
     """
     written = dict(stamp)
     trees: dict[str, jinja2.nodes.Template] = {}
     names = [f"{template}.in.j2"]
-    with ExitStack() as pruned:
+    with PRUNING, ExitStack() as pruned:
         for name in names:
             path = template_file(name)
             trees[name] = parsed(environment, name, path, written.get(str(path), 0))

@@ -27,7 +27,9 @@ from bulkwear.workflows.report.spot_checks import SpotCheck, as_new_as, failed, 
 FILE, CHANGES = "results.json", "results_changes.csv"  # in docs
 LINE = 118  # characters of a line of prose
 BEGIN, END = "<!-- older than the code -->", "<!-- end -->"
-STANDS_FOR = {"sliding_sample": "demo"}  # case -> its cheapest study, whose spot checks speak for all of its pages
+# Study, or page of none, -> the cheapest study whose spot checks speak for it: of spheres under the studies' own
+# rolling model and law, as it is. What it does not go through, as beds in a window, it does not check.
+STANDS_FOR = dict.fromkeys(("demo", "screening", "particle_size", "optimised_pattern", "stiffness.md"), "demo")
 BLOCK = re.compile(rf"{BEGIN}\n.*?{END}\n\n", re.DOTALL)
 
 
@@ -72,7 +74,7 @@ class Origin:
     @property
     def checked_by(self) -> str:
         """Return the study whose spot checks concern the page, "" where there is none."""
-        return STANDS_FOR.get(self.case, self.study)
+        return STANDS_FOR.get(self.study or self.page, self.study)
 
 
 @dataclass(frozen=True)

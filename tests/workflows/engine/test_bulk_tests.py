@@ -11,7 +11,7 @@ from bulkwear.workflows.cases.calibration.boxes import with_values
 from bulkwear.workflows.engine import bulk_simulations, state
 from bulkwear.workflows.engine.bulk_simulations import FILLED, check_filling, simulated, simulation_folder
 from bulkwear.workflows.engine.bulk_tests import filled_mass, rest_energy
-from bulkwear.workflows.engine.solver import SolverError, SolverKilledError
+from bulkwear.workflows.engine.solver import SolverCrashedError, SolverError, SolverStoppedError
 from tests.support.bulk_boxes import ROLLING, SEED, asked, small
 
 EXACT = 1e-12  # relative: the same formula
@@ -46,15 +46,20 @@ def test_a_box_without_rest_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("signal", "words"), [("KILL", "memory was exhausted"), ("TERM", r"ended by SIGTERM \(signal 15\)")]
+    ("signal", "words", "error"),
+    [
+        ("KILL", "memory was exhausted", SolverStoppedError),
+        ("TERM", r"ended by SIGTERM \(signal 15\)", SolverStoppedError),
+        ("SEGV", r"crashed \(SIGSEGV, signal 11\)", SolverCrashedError),
+    ],
 )
-def test_a_killed_solver_is_not_called_restless(tmp_path, monkeypatch, signal, words):
-    """Who runs out of memory is not sent to look for rest."""
+def test_a_killed_solver_is_not_called_restless(tmp_path, monkeypatch, signal, words, error):
+    """Who runs out of memory, or crashes, is not sent to look for rest."""
     program = tmp_path / "killed"
     program.write_text(f"#!/bin/sh\nkill -{signal} $$\n")
     program.chmod(0o755)
     monkeypatch.setattr(bulk_simulations, "executable_of", lambda test: str(program))
-    with pytest.raises(SolverKilledError, match=words):
+    with pytest.raises(error, match=words):
         simulated(small(), tmp_path)
 
 

@@ -2,13 +2,14 @@
 
 import re
 import shutil
+import threading
 
 import pytest
 
 from bulkwear.workflows.cases.sliding_sample.decks import lowered_bed, settled_bed, sliding_sample
 from bulkwear.workflows.config.design import ConfigError, load_study
 from bulkwear.workflows.engine import decks as deck
-from bulkwear.workflows.engine import template_files
+from bulkwear.workflows.engine import template_files, templates
 from bulkwear.workflows.engine.chain import bed_deck_text
 from bulkwear.workflows.engine.project import Project
 from bulkwear.workflows.engine.schedule import known_spans
@@ -56,6 +57,20 @@ def test_a_branch_not_taken_asks_for_nothing(tmp_path, monkeypatch, words, used)
     (tmp_path / "templates/part.in.j2").write_text("{{ a }}")
     words = {"solver": {"model": "two"}} | words
     assert template_variables("case", words) == used | {"solver"}
+
+
+def test_a_thread_waits_while_another_one_asks():
+    """Trees of templates are kept and pruned for each question, so two at once would spoil one another's."""
+    environment, stamp = template_files.templates_read()
+    whole, answers = template_variables("settled_bed"), []
+    asker = threading.Thread(target=lambda: answers.append(template_variables("settled_bed")))
+    with templates._pruned_trees(environment, "settled_bed", {"shape": "sphere"}, stamp):
+        templates._kept_uses.cache_clear()
+        asker.start()
+        asker.join(0.2)
+        assert asker.is_alive()
+    asker.join()
+    assert answers == [whole]
 
 
 def test_missing_and_unused_parameters_are_errors():

@@ -30,11 +30,15 @@ def test_checks_that_lead_to_todays_code_make_a_page_as_new():
 
 
 def test_the_demo_speaks_for_pages_of_sliding_samples():
-    """Of benchmarks, which are of no study, and of other studies; of a benchmark of another case none says anything."""
-    bench = replace(ORIGIN, case="sliding_sample", study="", command="make it")
+    """Of those named, also of a benchmark, which is of no study; of clumps, of other rolling models and of beds in a
+    window it says nothing.
+    """
+    sample = replace(ORIGIN, case="sliding_sample", study="screening")
+    bench = replace(sample, study="", command="make it")
     checks = [replace(each, study="demo") for each in (TO_SECOND, TO_NOW)]
-    assert older(bench, [], NOW, checks) == older(replace(bench, study="screening"), [], NOW, checks) == []
-    assert older(replace(bench, case="calibration"), [], NOW, checks)
+    assert older(sample, [], NOW, checks) == older(replace(bench, page="stiffness.md"), [], NOW, checks) == []
+    assert older(replace(sample, study="grain_shape"), [], NOW, checks)
+    assert older(replace(bench, page="travelling_window_results.md"), [], NOW, checks)
 
 
 def test_other_numbers_are_told_and_lead_nowhere():

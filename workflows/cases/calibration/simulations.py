@@ -62,8 +62,7 @@ def flowing(test: Mapping[str, Any], root: Path, say: Callable[[str], None]) -> 
     Where an arch blocks the opening those of the next packing, as in a laboratory, where the test is done again. Raises
     SolverError when arches block PACKINGS of them.
     """
-    for number in range(PACKINGS):
-        packing = {**test, "seed": packing_seed(test["seed"], number * NEXT_PACKING)}
+    for number, packing in enumerate(packings_of(test)):
         folder = simulated(packing, root)
         try:
             return replace(measured(packing, folder), blocked=number), folder
@@ -72,6 +71,27 @@ def flowing(test: Mapping[str, Any], root: Path, say: Callable[[str], None]) -> 
             said = f"an arch blocks the opening in the packing of seed {packing['seed']}, it is kept as such"
             say(f"{test['kind']}: {said}")
     raise SolverError(f"{PACKINGS} packings of one test are blocked, the last one: {fault}")
+
+
+def packings_of(test: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return a test and those of the packings that take its place one after the other, where arches block it."""
+    return [{**test, "seed": packing_seed(test["seed"], number * NEXT_PACKING)} for number in range(PACKINGS)]
+
+
+def is_answered(test: Mapping[str, Any], root: Path) -> bool:
+    """Return whether `flowing` has nothing to simulate: all packings up to the first that no arch blocks are there."""
+    for packing in packings_of(test):
+        kept = simulation_folder(packing, root)
+        if state.finished_cycles(kept, inputs_digest(packing)) == 0:
+            return False
+        try:
+            measured(packing, state.cycle_folder(kept, 0))
+        except BlockedError:
+            continue
+        except SolverError:  # it is told when it is asked for
+            return True
+        return True
+    return True
 
 
 def simulate_all(

@@ -114,7 +114,10 @@ def beside_the_experiment(folder: Path) -> list[Block]:
 def measured_beside_ours(compared: pd.DataFrame) -> pd.DataFrame:
     """Return what was measured of the comparison as values beside values, volumes after hours and per weighing; the
     volume that sets the scale of time is given. Measured reductions stand among the findings, the model's here.
+
+    Intervals are those of means, as of all published numbers; compared: with those of one further packing
     """
+    compared = _with_intervals_of_means(compared)
     measured = compared[compared[LABORATORY].notna() & (compared["unit"] == "mm3")]
     first = measured["hours"] == measured["hours"].min()
     sets_scale = first & (measured["quantity"] == f"{PLAIN} volume")
@@ -127,6 +130,21 @@ def measured_beside_ours(compared: pd.DataFrame) -> pd.DataFrame:
     names = {OURS: "computed_value", LOW: "computed_low", HIGH: "computed_high", "note": "reason"}
     columns = ["quantity", "setting", "unit", "published_value", *names, "packings", "source", GIVEN]
     return table[columns].replace({"unit": {"mm3": "mm³"}}).rename(columns=names)
+
+
+def _with_intervals_of_means(compared: pd.DataFrame) -> pd.DataFrame:
+    """Return the comparison with the intervals of the means of volumes and reductions, both told by a logarithm.
+
+    One further packing falls within sqrt(packings + 1) times the reach of the mean's interval (`intervals.Estimate`).
+    """
+    share = 1.0 / np.sqrt(compared["packings"] + 1.0)
+    ends = {}
+    for name in (LOW, HIGH):
+        volume = compared[OURS] * (compared[name] / compared[OURS]) ** share
+        left, mean = (1.0 - compared[each] / 100.0 for each in (name, OURS))
+        reduction = 100.0 * (1.0 - mean * (left / mean) ** share)
+        ends[name] = volume.where(compared["unit"] == "mm3", reduction)
+    return compared.assign(**ends)
 
 
 def _per_weighing(measured: pd.DataFrame) -> pd.DataFrame:

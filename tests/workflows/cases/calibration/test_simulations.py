@@ -16,7 +16,9 @@ from bulkwear.workflows.cases.calibration.simulations import (
     PACKINGS,
     answer,
     flowing,
+    is_answered,
     measured,
+    packings_of,
     simulate_all,
 )
 from bulkwear.workflows.engine import state
@@ -92,6 +94,22 @@ def test_a_blocked_packing_is_done_again_with_another(arches, tmp_path):
     assert answer(simulate_all([test], tmp_path, 1, said.append)[0]) == answer(found)
     arches.clear()
     assert answer(flowing(test, tmp_path, said.append)[0]) == {"discharge_time_s": test["seed"], BLOCKED: 0}
+
+
+def test_a_blocked_packing_alone_is_no_answer(arches, monkeypatch, tmp_path):
+    """Nothing is left to simulate only where those that take its place are there, too."""
+    test, there = asked("draw_down"), set()
+    monkeypatch.setattr(simulations, "simulation_folder", lambda packing, root: root / str(packing["seed"]))
+    monkeypatch.setattr(simulations, "inputs_digest", lambda packing: "")
+    monkeypatch.setattr(simulations.state, "finished_cycles", lambda folder, inputs: int(folder.name) in there)
+    seeds = [packing["seed"] for packing in packings_of(test)]
+    assert not is_answered(test, tmp_path)
+    there.add(seeds[0])
+    assert is_answered(test, tmp_path)
+    arches[seeds[0]] = True
+    assert not is_answered(test, tmp_path)
+    there.add(seeds[1])
+    assert is_answered(test, tmp_path)
 
 
 def test_a_test_whose_packings_are_all_blocked_is_refused(arches, tmp_path):

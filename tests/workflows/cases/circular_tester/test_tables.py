@@ -64,13 +64,17 @@ def test_notes_say_what_is_extrapolated_and_what_is_not_sure():
 def test_measured_volumes_are_published_numbers():
     """The experiment's volumes and the model's reduction; that which sets the scale of time is given, as is its share
     of eight hours; one not reached is missing."""
-    table = measured_beside_ours(compared(revolutions=3, packings=3, scatter=0.02).reset_index())
+    ours = compared(revolutions=3, packings=3, scatter=0.02)
+    table = measured_beside_ours(ours.reset_index())
     found = {(row.quantity, row.setting): row for row in table.itertuples()}
     measured = {name: row.published_value for name, row in found.items()}
     assert sorted(measured.values()) == pytest.approx([10.2, 17.9, 68.9, 82.8, 145.2, 240.3, 474.5])
     assert table.loc[table["given"] == "yes", "published_value"].tolist() == [145.2, 17.9]
     early, late = (found["convex volume", f"experiment after {hours} h"] for hours in (56, 184))
     assert early.computed_low < early.computed_value < early.computed_high and early.packings == 3
+    further = ours.loc[(56.0, "convex volume")]  # of one further packing: twice the reach of a mean of three
+    for mean, one in ((early.computed_low, further["interval_low"]), (early.computed_high, further["interval_high"])):
+        assert math.log(one / further[OURS]) == pytest.approx(2.0 * math.log(mean / further[OURS]))
     assert np.isnan(late.computed_value) and "more than 2 times" in late.reason
     share, model = (
         found["convex volume", "experiment per 8 h"],

@@ -102,15 +102,6 @@ def spot(mesh, centre, size, normal, height=1.0):
     return height * np.where(facing, np.exp(-0.5 * (away / size) ** 2), 0.0)
 
 
-def mosaic(mesh, values, length):
-    """Values (m,) as means over the faces of like attitude within cubes of an edge (m), as area patches have them."""
-    middle, normal = centroids(mesh.points, mesh.triangles), unit_normals(mesh.points, mesh.triangles)
-    cells = np.column_stack([np.floor(middle / length), np.round(normal)])
-    _, own = np.unique(cells, axis=0, return_inverse=True)
-    own, area = own.ravel(), np.linalg.norm(area_vectors(mesh.points, mesh.triangles), axis=1)
-    return (np.bincount(own, values * area) / np.bincount(own, area))[own]
-
-
 # ---------------------------------------------------------------- folders of runs
 
 PATCH, TIME_STEP, BLOCK = 0.3, 1e-3, 0.5  # m; s; s

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.reference.size_ratios import (
     LARGEST_RATIO,
     PUBLISHED_DIAMETER,
@@ -20,6 +21,7 @@ from bulkwear.postproc.reference.size_ratios import (
 )
 from bulkwear.postproc.statistics.crossing import FEWEST_PLACES
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimate, students_t
+from bulkwear.workflows.report.published import GIVEN
 
 PUBLISHED_SCALES = np.arange(1.0, 9.0)  # of the source's lines (Yan 2022, Table 4.1 and Fig 4.14)
 ROUNDING = 1e-9  # relative
@@ -109,11 +111,12 @@ def published_line(lines: pd.DataFrame) -> Line:
 
 def published_at_scales(wear: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
     """Return the source's lines at the least and the largest of our scales that they are of, beside our means there.
+    The finest plain sample, over which all wear is told, is given.
 
     wear: as from `wear_by_scale`; published: as for `published_line`. Columns as `report.published` reads values.
     """
     ours = wear[wear["particle_scale"].between(PUBLISHED_SCALES.min(), PUBLISHED_SCALES.max())]
-    rows = []
+    of_itself, rows = (PLAIN, wear["particle_scale"].min()), []  # 1 whatever was found
     for line in published.to_dict("records"):
         of_curve = ours[ours["curve"] == line["curve"]]
         for scale in np.unique(of_curve["particle_scale"].agg(["min", "max"]).dropna()):
@@ -127,6 +130,7 @@ def published_at_scales(wear: pd.DataFrame, published: pd.DataFrame) -> pd.DataF
                     "published_value": line["intercept"] + line["slope"] * scale,
                     **{"computed_value": found.value, "computed_low": low, "computed_high": high},
                     **{"packings": found.packings, "source": line["source"]},
+                    **{GIVEN: "yes" if (line["curve"], scale) == of_itself else ""},
                 }
             )
     return pd.DataFrame(rows)

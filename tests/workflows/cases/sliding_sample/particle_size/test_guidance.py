@@ -60,6 +60,10 @@ def test_the_published_lines_stand_beside_our_means():
     np.testing.assert_allclose(table["published_value"], [0.96, 2.0], rtol=ROUNDING)
     np.testing.assert_allclose(table["computed_value"], [0.5, 1.1], rtol=ROUNDING)
     assert (table["packings"] == 2).all() and (table["computed_low"] < table["computed_value"]).all()
+    assert not table["given"].any()
+    own = pd.DataFrame({"curve": "plain", "particle_scale": [4, 4, 8, 8], "relative_wear": [0.9, 1.1, 0.8, 1.0]})
+    given = published_at_scales(own, LINES).set_index("setting")["given"]
+    assert given.to_dict() == {"plain at scale 4": "yes", "plain at scale 8": ""}  # over itself, 1 whatever is found
 
 
 def test_the_published_line_tells_what_scale_does_to_wear():
