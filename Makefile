@@ -24,7 +24,7 @@ SMK_FILES = Snakefile $(shell find workflows -name "*.smk")
 # doctor must also work where set-up failed
 DOCTOR_PYTHON = $(or $(wildcard .venv/bin/python),python3)
 
-.PHONY: help setup doctor demo study forecast project rates test verify chaos screening report decks results docs lint format lock clean
+.PHONY: named help setup doctor demo study forecast project rates test verify chaos screening report decks results docs lint format lock clean
 
 help: ## List the targets
 	@echo "make <target> [CORES=$(CORES)] [STUDY=$(STUDY)]"
@@ -38,6 +38,11 @@ doctor: ## Check this machine: solver, MPI, rendering, packages, disk; says what
 
 demo: setup ## Run the demonstration study, from mesh to report
 	$(SNAKEMAKE) demo
+
+# A study is a file of that name: no word, or another one, ends here and not as targets of Snakemake or words of a shell.
+study forecast decks report: named
+named:
+	@: $(or $(wildcard config/studies/$(STUDY:_confirmation=).yaml),$(error STUDY is '$(STUDY)', allowed is the name of a file in config/studies))
 
 study: setup ## Run a whole study: make study STUDY=<name of a file in config/studies>
 	$(SNAKEMAKE) $(STUDY)

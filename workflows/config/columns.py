@@ -17,7 +17,7 @@ from bulkwear.workflows.config.validation import check_alternatives, unknown_key
 from bulkwear.workflows.engine.project import Project
 
 ANY_SETTING = "x-any-setting"  # key of the schema of a design table
-OF_STUDY = (UNTIL, OPTIMISE)  # sections that are the whole study's
+OF_STUDY = (UNTIL, OPTIMISE, "solver.ranks")  # sections and settings that are the whole study's
 
 
 def setting_columns(schema: dict[str, Any]) -> dict[str, str]:
@@ -78,7 +78,7 @@ def _fault(name: str, settings: dict[str, Any], own: dict[str, str]) -> tuple[st
     inner = subschema(settings, key)
     if name in own:
         return f"column {name} has a name of its own, write {own[name]}", {}
-    if key[0] in OF_STUDY:
+    if key[0] in OF_STUDY or name in OF_STUDY:
         return f"column {name} is a setting of the whole study, allowed are those of a run", {}
     if not inner:
         return unknown_key(key, settings, noun="setting"), {}

@@ -149,9 +149,11 @@ def _check_seeds(group: Sequence[Layer], seed_column: str) -> None:
     for row in group if len(group) > 1 else ():
         first_prime = primes(row.values[seed_column], 1)[0]
         if first_prime in seen:
+            low = row.values[seed_column] < SMALLEST_SEED
+            apart = f" of {SMALLEST_SEED} or more, below which all are one," if low else ""
             raise ConfigError(
-                f"{row.where()}: {seed_column} is {row.values[seed_column]}, which makes row"
-                f" {seen[first_prime]} again, allowed are seeds that are {SEED_SPACING} apart, or one row."
+                f"{row.where()}: {seed_column} is {row.values[seed_column]}, which makes row {seen[first_prime]} again,"
+                f" allowed are seeds{apart} that are {SEED_SPACING} apart, or one row."
             )
         seen[first_prime] = _name(row)
 

@@ -6,7 +6,7 @@ Each file is checked by itself, so that a fault is reported where it stands.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
@@ -128,7 +128,10 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
     sources = Sources(case, default, of_case, study, command_line_layer(overrides))
     of_study = case_schema(case.name, "study")
     partial = without_required(joined(shared, own))
-    check_layer(sources.study, {**of_study, "properties": of_study["properties"] | partial["properties"]})
+    allowed = of_study["properties"] | partial["properties"]
+    if "case" not in named.values:
+        _check_case_meant(sources.study, case.name, allowed)
+    check_layer(sources.study, {**of_study, "properties": allowed})
     offered = {k: v for k, v in partial["properties"].items() if k != "fidelity"}
     within_block = {**partial, "properties": offered | {DESIGN: of_study["properties"][DESIGN]}}
     for fidelity in sources.study.values.get("fidelities", {}):
@@ -141,9 +144,24 @@ def read_sources(name: str, project: Project, overrides: dict[str, Any] | None) 
     return sources
 
 
+def _check_case_meant(study: Layer, case: str, allowed: Mapping[str, Any]) -> None:
+    """Raise ConfigError for a study without a case, with a key that its case, the default, has not, but others have."""
+    for key in (key for key in study.values if key not in allowed):
+        others = [other for other in case_names() if key in load_schema(f"cases/{other}/settings")["properties"]]
+        if others:
+            raise ConfigError(
+                f"{study.where((key,))}: {key} is a key of {', '.join(others)}, and the study names no case, which is"
+                f" {case} then; allowed is case: {others[0]}, or none of its keys."
+            )
+
+
 def _read_study(name: str, project: Project) -> Layer:
     """Return the file of a study. Raises ConfigError for a name that project and package both have."""
     files = project.every(f"{STUDIES}/{name}.yaml")
+    if not files:
+        raise ConfigError(
+            f"{STUDIES}/{name}.yaml: found no such file, a folder perhaps; allowed is the file of a study."
+        )
     if len(files) > 1:
         raise ConfigError(
             f"{STUDIES}/{name}.yaml: a study {name} is in the package too, {files[1]}, allowed is a name of its own: "

@@ -85,7 +85,8 @@ def _too_large_a_mesh(meshed: Collection[str], work: dict[str, Work], memory_gb:
         if (needed := WORN_TRIANGLE_MEMORY * triangles / GIGABYTE) > memory_gb:
             return (
                 f"the surface of {run} has about {number_text(triangles)} triangles and needs about"
-                f" {number_text(needed)} GB of memory, this machine has {number_text(memory_gb)} GB"
+                f" {number_text(needed)} GB of memory, this machine has {number_text(memory_gb)} GB; larger elements"
+                " need less"
             )
     return None
 

@@ -52,6 +52,7 @@ def test_a_key_may_be_given_by_rows_alone(tmp_path):
         ("parts.liner", "column parts.liner is a block of keys, allowed are settings that are one number or one word."),
         ("bulk.seed", "column bulk.seed has a name of its own, write seed."),
         ("until.width_fraction", "column until.width_fraction is a setting of the whole study, allowed are those of a"),
+        ("solver.ranks", "column solver.ranks is a setting of the whole study, allowed are those of a run"),
         ("inlet.rate_kg_per_h", "inlet.rate_kg_per_h is no known setting, the nearest is inlet.rate_t_per_h."),
         ("parts.liner.edge_cm", "unit cm is not allowed for parts.liner.edge, write parts.liner.edge_mm"),
         ("wear.parameters.exponent", "wear.parameters.exponent is no known setting"),

@@ -596,6 +596,21 @@ def test_a_file_that_is_no_mapping_is_refused(config):
     assert message_of(config) == "config/studies/small.yaml: found a list, allowed is a mapping of keys to values."
 
 
+def test_a_key_of_another_case_tells_that_the_study_names_none(config):
+    """It would be taken for one of the default's."""
+    config.write(STUDY, config.path(STUDY).read_text() + "parts:\n  liner: {file: liner.stl}\n")
+    said = "parts is a key of equipment, and the study names no case, which is sliding_sample then; allowed is case:"
+    assert said in message_of(config)
+
+
+def test_a_folder_in_place_of_a_study_is_told(config):
+    config.path(STUDY).unlink()
+    config.path(STUDY).mkdir()
+    assert message_of(config) == (
+        f"config/{STUDY}: found no such file, a folder perhaps; allowed is the file of a study."
+    )
+
+
 def test_a_missing_file_is_named(config):
     """Without materials.yaml the message says which files there are."""
     config.path(MATERIALS).unlink()

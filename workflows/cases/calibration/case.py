@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
+from bulkwear.postproc.flow.bulk_test import RESPONSES
 from bulkwear.workflows.cases.calibration import boxes
 from bulkwear.workflows.config.clumps import shaped
 from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.published_tables import check_table
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.engine.bulk_simulations import simulation_bytes
 from bulkwear.workflows.engine.bulk_tests import deck_text
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 
 PUBLISHED = "config/published"
 DISCREPANCY = "model_discrepancy"  # column of a table of measured responses, where it is known
+LEAST_ANGLE, MOST_ANGLE, LONGEST = 2.0, 90.0, 3600.0  # degrees, degrees, s, of a measured response; radians are less
 LEAST_DIAMETERS = 10.0  # -, of a box: below, no slope can be measured on it
 LEAST_DRAG_DIAMETERS = 6.0  # -, of a plate's way. Measured: with friction 0.7 the bed slides after 2.8
 LEAST_OPENING_DIAMETERS = (
@@ -39,7 +42,9 @@ def published(name: str) -> pd.DataFrame:
     if name not in (there := project.names(PUBLISHED, ".csv")):
         found = ", ".join(there) or "nothing"
         raise ConfigError(f"{PUBLISHED}/{name}: there is no such file, found in its folder: {found}.")
-    return pd.read_csv(project.file(f"{PUBLISHED}/{name}"))
+    path = project.file(f"{PUBLISHED}/{name}")
+    check_table(path, project.folder)
+    return pd.read_csv(path)
 
 
 def calibration_box(study: Study) -> dict[str, Any]:
@@ -145,6 +150,27 @@ def measured_are_numbers(run: CheckedRun) -> Fault | None:
     return None
 
 
+def measured_are_responses(run: CheckedRun) -> Fault | None:
+    """Every row of the table of measured responses is a response that a test has, named once: an angle in degrees, or a
+    time in s.
+    """
+    table = published(run.settings["calibration"]["measured"])
+    known = [name for names in RESPONSES.values() for name in names]
+    for number, row in enumerate(table.itertuples(), 2):
+        if row.response not in known:
+            fault, allowed = f"response {row.response}", f"one of {', '.join(known)}"
+        elif (table["response"] == row.response).sum() > 1:
+            fault, allowed = f"response {row.response}, as another line", "each response once"
+        elif row.response.endswith("_deg") and not LEAST_ANGLE <= float(row.value) < MOST_ANGLE:
+            fault, allowed = f"{row.response} {row.value}", f"{LEAST_ANGLE:g} to below {MOST_ANGLE:g} degrees"
+        elif row.response.endswith("_s") and not 0.0 < float(row.value) <= LONGEST:
+            fault, allowed = f"{row.response} {row.value}", f"above 0 to {LONGEST:g} s"
+        else:
+            continue
+        return "calibration.measured", f"in it {allowed}; its line {number} has {fault}"
+    return None
+
+
 def pairs_are_known(run: CheckedRun) -> Fault | None:
     """The compared pair and that of the sizes are rows of the table of pairs simulated before."""
     calibration = run.settings["calibration"]
@@ -189,6 +215,7 @@ class Calibration(Case):
         one_wall_is_looked_for,
         ranges_in_order,
         measured_are_numbers,
+        measured_are_responses,
         pairs_are_known,
         initial_below_most,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from typing import Any
 
@@ -26,6 +27,7 @@ IMPACT_VELOCITY = 1.0  # m/s, of such a contact; its time depends on the fifth r
 HERTZ_TIME = 2.87  # -, of the time that an elastic impact of spheres takes (Johnson, Contact Mechanics, 1985, 11.24)
 FEWEST_PARTICLES = 10.0  # that come in within a block, or that a machine is filled with: fewer tell nothing of wear
 MOST_FOR_PICTURES = 1.25  # -, time steps of a block, over those that it has without pictures
+LEFT_TO_WEAR = 0.01  # -, of its thickness, that a liner may wear before it is changed: of less no hours can be told
 LONGEST_OPERATION = 500_000.0  # h, as of operation.duration_h
 MOST_STEPS = 50_000_000  # of a run: with ten thousand particles they take a core about a week
 MOST_PARTICLES = 20_000_000  # in a machine: some 20 GB of memory
@@ -61,7 +63,8 @@ def bodies_named_once(run: CheckedRun) -> Fault | None:
     """No body of a file is two parts, one of them perhaps with all bodies: it would press on particles twice."""
     seen: dict[str, list[Mapping[str, Any]]] = {}
     for part in run.parameters["parts"]:
-        for other in seen.setdefault(part["file"], []):
+        file = os.path.normpath(part["file"])
+        for other in seen.setdefault(file, []):
             named = {part.get("solid"), other.get("solid")}
             if len(named) == 1 and (None not in named or part["motion"] == other["motion"]):
                 key = "file" if None in named else "solid"
@@ -72,7 +75,7 @@ def bodies_named_once(run: CheckedRun) -> Fault | None:
                     f"a file of its own, or parts.{whole['name']}.solid, the body that is meant: without it all bodies"
                     f" are, and solid {single['solid']} is parts.{single['name']} already"
                 )
-        seen[part["file"]].append(part)
+        seen[file].append(part)
     return None
 
 
@@ -185,14 +188,14 @@ def one_change_out_rule(run: CheckedRun) -> Fault | None:
 
 
 def liner_left_to_wear(run: CheckedRun) -> Fault | None:
-    """Less than the thickness of every liner remains when it is changed."""
+    """What remains of a liner when it is changed leaves a hundredth of its thickness at least to wear."""
     remaining = run.parameters["operation"].get("change_out_remaining_m", 0.0)
     thickness = {p["name"]: p["thickness_m"] for p in run.parameters["parts"] if p["wears"] and "thickness_m" in p}
     thinnest = min(thickness, key=thickness.__getitem__, default="")
-    if not thinnest or remaining < thickness[thinnest]:
+    if not thinnest or remaining <= (most := (1.0 - LEFT_TO_WEAR) * thickness[thinnest]):
         return None
     least = f"parts.{thinnest}.thickness_mm"
-    return "operation.change_out_remaining_mm", f"below {millimetres(thickness[thinnest])}, {least}"
+    return "operation.change_out_remaining_mm", f"at most {millimetres(most)}, of {least} all but a hundredth"
 
 
 # ---------------------------------------------------------------- what it takes

@@ -24,7 +24,7 @@ from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.directions import ON_END
 from bulkwear.postproc.wear.side import connected_pieces
 from bulkwear.postproc.wear.thickness import thickness_to_back
-from bulkwear.workflows.cases.equipment.checks import thin_phrase
+from bulkwear.workflows.cases.equipment.checks import LEFT_TO_WEAR, thin_phrase
 from bulkwear.workflows.cases.equipment.decks import domain, largest_cell, longest_s, moving_mesh
 from bulkwear.workflows.cases.equipment.drawings import drawing
 from bulkwear.workflows.cases.equipment.motions import motion_of
@@ -41,7 +41,8 @@ OUTSIDE = 1e-8  # m; a facet whose middle is farther out is lost to the solver (
 GRAZING = 0.05  # -, of the smallest diameter: particles that overlap a wall by less are not thrown off
 FINEST = 0.01  # -, of half the longest side of such room: parts that are narrower there may be missed
 MEASURED = 0.1  # -, by which a thickness along normals may be less than the one drawn: a flight leans, a vault is bent
-WAY_OF_RADIUS = 0.5  # -, that a part may go in a time step
+THICKER = 4.0  # -, that a thickness which is given may be over that of half the body's area: ribs and bars are thicker
+WAY_OF_RADIUS = 0.5  # -, that a part, or a particle at the inlet, may go in a time step
 WITHIN = 0.5  # -, winding number of a place within a closed body: 1, outside 0
 AXES = "xyz"
 
@@ -60,6 +61,7 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_within(run, surface, part, mesh)
         _check_speed(run, part, mesh)
+    _check_feed_speed(run)
     _check_inlet(run, parts)
     check_stream(run, parts)
     _check_filling(run, surface, parts)
@@ -166,6 +168,19 @@ def _check_speed(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> None:
 
 
 # ---------------------------------------------------------------- where material is placed
+
+
+def _check_feed_speed(run: Parameters) -> None:
+    """Raise ConfigError for a feed whose particles go through others, or through a part, within a time step."""
+    if not run["inlet"]:
+        return
+    speed, step = float(np.linalg.norm(run["inlet"]["velocity_m_per_s"])), run["derived"]["time_step_s"]
+    most = WAY_OF_RADIUS * 0.5 * min(run["particle"]["diameters_m"])
+    if speed * step > most:
+        raise ConfigError(
+            f"inlet.velocity_m_per_s is {speed:.4g} m/s fast, {1e3 * speed * step:.4g} mm in a time step, allowed are"
+            f" {most / step:.4g} m/s: {1e3 * most:.4g} mm, {WAY_OF_RADIUS:g} of the smallest radius."
+        )
 
 
 def _check_inlet(run: Parameters, parts: Sequence[SurfaceMesh]) -> None:
@@ -317,6 +332,12 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
                 f"parts.{part['name']}.thickness_mm is {1e3 * part['thickness_m']:.6g}, allowed is at most"
                 f" {millimetres(size)}, the size of {part['file']}."
             )
+        if _is_closed(run, mesh) and part["thickness_m"] > THICKER * (drawn := thickness_of(mesh)):
+            raise ConfigError(
+                f"parts.{part['name']}.thickness_mm is {1e3 * part['thickness_m']:.6g}, allowed is at most"
+                f" {millimetres(THICKER * drawn)}, {THICKER:g} of the thickness that {part['file']} has, over half of"
+                " its area; without the key it is measured."
+            )
         return
     if not _is_closed(run, mesh):
         raise ConfigError(
@@ -328,10 +349,10 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
     if thickness < part["edge_m"] * (1.0 - MEASURED):
         allowed = thin_phrase(thickness, source)
         raise ConfigError(f"parts.{part['name']}.edge_mm is {1e3 * part['edge_m']:.6g}, allowed is {allowed}.")
-    if (remaining := run["change_out_remaining_m"]) >= thickness:
+    if (remaining := run["change_out_remaining_m"]) > (most := (1.0 - LEFT_TO_WEAR) * thickness):
         raise ConfigError(
-            f"operation.change_out_remaining_mm is {1e3 * remaining:.6g}, allowed is below {millimetres(thickness)},"
-            f" {source}, of parts.{part['name']}."
+            f"operation.change_out_remaining_mm is {1e3 * remaining:.6g}, allowed is at most {millimetres(most)}: of"
+            f" {millimetres(thickness)}, {source}, of parts.{part['name']}, a hundredth at least is there to wear."
         )
 
 

@@ -104,8 +104,16 @@ def part_section(name: str, part: Mapping[str, Any], wear: Mapping[str, Any], ty
         "motion": part.get("motion"),
         "type": types.index(part["material"]) + 2,
         "law_parameters": {**to_si(completed(law, {})), **shared, **own},
-        "drawing": drawing_digest(part["file"]),
+        "drawing": _drawn(name, part["file"]),
     }
+
+
+def _drawn(name: str, file: str) -> str:
+    """Return the hash of the drawing of a part. Raises ConfigError."""
+    try:
+        return drawing_digest(file)
+    except ConfigError as fault:
+        raise ConfigError(f"parts.{name}.file: {fault}") from None
 
 
 def laws_of(run: Mapping[str, Any]) -> list[tuple[str, dict[str, float]]]:

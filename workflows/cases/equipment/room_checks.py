@@ -10,6 +10,7 @@ import numpy as np
 
 from bulkwear.postproc.wear.caps import GRAVITY
 from bulkwear.workflows.cases.equipment.decks import FASTEST, SHELL_SHARE, room_round
+from bulkwear.workflows.cases.equipment.motion_checks import TINY
 from bulkwear.workflows.cases.equipment.placing import (
     LEAST_SIDE_DIAMETERS,
     filling_box,
@@ -139,7 +140,7 @@ def rectangles_look_somewhere(run: CheckedRun) -> Fault | None:
     """The normals of inlet and outlets have a length."""
     rectangles = {"inlet": run.parameters["inlet"]}
     rectangles |= {f"outlets.{name}": given for name, given in (run.parameters["outlets"] or {}).items()}
-    found = next((key for key, given in rectangles.items() if given and not any(given["normal"])), None)
+    found = next((key for key, given in rectangles.items() if given and max(map(abs, given["normal"])) <= TINY), None)
     return (f"{found}.normal", "a direction: three numbers that are not all 0") if found else None
 
 

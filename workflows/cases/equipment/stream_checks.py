@@ -29,7 +29,10 @@ def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
     run: the sections of its parameters that its surface depends on; parts: the surface of each
     """
     inlet = run["inlet"]
-    if not inlet or _goes_round(run):
+    if not inlet:
+        _check_filling_falls(run, parts)
+        return
+    if _goes_round(run):
         return
     velocity = np.asarray(inlet["velocity_m_per_s"], dtype=np.float64)
     starts = _places(inlet) - BEFORE * velocity
@@ -44,6 +47,29 @@ def check_stream(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
         raise ConfigError(f"{found} falls on a part: it falls past all of them, {(way or ['into nothing'])[0]}.")
     if (time := met[before].min()) > (longest := longest_s(run)):
         raise ConfigError(f"{found} gets to a part within the longest run, {longest:.3g} s: it takes {time:.3g} s.")
+
+
+def _check_filling_falls(run: Mapping[str, Any], parts: Sequence[SurfaceMesh]) -> None:
+    """Raise ConfigError for a filling of which nothing falls on a part."""
+    if not (filling := run.get("filling")):
+        return
+    starts = _places_within(filling)
+    pairs = zip(run["parts"], parts, strict=True)
+    if not np.isfinite([_met(run, part, starts, np.zeros(3), mesh) for part, mesh in pairs]).any():
+        centre = ", ".join(f"{1e3 * value + 0.0:.4g}" for value in filling["centre_m"])
+        raise ConfigError(
+            f"filling.centre_mm is ({centre}) mm, allowed is a place from which what is filled in falls on a part: it"
+            " falls past all of them."
+        )
+
+
+def _places_within(filling: Mapping[str, Any]) -> np.ndarray:
+    """Return places (n, 3) m within the cylinder of a filling: on its axis, and halfway from there to its side."""
+    axis = "xyz".index(filling["axis"])
+    ends = 0.5 * filling["length_m"] * np.linspace(-1.0, 1.0, PATHS)
+    half = 0.5 * filling["radius_m"] * np.array([-1.0, 0.0, 1.0])
+    sides = [ends if k == axis else half for k in range(3)]
+    return np.asarray(filling["centre_m"]) + np.array(list(itertools.product(*sides)))
 
 
 def _met(

@@ -8,6 +8,7 @@ import pytest
 from bulkwear.workflows.cases.calibration import case
 from bulkwear.workflows.cases.calibration.driver import pair_of
 from bulkwear.workflows.config.design import ConfigError, load_study
+from bulkwear.workflows.engine.project import Project
 from tests.support.calibration_study import MEASURED, PAIRS, ROLLING, SLIDING, study
 
 WALL = [
@@ -74,6 +75,14 @@ def test_ranges_must_be_ranges():
         ("response,value,deviation,model_discrepancy\nshear_angle_deg,36,0.4,-1\n", "line 2 has model_discrepancy -1"),
         ("response,value,deviation,model_discrepancy\nshear_angle_deg,36,0.4,some\n", "has model_discrepancy some"),
         ("response,value,deviation\nshear_angle_deg,steep,0.4\n", "line 2 has value steep"),
+        ("response,value,deviation\nsheer_angle_deg,36,0.4\n", "one of shear_angle_deg, .* line 2 has .* sheer_angle"),
+        (
+            "response,value,deviation\nshear_angle_deg,36,1\nshear_angle_deg,35,1\n",
+            "each response once; its line 2 has response shear_angle_deg, as another line",
+        ),
+        ("response,value,deviation\nshear_angle_deg,0.63,0.4\n", "2 to below 90 degrees; its line 2 has .* 0.63"),
+        ("response,value,deviation\nshear_angle_deg,3600,0.4\n", "2 to below 90 degrees; its line 2 has .* 3600"),
+        ("response,value,deviation\ndischarge_time_s,-5.4,0.4\n", "above 0 to 3600 s; its line 2 has .* -5.4"),
     ],
 )
 def test_a_table_of_measurements_that_says_nothing_is_refused(monkeypatch, text, words):
@@ -86,6 +95,18 @@ def test_a_table_of_measurements_that_says_nothing_is_refused(monkeypatch, text,
     monkeypatch.setattr(case, "published", shown)
     with pytest.raises(ConfigError, match=rf"calibration\.measured is 'gravel_tests\.csv'.*{words}"):
         study()
+
+
+@pytest.mark.parametrize(
+    ("content", "words"), [(b"", "the file is empty"), (b"response,value\na,b,c,d\n", "line 2"), (b"\xff\xfea\0", "")]
+)
+def test_a_table_that_cannot_be_read_is_named(tmp_path, monkeypatch, content, words):
+    """By its file, before it is taken for numbers."""
+    (tmp_path / "config/published").mkdir(parents=True)
+    (tmp_path / "config/published/gravel_tests.csv").write_bytes(content)
+    monkeypatch.setattr(case, "current_project", lambda: Project(tmp_path))
+    with pytest.raises(ConfigError, match=rf"config/published/gravel_tests\.csv.*{words}"):
+        case.published("gravel_tests.csv")
 
 
 def test_published_data_are_those_of_the_source():

@@ -68,6 +68,12 @@ PARTS = [
         "a solid of its own, that one is parts.liner",
     ),
     (
+        {"parts": {"plate": {"file": "./liner.stl", "solid": "b"}, "liner": {"solid": "b"}}},
+        "parts.plate.solid is 'b'",
+        "a solid of its own, that one is parts.liner",
+    ),
+    ({"inlet": {"normal": [0, 0, 1e-200]}}, "inlet.normal is", "a direction: three numbers that are not all 0"),
+    (
         {"parts": {"plate": {"file": "liner.stl"}, "liner": {"solid": "b"}}},
         "parts.plate.file is 'liner.stl'",
         "without it all bodies are, and solid b is parts.liner already",
@@ -331,7 +337,7 @@ WEAR = [
     (
         {"operation": {"change_out_remaining_mm": 30}},
         "operation.change_out_remaining_mm is 30",
-        "below 30 mm, parts.liner.thickness_mm",
+        "at most 29.7 mm, of parts.liner.thickness_mm all but a hundredth",
     ),
 ]
 EFFORT = [
@@ -459,6 +465,11 @@ def test_kernels_of_a_part_s_own_law_are_asked_of_the_solver(tmp_path):
     rolling = {"rolling_friction": "cdt"}  # LIGGGHTS' own
     with machine_study(tmp_path / "b", "row,parts.plate.role\nA,rigid\n", solver=rolling) as study:
         assert cycle_fault(sys.executable, study.case, study.runs[0].parameters) is None
+
+
+def test_a_drawing_that_is_not_there_is_named_with_its_part(tmp_path):
+    message = message_of(tmp_path, parts={"plate": {"file": "gone.step"}})
+    assert "machine.yaml, line 19: parts.plate.file: meshes/gone.step: there is no such file" in message
 
 
 @pytest.mark.parametrize(

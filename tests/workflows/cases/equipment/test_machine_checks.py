@@ -205,6 +205,15 @@ def test_a_part_that_stands_out_of_the_slice(run):
 # ---------------------------------------------------------------- inlet
 
 
+def test_a_feed_that_goes_through_particles_in_a_time_step(run):
+    """Half of the smallest radius is the most that it goes."""
+    most = 0.5 * 0.5 * min(run["particle"]["diameters_m"]) / run["derived"]["time_step_s"]
+    inlet = {**run["inlet"], "velocity_m_per_s": [0.0, 0.0, -1.001 * most]}
+    message = message_of(run, ("plate", PLATE, {}), inlet=inlet)
+    assert message.startswith(f"inlet.velocity_m_per_s is {1.001 * most:.4g} m/s fast, ")
+    assert f"allowed are {most:.4g} m/s" in message
+
+
 def test_a_part_in_the_room_behind_the_inlet(run):
     """Where it reaches into it; walls that touch the inlet's rim, and a part before it, are no fault."""
     lid = box((0.2, 0.2, 0.03), 0.025, (-0.06, 0.0, 0.2))
@@ -311,11 +320,11 @@ def test_a_drawn_liner_that_is_thinner_than_its_elements(run):
 def test_a_drawn_liner_of_which_more_shall_remain_than_there_is(run):
     """As much as there is, too; not of parts that keep their shape, nor where the thickness is given."""
     thick = box((0.4, 0.2, 0.04), 0.025, (0.0, 0.0, -0.3))
-    for remaining in (0.0401, 0.05):
+    for remaining in (0.0397, 0.04, 0.05):
         told = message_of(run, ("liner", thick, {}), change_out_remaining_m=remaining)
         assert told == (
-            f"operation.change_out_remaining_mm is {1e3 * remaining:g}, allowed is below 40 mm, the thickness in"
-            " liner.stl, of parts.liner."
+            f"operation.change_out_remaining_mm is {1e3 * remaining:g}, allowed is at most 39.6 mm: of 40 mm, the"
+            " thickness in liner.stl, of parts.liner, a hundredth at least is there to wear."
         )
     check_machine(*machine(run, ("liner", thick, {}), change_out_remaining_m=0.039))
     check_machine(*machine(run, ("liner", thick, {"wears": False}), change_out_remaining_m=0.05))
@@ -334,10 +343,14 @@ def test_a_liner_without_a_mass_is_not_changed_by_it(run):
 
 
 def test_a_thickness_that_no_part_of_that_size_has(run):
-    """A plate with a diagonal of 413 mm is not 414 mm thick."""
-    message = message_of(run, ("plate", PLATE, {"thickness_m": 0.414}))
+    """A plate with a diagonal of 413 mm is not 414 mm thick, nor a closed one of 30 mm ten times as thick."""
+    tray = without_lid((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.3))
+    message = message_of(run, ("plate", tray, {"thickness_m": 0.414}))
     assert message.startswith("parts.plate.thickness_mm is 414, allowed is at most 413.")
-    check_machine(*machine(run, ("plate", PLATE, {"thickness_m": 0.413})))
+    check_machine(*machine(run, ("plate", tray, {"thickness_m": 0.413})))
+    message = message_of(run, ("plate", PLATE, {"thickness_m": 0.3}))
+    assert message.startswith("parts.plate.thickness_mm is 300, allowed is at most 120 mm, 4 of the thickness")
+    check_machine(*machine(run, ("plate", PLATE, {"thickness_m": 0.12})))
 
 
 def test_an_open_surface_without_a_thickness(run):

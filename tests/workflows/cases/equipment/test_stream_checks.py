@@ -73,6 +73,19 @@ def test_feed_that_falls_past_all_parts():
     assert nothing.endswith("all of them, into nothing.")
 
 
+def test_a_filling_that_falls_past_all_parts():
+    """Beside the floor; above it, or within a drum that turns round it, it falls on a part."""
+    filling = {"fraction": 0.2, "axis": "y", "centre_m": [0.0, 0.0, 0.5], "radius_m": 0.1, "length_m": 0.2}
+    assert checked(inlet=None, filling=filling) is None
+    beside = {**filling, "centre_m": [0.4, 0.0, 0.5]}
+    assert message_of(inlet=None, filling=beside) == (
+        "filling.centre_mm is (400, 0, 500) mm, allowed is a place from which what is filled in falls on a part: it"
+        " falls past all of them."
+    )
+    inside = {**filling, "centre_m": [0.1, 0.0, -0.05], "radius_m": 0.05}
+    assert checked(inlet=None, filling=inside, motion=TURN) is None
+
+
 def test_feed_that_comes_too_late():
     """A fall of 100 m takes longer than the longest run."""
     high = message_of(inlet={**INLET, "centre_m": [0.0, 0.0, 100.0]})
