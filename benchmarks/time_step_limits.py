@@ -128,6 +128,8 @@ def simulated(case: Case, folder: Path) -> None:
 
 def is_done(case: Case, folder: Path) -> bool:
     """Return whether a run is finished, as it is asked for now, or failed."""
+    if not (folder / case.folder).is_dir():
+        return False
     chain = chain_of(case, folder)
     return failure_file(chain).exists() or is_simulated(chain)
 
