@@ -18,6 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 import pandas as pd
+import yaml
 
 from bulkwear.postproc.plots.style import save_small
 from bulkwear.postproc.readers.cycle_folders import cycle_files
@@ -266,16 +267,25 @@ def durations(folder: Path, page: Mapping[str, Any]) -> list[Block]:
     return [Text(told), Table(table, "durations")]
 
 
-def study_that_was_run(folder: Path, fidelity: str) -> Study:
+def study_that_was_run(folder: Path, fidelity: str, settings: Mapping[str, Any] = MappingProxyType({})) -> Study:
     """Return the study of results/<study> with those rows and packings that were run, by its design table; of a search
-    by what its last round decided.
+    by what its last round decided. settings: what else it was run with
     """
-    study = load_study(folder.name, overrides={"fidelity": fidelity})
+    given = {**settings, "fidelity": fidelity}
+    study = load_study(folder.name, overrides=given)
     if study.optimise:
         return as_decided(study, folder)
     runs = pd.read_csv(folder / "design.csv", dtype={"row": str})
     chosen = {ROWS: runs["row"].unique().tolist(), PACKINGS: int(runs["packing"].max())}
-    return load_study(folder.name, overrides={"fidelity": fidelity, **chosen})
+    return load_study(folder.name, overrides={**given, **chosen})
+
+
+def setting_of(word: str) -> tuple[str, Any]:
+    """Return key and value of a setting KEY=VALUE, as Snakemake takes them. Raises ValueError."""
+    key, equals, value = word.partition("=")
+    if not key or not equals:
+        raise ValueError(f"found {word!r}, allowed is KEY=VALUE")
+    return key, yaml.safe_load(value)
 
 
 def fidelity_that_was_run(folder: Path) -> str | None:
@@ -297,6 +307,9 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="of the study that was run, results/<study>")
     parser.add_argument("docs", type=Path, nargs="?", default=Path("docs"), help="where the page is written")
     parser.add_argument("--fidelity", default="quick", help="at which it was run")
+    parser.add_argument(
+        "--config", nargs="+", type=setting_of, default=[], metavar="KEY=VALUE", help="what else it was run with"
+    )
     given = parser.parse_args()
     work_here()
     given.docs.mkdir(parents=True, exist_ok=True)
@@ -304,7 +317,8 @@ def main() -> None:
     if not design.is_file():
         sys.exit(f"{design} is missing; `snakemake {given.folder.name}` runs the study that has it")
     try:
-        print(write_results(given.folder, given.docs, study_that_was_run(given.folder, given.fidelity)))
+        study = study_that_was_run(given.folder, given.fidelity, dict(given.config))
+        print(write_results(given.folder, given.docs, study))
     except (FileNotFoundError, ValueError) as fault:
         sys.exit(str(fault))
 

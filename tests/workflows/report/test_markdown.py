@@ -11,6 +11,8 @@ from bulkwear.workflows.report.markdown import (
     markdown,
     pictures_of,
     provenance,
+    setting_of,
+    study_that_was_run,
     write_results,
     written,
 )
@@ -45,6 +47,20 @@ def test_runs_of_another_fidelity_make_no_page(tmp_path):
     with pytest.raises(ValueError, match=r"the study was run at quick, found --fidelity standard, allowed is quick\."):
         write_results(tmp_path, tmp_path / "docs", study)
     assert fidelity_that_was_run(tmp_path / "none") is None
+
+
+def test_a_page_is_of_the_settings_that_were_run(tmp_path):
+    """Those of the command line of Snakemake too, with the rows and packings of the design table."""
+    folder = tmp_path / "screening"
+    folder.mkdir()
+    (folder / "design.csv").write_text("row,packing\nR5,1\nR5-2,2\n")
+    settings = dict(map(setting_of, ["sliding={run_in_mm: 1000, travel_mm: 700}"]))
+    study = study_that_was_run(folder, "standard", settings)
+    assert (
+        study.settings["sliding"]["run_in_mm"] == 1000 and [run.row for run in study.runs] == ["R5"] * 2 + ["R5-2"] * 2
+    )
+    with pytest.raises(ValueError, match="found 'sliding', allowed is KEY=VALUE"):
+        setting_of("sliding")
 
 
 def test_numbers_of_a_table_have_few_digits():
