@@ -181,7 +181,7 @@ def flow_views(job: Job) -> Any:
 @figure(
     "Bed",
     "Views of the flow, second row",
-    when=lambda study: finds_regimes(study) and len(study.design_rows) > 1,
+    when=lambda study: finds_regimes(study) and len(study.chosen_settings) > 1,
     **VIEWS,
 )
 def flow_views_second(job: Job) -> Any:
