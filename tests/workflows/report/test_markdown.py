@@ -17,6 +17,7 @@ from bulkwear.workflows.report.markdown import (
     written,
 )
 from bulkwear.workflows.report.page_parameters import page_parameters
+from bulkwear.workflows.report.products import figures_of
 from bulkwear.workflows.report.sections import Pictures, Section, Text
 from tests.support.finished_runs import leave_runs
 
@@ -61,6 +62,13 @@ def test_a_page_is_of_the_settings_that_were_run(tmp_path):
     )
     with pytest.raises(ValueError, match="found 'sliding', allowed is KEY=VALUE"):
         setting_of("sliding")
+
+
+@pytest.mark.parametrize(("rows", "there"), [(["R5"], False), (["R5", "R9"], True)])
+def test_packings_of_one_row_have_no_second_row_of_views(rows, there):
+    """They are rows of the design, and one setting."""
+    study = load_study("screening", overrides={"fidelity": "standard", "rows": rows, "packings": 3})
+    assert ("flow_views_second" in {each.name for each in figures_of(study)}) == there
 
 
 def test_numbers_of_a_table_have_few_digits():
