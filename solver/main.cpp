@@ -1,5 +1,6 @@
 // LIGGGHTS with a load ledger and rolling models: the solver of the shared library, unchanged, plus a fix style
-// (load/ledger) and two models of rolling friction (own_spin, rvd).
+// (load/ledger), two models of rolling friction (own_spin, rvd), and functions that stand before the library's: a search
+// for contacts with meshes, an order of particles, the start of a run.
 // Used like the plain program: liggghts-ledger -in deck.in; -search stock leaves the search for contacts with meshes to
 // the library, -order stock the order of particles in memory; -own-kernels FILE adds contact kernels that a project has
 // compiled of its own.
