@@ -40,9 +40,10 @@ def about(quantity: str, low: float, high: float, unit: str, source: str = "", m
     return Claim(quantity, words, source, quantity, unit, "above" if middle > 0.0 else "below", **size)
 
 
-def date_of_rules(path: str | Path | None = None) -> str:
-    """Return the date from which rules and margins hold."""
-    return str(_read(Path(path or current_project().path(CLAIMS_FILE)))["date"])
+def date_of_rules(part: str = "", path: str | Path | None = None) -> str:
+    """Return the date from which rules and margins of a part hold, by default the latest of all parts."""
+    dates = _read(Path(path or current_project().path(CLAIMS_FILE)))["dates"]
+    return str(dates[part] if part else max(dates.values()))
 
 
 @cache

@@ -224,8 +224,8 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Block]:
     table = of_study(folder, "findings").fillna({"reason": "", "found": ""})
     counts = ", ".join(f"{count} {verdict}" for verdict, count in table["verdict"].value_counts().items())
     said = [
-        f"Of {len(table)} claims: {counts}. Margins and rules are those of {date_of_rules()}; both, and why, stand in "
-        "config/published/verdicts.yaml. Factor: found over published size.",
+        f"Of {len(table)} claims: {counts}. Margins and rules are those of {date_of_rules('circular_tester')};"
+        " both, and why, stand in config/published/verdicts.yaml. Factor: found over published size.",
         *([REDUCED] if study["remarks"] else []),
     ]
     shown = ["verdict", "finding", "claim", "found", "reason", "factor", "source"]

@@ -247,8 +247,8 @@ def verdict_blocks(folder: Path) -> list[Block]:
     )
     found = verdicts.verdict_table(tables, claims_of("pin_on_disc"))
     said = (
-        f"Rules and margins: config/published/verdicts.yaml, of {date_of_rules()}. No run is repeated: intervals are"
-        " of the run that was simulated, and verdicts hold for it."
+        f"Rules and margins: config/published/verdicts.yaml, of {date_of_rules('pin_on_disc')}. No run is repeated:"
+        " intervals are of the run that was simulated, and verdicts hold for it."
     )
     return [Text(said), Table(found.drop(columns="key"), "findings", beside_source=True)]
 

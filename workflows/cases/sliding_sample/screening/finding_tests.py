@@ -16,7 +16,7 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, UNKNOWN, Estimate, estimate
-from bulkwear.postproc.statistics.verdicts import UNSAID, Claim, Verdict, judged, not_said
+from bulkwear.postproc.statistics.verdicts import AGREES, OTHER_SIZE, UNSAID, Claim, Verdict, judged, not_said
 from bulkwear.workflows.cases.sliding_sample.evaluation import CONTINUOUS, DISCONTINUOUS
 from bulkwear.workflows.cases.sliding_sample.screening.findings import CENTRAL, PERCENT, SIDE, SPIN, Evidence
 
@@ -32,11 +32,13 @@ class Found:
     """What a claim is judged by.
 
     estimates: by name, each of which is claimed; rows: those that it rests on; reason: why nothing can be said, if so
+    of: rows of the source that it is claimed of, each of which could contradict it
     """
 
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
     rows: Sequence[str] = ()
     reason: str = ""
+    of: Sequence[str] = ()
 
 
 Builder = Callable[[Evidence], Found]
@@ -61,7 +63,9 @@ def findings_table(evidence: Evidence, claims: Mapping[str, Claim]) -> pd.DataFr
 
 
 def verdict_on(claim: Claim, evidence: Evidence) -> Verdict:
-    """Return the verdict on a claim. Rows that are shown to be steady cover the range that it is made for."""
+    """Return the verdict on a claim. Rows that are shown to be steady cover the range that it is made for; what is
+    claimed of many rows may be contradicted by one, and agrees only where all of them are there.
+    """
     found = BUILDERS[claim.key](evidence)
     if found.reason:
         return not_said(found.reason, words(found.estimates))
@@ -70,6 +74,10 @@ def verdict_on(claim: Claim, evidence: Evidence) -> Verdict:
     verdict = judged(claim, found.estimates, words(found.estimates), covers)
     if verdict.verdict == UNSAID and covers != claim.reach and unsteady and verdict.reason.startswith("claimed of"):
         return replace(verdict, reason=f"{verdict.reason}; {_some(unsteady)} not shown to be steady")
+    missing = [row for row in found.of if row not in evidence.regimes]
+    if missing and verdict.verdict in (AGREES, OTHER_SIZE):
+        shown = f"{', '.join(found.rows)} {'do' if len(found.rows) > 1 else 'does'} as claimed"
+        return not_said(f"{shown}; {_some(missing)} not there", verdict.found)
     return verdict
 
 
@@ -94,12 +102,18 @@ def _some(rows: Sequence[str]) -> str:
     return f"{', '.join(rows)} {'are' if len(rows) > 1 else 'is'}" if len(rows) < MANY_ROWS else f"{len(rows)} rows are"
 
 
-def _of_rows(evidence: Evidence, column: str, rows: Sequence[str], log: bool = True, none: str = "") -> Found:
+def _of_rows(
+    evidence: Evidence, column: str, rows: Sequence[str], log: bool = True, none: str = "", of: Sequence[str] = ()
+) -> Found:
     """Return a column of each of some rows; `none`: why there are no such rows."""
     if not rows:
         return Found(reason=none)
     found = evidence.by_row(column, rows, log)
-    return Found(found, list(found), "" if found else "none of the rows has a value")
+    return Found(found, list(found), "" if found else "none of the rows has a value", of)
+
+
+def _all(evidence: Evidence, without: Sequence[str] = ()) -> list[str]:
+    return [row for row in evidence.design if row not in without]
 
 
 def _one(evidence: Evidence, row: str, column: str, log: bool = True, regime: str = "") -> Found:
@@ -116,16 +130,18 @@ def _one(evidence: Evidence, row: str, column: str, log: bool = True, regime: st
 
 def _told_regime(evidence: Evidence, regime: str) -> Found:
     here = [row for row in evidence.regimes if evidence.told.get(row) == regime]
-    return _of_rows(evidence, "relative_velocity", here, False, "none of these rows has a result")
+    claimed = [row for row, told in evidence.told.items() if told == regime]
+    return _of_rows(evidence, "relative_velocity", here, False, "none of these rows has a result", claimed)
 
 
 def _in_regime(evidence: Evidence, column: str, regime: str, log: bool, without: Sequence[str] = ()) -> Found:
     rows = evidence.rows_in(regime, without)
-    return _of_rows(evidence, column, rows, log, f"no run is found to flow in the {regime} regime")
+    none = f"no run is found to flow in the {regime} regime"
+    return _of_rows(evidence, column, rows, log, none, _all(evidence, without))
 
 
 def _fluctuation(evidence: Evidence) -> Found:
-    found = _of_rows(evidence, "fluctuation", list(evidence.regimes))
+    found = _of_rows(evidence, "fluctuation", list(evidence.regimes), of=_all(evidence))
     return Found(rows=list(evidence.regimes)) if found.reason else found
 
 
@@ -135,7 +151,8 @@ def _gradient(evidence: Evidence) -> Found:
         return Found(reason="the runs are not of both regimes")
     wear = evidence.by_packing("wear_m3_per_m", [*groups[0], *groups[1]])
     ratio = wear[groups[0]].mean(axis=1) / wear[groups[1]].mean(axis=1)
-    return Found({"continuous over discontinuous": estimate(ratio, log=True)}, [*groups[0], *groups[1]])
+    named = {"continuous over discontinuous": estimate(ratio, log=True)}
+    return Found(named, [*groups[0], *groups[1]], of=_all(evidence))
 
 
 # ---------------------------------------------------------------- wear and force
@@ -149,11 +166,13 @@ def _lowest(evidence: Evidence, best: str, regime: str) -> Found:
     if evidence.regimes[best] != regime or not rows:
         return Found(reason=f"{best} is not found to flow in the {regime} regime, or no other row does")
     pairs = {row: evidence.by_packing("wear_rate", [row, best]) for row in rows}
-    return Found({row: estimate(both[row] / both[best], log=True) for row, both in pairs.items()}, [best, *rows])
+    named = {row: estimate(both[row] / both[best], log=True) for row, both in pairs.items()}
+    return Found(named, [best, *rows], of=_all(evidence))
 
 
 def _force(evidence: Evidence) -> Found:
-    return _of_rows(evidence, "force_over_plain", list(evidence.regimes), none="no row has a result")
+    rows = list(evidence.regimes)
+    return _of_rows(evidence, "force_over_plain", rows, none="no row has a result", of=_all(evidence))
 
 
 def _force_and_wear(evidence: Evidence) -> Found:
@@ -166,7 +185,7 @@ def _force_and_wear(evidence: Evidence) -> Found:
     if not both:
         return Found(reason="no row has a plain twin with a result")
     named = {f"{row} {what}": each[row] for row in both for what, each in (("force up", force), ("wear down", inverse))}
-    return Found(named, both)
+    return Found(named, both, of=_all(evidence, [EXCEPTION]))
 
 
 # ---------------------------------------------------------------- motion of the particles

@@ -39,6 +39,7 @@ class Evidence:
     coefficients: {term: value} of the published regression, without its constant
     published: {(quantity, of, relation): value} as in config/published/screening_results.csv
     told: {row: regime} as the source tells them
+    design: all rows of the source
     """
 
     rows: pd.DataFrame
@@ -48,6 +49,7 @@ class Evidence:
     coefficients: Mapping[str, float]
     published: Mapping[tuple[str, str, str], float]
     told: Mapping[str, str]
+    design: Sequence[str]
 
     @property
     def regimes(self) -> dict[str, str]:
@@ -100,6 +102,7 @@ def gather(
         coefficients=dict(zip(terms["term"], terms["coefficient"].astype(float), strict=True)),
         published=theirs["value"].astype(float).to_dict(),
         told=tables["published_regimes"].set_index("row")["regime"].to_dict(),
+        design=tables["published_design"]["row"].astype(str).to_list(),
     )
 
 

@@ -104,7 +104,7 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Section]:
     counts = ", ".join(f"{count} {verdict}" for verdict, count in verdicts["verdict"].value_counts().items())
     asked = (
         "Each finding of Yan 2022, chapter 3, as a claim with its margin, fixed before the runs "
-        f"(config/published/verdicts.yaml, {date_of_rules()}), against the runs of this page"
+        f"(config/published/verdicts.yaml, {date_of_rules('screening')}), against the runs of this page"
         f"{', at the reduced scale told at its top' if study['remarks'] else ''}. Of {len(verdicts)} claims: {counts}."
     )
     note = (
