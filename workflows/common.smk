@@ -13,7 +13,7 @@ from bulkwear.workflows.config.design import ConfigError, list_studies, load_stu
 from bulkwear.workflows.config.published_tables import check_published
 from bulkwear.workflows.config.rounds import read_round
 from bulkwear.workflows.config.run_checks import check_files
-from bulkwear.workflows.config.targets import default_studies, naming, requested_studies
+from bulkwear.workflows.config.targets import default_studies, naming, nearly_studies, requested_studies
 from bulkwear.workflows.engine.cases import case_folders
 from bulkwear.workflows.engine.inputs import (
     SimulatedFrom,
@@ -73,6 +73,8 @@ def checked_studies(settings, named):
         studies = {name: load_study(name, overrides=settings) for name in names}
         if not GIVEN.target_jobs:
             check_published(PROJECT)
+            for sentence in nearly_studies(GIVEN.targets, names=NAMING):
+                logger.info(sentence)
             for study in studies.values():
                 check_files(study.name, study.case, study.runs)
         return studies

@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.__main__ import main
-from bulkwear.workflows.config.targets import Naming, naming, requested_studies
+from bulkwear.workflows.config.targets import Naming, naming, nearly_studies, requested_studies
 from bulkwear.workflows.engine.project import PACKAGE, Project
 from bulkwear.workflows.report.printed import PDF, browser
 from tests.support.loaded_project import load_project, plan
@@ -256,6 +256,9 @@ def test_names_with_words_round_them_are_ours():
     assert requested_studies([], jobs, project, named) == ["screening", "demo"]
     assert requested_studies(["all", "figures/a.png"], project=project, names=named) == ["demo"]
     assert requested_studies(["bw_cost_rates_x"], project=project, names=named) == []
+    near = nearly_studies(["bw_screning_x", "bw_screening_x", "all", "screning", "results/screning/"], project, named)
+    assert near == ["bw_screning_x is no study, the nearest is screening; it is taken for a rule of this Snakefile."]
+    assert nearly_studies(["screning"], project) == []
 
 
 LAW, CASE, MINE = "laws/hardened.py", "cases/dimpled/case.py", "config/studies/mine.yaml"

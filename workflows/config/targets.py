@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -67,6 +68,23 @@ def requested_studies(
     default = default_studies(project)
     wanted = [name for studies in asked for name in (default if studies is None else studies)]
     return list(dict.fromkeys(wanted if asked else default))
+
+
+def nearly_studies(targets: Iterable[str], project: Project | None = None, names: Naming = Naming()) -> list[str]:
+    """Return a sentence per target that is no study of ours but spelt nearly as one. Where another Snakefile takes the
+    workflow as a module it may be a rule of that Snakefile, so it is no fault yet.
+    """
+    written = list_studies(project or current_project())
+    sentences = []
+    for word in targets if names.is_module else ():
+        name = names.ours(word)
+        if _studies_of(word, written, names) is not None or not name or "/" in word or "." in word:
+            continue
+        if near := difflib.get_close_matches(name, written, n=1):
+            sentences.append(
+                f"{word} is no study, the nearest is {near[0]}: it is taken for a rule of the Snakefile here."
+            )
+    return sentences
 
 
 def _studies_of_job(rule: str, wildcards: Mapping[str, str], written: list[str], names: Naming) -> list[str] | None:
