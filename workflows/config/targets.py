@@ -81,9 +81,7 @@ def nearly_studies(targets: Iterable[str], project: Project | None = None, names
         if _studies_of(word, written, names) is not None or not name or "/" in word or "." in word:
             continue
         if near := difflib.get_close_matches(name, written, n=1):
-            sentences.append(
-                f"{word} is no study, the nearest is {near[0]}: it is taken for a rule of the Snakefile here."
-            )
+            sentences.append(f"{word} is no study, the nearest is {near[0]}; it is taken for a rule of this Snakefile.")
     return sentences
 
 
