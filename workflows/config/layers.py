@@ -196,9 +196,14 @@ def _collect_lines(node: yaml.Node | None, path: KeyPath, lines: dict[KeyPath, i
         name, line = key.value, key.start_mark.line + 1
         if not isinstance(key, yaml.ScalarNode) or key.tag != "tag:yaml.org,2002:str":
             raise ConfigError(f"{source}, line {line}: found {_key_words(key)}, allowed are words as keys.")
-        if len(name) > LONGEST_KEY or not name.isprintable():
+        if len(name) > LONGEST_KEY:
             raise ConfigError(
                 f"{source}, line {line}: found a key of {len(name)} letters, allowed are words of {LONGEST_KEY}."
+            )
+        if not name.isprintable():
+            raise ConfigError(
+                f"{source}, line {line}: found the key {name!a}, in which a letter does not print, such as the space of"
+                " a web page; allowed are plain words."
             )
         if name in seen:
             full = dotted((*path, name))

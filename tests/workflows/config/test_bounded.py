@@ -30,6 +30,7 @@ HOSTILE = {
     "a tag of YAML": ("a: !!binary aGVsbG8=", "there is a tag"),
     "many keys": ("\n".join(f"k{n}: 1" for n in range(MOST_VALUES)), f"more than {MOST_VALUES} values"),
     "half a letter": (r'a: "\ud800"', "half a letter"),
+    "a key with a space of a web page": ("pack\u00a0ings: 1", "in which a letter does not print"),
     "a long key": (f"? {'k' * 10_000}\n: 1", "a key of 10000 letters"),
     "a block as key": ("? [a]\n: b", "a block as a key"),
     "no YAML": ("a: [", "allowed is valid YAML"),

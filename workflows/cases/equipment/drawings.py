@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping
@@ -26,9 +27,20 @@ def drawing_source(name: str) -> Path:
         if found := project.every(candidate.as_posix()):
             return found[0]
     raise ConfigError(
-        f"{MESHES}/{name}: there is no such file, and no {SCRIPT} in its folder that draws it; allowed is a CAD or "
-        f"mesh file in {MESHES} of the project or the package."
+        f"{MESHES}/{name}: there is no such file{_nearest(name)}, and no {SCRIPT} in its folder that draws it; allowed is a CAD "
+        f"or mesh file in {MESHES} of the project or the package."
     )
+
+
+def _nearest(name: str) -> str:
+    """Return which file of the folder has nearly that name, in brackets, where there is one."""
+    try:
+        beside = current_project().names(Path(MESHES, name).parent.as_posix(), "")
+    except OSError:  # a name that no file system takes
+        return ""
+    small = {each.lower(): each for each in beside}
+    near = difflib.get_close_matches(Path(name).name.lower(), list(small), n=1)
+    return f" (the nearest is {small[near[0]]})" if near else ""
 
 
 def check_solid(part: Mapping[str, Any], names: Iterable[str]) -> None:

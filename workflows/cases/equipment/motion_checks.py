@@ -6,12 +6,15 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED, motion_faults, motion_of
 from bulkwear.workflows.cases.equipment.parameters import most_blocks
 from bulkwear.workflows.config.run_checks import Check, CheckedRun, Fault
 from bulkwear.workflows.config.units import to_si
 
 TINY = 1e-12  # of a component of a direction; its square is lost beside 1
+STILL = 1e-6  # rad/s, rad, m/s or m: a part that moves by no more stands still for as long as anything is simulated
 FEWEST_STEPS_OF_PERIOD = 20.0  # in which a part swings once
 # keys of a motion as parameters have them -> as a study has them
 WRITTEN = {
@@ -41,14 +44,13 @@ def motions_move(run: CheckedRun) -> Fault | None:
     """Motions have a direction and a pace, stop after they have started, and start while the machine starts up."""
     start_up = run.parameters["start_up"]["most_s"]
     for part, motion in _moving(run):
-        still = next(
-            (name for name in DIRECTIONS if name in motion and not any(abs(part) > TINY for part in motion[name])), None
-        )
-        still = still or next((name for name in PACES if motion.get(name) == 0.0), None)
+        given = {name: np.abs(motion[name]).max() for name in (*DIRECTIONS, *PACES) if name in motion}
+        still = next((name for name, size in given.items() if size <= (TINY if name == "axis" else STILL)), None)
         key = f"parts.{part}.motion"
         if still:
             many = "numbers that are not all 0" if still in DIRECTIONS else "a number other than 0"
-            return f"{key}.{WRITTEN.get(still, still)}", f"{many}, or a part without motion"
+            slow = " or nearly" if given[still] else ""
+            return f"{key}.{WRITTEN.get(still, still)}", f"{many}{slow}, or a part without motion"
         full = motion.get("start_s", 0.0) + motion.get("ramp_s", 0.0)
         stop = motion.get("stop_s", math.inf)
         if stop < full or not stop:

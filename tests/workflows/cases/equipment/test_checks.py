@@ -136,12 +136,22 @@ MOTIONS = [
     (
         motion(**{**TURNS, "axis": [0, 1e-300, 0]}),
         "parts.plate.motion.axis is [0, 1e-300, 0]",
-        "numbers that are not all 0, or a part without motion",
+        "numbers that are not all 0 or nearly, or a part without motion",
     ),
     (
         motion(**{**TURNS, "speed_rpm": 0}),
         "parts.plate.motion.speed_rpm is 0",
         "a number other than 0, or a part without",
+    ),
+    (
+        motion(**{**TURNS, "speed_rpm": 1e-9}),
+        "parts.plate.motion.speed_rpm is 1e-09",
+        "a number other than 0 or nearly, or a part without",
+    ),
+    (
+        motion(kind="translation", velocity_m_per_s=[0, 1e-11, 0]),
+        "parts.plate.motion.velocity_m_per_s is [0, 1e-11, 0]",
+        "numbers that are not all 0 or nearly",
     ),
     (
         motion(kind="translation", velocity_m_per_s=[0, 0, 0]),

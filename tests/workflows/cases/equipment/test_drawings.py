@@ -82,6 +82,15 @@ def test_script_that_does_not_draw_is_one_sentence(project, tmp_path, script, wo
     assert "\n" not in str(fault.value)
 
 
+def test_the_nearest_drawing_is_named(project):
+    """Also where upper and lower case differ alone."""
+    for name in ("Lid.STEP", "lid.step"):
+        (project / "meshes/feeder/LID.step").write_text("")
+        with pytest.raises(ConfigError, match=rf"^meshes/feeder/{name}: .* file \(the nearest is LID\.step\), and no"):
+            (project / "meshes/feeder/draw.py").unlink(missing_ok=True)
+            drawing_source(f"feeder/{name}")
+
+
 def test_neither_file_nor_script_is_one_sentence(project, tmp_path):
     """It names what is missing and what is allowed."""
     with pytest.raises(ConfigError, match=r"^meshes/hopper/box\.step: there is no such file, and no draw\.py"):
