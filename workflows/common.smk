@@ -37,6 +37,7 @@ from bulkwear.workflows.report.products import looked_up, paths_of, told_to
 min_version("9.0")
 
 CORES = workflow.cores or 1  # on a cluster those of a submission of small jobs
+MANY_RUNS = 500  # of a study, for which Snakemake plans about a tenth of a second each
 # Another Snakefile may take this workflow as a module, and put words round the names of its rules.
 NAMING = naming(workflow.modifier.modify_rulename, workflow.modifier.base_snakefile is not None)
 MADE_BY_DEFAULT = not workflow.default_target  # unless that Snakefile has said before what is
@@ -76,6 +77,8 @@ def checked_studies(settings, named):
             for sentence in nearly_studies(GIVEN.targets, names=NAMING):
                 logger.info(sentence)
             for study in studies.values():
+                if len(study.runs) > MANY_RUNS:
+                    logger.info(f"Study {study.name} has {len(study.runs):,} runs: to plan them takes minutes.")
                 check_files(study.name, study.case, study.runs)
         return studies
     except (ConfigError, DeckError, ProjectError) as fault:

@@ -27,8 +27,8 @@ def drawing_source(name: str) -> Path:
         if found := project.every(candidate.as_posix()):
             return found[0]
     raise ConfigError(
-        f"{MESHES}/{name}: there is no such file{_nearest(name)}, and no {SCRIPT} in its folder that draws it; allowed is a CAD "
-        f"or mesh file in {MESHES} of the project or the package."
+        f"{MESHES}/{name}: there is no such file{_nearest(name)}, and no {SCRIPT} in its folder that draws it; "
+        f"allowed is a CAD or mesh file in {MESHES} of the project or the package."
     )
 
 
