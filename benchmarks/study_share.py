@@ -142,7 +142,7 @@ def measures(folder: Path, quick: bool) -> list[Measure]:
             whole = f"{row['by']} of all {row['jobs']:.0f} jobs, {row['wall_hours']:.2f} h"
             told.append(measured(f"{name}, outside the solver", "%", [share], whole))
         if not math.isnan(row["outside_cycles_percent"]):
-            whole = f"processor time of {of_cycles} wear cycles"
+            whole = f"processor time of {of_cycles} wear cycle{'s' if of_cycles > 1 else ''}"
             told.append(measured(f"{name}, outside the solver in cycles", "%", [row["outside_cycles_percent"]], whole))
         if row.get("forecast_core_hours", 0.0) > 0.0:
             hours, forecast = [row["solver_core_hours"]], [row["forecast_core_hours"]]
