@@ -103,8 +103,8 @@ def findings(study: Mapping[str, Any], folder: Path) -> list[Section]:
     runs = read_with_texts(folder / "findings" / "runs.csv")
     counts = ", ".join(f"{count} {verdict}" for verdict, count in verdicts["verdict"].value_counts().items())
     asked = (
-        "Each finding of Yan 2022, chapter 3, as a claim with its margin, fixed before the runs "
-        f"(config/published/verdicts.yaml, {date_of_rules('screening')}), against the runs of this page"
+        "Each finding of Yan 2022, chapter 3, as a claim with its margin (config/published/verdicts.yaml, of "
+        f"{date_of_rules('screening')}, which tells what came after runs), against the runs of this page"
         f"{', at the reduced scale told at its top' if study['remarks'] else ''}. Of {len(verdicts)} claims: {counts}."
     )
     note = (
