@@ -11,6 +11,7 @@ from bulkwear.workflows.cases.equipment.findings import answers_on_lifters, inte
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.report.sentences import PERCENT, capital, listed
 
+PLACE_DIGITS = 1  # after the point, of a place in mm: beyond is rounding
 RATE, AREA = "pristine_mm_per_1000h", "area_mm2"
 MOST_SAID = 4  # designs and parts that a sentence enumerates
 SHARE_AT_END = 0.25  # -, of the time that the flow is shown for: means over it tell what it came to
@@ -74,7 +75,7 @@ def fastest_place(rates: pd.DataFrame) -> str:
     worst = known.loc[known[RATE].idxmax()]
     own = rates[(rates["setting"] == worst["setting"]) & (rates["part"] == worst["part"])].dropna(subset=RATE)
     mean = float(np.average(own[RATE], weights=own[AREA]))
-    place = ", ".join(rounded(worst[f"{axis}_mm"], 3) for axis in "xyz")
+    place = ", ".join(rounded(round(worst[f"{axis}_mm"], PLACE_DIGITS), 3) for axis in "xyz")
     return (
         f"{capital(who(rates, worst))} wears fastest as built, by {rounded(worst[RATE])} mm per 1,000 h at ({place}) mm"
         f" of its drawing, {rounded(worst[RATE] / mean)} times the mean over its area."

@@ -39,6 +39,7 @@ def test_the_fastest_place():
         "The liner wears fastest as built, by 6.0 mm per 1,000 h at (100, 100, 100) mm of its drawing, 2.0 times the"
         " mean over its area."
     )
+    assert " at (100, 0, -12.3) mm of" in findings.fastest_place(rates.assign(y_mm=-2e-15, z_mm=-12.34))
     assert findings.fastest_place(rates.assign(pristine_mm_per_1000h=0.0)) == "Nothing wears as built."
 
 
