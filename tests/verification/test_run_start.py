@@ -85,7 +85,7 @@ def data(surface: str) -> str:
     modulus = YOUNG / (2.0 * (1.0 - POISSON**2))
     at_rest = (MASS * GRAVITY / (4.0 / 3.0 * modulus * np.sqrt(RADIUS))) ** (2.0 / 3.0)  # m, Hertz
     overlap = at_rest * np.random.default_rng(1).uniform(0.3, 2.0, len(held))
-    spheres = [(1, *place) for place in held + np.column_stack([0.0 * overlap, 0.0 * overlap, 2.0 * RADIUS - overlap])]
+    spheres = [(1, *place) for place in held + np.outer(2.0 * RADIUS - overlap, [0.0, 0.0, 1.0])]
     if surface == "particles":
         spheres += [(2, *place) for place in held]
     lines = [f"{k} {kind} {2 * RADIUS} {DENSITY} {x} {y} {z}" for k, (kind, x, y, z) in enumerate(spheres, start=1)]
@@ -115,6 +115,7 @@ def over_limit(program: str, folder, surface: str) -> np.ndarray:
 
 @pytest.mark.parametrize("surface", SURFACES)
 def test_friction_keeps_to_its_limit(tmp_path, surface):
+    """Also of spheres that rise and sink, whose springs stand on either side of the limit."""
     assert over_limit(str(BUILT), tmp_path, surface) == pytest.approx(1.0, rel=ROUNDING)
 
 

@@ -32,13 +32,15 @@ class Found:
     """What a claim is judged by.
 
     estimates: by name, each of which is claimed; rows: those that it rests on; reason: why nothing can be said, if so
-    of: rows of the source that it is claimed of, each of which could contradict it
+    of: rows of the source that it is claimed of, each of which could contradict it; lacking: those that were run and
+        have no value
     """
 
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
     rows: Sequence[str] = ()
     reason: str = ""
     of: Sequence[str] = ()
+    lacking: Sequence[str] = ()
 
 
 Builder = Callable[[Evidence], Found]
@@ -74,7 +76,7 @@ def verdict_on(claim: Claim, evidence: Evidence) -> Verdict:
     verdict = judged(claim, found.estimates, words(found.estimates), covers)
     if verdict.verdict == UNSAID and covers != claim.reach and unsteady and verdict.reason.startswith("claimed of"):
         return replace(verdict, reason=f"{verdict.reason}; {_some(unsteady)} not shown to be steady")
-    missing = [row for row in found.of if row not in evidence.regimes]
+    missing = [row for row in found.of if row not in evidence.regimes or row in found.lacking]
     if missing and verdict.verdict in (AGREES, OTHER_SIZE):
         shown = f"{', '.join(found.rows)} {'do' if len(found.rows) > 1 else 'does'} as claimed"
         return not_said(f"{shown}; {_some(missing)} not there", verdict.found)
@@ -109,7 +111,8 @@ def _of_rows(
     if not rows:
         return Found(reason=none)
     found = evidence.by_row(column, rows, log)
-    return Found(found, list(found), "" if found else "none of the rows has a value", of)
+    lacking = [row for row in rows if row not in found]
+    return Found(found, list(found), "" if found else "none of the rows has a value", of, lacking)
 
 
 def _all(evidence: Evidence, without: Sequence[str] = ()) -> list[str]:
@@ -185,7 +188,7 @@ def _force_and_wear(evidence: Evidence) -> Found:
     if not both:
         return Found(reason="no row has a plain twin with a result")
     named = {f"{row} {what}": each[row] for row in both for what, each in (("force up", force), ("wear down", inverse))}
-    return Found(named, both, of=_all(evidence, [EXCEPTION]))
+    return Found(named, both, of=_all(evidence, [EXCEPTION]), lacking=[row for row in rows if row not in both])
 
 
 # ---------------------------------------------------------------- motion of the particles

@@ -239,6 +239,10 @@ def test_rows_that_were_not_run_are_named(tables):
     assert table.loc["normal_force_up", "reason"].endswith("do as claimed; R2, R5, R12 are not there")
     assert table.loc["convex_wears_less", "reason"].endswith("do as claimed; R2, R5 are not there")
     summary = tables["summary"]
+    without = summary["wear_over_plain"].mask(summary["row"].str.startswith("R8"))
+    lacks = verdicts({**tables, "summary": summary.assign(wear_over_plain=without)})
+    assert lacks.loc[["convex_wears_less", "force_up_wear_down"], "verdict"].unique().tolist() == [UNSAID]
+    assert lacks.loc["convex_wears_less", "reason"].endswith("do as claimed; R8 is not there")
     more = summary["wear_over_plain"].mask(summary["row"].str.startswith("R8"), 2.0 + 0.01 * summary.index % 3)
     here = {**tables, "summary": summary.assign(wear_over_plain=more)}
     one = verdicts({**here, **{name: here[name][~here[name]["row"].isin(gone)] for name in names}})
