@@ -32,6 +32,7 @@ from bulkwear.workflows.report.markdown import (
     fidelity_that_was_run,
     origin_of,
     simulated_between,
+    versions_in_folder,
     write_results,
 )
 from bulkwear.workflows.report.page import package_version
@@ -44,12 +45,13 @@ from bulkwear.workflows.report.provenance_of_pages import (
     read_origins,
     recorded,
 )
-from bulkwear.workflows.report.simulated import Simulated, versions_of
+from bulkwear.workflows.report.simulated import Simulated, versions_of, warnings_of
 from bulkwear.workflows.report.spot_checks import read_checks
 from bulkwear.workflows.results.index import mark, redo
 
 PROFILE = "workflows/profiles/default"
 WRITTEN = "written from"  # begins what is said of a page that was remade
+GO_ON = "What is begun goes on by the present code, and the page is of both; for one of the present code alone move"
 PENDING = "update pending"  # what Snakemake's summary plans for a file
 
 
@@ -109,10 +111,13 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
     ran_here = fidelity_that_was_run(folder) in (None, study.fidelity)
     pending = pending_of(origin, cores) if ran_here else None
     missing = missing_work(study.foreseen, pending)
+    begun = [] if pending is None else begun_by_older_code(folder, study, origin.case)
     solving = pending is None or any(rule in study.case.solver_rules for rule, _ in pending)
     if solving and not run:
         what = f"{len(missing)} jobs of the solver are not done in results/{origin.study}"
-        return f"{what}; redoing costs {cost_words(missing, cores)}: {redo(origin)}"
+        return f"{what}; redoing costs {cost_words(missing, cores)}: {' '.join([redo(origin), *begun])}"
+    if solving and begun:
+        print(f"{origin.page}: {' '.join(begun)}", file=sys.stderr, flush=True)
     if pending or pending is None:
         call(study_command(origin.study, origin, cores))
     if origin.figure:
@@ -121,6 +126,12 @@ def remake_study(origin: Origin, docs: Path, cores: int, run: bool) -> str:
     else:
         write_results(folder, docs, as_decided(study, folder))
     return f"{WRITTEN} results/{origin.study}"
+
+
+def begun_by_older_code(folder: Path, study: Study, case: str) -> list[str]:
+    """Return the sentences about what older code has simulated in a study's folder; none where no part is newer."""
+    found = warnings_of(versions_in_folder(folder, study), code_of_cases((case,)), [case])
+    return [*found, f"{GO_ON} {folder} away."] if found else []
 
 
 def remake_by_command(origin: Origin, docs: Path, run: bool) -> str:

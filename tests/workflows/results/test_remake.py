@@ -186,6 +186,21 @@ def test_runs_of_another_fidelity_are_not_those_of_the_page(monkeypatch, done, t
     assert "jobs of the solver are not done in results/demo" in said and done == []
 
 
+@pytest.mark.parametrize(("run", "older"), [(False, True), (True, True), (True, False)])
+def test_runs_begun_by_older_code_are_told_before_they_go_on(monkeypatch, done, tmp_path, capsys, run, older):
+    """With what to move for a page of one version; nothing is said of runs of the present code."""
+    code = code_of_cases(("sliding_sample",)) | {"date": "2026-11-22T10:00:00Z"}
+    code = code | {"parts": code["parts"] | ({"solver": "another"} if older else {})}
+    state = Path("results/demo/R5_convex/cycle_001/state.json")
+    state.parent.mkdir(parents=True)
+    state.write_text(json.dumps({PROVENANCE: code}))
+    monkeypatch.setattr(module, "pending_of", lambda origin, cores: [RUN])
+    monkeypatch.setattr(module, "fidelity_that_was_run", lambda folder: "quick")
+    said = module.remake_study(DEMO, tmp_path, 2, run) + capsys.readouterr().err
+    told = "R5_convex: simulated by" in said and "the page is of both" in said and "move results/demo away" in said
+    assert told == older
+
+
 def test_a_page_of_a_command_is_renewed_from_its_simulations(done, tmp_path):
     """Written since its last run: their versions and cost are kept; with a newer run it is not its page."""
     code = code_of_cases(("pin_on_disc",)) | {"date": "2026-11-22T10:00:00Z"}
