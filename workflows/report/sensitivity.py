@@ -62,6 +62,9 @@ def finding(table: pd.DataFrame) -> str:
             said.append(f"Of {response} no index is told: {rows[REASON].iloc[0]}.")
             continue
         most = known.loc[known["total"].idxmax()]
+        if len(known) > 1 and (known["total"] > 0.0).sum() == 1:
+            said.append(f"Of {response} the model holds {most['factor']} alone, so that there are no shares to tell.")
+            continue
         ends = f"95 % interval {PERCENT * most['first_low']:.0f} to {PERCENT * most['first_high']:.0f} %"
         together = PERCENT * max(1.0 - known["first"].sum(), 0.0)
         said.append(

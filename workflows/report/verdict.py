@@ -62,7 +62,7 @@ def lights_of_wear(study: Mapping[str, Any], folder: Path, summary: pd.DataFrame
     """Return how far the wear of a study can be trusted."""
     page = page_of(study["case"])
     return [
-        steady_light(page.steadiness(folder) if hasattr(page, "steadiness") else steadiness(study, folder)),
+        steady_light(*_judged_steady(page, study, folder)),
         cap_light(study, summary),
         friction_light(study, folder),
         packings_light(pd.read_csv(folder / "design.csv", dtype=str)),
@@ -91,11 +91,18 @@ def _steady(wear: pd.DataFrame) -> str:
     return steady_window(wear["travel_m"].to_numpy(), (wear["worn_volume_m3"] / distances).to_numpy()).answer
 
 
-def steady_light(answers: Sequence[str]) -> Light:
-    """Return whether runs are steady, from an answer of `statistics.steady` per run."""
+def _judged_steady(page: Any, study: Mapping[str, Any], folder: Path) -> tuple[list[str], str]:
+    """Return an answer per run, and of what: a case of its own way judges the shape as built."""
+    if hasattr(page, "steadiness"):
+        return page.steadiness(folder), ", on the shape as built"
+    return steadiness(study, folder), ""
+
+
+def steady_light(answers: Sequence[str], of: str = "") -> Light:
+    """Return whether runs are steady, from an answer of `statistics.steady` per run; of: what of them, in words."""
     counts, runs = Counter(answers), len(answers)
     if counts[STEADY] == runs:
-        return Light("Steady", SOUND, "All runs are.")
+        return Light("Steady", SOUND, f"All runs are{of}.")
     if counts[DRIFTING]:
         return Light("Steady", WEAK, f"{counts[DRIFTING]} of {runs} runs still change: longer ones would tell more.")
     return Light("Steady", CARE, f"Of {counts[UNSAID]} of {runs} runs it cannot be said: they are too short.")

@@ -40,6 +40,17 @@ def test_the_share_is_that_of_all_cycles_and_of_faces_that_wear(tmp_path):
     assert friction_share(left_by_a_run(tmp_path / "run", [1.0, 0.5]), FRICTIONS) == pytest.approx(0.75)
 
 
+def test_the_part_where_it_is_smallest_decides(tmp_path):
+    """One that flutters is not hidden by one that slides much more; one that is hardly touched says nothing."""
+    labels = np.array([0, 1, 1])
+    for sliding, share in (([1000.0, 50.0, 50.0], 0.3), ([1000.0, 1.0, 1.0], 1.0)):
+        run = left_by_a_run(tmp_path / f"run{share}", [1.0], labels=labels, sliding=np.array(sliding))
+        table = pd.read_parquet(run / "cycle_001" / LEDGER)
+        table["tangential_work_J"] *= np.where(labels == 1, 0.3, 1.0)
+        table.to_parquet(run / "cycle_001" / LEDGER)
+        assert friction_share(run, FRICTIONS) == pytest.approx(share)
+
+
 def test_one_friction_holds_for_all_faces(tmp_path):
     """Faces of one material: a number does."""
     share = friction_share(left_by_a_run(tmp_path / "run", [0.9], labels=np.zeros(3, dtype=int)), FRICTIONS[0])

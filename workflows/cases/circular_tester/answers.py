@@ -15,7 +15,12 @@ from bulkwear.postproc.statistics.intervals import UNKNOWN
 from bulkwear.postproc.statistics.verdicts import AGREES, VERDICTS
 from bulkwear.postproc.tables.summary import patterned_name, published_value
 from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
-from bulkwear.workflows.cases.circular_tester.figure_findings import most_worn, revolutions, share_on_pattern
+from bulkwear.workflows.cases.circular_tester.figure_findings import (
+    faster_than_plain,
+    most_worn,
+    revolutions,
+    share_on_pattern,
+)
 from bulkwear.workflows.cases.circular_tester.key_numbers import PUBLISHED_FITS, of_study
 from bulkwear.workflows.cases.circular_tester.packings import HIGH, LOW
 from bulkwear.workflows.cases.circular_tester.sensitivity_figures import SETTINGS_SAID
@@ -91,7 +96,7 @@ def beside_experiment(compared: pd.DataFrame, name: str) -> list[str]:
         said.append(
             f"After {row['hours']:g} h the {name} sample has lost {measured(row[OURS], 'mm³')} ({ends}{how}),"
             f" {number(row[OURS] / row[LABORATORY], 2)} times the measured {measured(row[LABORATORY], 'mm³')}"
-            f"{', which is within the interval' if inside else ', which is not' if known else ''}."
+            f"{', which is within the interval' if inside else ', which is outside the interval' if known else ''}."
         )
     return said
 
@@ -160,17 +165,18 @@ def gone(left: pd.DataFrame, hours_per_revolution: float) -> list[str]:
 
     Nothing of patterns that stay. left: as from `comparison.pattern_left`
     """
+
+    def told(revolution: float) -> str:
+        of_test = measured(revolution * hours_per_revolution, "h")
+        return f"{number(float(f'{revolution:.2g}'), 2)} revolutions ({of_test})"
+
     said = []
     for row in worn_out_at(left).itertuples():
         if not math.isfinite(row.worn_out_revolution):
             continue
-        times = [
-            f"{number(float(f'{each:.2g}'), 2)} revolutions ({measured(each * hours_per_revolution, 'h')})"
-            for each in (row.worn_out_revolution, row.faster_revolution)
-            if math.isfinite(each)
-        ]
-        faster = f"; from {times[1]} on its sample loses more than the plain one" if len(times) > 1 else ""
-        said.append(f"The pattern of {row.run} is gone after {times[0]}{faster}.")
+        faster = faster_than_plain(row, told)
+        said.append(f"The pattern of {row.run} is gone after {told(row.worn_out_revolution)}")
+        said[-1] += f"; its sample {faster}." if faster else "."
     return said
 
 

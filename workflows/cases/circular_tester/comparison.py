@@ -120,12 +120,14 @@ def worn_out_at(left: pd.DataFrame) -> pd.DataFrame:
 
     left: as from `pattern_left`. Columns: run, last_share (-), worn_out_revolution (less than WORN_OUT_SHARE is left),
     faster_revolution, faster_share (the mean loss per revolution first exceeds the plain sample's; what is left of the
-    pattern then, -), lost_over_plain (all that is lost at the end over what the plain sample loses till then, -).
+    pattern then, -), faster_for_good_revolution (it does so from there to the end), lost_over_plain (all that is lost
+    at the end over what the plain sample loses till then, -).
     """
     rows = []
     for run, of_run in left.groupby("run", sort=False):
         gone = of_run[of_run["pattern_share"] < WORN_OUT_SHARE]
-        faster = of_run[of_run["mean_per_revolution_mm3"] > of_run["plain_per_revolution_mm3"]]
+        exceeds = of_run["mean_per_revolution_mm3"] > of_run["plain_per_revolution_mm3"]
+        faster, for_good = of_run[exceeds], of_run[exceeds[::-1].cummin()[::-1]]
         last = of_run.iloc[-1]
         rows.append(
             {
@@ -134,6 +136,7 @@ def worn_out_at(left: pd.DataFrame) -> pd.DataFrame:
                 "worn_out_revolution": _first(gone["revolution"]),
                 "faster_revolution": _first(faster["revolution"]),
                 "faster_share": _first(faster["pattern_share"]),
+                "faster_for_good_revolution": _first(for_good["revolution"]),
                 "lost_over_plain": last["lost_mm3"] / (last["revolution"] * last["plain_per_revolution_mm3"]),
             }
         )

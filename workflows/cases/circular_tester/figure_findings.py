@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import pandas as pd
 
@@ -96,11 +98,23 @@ def worn_off(left: pd.DataFrame) -> str:
             gone = f"is gone after {measured(row.worn_out_revolution)} revolutions"
         else:
             gone = f"keeps {PERCENT * row.last_share:.3g} % in the end"
-        faster = row.faster_revolution
-        then = f" and wears faster than plain from {measured(faster)} on" if math.isfinite(faster) else ""
+        then = f" and {often}" if (often := faster_than_plain(row, measured)) else ""
         said.append(f"the pattern of {row.run} {gone}{then}")
     shown = "; ".join(said)
     return f"{shown[0].upper()}{shown[1:]}."
+
+
+def faster_than_plain(row: Any, told: Callable[[float], str]) -> str:
+    """Return from when a patterned sample wears faster than the plain one, first and for good; nothing where it never
+    does. row: of `comparison.worn_out_at`; told: returns a number of revolutions in words.
+    """
+    first, for_good = row.faster_revolution, row.faster_for_good_revolution
+    if not math.isfinite(first):
+        return ""
+    if first == for_good:
+        return f"wears faster than plain from {told(first)} on"
+    then = f", for good from {told(for_good)} on" if math.isfinite(for_good) else ", but not to the end"
+    return f"wears faster than plain first at {told(first)}{then}"
 
 
 # ---------------------------------------------------------------- places

@@ -14,6 +14,7 @@ from bulkwear.workflows.report.sentences import PERCENT, capital, listed
 PLACE_DIGITS = 1  # after the point, of a place in mm: beyond is rounding
 RATE, AREA = "pristine_mm_per_1000h", "area_mm2"
 MOST_SAID = 4  # designs and parts that a sentence enumerates
+LEAST_LOST = 0.01  # -, of the thickness as built: a place that has lost less counts as not worn
 SHARE_AT_END = 0.25  # -, of the time that the flow is shown for: means over it tell what it came to
 
 
@@ -83,12 +84,19 @@ def fastest_place(rates: pd.DataFrame) -> str:
 
 
 def thinnest_place(rows: pd.DataFrame) -> str:
-    """Return what is left at the thinnest place at the last hours shown; rows: as from `remaining.remaining_rows`."""
-    last = rows[rows["operation_h"] == rows["operation_h"].max()]
-    least = last.loc[last["least_remaining_mm"].idxmin()]
+    """Return what is left at the thinnest place that has lost some, at the last hours shown; of all where none has.
+
+    rows: as from `remaining.remaining_rows`
+    """
+    last, built = (rows[rows["operation_h"] == end] for end in (rows["operation_h"].max(), rows["operation_h"].min()))
+    names = ["setting", "part", "patch"]
+    before = last[names].merge(built, on=names, how="left")["least_remaining_mm"].to_numpy()
+    worn = last[last["least_remaining_mm"].to_numpy() < (1.0 - LEAST_LOST) * before]
+    least = (worn if len(worn) else last).loc[lambda table: table["least_remaining_mm"].idxmin()]
     how = "" if least["how"] == "simulated" else f" ({least['how']})"
     left, when = rounded(least["least_remaining_mm"]), _after(least["operation_h"])
-    return f"The thinnest place has {left} mm left {when}{how}; it is on {who(rows, least)}."
+    which = "worn place" if len(worn) else "place"
+    return f"The thinnest {which} has {left} mm left {when}{how}; it is on {who(rows, least)}."
 
 
 def impact_share(rows: pd.DataFrame) -> str:
@@ -165,10 +173,17 @@ def speeds(column: str, words: str):
 
 
 def charge(rows: pd.DataFrame) -> str:
-    """Return shoulder and toe by design and phase, mean over packings; rows: as from `flow_panels.charge_rows`."""
+    """Return shoulder and toe by design and phase, mean over packings and range; rows: `flow_panels.charge_rows`."""
     said, several = [], rows["setting"].nunique() > 1
     for (setting, phase), own in rows.groupby(["setting", "phase"], sort=False):
         shape = "as built" if phase == PRISTINE else "as worn"
         named = f"{setting}, {shape}" if several else shape
-        said.append(f"{named} {rounded(own['shoulder_deg'].mean(), 3)} and {rounded(own['toe_deg'].mean(), 3)} degrees")
+        shoulder, toe = (_over_packings(own[f"{which}_deg"]) for which in ("shoulder", "toe"))
+        said.append(f"{named} {shoulder} and {toe} degrees")
     return f"Shoulder and toe lie at: {'; '.join(said)}."
+
+
+def _over_packings(angles: pd.Series) -> str:
+    """Return the mean of an angle, with the range over packings where these differ."""
+    mean, low, high = (rounded(value, 3) for value in (angles.mean(), angles.min(), angles.max()))
+    return mean if low == high else f"{mean} ({low} to {high} in {len(angles)} packings)"

@@ -15,12 +15,13 @@ from bulkwear.postproc.tables.summary import THROUGH
 from bulkwear.workflows.cases.equipment.comparison import FIRST, LIFE, UNSAID
 from bulkwear.workflows.cases.equipment.life import AS_BUILT, EXTRAPOLATED, FOLLOWED, PARTLY, WHOLE_PART
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
-from bulkwear.workflows.report.sentences import spoken
+from bulkwear.workflows.report.sentences import listed, spoken
 
 Tables = Mapping[str, pd.DataFrame]
 TOO_WIDE = 100.0  # -, of the ends of an interval that tells nothing
 DIGITS = 2  # significant ones of an answer, whose interval is wide
 SMALLEST_CHANGE = 0.1  # %, below which a change is called none
+LEAST_RATE_CHANGE = 1.1  # -, factor of a rate by wear of the shape, from which on its further change is asked for
 STEADINESS = {STEADY: "steady", DRIFTING: "not steady", NOT_SAID: "not known to be steady"}
 FROM_ONE = 1.0  # number of packings of which the scatter is unknown
 PER_CENT = f"{100.0 * CONFIDENCE:.0f} %"
@@ -135,12 +136,23 @@ def earlier_words(row: pd.Series) -> str:
 def how_words(row: pd.Series) -> str:
     """Return as far as which hour the shape was worn, and what goes on from there."""
     hours = rounded(row.simulated_h)
+    rate = f"the last rate goes on{changed_rate_words(row)}"
     return {
         FOLLOWED: "The shape was worn until then.",
-        PARTLY: f"The shape was worn for {hours} h, until then in some packings; in the others the last rate goes on.",
-        EXTRAPOLATED: f"The shape was worn for {hours} h; from there on the last rate goes on.",
+        PARTLY: f"The shape was worn for {hours} h, until then in some packings; in the others {rate}.",
+        EXTRAPOLATED: f"The shape was worn for {hours} h; from there on {rate}.",
         AS_BUILT: "That is by the rate as built: the shape was not worn.",
     }[row.how]
+
+
+def changed_rate_words(row: pd.Series) -> str:
+    """Return how far wear has changed a rate that goes on; nothing where it was followed or hardly changed."""
+    if row.how not in (PARTLY, EXTRAPOLATED) or not row.pristine_mm_per_1000h > 0.0:
+        return ""
+    factor = row.worn_mm_per_1000h / row.pristine_mm_per_1000h
+    if not max(factor, 1.0 / factor if factor > 0.0 else math.inf) > LEAST_RATE_CHANGE:
+        return ""
+    return f", {rounded(factor)} times that as built: a further change is in no interval"
 
 
 def asked_words(row: pd.Series) -> str:
@@ -148,8 +160,9 @@ def asked_words(row: pd.Series) -> str:
     if not row.asked_h > 0.0:
         return ""
     asked = f"the {rounded(row.asked_h)} h that are asked for"
-    ends = [end for end in (row.life_low_h, row.life_high_h) if np.isfinite(end)]
-    if row.packings > FROM_ONE and ends and ends[0] <= row.asked_h <= ends[-1]:
+    known = np.isfinite(row.life_low_h)  # of one packing by its blocks, or by the coefficient alone
+    ends = (row.life_low_h, row.life_high_h) if known else (row.coefficient_low_h, row.coefficient_high_h)
+    if ends[0] <= row.asked_h <= ends[1]:
         return f"Whether it lasts {asked} cannot be said."
     return f"It {'lasts' if row.life_h >= row.asked_h else 'does not last'} {asked}."
 
@@ -168,9 +181,12 @@ def cards(life: pd.DataFrame) -> list[tuple[str, str]]:
 # ---------------------------------------------------------------- designs, worn shape
 
 
-def answers_on_designs(designs: pd.DataFrame) -> list[str]:
-    """Return how each design compares with the first one, and whether the interval says which is better."""
+def answers_on_designs(designs: pd.DataFrame, life: pd.DataFrame) -> list[str]:
+    """Return how each design compares with the first one, whether the interval says which is better, and whose life
+    hangs on a rate that wear was changing.
+    """
     found = []
+    changing = {(row.setting, row.part): changed_rate_words(row) for _, row in life.iterrows()}
     for quantity, words in RATIOS.items():
         rows = designs[designs["quantity"] == quantity]
         first = rows.loc[rows["verdict"] == FIRST].set_index("part")["setting"]
@@ -178,6 +194,9 @@ def answers_on_designs(designs: pd.DataFrame) -> list[str]:
             told = words.format(ratio=rounded(row.ratio, 3))
             than = f"The {spoken(row.part)} of {row.setting} {told} as that of {first[row.part]}"
             found.append(f"{than} ({ratio_words(row)}): {verdict_words(row)}.")
+            hanging = [name for name in (row.setting, first[row.part]) if changing.get((name, row.part))]
+            if quantity == LIFE and hanging:
+                found[-1] += f" That is if the last rate of {listed(hanging)} goes on, which wear was changing."
     return found
 
 
@@ -292,7 +311,7 @@ def answers_on_holes(summary: pd.DataFrame) -> list[str]:
 
 def all_answers(tables: Tables, summary: pd.DataFrame) -> list[str]:
     """Return the answers of a study in the order in which its page gives them: what decides, then all in detail."""
-    ratios = answers_on_designs(tables["designs"])
+    ratios = answers_on_designs(tables["designs"], tables["life"])
     open_ = [said for said in ratios if CANNOT_BE_SAID in said]
     return [
         *answers_on_first_change(tables["life"]),

@@ -132,7 +132,7 @@ def velocity_fields(job: Job) -> Any:
     digits=DIGITS,
     caption="""
     How full the section of the mill is, a mean over all snapshots on the shape as built and on the worn one, of the
-    first packing; the table has the angles of all packings. Shoulder and toe: where the layer at the shell, two mean
+    first packing; the sentence above has the angles of all. Shoulder and toe: where the layer at the shell, two mean
     diameters thick, is half as full as most of it; degrees from 12 o'clock in the sense of rotation, as Kalala (2008)
     tells them.
     """,

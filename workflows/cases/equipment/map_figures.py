@@ -54,6 +54,11 @@ def deforms(study: Study) -> bool:
     return study.settings["updates"]["most"] > 0
 
 
+def tells_what_is_left(study: Study) -> bool:
+    """Return whether something is left of parts at other hours than 0."""
+    return deforms(study) or any(run.parameters["operation"].get("told_at_s") for run in study.runs)
+
+
 TOLD = {"runs": runs_as_told}
 PACKINGS = "means over blocks and packings, told by area patches"
 
@@ -155,12 +160,14 @@ def wear_map(job: Job) -> Any:
     finding=figure_findings.thinnest_place,
     inputs=SURFACES,
     told=TOLD,
+    when=tells_what_is_left,
     digits=DIGITS,
     caption="""
     Thickness left as built, after the last simulated hour, and at the hours that the study wants told, of the first
     packing of each design. Between updates, and from the last one on, each face loses as much as its area patch,
     after the last one at the mean rate of the last shape. Red: as thin as the part is changed at, or thinner. Grey:
-    no back lies behind, so no thickness is known. Views as in the map of wear.
+    no back lies behind, so no thickness is known. The scale ends at the thickness as built of what is worn; thicker
+    places take the top colour. Views as in the map of wear.
     """,
 )
 def remaining_thickness(job: Job) -> Any:
@@ -218,8 +225,8 @@ def impact_and_sliding(job: Job) -> Any:
     caption="""
     Outlines as built and after hours of operation in planes through the worst place of each part, which is the origin:
     square to the long direction of the part and along the normal of the worn face; of a part that turns, square to its
-    axis, which is above, and the part moves to the left. True to scale. Below: the thickness removed along the whole
-    section. First packing of each design.
+    axis, which is above, and the part moves to the left. True to scale. Below, of parts that do not turn: the thickness
+    removed along the whole section. First packing of each design.
     """,
 )
 def profile_sections(job: Job) -> Any:

@@ -29,6 +29,7 @@ PER_PACKING = {  # table with a row per packing and phase: its columns and their
 }
 NAMES = {"out_t_per_h": "out", "held_kg": "held", "residence_s": "residence", "power_W": "power"}
 WEEKS_PER_YEAR = 365.25 / 7.0
+SETTINGS = "settings"  # column of published values: the settings of the design that they are beside
 INSIDE, ABOVE, BELOW = "inside", "above", "below"
 
 Rows = list[dict[str, Any]]
@@ -152,14 +153,30 @@ def beside_anchors(anchors: pd.DataFrame, computed: pd.DataFrame) -> pd.DataFram
     """Return published values beside the computed ones of the same quantity and unit.
 
     difference_percent: computed over published, less 1; where: whether the computed one lies in the published range.
-    anchors: rows of equipment_anchors.csv of a study; computed: as from `key_numbers`. A value that the study does not
-    compute stands there without one.
+    anchors: rows of equipment_anchors.csv of a study, each beside its `settings` alone where it names some; computed:
+    as from `key_numbers`. A value that the study does not compute stands there without one.
     """
     theirs = anchors.rename(columns={name: f"published_{name}" for name in ("value", "low", "high")})
     ours = computed.rename(columns={name: f"computed_{name}" for name in ("value", "low", "high")})
-    table = theirs.merge(ours, on=["quantity", "unit"], how="left", sort=False)
+    table = theirs.assign(anchor=range(len(theirs))).merge(ours, on=["quantity", "unit"], how="left", sort=False)
     table["setting"] = table["setting"].fillna("")
+    table = _of_its_settings(table, ours.columns) if SETTINGS in table else table.drop(columns="anchor")
     table["difference_percent"] = 100.0 * (table["computed_value"] / table["published_value"] - 1.0)
     value, low, high = (table[name] for name in ("computed_value", "published_low", "published_high"))
     where = np.select([value < low, value > high, (value >= low) & (value <= high)], [BELOW, ABOVE, INSIDE], "")
     return table.assign(where=where)
+
+
+def _of_its_settings(table: pd.DataFrame, computed: Sequence[str]) -> pd.DataFrame:
+    """Return published values without the computed ones of settings that they are not of; each stands at least once.
+
+    table: with columns anchor, one number per published value, and SETTINGS; computed: columns of what is computed
+    """
+    named = [each.split() if isinstance(each, str) else [] for each in table[SETTINGS]]
+    of_it = np.array([not names or own in names for names, own in zip(named, table["setting"], strict=True)], bool)
+    found = pd.Series(of_it).groupby(table["anchor"]).transform("any").to_numpy(bool)
+    alone = ~found & ~table.duplicated("anchor").to_numpy()
+    for name in computed:
+        if name not in ("quantity", "unit"):
+            table[name] = table[name].where(~alone, "" if name == "setting" else np.nan)
+    return table[of_it | alone].drop(columns=["anchor", SETTINGS]).reset_index(drop=True)

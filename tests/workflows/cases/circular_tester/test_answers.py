@@ -57,7 +57,7 @@ def test_volume_beside_the_experiment():
     for high, inside in ((90.0, True), (75.0, False)):
         several = alone.assign(interval_low=60.0, interval_high=high, note=NAN)
         (said,) = answers.beside_experiment(several, "convex")
-        assert ("is within the interval" in said) == inside and ("which is not." in said) != inside
+        assert ("is within the interval" in said) == inside and ("which is outside the interval." in said) != inside
     assert answers.beside_experiment(alone.assign(ours=NAN), "convex") == []
     assert answers.beside_experiment(alone, "disc") == []
 
@@ -109,7 +109,8 @@ def test_a_pattern_that_is_gone_is_told_in_hours():
         }
     )
     (said,) = answers.gone(left, 10.0)
-    assert said.startswith("The pattern of worn-out is gone after 200 revolutions (2\u202f000 h); from 200 revolutions")
+    assert said.startswith("The pattern of worn-out is gone after 200 revolutions (2\u202f000 h); its sample wears")
+    assert said.endswith("faster than plain from 200 revolutions (2\u202f000 h) on.")
     assert answers.gone(left.head(1), 10.0) == []
 
 

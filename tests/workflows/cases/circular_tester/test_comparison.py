@@ -85,5 +85,10 @@ def test_when_a_pattern_that_wears_off_loses_more_than_plain():
     rows = rows.assign(run="a", surface="convex", particle_scale=6.0, coefficient=5e-9, packing=1)
     left = pattern_left(rows, 5e-9, 120.0)
     end = worn_out_at(left).iloc[0]  # increments 2 x - 1, means of five of them the same
+    assert end["faster_for_good_revolution"] == 61.0
+    dips = left.assign(plain_per_revolution_mm3=np.where(left["revolution"] == 80.0, 1e9, 120.0))
+    assert worn_out_at(dips)[["faster_revolution", "faster_for_good_revolution"]].iloc[0].tolist() == [61.0, 81.0]
+    ends_below = worn_out_at(dips[dips["revolution"] <= 80.0]).iloc[0]
+    assert ends_below["faster_revolution"] == 61.0 and np.isnan(ends_below["faster_for_good_revolution"])
     assert end["faster_revolution"] == 61.0 and end["faster_share"] == pytest.approx(0.39, rel=EXACT)
     assert end["lost_over_plain"] == pytest.approx(100.0 / 120.0, rel=EXACT)

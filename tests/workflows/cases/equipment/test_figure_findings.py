@@ -47,10 +47,16 @@ def test_the_fastest_place():
     ("how", "said"), [("simulated", "400 h;"), ("last rate goes on", "400 h (last rate goes on);")]
 )
 def test_the_thinnest_place(how, said):
-    """At the last hours shown, and how they are known."""
-    rows = pd.DataFrame(PARTS | {"operation_h": 400.0, "least_remaining_mm": [12.0, 30.0], "how": how})
-    rows = pd.concat([rows.assign(operation_h=0.0, least_remaining_mm=1.0), rows])
-    assert findings.thinnest_place(rows) == f"The thinnest place has 12 mm left after {said} it is on the back liner."
+    """At the last hours shown, of places that lose some; a thin edge that stays is none."""
+    own = PARTS | {"patch": [0, 1], "how": how}
+    built = pd.DataFrame(own | {"operation_h": 0.0, "least_remaining_mm": [15.0, 31.0]})
+    rows = pd.concat([built, pd.DataFrame(own | {"operation_h": 400.0, "least_remaining_mm": [12.0, 30.0]})])
+    edge = rows.iloc[[0, 2]].assign(patch=2, least_remaining_mm=1.0)
+    both = pd.concat([rows, edge], ignore_index=True)
+    least = f"The thinnest worn place has 12 mm left after {said} it is on the back liner."
+    assert findings.thinnest_place(both) == least
+    kept = findings.thinnest_place(both[both["operation_h"] == 0.0])
+    assert kept.startswith("The thinnest place has 1.0 mm left as built")
 
 
 def test_impacts_and_pressure():
@@ -92,7 +98,7 @@ def test_speeds_and_charges_by_phase():
     assert "; fast, as built 1.5 m/s" in tell(pd.concat([panels, panels.assign(setting="fast")]))
     rows = {"setting": "plain", "phase": ["pristine", "pristine", "worn"], "shoulder_deg": [300.0, 302.0, 310.0]}
     assert findings.charge(pd.DataFrame(rows | {"toe_deg": 130.0})) == (
-        "Shoulder and toe lie at: as built 301 and 130 degrees; as worn 310 and 130 degrees."
+        "Shoulder and toe lie at: as built 301 (300 to 302 in 2 packings) and 130 degrees; as worn 310 and 130 degrees."
     )
 
 

@@ -112,6 +112,14 @@ def test_interval_round_what_is_asked_for_says_nothing(found):
     assert said.endswith("Whether it lasts the 8,000 h that are asked for cannot be said.")
 
 
+def test_one_packing_says_nothing_where_its_blocks_or_the_coefficient_leave_it_open(found):
+    """What is known of one packing is held against the hours that are asked for as an interval of several is."""
+    few = replace(RUN, pristine=1, updates=1, worn=1)
+    for error, said in ((0.5, "cannot be said."), (0.0, "It does not last")):
+        (answer,) = findings.answers_on_life(found("life", [replace(few, parts=(replace(LINER, error=error),))]))
+        assert said in answer.split("goes on.")[1]
+
+
 @pytest.mark.parametrize(
     ("motion", "said"),
     [
@@ -137,7 +145,8 @@ def test_clear_difference_is_said(found):
     """Half the rate is twice the life: better, and the interval says so; the first design stands for itself."""
     runs = [*packings("plain", (0.98, 1.0, 1.02)), *packings("R9", (0.49, 0.5, 0.51))]
     designs = found("designs", runs)
-    said = findings.answers_on_designs(designs)
+    lives = found("life", runs)
+    said = findings.answers_on_designs(designs, lives)
     assert said[0].startswith("The back liner of R9 lasts 2.00 times as long as that of plain (")
     assert all(each.endswith("that is better, and the interval says so.") for each in said) and len(said) == 2
     table = designs.set_index(["quantity", "setting"])
@@ -146,13 +155,28 @@ def test_clear_difference_is_said(found):
     assert table.loc[("worst_recession", "plain"), "value"] == pytest.approx(5.0, rel=1e-3)
 
 
+@pytest.mark.parametrize(("factor", "told"), [(1.6, True), (1.05, False), (0.5, True)])
+def test_a_rate_that_wear_was_changing_is_told_where_it_goes_on(found, factor, told):
+    """By how much, at the life and beside its ratio to the first design; not of one that hardly changes."""
+    changing = {"parts": (replace(LINER, worn=factor),)}
+    runs = [*packings("plain", (0.98, 1.0, 1.02)), *packings("R9", (0.49, 0.5, 0.51), **changing)]
+    lives = found("life", runs)
+    first, second = findings.answers_on_life(lives)
+    ratio = findings.answers_on_designs(found("designs", runs), lives)[0]
+    changed = lives.set_index("setting").loc["R9"]
+    by = changed["worn_mm_per_1000h"] / changed["pristine_mm_per_1000h"]
+    words = f"the last rate goes on, {by:.2g} times that as built: a further change is in no interval."
+    assert (words in second) == told and "the last rate goes on." in first
+    assert ("That is if the last rate of R9 goes on, which wear was changing." in ratio) == told
+
+
 def test_overlap_and_one_packing_say_nothing(found):
     """Scatter larger than the difference, or unknown, does not tell which is better."""
-    wide = findings.answers_on_designs(
-        found("designs", [*packings("A", (0.7, 1.0, 1.4)), *packings("B", (0.8, 1.1, 1.5))])
-    )
+    runs = [*packings("A", (0.7, 1.0, 1.4)), *packings("B", (0.8, 1.1, 1.5))]
+    wide = findings.answers_on_designs(found("designs", runs), found("life", runs))
     assert all(each.endswith("which is better cannot be said.") for each in wide) and wide
-    one = findings.answers_on_designs(found("designs", [*packings("A", (1.0,)), *packings("B", (2.0,))]))
+    runs = [*packings("A", (1.0,)), *packings("B", (2.0,))]
+    one = findings.answers_on_designs(found("designs", runs), found("life", runs))
     assert all(UNKNOWN in each and each.endswith("which is better cannot be said.") for each in one) and one
 
 
@@ -171,7 +195,7 @@ def test_part_that_the_first_design_has_not_is_not_compared(found):
     table = found("designs", runs)
     alone = table[(table["part"] == "wheel") & (table["quantity"] == "life")].iloc[0]
     assert alone["setting"] == "B" and np.isnan(alone["ratio"]) and alone["verdict"] == ""
-    assert all("wheel" not in each for each in findings.answers_on_designs(table))
+    assert all("wheel" not in each for each in findings.answers_on_designs(table, found("life", runs)))
 
 
 # ---------------------------------------------------------------- worn shape, flow, balance

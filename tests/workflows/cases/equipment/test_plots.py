@@ -269,11 +269,22 @@ def test_edges_do_not_set_the_scale_of_thickness():
     """The rim of a plate is as thick as the plate is long."""
     mesh = scenes.box((1.0, 0.6, 0.05), 0.1)
     top = facing(mesh, (0.0, 0.0, 1.0))
-    shown = PartMap("as built", "plate", mesh, {REMAINING: np.where(np.abs(top) > 0.0, 50.0, 1000.0)}, top)
+    shown = PartMap("as built", "plate", mesh, {REMAINING: np.where(np.abs(top) > 0.0, 50.0, 1000.0)}, 1e-12 * top)
     figure = maps.remaining_thickness([shown], {"plate": 10.0}, REMARKS)
     bar = next(axes for axes in figure.axes if axes.get_ylabel().startswith("Remaining"))
-    assert bar.get_ylim() == (0.0, 50.0)
+    assert bar.get_ylim() == pytest.approx((0.0, 50.0))
     assert faults_of(figure) == []
+
+
+def test_what_does_not_wear_does_not_set_the_scale_of_thickness():
+    """The end of a shaft is as thick as the shaft is long: the scale ends at what the worn face had as built."""
+    mesh = scenes.box((1.0, 0.6, 0.05), 0.1)
+    top, end = (facing(mesh, normal) for normal in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)))
+    left = np.where(top > 0.0, 6.0, np.where(end > 0.0, 1000.0, 50.0))
+    shown = PartMap("after 100 h", "plate", mesh, {REMAINING: left}, 4e-3 * (top > 0.0))
+    figure = maps.remaining_thickness([shown], {"plate": 2.0}, REMARKS)
+    bar = next(axes for axes in figure.axes if axes.get_ylabel().startswith("Remaining"))
+    assert bar.get_ylim() == pytest.approx((0.0, 10.0))
 
 
 def test_impact_and_sliding_of_two_designs_is_readable():

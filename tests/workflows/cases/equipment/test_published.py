@@ -142,3 +142,11 @@ def test_computed_beside_published(numbers):
     assert table["difference_percent"].iloc[0] == pytest.approx(20.0)
     assert table["where"].tolist() == ["", published.BELOW, published.INSIDE, "", ""]
     assert table["computed_value"].notna().tolist() == [True, True, True, False, False]
+
+
+def test_a_value_that_is_published_of_some_settings_stands_beside_them_alone(numbers):
+    """Of other settings it says nothing; without names it is beside all."""
+    anchor = {"study": "s", "quantity": "speed_wheel", "value": 25.0, "low": np.nan, "high": np.nan, "unit": "rpm"}
+    for named, beside in (("R9", ["R9"]), ("plain R9", ["plain", "R9"]), (np.nan, ["plain", "R9"]), ("R5", [""])):
+        table = published.beside_anchors(pd.DataFrame([anchor | {"settings": named}]), numbers)
+        assert sorted(table["setting"]) == sorted(beside) and "settings" not in table

@@ -19,7 +19,7 @@ from bulkwear.postproc.reference.size_ratios import (
     published_largest_scale,
     size_ratios,
 )
-from bulkwear.postproc.statistics.crossing import FEWEST_PLACES
+from bulkwear.postproc.statistics.crossing import FEWEST_PLACES, REJECTED, lack_of_fit
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, estimate, students_t
 from bulkwear.workflows.report.published import GIVEN
 
@@ -137,12 +137,18 @@ def published_at_scales(wear: pd.DataFrame, published: pd.DataFrame) -> pd.DataF
 
 
 def own_line(scale: np.ndarray, wear: np.ndarray) -> Line | None:
-    """Return the least-squares line of a study's patterned samples, (k,) of each run; None of fewer than 3 scales."""
+    """Return the least-squares line of a study's patterned samples, (k,) of each run.
+
+    None of fewer than 3 scales, and where the scatter of packings rejects a line: carried on to another scale it would
+    then tell nothing.
+    """
     places = np.unique(scale)
     if len(places) < FEWEST_PLACES:
         return None
     matrix = np.column_stack([np.ones(len(scale)), scale])
     coefficients, *_ = np.linalg.lstsq(matrix, wear, rcond=None)
+    if lack_of_fit(scale, wear, matrix @ coefficients, 2)["p_value"] < REJECTED:
+        return None
     freedom = len(scale) - 2
     variance = ((wear - matrix @ coefficients) ** 2).sum() / freedom
     return Line(coefficients, variance * np.linalg.inv(matrix.T @ matrix), freedom, (places[0], places[-1]))

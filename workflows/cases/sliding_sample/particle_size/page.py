@@ -189,7 +189,8 @@ def guidance(study: Mapping[str, Any], folder: Path) -> list[Block]:
             " particle to bump (Yan 2022, Eq 4.18 to 4.21): the pattern is expected to help where that of the"
             " equivalent radius is below 1, which it reaches at the largest scale. Bias: wear of the patterned sample"
             " at the scale simulated over that at real size, with its 95 % interval, by a straight line. The own one is"
-            " this study's, extended to real size from its smallest scale; the published one is the source's (Eq 4.15),"
+            " this study's, extended to real size from its smallest scale, and is not told where the scatter of"
+            " packings rejects a line; the published one is the source's (Eq 4.15),"
             " if particle over bump is all that matters. The own one says what this study's wear is worth. Then the"
             " ratios of the particles simulated."
         ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
@@ -9,6 +10,7 @@ from bulkwear.workflows.report.sentences import listed, measured, side, with_int
 from bulkwear.workflows.report.text import number, range_text
 
 LATE = 0.5  # -, of a run's travel, from which on its flow and wear are told: the first half holds most of the start
+LEAST_CHANGE = 1e-6  # -, of the largest predicted wear: less along a factor is rounding, and it is not in the model
 LEVEL = 0.05  # -, p value of a term that is told apart from chance
 CENTRAL, LOWEST = "central", 1  # zone and layer of profiles over the sample
 SPIN = "averaged_angular_velocity_deg_per_s"
@@ -152,8 +154,23 @@ def largest_contrast(table: pd.DataFrame) -> str:
 
 
 def least_predicted(table: pd.DataFrame) -> str:
-    """Return where over pairs of factors the least wear is predicted; table: `regression_tables.contour_table`."""
+    """Return where over pairs of factors the least wear is predicted, by those that the model knows.
+
+    table: `regression_tables.contour_table`
+    """
     low, high = table["normalised_wear"].min(), table["normalised_wear"].max()
+    said = f"Predicted are {number(low, 2)} to {number(high, 2)} of the largest wear"
     best = table.loc[table["normalised_wear"].idxmin()]
-    at = f"{best['x_factor']} {number(best['x'], 3)} and {best['y_factor']} {number(best['y'], 3)}"
-    return f"Predicted are {number(low, 2)} to {number(high, 2)} of the largest wear, least at {at}."
+    pair = table[(table["x_factor"] == best["x_factor"]) & (table["y_factor"] == best["y_factor"])]
+    at = [
+        f"{best[f'{axis}_factor']} {number(best[axis], 3)}"
+        for axis, other in (("x", "y"), ("y", "x"))
+        if _varies(pair, other)
+    ]
+    return f"{said}, least at {' and '.join(at)}." if at else f"{said}."
+
+
+def _varies(pair: pd.DataFrame, kept: str) -> bool:
+    """Return whether the prediction depends on a factor of a pair, the other of which is `kept`, "x" or "y"."""
+    spans = pair.groupby(kept)["normalised_wear"].agg(np.ptp)
+    return bool((spans > LEAST_CHANGE * pair["normalised_wear"].max()).any())

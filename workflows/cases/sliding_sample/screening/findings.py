@@ -193,7 +193,7 @@ def runs_beside_source(evidence: Evidence, published_model: Mapping[str, float])
             "row": row,
             "regime": found[row],
             "published_regime": evidence.told.get(row, ""),
-            "steady": row not in unsteady,
+            "flow_and_wear_steady": "not shown" if row in unsteady else "yes",
             "relative_velocity_percent": velocity.get(row, unknown).value,
             "packings": ratios.get(row, unknown).packings,
             "wear_over_plain": ratios.get(row, unknown).value,

@@ -90,6 +90,14 @@ def test_the_studys_own_line_is_not_the_published_one():
     assert own.scales == (2.0, 8.0) and own_line(scale[:2], scale[:2]) is None
 
 
+def test_no_line_is_told_that_the_packings_reject():
+    """Packings that agree within a per cent about a curve; about a line they do not."""
+    scale = np.repeat([2.0, 4.0, 6.0, 8.0], 3)
+    scatter = 0.005 * np.tile([-1.0, 0.0, 1.0], 4)
+    assert own_line(scale, 0.25 + 0.06 * scale + scatter) is not None
+    assert own_line(scale, 0.25 + 0.3 * np.sqrt(scale - 2.0) + scatter) is None
+
+
 def test_the_published_scatter_is_that_of_its_r_squared():
     """A line with residuals that make R2 = 0.98 over scales 1 to 8 has the covariance that `own_line` finds of it."""
     residuals = np.random.default_rng(4).normal(size=8)

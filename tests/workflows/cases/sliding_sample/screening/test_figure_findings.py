@@ -77,10 +77,15 @@ def test_contrasts_and_predictions():
     said = "Largest is the contrast of velocity"
     assert findings.largest_contrast(table) == f"{said}, 3 times the pseudo standard error."
     assert findings.largest_contrast(table.assign(pseudo_error=0.0)) == f"{said}."
-    surface = {"x_factor": "velocity", "y_factor": "pitch", "x": [1.0, 2.0], "y": [10.0, 20.0]}
-    assert findings.least_predicted(pd.DataFrame(surface | {"normalised_wear": [0.9, 0.3]})) == (
-        "Predicted are 0.3 to 0.9 of the largest wear, least at velocity 2 and pitch 20."
-    )
+    grid = {"x": [1.0, 2.0, 1.0, 2.0], "y": [10.0, 10.0, 20.0, 20.0]}
+    surface = pd.DataFrame({"x_factor": "velocity", "y_factor": "pitch", **grid})
+    for wear, least in (
+        ([0.9, 0.6, 0.5, 0.3], ", least at velocity 2 and pitch 20"),
+        ([0.9, 0.9, 0.3, 0.3], ", least at pitch 20"),
+        ([0.9] * 4, ""),
+    ):
+        said = findings.least_predicted(surface.assign(normalised_wear=wear))
+        assert said == f"Predicted are {min(wear):g} to 0.9 of the largest wear{least}."
     runs = pd.DataFrame({"inside": [True, False], "over_predicted": [0.9, 1.6]})
     assert findings.confirmed(runs) == (
         "1 of 2 runs wear within the predicted interval; they wear 0.9 to 1.6 times the prediction."

@@ -60,6 +60,14 @@ def test_noise_is_refused(table):
     assert len(sensitivity_bars(table, ["a remark"]).axes) == 2
 
 
+def test_a_model_of_one_factor_tells_no_shares(table):
+    """All that it explains is that factor's, whatever it leaves out."""
+    wear = table["response"] == "ln wear per metre"
+    alone = table.assign(total=table["total"].where(~wear | (table["factor"] == "t"), 0.0))
+    said = finding(alone)
+    assert said.startswith("Of ln wear per metre the model holds t alone") and "alone makes" not in said
+
+
 def test_too_few_runs_are_refused(summary):
     """Three runs, and no plain twin, in a sentence each; a page then has no table."""
     worn = "worn_volume_per_metre_m3_per_m"
