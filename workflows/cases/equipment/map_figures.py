@@ -99,10 +99,11 @@ def life_bars(job: Job) -> Any:
     told={"runs": values_of_runs},
     digits=DIGITS,
     caption="""
-    Thickness removed at the area patch that decides when a part is changed. Points: updates of the shape. From the last
-    one on the mean rate of the last shape goes on (dashed) until the depth at which the part is changed (dotted), if
-    that comes soon enough to be shown. The mark is the part's life. It may lie beside the line: in it each packing, or
-    block of a single one, counts by the place that the others name, so that no place decides because of its scatter.
+    Thickness removed at the area patch that decides when a part is changed. Points: updates of the shape. From the
+    last one on the mean rate of the last shape goes on (dashed) until the depth at which the part is changed
+    (dotted; named in the title where it is far off), if that comes soon enough to be shown. The mark is the part's
+    life. It may lie beside the line: in it each packing, or block of a single one, counts by the place that the
+    others name, so that no place decides because of its scatter.
     """,
 )
 def recession_against_time(job: Job) -> Any:

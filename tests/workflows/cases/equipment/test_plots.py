@@ -426,6 +426,17 @@ def test_a_recession_that_is_not_drawn_to_its_end():
     np.testing.assert_allclose(drawn[0], [[1000.0, 1.0], [3000.0, 3.0]])
 
 
+@pytest.mark.parametrize(("allowed", "named"), [(15.0, False), (40.0, True)])
+def test_a_change_out_far_below_all_depths_is_named_and_does_not_stretch_the_axis(allowed, named):
+    """Lines of some millimetres stay lines beside a liner that may lose many times as much."""
+    columns = ["setting", "part", "packing", "operation_h", "depth_mm", "simulated"]
+    rows = [("A", "liner", 0, 0.0, 0.0, True), ("A", "liner", 0, 1000.0, 2.0, False)]
+    own = lives(("A", "liner", 20000.0, np.nan, np.nan)).assign(allowed_mm=allowed)
+    figure = curves.recession_against_time(pd.DataFrame(rows, columns=columns), own, REMARKS)
+    assert (figure.axes[0].get_ylim()[1] < 5.0) == named
+    assert ("changed at 40 mm" in words_of(figure)) == named and faults_of(figure) == []
+
+
 @pytest.mark.parametrize("settings", [1, 3, 5])
 def test_flow_over_time_is_readable(settings):
     """Lines hold what the table does; of more settings than fit the first are shown."""

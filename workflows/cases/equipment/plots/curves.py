@@ -24,6 +24,7 @@ from bulkwear.postproc.plots.style import (
 )
 from bulkwear.postproc.tables.display import few_digits
 from bulkwear.workflows.cases.equipment.findings import TOO_WIDE
+from bulkwear.workflows.report.text import range_text
 
 PHASES = {  # phase: what it is called, and its shade
     "start_up": ("start-up", "#d9d9d9"),
@@ -34,6 +35,7 @@ PHASES = {  # phase: what it is called, and its shade
 MOST_SETTINGS = 3  # side by side over time
 WIDE_RANGE = 30.0  # -, longest over shortest life from which their axis is logarithmic
 PAST_THE_END = 1.08  # -, over the longest end: there an interval without one stops
+FAR_OFF = 8.0  # -, over the deepest place shown: a depth beyond is named in a panel's title, not drawn
 SLIGHTLY = 1.2  # -, over the last hour drawn: a life up to there is drawn too
 BAR_HEIGHT = 0.8  # -, of the room of a part
 BAR_SHARE, BAR_SHARE_MT = 0.56, 0.46  # -, of the axis of lives, up to the end of the longest: words stand behind it
@@ -249,14 +251,17 @@ def recession_against_time(depths: pd.DataFrame, lives: pd.DataFrame, remarks: S
     last = max(float(depths["operation_h"].max()), 1.0)
     last = max(last, *lives.loc[lives["life_h"] <= SLIGHTLY * last, "life_h"], last)
     for part, axes in facets(figure, parts).items():
+        far = FAR_OFF * depths.loc[depths["part"] == part, "depth_mm"].max()
         for setting in settings:
             rows = depths[(depths["part"] == part) & (depths["setting"] == setting)]
             _depth_lines(axes, rows, setting_colour(settings, setting))
             own = lives[(lives["part"] == part) & (lives["setting"] == setting)]
-            for row in own.itertuples():
+            for row in own[own["allowed_mm"] <= far].itertuples():
                 _change_out(axes, row, setting_colour(settings, setting), last)
-        if len(parts) > 1:
-            axes.set_title(part.replace("_", " "), loc="left", fontsize=SMALLEST_FONT)
+        limits = lives.loc[(lives["part"] == part) & (lives["allowed_mm"] > far), "allowed_mm"]
+        named = [part.replace("_", " ")] if len(parts) > 1 else []
+        named += [f"changed at {range_text(limits.tolist(), 3)} mm"] if len(limits) else []
+        axes.set_title(", ".join(named), loc="left", fontsize=SMALLEST_FONT)
         axes.set_ylim(bottom=0.0)
         axes.set_xlim(0.0, 1.03 * last)
         axes.xaxis.set_major_locator(MaxNLocator(5, prune="upper"))
