@@ -32,20 +32,41 @@ TITLE_CHARACTERS = 14.0  # of a title per inch
 TITLE_LINES = 3  # of a title at most
 MAPS_HEIGHT = 4.4  # inches, of a figure with maps side by side
 MOST_VIEWS = 4  # surfaces obliquely side by side
+FAR_WORN = 30.0  # -, over the median of the runs' depths: a run worn deeper does not set their scale
 TOP_SHARE = 0.99  # of the worn area: deeper spots share the top colour
 
 
 def colour_limits(depths: pd.DataFrame) -> tuple[float, float]:
     """Return the colour scale (um) of all runs of a figure: 0 to the depth that 99 % of the worn area of
-    the run with the deepest wear does not exceed.
+    the run with the deepest wear does not exceed; runs that are `beyond_scale` do not count.
 
     depths: as from `tables.depths.depth_table`.
     """
-    tops = [
-        area_quantile(faces["depth_um"].to_numpy(), faces["area_mm2"].to_numpy(), TOP_SHARE)
-        for _, faces in depths.groupby("run", sort=False)
-    ]
-    return 0.0, max([*tops, np.finfo(float).tiny])
+    tops = _tops(depths)
+    return 0.0, max([*tops.drop(beyond_scale(depths)), np.finfo(float).tiny])
+
+
+def beyond_scale(depths: pd.DataFrame) -> list[str]:
+    """Return the runs that are worn so many times as deep as most that on their scale the others would look unworn."""
+    tops = _tops(depths)
+    worn = tops[tops > 0.0]
+    return list(worn.index[worn > FAR_WORN * worn.median()]) if len(worn) else []
+
+
+def _tops(depths: pd.DataFrame) -> pd.Series:
+    """Return the depth (um) by run that 99 % of its worn area does not exceed."""
+    return pd.Series(
+        {
+            run: area_quantile(faces["depth_um"].to_numpy(), faces["area_mm2"].to_numpy(), TOP_SHARE)
+            for run, faces in depths.groupby("run", sort=False)
+        },
+        dtype=float,
+    )
+
+
+def _beyond_remark(depths: pd.DataFrame) -> list[str]:
+    deeper = [run.replace("_", " ") for run in beyond_scale(depths)]
+    return [f"worn over {FAR_WORN:g} times as deep as most, beyond the scale: {', '.join(deeper)}"] if deeper else []
 
 
 def worn_surface(
@@ -61,7 +82,7 @@ def worn_surface(
     meshes: by run; runs: run, row, surface; depths: as from `tables.depths.depth_table`; quantity: what the colour is.
     """
     several = runs["row"].nunique() > 1
-    figure = new_figure(remarks, LARGEST_HEIGHT, compressed=several)
+    figure = new_figure([*remarks, *_beyond_remark(depths)], LARGEST_HEIGHT, compressed=several)
     limits, bounds = colour_limits(depths), common_bounds(meshes.values())
     unit, ticks = scaled("µm", limits[1])
     if several:
@@ -89,7 +110,7 @@ def surface_views(
     shown = dict(list(meshes.items())[:MOST_VIEWS])
     if len(shown) < len(meshes):
         remarks = [*remarks, f"the first {len(shown)} of {len(meshes)} runs are shown"]
-    figure = new_figure(remarks, LARGEST_HEIGHT)
+    figure = new_figure([*remarks, *_beyond_remark(depths)], LARGEST_HEIGHT)
     limits, bounds = colour_limits(depths), common_bounds(shown.values())
     seen_from = worn_side(shown.values(), deformed)
     views = trimmed([surface_oblique(mesh, deformed, limits, bounds, direction=seen_from) for mesh in shown.values()])

@@ -25,7 +25,8 @@ SURFACES, WEAR = every_run("worn_surface.vtu"), every_run("wear.csv")
     skirt. Depth is the thickness removed along the path of the surface, and what caps on a step hold back of the
     wear; for a rigid study it is the worn volume of a triangle over its area, which was not applied to the shape.
     All runs share one colour scale, which ends at the depth that 99 % of the area of the most worn sample does not
-    exceed; deeper spots take the top colour. Grey: the skirt, whose wear is not counted. The bed moves towards +y, up.
+    exceed; deeper spots take the top colour, as do samples that are worn many times as deep as most. Grey: the
+    skirt, whose wear is not counted. The bed moves towards +y, up.
     """,
 )
 def worn_surface(job: Job) -> Any:

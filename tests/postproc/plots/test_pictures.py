@@ -120,6 +120,19 @@ def test_many_rows_share_one_scale(mesh):
     assert np.ptp(first[first.shape[0] // 2, -3].astype(float)) > 40.0
 
 
+def test_a_run_worn_right_off_does_not_make_the_others_look_unworn(mesh):
+    """Its depth is beyond the scale of the others, and the remarks say so; of two runs both count."""
+    table = depth_table({"a_plain": mesh}, True)
+    runs = {"a_plain": 1.0, "b_plain": 2.0, "c_convex": 0.0, "worn_out": 1000.0}
+    depths = pd.concat([table.assign(run=run, depth_um=k * table["depth_um"]) for run, k in runs.items()])
+    assert pictures.beyond_scale(depths) == ["worn_out"]
+    assert pictures.colour_limits(depths) == pytest.approx((0.0, 2.0 * DEPTH * 1e6))
+    two = depths[depths["run"].isin(["a_plain", "worn_out"])]
+    assert pictures.beyond_scale(two) == [] and pictures.colour_limits(two)[1] == pytest.approx(1000.0 * DEPTH * 1e6)
+    figure = pictures.surface_views(dict.fromkeys(runs, mesh), True, depths, "Removed thickness", REMARKS)
+    assert "beyond the scale: worn out" in remarks_of(figure)
+
+
 def test_names_of_many_settings_stay_in_their_columns(mesh):
     """Pictures of eighteen settings with long names are as large as the page lets them be, and no name is covered."""
     names = [f"friction-rolling-thin-convex-{k}" for k in range(18)]
