@@ -34,7 +34,7 @@ BAR_ROOM, SMALL_BAR_ROOM = 1.4, 0.85  # inches, for a colour bar with its labels
 BAR_LEFT, SMALL_BAR_LEFT, BAR_WIDE = 0.84, 0.76, 0.12  # inches: from the right to the bar, and its width
 MARGIN, BESIDE = 0.08, 0.15  # inches, round all pictures, and beside that of the machine
 FACING = 0.5  # -, cosine of a face to the eye from which its thickness counts for the scale
-LEAST_WORN = 0.05  # -, of the largest depth of a part: faces that lose more set the scale of what is left
+MOST_OF_WEAR = 0.75  # -, of what a part has lost: where this is lost sets the scale of what is left
 FINE_COLOURS = 1024  # of a scale with a step in it
 MACHINE_SHARE, MACHINE_WIDTHS = 0.6, (1.0, 1.9)  # -, of the height; inches: the picture of the whole machine
 SAME_DIGITS = 9  # of factors that count as the same
@@ -317,8 +317,8 @@ def remaining_thickness(maps: Sequence[PartMap], change_out_mm: Mapping[str, flo
     figure = page(remarks)
     shown, views = shown_parts(maps)
     facing = [_facing(each, views[each.part]) for each in shown]
-    worn = [each for each in map(_as_built_where_worn, facing) if np.isfinite(each.values[REMAINING]).any()]
-    limits = (0.0, max(top_of(worn or facing, REMAINING), *due_of(change_out_mm)))
+    thickest = max(map(thickness_where_worn, facing), default=0.0) or top_of(facing, REMAINING)
+    limits = (0.0, max(thickest, *due_of(change_out_mm)))
     colours = {each.part: _with_due(change_out_mm.get(each.part, np.nan), limits[1]) for each in shown}
     pictures = part_pictures(shown, views, REMAINING, limits, colours, marked=False)
     picture_grid(figure, _in_order(pictures, maps), room(figure))
@@ -342,13 +342,16 @@ def _facing(shown: PartMap, views: Sequence[View]) -> PartMap:
     return replace(shown, values={name: np.where(facing, values, np.nan) for name, values in shown.values.items()})
 
 
-def _as_built_where_worn(shown: PartMap) -> PartMap:
-    """Return the thickness as built of the faces that lose a share of what the most worn one does, NaN elsewhere: the
-    end of a shaft, as thick as the shaft is long, sets no scale for the flight on it.
+def thickness_where_worn(shown: PartMap) -> float:
+    """Return the thickness as built (mm) that most of what is lost was lost below, 0 where nothing is: the end of a
+    shaft, as thick as the shaft is long, and the rim of a flight set no scale for the flight.
     """
-    worn = shown.wear > LEAST_WORN * max(np.nanmax(shown.wear, initial=0.0), np.finfo(float).tiny)
-    built = shown.values[REMAINING] + MILLIMETRES * np.nan_to_num(shown.wear)
-    return replace(shown, values={REMAINING: np.where(worn, built, np.nan)})
+    left, lost = shown.values[REMAINING], np.nan_to_num(shown.wear) * areas(shown.mesh.points, shown.mesh.triangles)
+    worn = np.isfinite(left) & (lost > 0.0)
+    if not worn.any():
+        return 0.0
+    built = left + MILLIMETRES * np.nan_to_num(shown.wear)
+    return area_quantile(built[worn], lost[worn], MOST_OF_WEAR)
 
 
 def _with_due(due: float, top: float) -> Colormap:
