@@ -71,11 +71,11 @@ def checked_studies(settings, named):
         return dict(filter(None, (sound_study(name, settings) for name in list_studies())))
     try:
         names = named or requested_studies(GIVEN.targets, GIVEN.target_jobs, names=NAMING)
+        for sentence in () if GIVEN.target_jobs else nearly_studies(GIVEN.targets, names=NAMING):
+            logger.info(sentence)
         studies = {name: load_study(name, overrides=settings) for name in names}
         if not GIVEN.target_jobs:
             check_published(PROJECT)
-            for sentence in nearly_studies(GIVEN.targets, names=NAMING):
-                logger.info(sentence)
             for study in studies.values():
                 if len(study.runs) > MANY_RUNS:
                     logger.info(f"Study {study.name} has {len(study.runs):,} runs: to plan them takes minutes.")
@@ -94,6 +94,8 @@ def sound_study(name, settings):
 
 
 PROJECT = entered_project()
+if not isinstance(config, dict):
+    raise WorkflowError(f"config of the module is {config!r}, allowed is a block of keys to values.")
 SETTINGS = {key: value for key, value in config.items() if key != "studies"}  # of the command line
 STUDIES = checked_studies(SETTINGS, config.get("studies", []))
 

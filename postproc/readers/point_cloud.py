@@ -33,6 +33,8 @@ STL_HEAD = 84  # bytes before the facets of a binary STL, the last four their nu
 QUOTED = 40  # letters of a line that is wrong
 LONGEST_HEADER = 100_000  # bytes of a PLY header; more is no header
 SEPARATORS = re.compile(r"[,;]")
+# numbers with commas within, and blanks, tabs or semicolons between them
+DECIMAL_COMMAS = re.compile(r"\s*[-+]?\d+,\d+(?:[;\t ]\s*[-+]?\d+(?:,\d+)?){2,}\s*$")
 
 
 def point_blocks(path: str | os.PathLike, unit: str = "mm") -> Iterator[np.ndarray]:
@@ -233,6 +235,10 @@ def _text_blocks(path: Path) -> Iterator[np.ndarray]:
         for line in file:
             words = SEPARATORS.sub(" ", line).split()
             if len(words) >= 3 and _are_numbers(words[:3]):
+                if DECIMAL_COMMAS.match(line):
+                    raise ValueError(
+                        f"{path}: line {skipped + 1}: '{_quoted(line)}', allowed are decimals with a point"
+                    )
                 break
             skipped += 1
             if words and not words[0].startswith(("#", "//")) and skipped > 2:

@@ -195,7 +195,9 @@ def _collect_lines(node: yaml.Node | None, path: KeyPath, lines: dict[KeyPath, i
     for key, value in node.value:
         name, line = key.value, key.start_mark.line + 1
         if not isinstance(key, yaml.ScalarNode) or key.tag != "tag:yaml.org,2002:str":
-            raise ConfigError(f"{source}, line {line}: found {_key_words(key)}, allowed are words as keys.")
+            comma = isinstance(value, yaml.ScalarNode) and value.value == "" and node.flow_style
+            why = "; decimals have a point, a comma ends a value" if comma else ""
+            raise ConfigError(f"{source}, line {line}: found {_key_words(key)}, allowed are words as keys{why}.")
         if len(name) > LONGEST_KEY:
             raise ConfigError(
                 f"{source}, line {line}: found a key of {len(name)} letters, allowed are words of {LONGEST_KEY}."
@@ -223,7 +225,14 @@ def _key_words(key: yaml.Node) -> str:
 def command_line_layer(overrides: dict[str, Any] | None) -> Layer:
     """Return overrides as a layer; text that spells a number or a boolean becomes one, but for the names of rows."""
     given = overrides or {}
-    return Layer("command line", _reread(given) | {key: given[key] for key in NAMES if key in given})
+    return Layer("command line", _reread(given) | {key: _names(given[key]) for key in NAMES if key in given})
+
+
+def _names(value: Any) -> Any:
+    """Return names as text, where whole numbers are meant as such: rows may be called 1, 2, 3."""
+    if not isinstance(value, list):
+        return value
+    return [str(each) if isinstance(each, int) and not isinstance(each, bool) else each for each in value]
 
 
 def _reread(value: Any) -> Any:

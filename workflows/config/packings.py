@@ -153,7 +153,7 @@ def _check_seeds(group: Sequence[Layer], seed_column: str) -> None:
             apart = f" of {SMALLEST_SEED} or more, below which all are one," if low else ""
             raise ConfigError(
                 f"{row.where()}: {seed_column} is {row.values[seed_column]}, which makes row {seen[first_prime]} again,"
-                f" allowed are seeds{apart} that are {SEED_SPACING} apart, or one row."
+                f" whose other values are the same, allowed are seeds{apart} that are {SEED_SPACING} apart, or one row."
             )
         seen[first_prime] = _name(row)
 

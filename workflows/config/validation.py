@@ -221,6 +221,10 @@ def unknown_key(path: KeyPath, schema: dict[str, Any], found: str = "", noun: st
     """Return the fault of an unknown key: another unit of a known key, or the nearest known key."""
     parent, key = path[:-1], str(path[-1])
     known = (subschema(schema, parent) or {}).get("properties", {})
+    inner = (*parent, *key.split("."))
+    if len(inner) > len(path) and subschema(schema, inner) is not None:
+        nested = "".join(f"{name}: {{" for name in inner[len(parent) : -1])
+        return f"{key} is written as blocks, {nested}{inner[-1]}: ...{'}' * (len(inner) - len(path))}"
     stem, unit = _split_unknown(key)
     found_key = f"(found {key}: {found})" if found else f"(found {key})"
     for name, inner in known.items():
@@ -295,7 +299,9 @@ def cell_value(text: str, schema: dict[str, Any]) -> Any:
 
 def check_columns(header: list[str], schema: dict[str, Any], source: str) -> None:
     """Raise ConfigError for a column of a table's header that its schema does not know, and one that it lacks."""
-    for column in header:
+    for number, column in enumerate(header, start=1):
+        if not column:
+            raise ConfigError(f"{source}, header: column {number} has no name, allowed are names, with commas between.")
         if column not in schema["properties"]:
             raise ConfigError(f"{source}, header: {unknown_key((column,), schema, noun='column')}.")
     for column in schema["required"]:

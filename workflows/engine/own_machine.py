@@ -7,6 +7,7 @@ the variables `update` (0, 1, ...), `before` (restart file to go on from, but fo
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -33,6 +34,7 @@ from bulkwear.workflows.engine.wear_step import WearError
 
 CURED_BY_SMALLER_STEPS = (GrowthError, StepTooLargeError, RemeshError)
 RESTART = "after.restart"
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")  # of a part, which is a word of the deck and a file
 EDGE_SHARE = 0.05  # -, of the shortest edge at a node, that it may recede in one update; what is left is carried
 
 
@@ -73,7 +75,10 @@ def wear_machine(
 
     deck: see above; cycle_steps: of one update, each time_step_s long; coefficient_per_pa: Archard's, volume over work;
     bounds: beyond which worn triangles are remeshed, None: never
+    Raises ValueError for what cannot be simulated, FileExistsError where an update has its folder already, SolverError
+    and WearError.
     """
+    _check(folder, deck, parts, cycle_steps, time_step_s, coefficient_per_pa)
     cycle_s = cycle_steps * time_step_s
     for update in range(updates):
         here = folder / f"update_{update:03d}"
@@ -84,6 +89,27 @@ def wear_machine(
         run_deck(here, ranks, triangles=kept, executable=LEDGER_EXECUTABLE, variables=variables)
         parts = [worn(part, here, update, coefficient_per_pa, bounds) for part in parts]
         yield parts
+
+
+def _check(
+    folder: Path, deck: Path, parts: Sequence[Part], steps: int, time_step_s: float, coefficient_per_pa: float
+) -> None:
+    """Raise for arguments of `wear_machine` that the solver, or the wear after it, would stumble over."""
+    if not deck.is_file():
+        raise ValueError(f"{deck}: there is no such deck.")
+    if not parts:
+        raise ValueError("parts is empty, allowed is one part or more.")
+    names = [part.name for part in parts]
+    for name in names:
+        if not NAME.fullmatch(name) or names.count(name) > 1:
+            raise ValueError(f"a part is called {name!r}, allowed are letters, digits and _, each name once.")
+    if not steps >= 1:
+        raise ValueError(f"cycle_steps is {steps}, allowed are 1 or more.")
+    for what, value in (("time_step_s", time_step_s), ("coefficient_per_pa", coefficient_per_pa)):
+        if not 0.0 < value < float("inf"):
+            raise ValueError(f"{what} is {value:g}, allowed are values above 0.")
+    if (first := folder / "update_000").exists():
+        raise FileExistsError(f"{first} is there already, allowed is a folder without updates.")
 
 
 def write_update(here: Path, deck: Path, parts: Sequence[Part], update: int, begin_s: float, steps: int) -> None:

@@ -100,6 +100,13 @@ LINE_ENDS = np.full((256, 3), 0.01, "<f4").tobytes()  # 0.01 begins with the byt
         ("a.xyz", text_rows(POINTS) + b"1.0 two 3.0\n", "line 5"),
         ("a.xyz", text_rows(POINTS) + b"1.0 2.0\n", "line 5"),
         ("a.xyz", b"no\nnumbers\nat all\n", "line 3"),
+        (
+            "a.csv",
+            b"x;y;z\n79,337;116,797;20,000\n",
+            "line 2: '79,337;116,797;20,000', allowed are decimals with a point",
+        ),
+        ("a.txt", b"79,337 116,797 20,000\n", "line 1: .* decimals with a point"),
+        ("a.txt", b"-79,337\t116,797\t20\n", "line 1: .* decimals with a point"),
         ("a.xyz", b"", "no points"),
         ("a.ply", ply_head("ascii", 0), "no points"),
         (

@@ -13,7 +13,7 @@ from bulkwear.workflows.cases.sliding_sample.page import BEYOND_BUMPS
 from bulkwear.workflows.cases.sliding_sample.parameters import ramp_hop
 from bulkwear.workflows.cases.sliding_sample.study import finds_regimes
 from bulkwear.workflows.config.design import list_studies, load_study
-from bulkwear.workflows.config.layers import ConfigError
+from bulkwear.workflows.config.layers import ConfigError, command_line_layer
 from bulkwear.workflows.config.units import to_si
 from bulkwear.workflows.engine.derived import rayleigh_time, rolling_coefficient_for_solver, whole_steps, youngs_modulus
 from bulkwear.workflows.report.page_parameters import figure_remarks
@@ -522,6 +522,12 @@ def test_bumps_smaller_than_real_particles_are_no_matter_of_scale(config):
     config.edit("designs/small.csv", "R9,8,2,20,6.0,1.0,40", "R9,1.5,1.5,20,1.0,1.0,40")
     study = load_study("small", config.project)
     assert not any(remark.startswith(BEYOND_BUMPS) for remark in figure_remarks(study))
+
+
+def test_rows_that_are_called_by_numbers_may_be_chosen():
+    """Snakemake reads rows=[1] as a number; names are text."""
+    layer = command_line_layer({"rows": [1, "R5", True], "packings": "2"})
+    assert layer.values == {"rows": ["1", "R5", True], "packings": 2}
 
 
 def test_many_rows_are_counted_and_not_named():

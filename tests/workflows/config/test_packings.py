@@ -120,12 +120,13 @@ def test_rows_are_chosen_by_setting_or_by_packing(config):
         ),
         (
             "R9,8,2,20,6,1,40,7\nR8,8,2,20,6,1,40,9\n",
-            r"small.csv, line 3, row R8: seed is 9, which makes row R9 again, allowed are seeds of 10000 or more,"
-            r" below which all are one, that are 1000 apart, or one row\.",
+            r"small.csv, line 3, row R8: seed is 9, which makes row R9 again, whose other values are the same, allowed"
+            r" are seeds of 10000 or more, below which all are one, that are 1000 apart, or one row\.",
         ),
         (
             "R9,8,2,20,6,1,40,20000\nR8,8,2,20,6,1,40,20000\n",
-            r"seed is 20000, which makes row R9 again, allowed are seeds that are 1000 apart, or one row\.",
+            r"seed is 20000, which makes row R9 again, whose other values are the same, allowed are seeds that are 1000"
+            r" apart, or one row\.",
         ),
     ],
 )

@@ -136,6 +136,19 @@ BAD_KEYS = [
         "config/default.yaml, line 5: found the key '1', allowed are words as keys.",
     ),
     (
+        SETTINGS,
+        "  law: archard\n",
+        "  law: {a: 1,5}\n",
+        "config/default.yaml, line 4: found the key '5', allowed are words as keys; decimals have a point, a comma"
+        " ends a value.",
+    ),
+    (
+        SETTINGS,
+        "wear:\n",
+        "wear.law: finnie\nwear:\n",
+        "config/default.yaml, line 3: wear.law is written as blocks, wear: {law: ...}.",
+    ),
+    (
         MATERIALS,
         "shear_modulus_pa: 0.07e9",
         "shear_modulus_gpa: 0.07",
@@ -381,6 +394,11 @@ BAD_ROWS = [
         ",height_mm",
         ",hieght_mm",
         "config/designs/small.csv, header: hieght_mm is no known column, the nearest is height_mm.",
+    ),
+    (
+        ",height_mm",
+        ",",
+        "config/designs/small.csv, header: column 5 has no name, allowed are names, with commas between.",
     ),
     (
         ",height_mm",

@@ -8,6 +8,7 @@ it: material would be placed within a body, which is what is looked for.
 
 from __future__ import annotations
 
+import itertools
 import math
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -44,6 +45,9 @@ MEASURED = 0.1  # -, by which a thickness along normals may be less than the one
 THICKER = 4.0  # -, that a thickness which is given may be over that of half the body's area: ribs and bars are thicker
 WAY_OF_RADIUS = 0.5  # -, that a part, or a particle at the inlet, may go in a time step
 WITHIN = 0.5  # -, winding number of a place within a closed body: 1, outside 0
+MOST_SHARED = 0.9  # -, of a part's area that may lie on another part: a thin plate on a wall has half of it there
+SHARED_WITHIN = 2e-4  # -, of the smaller part's diagonal: surfaces that are closer count as one
+FACETS_LOOKED_AT = 2000  # of a part at most
 AXES = "xyz"
 
 Parameters = Mapping[str, Any]
@@ -57,6 +61,7 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     parts = [body(surface, faces_of(surface, number, part)) for number, part in enumerate(run["parts"])]
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_size(run, part, _diagonal(mesh.points))
+    _check_drawn_once(run, parts)
     _check_cells(run, surface)
     for part, mesh in zip(run["parts"], parts, strict=True):
         _check_within(run, surface, part, mesh)
@@ -100,6 +105,35 @@ def _check_size(run: Parameters, part: Parameters, size: float) -> None:
         f"parts.{part['name']}.unit is {part['unit']}, in which {part['file']} is {_length(size)} large, allowed are"
         f" {millimetres(least)}, a median particle as coarse-grained, to {LARGEST_PART:g} m: {hint}."
     )
+
+
+def _check_drawn_once(run: Parameters, parts: Sequence[SurfaceMesh]) -> None:
+    """Raise ConfigError for a body that two parts have, as a liner of its own beside an assembly that holds it still.
+
+    A liner has half of its surface on the wall behind it, the same body nearly all.
+    """
+    for (one, mesh), (other, beside) in itertools.combinations(zip(run["parts"], parts, strict=True), 2):
+        if one["motion"] != other["motion"]:
+            continue
+        if max(on_surface(mesh, beside), on_surface(beside, mesh)) > MOST_SHARED:
+            raise ConfigError(
+                f"parts.{other['name']}.file is {other['file']}, of which a body lies where parts.{one['name']}"
+                f" ({one['file']}) is and would press on particles once more, allowed is each body once: name what is"
+                " meant of a drawing of several by parts.<name>.solid."
+            )
+
+
+def on_surface(mesh: SurfaceMesh, other: SurfaceMesh) -> float:
+    """Return which share (-) of a surface's area lies on another surface, by the middles of facets; of many some."""
+    near = SHARED_WITHIN * min(_diagonal(mesh.points), _diagonal(other.points))
+    inside = (mesh.points.min(axis=0) >= other.points.min(axis=0) - near).all()
+    if not (inside and (mesh.points.max(axis=0) <= other.points.max(axis=0) + near).all()):
+        return 0.0
+    chosen = mesh.triangles[:: max(1, len(mesh.triangles) // FACETS_LOOKED_AT)]
+    middles = np.ascontiguousarray(mesh.points[chosen].mean(axis=1))
+    distance, *_ = igl.point_mesh_squared_distance(middles, other.points, other.triangles.astype(np.int64))
+    area = areas(mesh.points, chosen)
+    return float(area[np.asarray(distance).ravel() <= near**2].sum() / area.sum())
 
 
 def _length(metres: float) -> str:

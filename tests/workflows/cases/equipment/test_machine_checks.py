@@ -143,6 +143,18 @@ def test_a_machine_of_the_right_size_passes(tmp_path):
     assert len(np.unique(surface.cell_data["part"])) == 4
 
 
+def test_a_body_that_two_parts_have_is_refused(run):
+    """By whatever file, alone or among others; not one that moves another way, and no liner on its wall."""
+    finer, wall = box((0.4, 0.1, 0.03), 0.02, (0.0, 0.0, -0.3)), box((0.4, 0.1, 0.03), 0.025, (0.0, 0.0, -0.33))
+    for other in (finer, together([finer, box((0.1, 0.1, 0.03), 0.025, (0.45, 0.0, -0.3))])):
+        said = message_of(run, ("liner", PLATE, {}), ("assembly", other, {}))
+        assert said.startswith(
+            "parts.assembly.file is assembly.stl, of which a body lies where parts.liner (liner.stl)"
+        )
+    check_machine(*machine(run, ("liner", PLATE, {}), ("wall", wall, {})))
+    check_machine(*machine(run, ("liner", PLATE, {}), ("assembly", finer, {"motion": TURN})))
+
+
 def test_room_that_takes_too_many_cells(run):
     """A part 150 m away, as one in cm among others in mm may be: the largest part is named, or the domain."""
     far = ("far", box((120.0, 50.0, 120.0), 40.0), {"edge_m": 40.0})
