@@ -12,6 +12,7 @@ from typing import Any
 from bulkwear.meshes.own.solids import MOST_TRIANGLES
 from bulkwear.workflows.cases.equipment.decks import fall_speed, moving_mesh, skin
 from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing, drawing_digest
+from bulkwear.workflows.config.layers import ConfigError
 from bulkwear.workflows.engine.work import Stage, bytes_of_run
 
 SPEED = 3.0  # m/s, of the fastest particles where no feed falls faster; they say how often lists are made
@@ -20,7 +21,6 @@ OVER_EQUILATERAL = (
     1.1  # -, triangles of a mesh over area / equilateral ones: 1.04 to 1.19 of the chute, mill and screw;
 )
 # where curvature asks for smaller edges there are more, four times as many on a liner with bumps as high as an edge
-UNREADABLE = 5000.0  # triangles of a part whose drawing cannot be read: the job that meshes it says what is wrong
 # triangles whose time a particle takes in a machine with parts that move, where its walls are looked for at more steps:
 # mill at quick 20, at standard 12, screw 0 to 5
 MOVING_PER_PARTICLE = 14.0
@@ -28,7 +28,10 @@ Parameters = Mapping[str, Any]
 
 
 def run_stages(run: Parameters) -> tuple[Stage, ...]:
-    """Return the first block, and all others that there may be. Raises ConfigError for a drawing in a wrong unit."""
+    """Return the first block, and all others that there may be.
+
+    Raises ConfigError for a drawing that cannot be read, or in a wrong unit.
+    """
     derived = run["derived"]
     particles, parts = derived["held_particles"], run["parts"]
     counts = [triangles_of(part) for part in parts]
@@ -59,12 +62,12 @@ def run_bytes(run: Parameters) -> float:
 def triangles_of(part: Parameters) -> float:
     """Return about how many triangles a part gets, by the area of its drawing, which is meshed later.
 
-    Raises ConfigError for a solid that is not in it.
+    Raises ConfigError for a drawing that cannot be read, and for a solid that is not in it.
     """
     try:
         areas = _areas(part["file"], part["unit"], drawing_digest(part["file"]))
-    except (ValueError, OSError):
-        return UNREADABLE
+    except (ValueError, OSError) as fault:
+        raise ConfigError(f"parts.{part['name']}: {fault}") from None
     check_solid(part, areas)
     area = areas[part["solid"]] if "solid" in part else sum(areas.values())
     return OVER_EQUILATERAL * area / (EQUILATERAL * part["edge_m"] ** 2)

@@ -2,7 +2,6 @@
 
 import pytest
 
-from bulkwear.workflows.cases.equipment import work
 from bulkwear.workflows.cases.equipment.parameters import most_blocks
 from bulkwear.workflows.cases.equipment.surfaces import machine_surface
 from bulkwear.workflows.cases.equipment.work import MOVING_PER_PARTICLE, run_bytes, run_stages, triangles_of
@@ -60,9 +59,13 @@ def test_triangles_are_counted_by_the_area_of_the_drawing(run):
     assert triangles_of({**part, "edge_m": 0.5 * part["edge_m"]}) == pytest.approx(4.0 * triangles_of(part))
 
 
-def test_a_drawing_that_cannot_be_read_stops_no_forecast(run):
-    """The job that meshes it says what is wrong."""
-    assert triangles_of({**run["parts"][0], "file": "nothing.step"}) == work.UNREADABLE
+def test_a_drawing_that_cannot_be_read_has_no_forecast(run, tmp_path):
+    """What is wrong with it is told with the part, in place of a size that nobody knows."""
+    with pytest.raises(ConfigError, match=r"^parts.liner: meshes/nothing.step: there is no such file"):
+        triangles_of({**run["parts"][0], "file": "nothing.step"})
+    (tmp_path / "broken.stl").write_text("solid liner\nendsolid\n")
+    with pytest.raises(ConfigError, match=r"^parts.liner: .*broken.stl"):
+        triangles_of({**run["parts"][0], "file": str(tmp_path / "broken.stl")})
 
 
 def test_a_solid_that_is_not_there_and_a_wrong_unit_are_told_with_the_forecast(run):
