@@ -54,7 +54,7 @@ def entered_project():
     except ProjectError as fault:
         raise WorkflowError(str(fault)) from None
     if not GIVEN.target_jobs:
-        for sentence in project.substitutes():
+        for sentence in (*project.substitutes(), *project.astray()):
             logger.info(sentence)
     return project
 

@@ -6,6 +6,7 @@ A project is any folder with `config/`; it may hold `templates/`, `cases/`, `law
 
 from __future__ import annotations
 
+import difflib
 import importlib
 import os
 import sys
@@ -25,6 +26,7 @@ CONFIG, TEMPLATES, CASES, LAWS, MESHES = "config", "templates", "cases", "laws",
 CASES_OF_PACKAGE = PACKAGE / "workflows" / CASES
 LAWS_OF_PACKAGE, KERNELS_OF_PACKAGE = frozenset(REGISTERED_LAWS), frozenset(REGISTERED_KERNELS)
 LAWS_PACKAGE = "bulkwear_laws"  # by which a project's laws and their helpers are imported
+ALIKE = 0.85  # of names of files: so much of them is the same
 LAW, KERNELS = "LAW", "KERNELS"  # what a module of laws/ has
 
 
@@ -89,6 +91,26 @@ class Project:
             *(path for path in self._own(LAWS, "*.py") if path.stem in LAWS_OF_PACKAGE),
         ]
         return [f"{path.as_posix()}: this project's, {_before(path)} the package's" for path in found]
+
+    def astray(self) -> list[str]:
+        """Return a sentence for each file of the project that nearly has the name of one of the package, or has it in
+        another folder, and so does not stand before it: templates, and files right in `config/`.
+        """
+        if self.is_package:
+            return []
+        own, theirs = template_files(self.folder), template_files(self.package)
+        before = {path for name, path in own.items() if name in theirs}
+        known = {path.name: path for path in theirs.values()}
+        settings = {path.name: path.relative_to(self.package) for path in (self.package / CONFIG).glob("*.yaml")}
+        found = [
+            *((path, known) for path in self._own(TEMPLATES, "**/*.in*") if path not in before),
+            *((path, settings) for path in self._own(CONFIG, "*.y*ml") if path.name not in settings),
+        ]
+        near = [(path, difflib.get_close_matches(path.name, names, 1, ALIKE), names) for path, names in found]
+        return [
+            f"{path.as_posix()}: not in place of the package's {names[name].as_posix()}, whose name it nearly has"
+            for path, (name, *_), names in ((path, close, names) for path, close, names in near if close)
+        ]
 
     def _own(self, folder: str, pattern: str) -> list[Path]:
         """Return the project's files of a folder, from the project's folder."""
