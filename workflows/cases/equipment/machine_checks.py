@@ -11,11 +11,10 @@ from __future__ import annotations
 import itertools
 import math
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import igl
 import numpy as np
 
 from bulkwear.meshes.own.read import check_file, read_solids
@@ -23,8 +22,8 @@ from bulkwear.meshes.own.solids import UNITS
 from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
 from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.directions import ON_END
-from bulkwear.postproc.wear.side import connected_pieces
 from bulkwear.postproc.wear.thickness import thickness_to_back
+from bulkwear.workflows.cases.equipment.bodies import closed_faces, diagonal, first_within, is_within, on_surface
 from bulkwear.workflows.cases.equipment.checks import LEFT_TO_WEAR, thin_phrase
 from bulkwear.workflows.cases.equipment.decks import domain, largest_cell, longest_s, moving_mesh
 from bulkwear.workflows.cases.equipment.drawings import drawing
@@ -44,10 +43,7 @@ FINEST = 0.01  # -, of half the longest side of such room: parts that are narrow
 MEASURED = 0.1  # -, by which a thickness along normals may be less than the one drawn: a flight leans, a vault is bent
 THICKER = 4.0  # -, that a thickness which is given may be over that of half the body's area: ribs and bars are thicker
 WAY_OF_RADIUS = 0.5  # -, that a part, or a particle at the inlet, may go in a time step
-WITHIN = 0.5  # -, winding number of a place within a closed body: 1, outside 0
 MOST_SHARED = 0.9  # -, of a part's area that may lie on another part: a thin plate on a wall has half of it there
-SHARED_WITHIN = 2e-4  # -, of the smaller part's diagonal: surfaces that are closer count as one
-FACETS_LOOKED_AT = 2000  # of a part at most
 AXES = "xyz"
 
 Parameters = Mapping[str, Any]
@@ -60,7 +56,7 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
     """
     parts = [body(surface, faces_of(surface, number, part)) for number, part in enumerate(run["parts"])]
     for part, mesh in zip(run["parts"], parts, strict=True):
-        _check_size(run, part, _diagonal(mesh.points))
+        _check_size(run, part, diagonal(mesh.points))
     _check_drawn_once(run, parts)
     _check_cells(run, surface)
     for part, mesh in zip(run["parts"], parts, strict=True):
@@ -89,7 +85,7 @@ def check_units(run: Parameters) -> None:
                 solids, scale = read_solids(path, part["unit"], LARGEST_PART)  # few elements, of CAD files
             except (ValueError, OSError):
                 continue
-            _check_size(run, part, scale * _diagonal(solids.points))
+            _check_size(run, part, scale * diagonal(solids.points))
 
 
 def _check_size(run: Parameters, part: Parameters, size: float) -> None:
@@ -123,26 +119,9 @@ def _check_drawn_once(run: Parameters, parts: Sequence[SurfaceMesh]) -> None:
             )
 
 
-def on_surface(mesh: SurfaceMesh, other: SurfaceMesh) -> float:
-    """Return which share (-) of a surface's area lies on another surface, by the middles of facets; of many some."""
-    near = SHARED_WITHIN * min(_diagonal(mesh.points), _diagonal(other.points))
-    inside = (mesh.points.min(axis=0) >= other.points.min(axis=0) - near).all()
-    if not (inside and (mesh.points.max(axis=0) <= other.points.max(axis=0) + near).all()):
-        return 0.0
-    chosen = mesh.triangles[:: max(1, len(mesh.triangles) // FACETS_LOOKED_AT)]
-    middles = np.ascontiguousarray(mesh.points[chosen].mean(axis=1))
-    distance, *_ = igl.point_mesh_squared_distance(middles, other.points, other.triangles.astype(np.int64))
-    area = areas(mesh.points, chosen)
-    return float(area[np.asarray(distance).ravel() <= near**2].sum() / area.sum())
-
-
 def _length(metres: float) -> str:
     """Return a length as people say it."""
     return f"{metres:.4g} m" if metres >= 1.0 else f"{1e3 * metres:.4g} mm"
-
-
-def _diagonal(points: np.ndarray) -> float:
-    return float(np.linalg.norm(np.ptp(points, axis=0)))
 
 
 def _check_cells(run: Parameters, surface: SurfaceMesh) -> None:
@@ -151,7 +130,7 @@ def _check_cells(run: Parameters, surface: SurfaceMesh) -> None:
     cells = math.prod(side / cell for side in sides)
     if cells <= MOST_CELLS:
         return
-    rooms = {part["name"]: _diagonal(np.array(_room_of(run, surface, part))) for part in run["parts"]}
+    rooms = {part["name"]: diagonal(np.array(_room_of(run, surface, part))) for part in run["parts"]}
     largest = max(rooms, key=rooms.__getitem__)
     found = f"{' x '.join(f'{side:.3g}' for side in sides)} m, {cells:.1e} cells of {millimetres(cell)}"
     raise ConfigError(
@@ -293,59 +272,6 @@ def _spacing(run: Parameters, half: np.ndarray) -> float:
     return max(0.5 * min(run["particle"]["diameters_m"]), FINEST * float(half.max()))
 
 
-def first_within(
-    points: np.ndarray,
-    triangles: np.ndarray,
-    half: np.ndarray,
-    spacing: float,
-    inside: Callable[[np.ndarray], np.ndarray] | None = None,
-) -> np.ndarray | None:
-    """Return a place (3,) m of a surface within a box about the origin, and where `inside` says so; None without one.
-
-    points: (n, 3) m; triangles: (m, 3); half: (3,) m, half the sides of the box; spacing: m, what is narrower may be
-    missed; inside: of places (k, 3), whether each is within (k,)
-    """
-    if not (half > 0.0).all():
-        return None
-    for corners in _small_pieces(points[triangles], half, spacing):
-        middle = corners.mean(axis=1)
-        hits = (np.abs(middle) < half).all(axis=1)
-        hits &= inside(middle) if inside else True
-        if hits.any():
-            return middle[np.argmax(hits)]
-    return None
-
-
-def _small_pieces(corners: np.ndarray, half: np.ndarray, spacing: float) -> Iterator[np.ndarray]:
-    """Yield triangles (k, 3, 3) that may reach into a box, halved at their longest edges until those are short."""
-    while len(corners):
-        corners = corners[((corners.min(axis=1) < half) & (corners.max(axis=1) > -half)).all(axis=1)]
-        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
-        small = lengths.max(axis=1, initial=0.0) <= spacing
-        yield corners[small]
-        corners, lengths = corners[~small], lengths[~small]
-        rows = np.arange(len(corners))
-        first = lengths.argmax(axis=1)
-        a, b, c = (corners[rows, (first + k) % 3] for k in range(3))
-        middle = 0.5 * (a + b)
-        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-
-
-def closed_faces(triangles: np.ndarray) -> np.ndarray:
-    """Return the mask (m,) of the faces whose connected piece has no open edge; triangles: (m, 3)."""
-    piece, rim = connected_pieces(triangles), np.isin(triangles, boundary_nodes(triangles)).any(axis=1)
-    return ~np.isin(piece, piece[rim])
-
-
-def is_within(points: np.ndarray, triangles: np.ndarray, place: np.ndarray) -> bool:
-    """Return whether a place (3,) m lies within closed bodies; points (n, 3) m, triangles (m, 3)."""
-    corners = points[triangles].reshape(-1, 3)
-    if not len(corners) or (place < corners.min(axis=0)).any() or (place > corners.max(axis=0)).any():
-        return False
-    number = igl.winding_number(np.ascontiguousarray(points), np.ascontiguousarray(triangles), np.array([place]))
-    return bool(np.abs(number).max() > WITHIN)
-
-
 # ---------------------------------------------------------------- liners
 
 
@@ -361,7 +287,7 @@ def _check_thickness(run: Parameters, part: Parameters, mesh: SurfaceMesh) -> No
             f" closed bodies: the surface of {part['file']} is open; change it by change_out_remaining_mm."
         )
     if "thickness_m" in part:
-        if part["thickness_m"] > (size := _diagonal(mesh.points)):
+        if part["thickness_m"] > (size := diagonal(mesh.points)):
             raise ConfigError(
                 f"parts.{part['name']}.thickness_mm is {1e3 * part['thickness_m']:.6g}, allowed is at most"
                 f" {millimetres(size)}, the size of {part['file']}."

@@ -49,6 +49,13 @@ def merged(points, triangles):
     return SurfaceMesh(points[first], inverse.ravel()[triangles])
 
 
+def without_lid(size, edge, centre):
+    """A box that is open on top."""
+    closed = box(size, edge, centre)
+    top = (closed.points[closed.triangles][:, :, 2] > centre[2] + 0.5 * size[2] - 1e-9).all(axis=1)
+    return SurfaceMesh(closed.points, closed.triangles[~top])
+
+
 def drum(radius=1.0, width=0.3, lifters=8, height=0.1, edge=0.04, thickness=0.08, worn=0.0):
     """A ring about y with lifters inside, closed; worn: m that their tops have lost."""
     angle = np.linspace(

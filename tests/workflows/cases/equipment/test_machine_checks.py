@@ -13,9 +13,6 @@ from bulkwear.postproc.wear.bodies import together
 from bulkwear.workflows.cases.equipment.machine_checks import (
     check_machine,
     check_units,
-    closed_faces,
-    first_within,
-    is_within,
     thickness_of,
 )
 from bulkwear.workflows.cases.equipment.surfaces import label_of, part_surface
@@ -23,7 +20,7 @@ from bulkwear.workflows.config.layers import ConfigError
 from tests.support.own_machine_project import machine_study
 from tests.support.own_solids import box as corners_of_box
 from tests.support.own_solids import write_ascii
-from tests.workflows.cases.equipment.scenes import box, drum
+from tests.workflows.cases.equipment.scenes import box, drum, without_lid
 
 MEASURED = 1e-3  # -, relative; of thickness along normals of facets
 DOMAIN = {"low_m": [-0.6, -0.3, -0.5], "high_m": [0.6, 0.3, 0.4]}
@@ -63,13 +60,6 @@ def message_of(run, *bodies, **sections) -> str:
 
 def turned_round(mesh):
     return SurfaceMesh(mesh.points, mesh.triangles[:, ::-1])
-
-
-def without_lid(size, edge, centre):
-    """A box that is open on top."""
-    closed = box(size, edge, centre)
-    top = (closed.points[closed.triangles][:, :, 2] > centre[2] + 0.5 * size[2] - 1e-9).all(axis=1)
-    return SurfaceMesh(closed.points, closed.triangles[~top])
 
 
 # ---------------------------------------------------------------- units and sizes
@@ -383,28 +373,3 @@ def test_thickness_is_that_of_half_the_area():
     assert thickness_of(box((0.2, 0.3, 0.4), 0.05)) == pytest.approx(0.3, rel=MEASURED)
     sheet = SurfaceMesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
     assert thickness_of(sheet) == np.inf
-
-
-# ---------------------------------------------------------------- geometry
-
-
-def test_a_large_facet_is_found_in_small_room():
-    """Whose corners lie all far out; beside the room, or through a corner of its box only, there is nothing."""
-    facet = np.array([[-5.0, -5.0, 0.01], [5.0, -5.0, 0.01], [0.0, 9.0, 0.01]])
-    triangle, half = np.array([[0, 1, 2]]), np.array([0.1, 0.1, 0.1])
-    found = first_within(facet, triangle, half, 0.02)
-    assert found is not None and (np.abs(found) < half).all() and found[2] == pytest.approx(0.01)
-    assert first_within(facet + np.array([0, 0, 0.1]), triangle, half, 0.02) is None
-    assert first_within(facet, triangle, half, 0.02, lambda at: np.hypot(at[:, 0] - 9.0, at[:, 1]) < 1.0) is None
-    assert first_within(facet, triangle, np.array([0.1, -0.1, 0.1]), 0.02) is None
-
-
-def test_a_place_within_bodies():
-    """Within one of two, in a cavity, beside them; open pieces enclose nothing."""
-    two = together([box((1.0, 1.0, 1.0), 0.5), box((1.0, 1.0, 1.0), 0.5, (3.0, 0.0, 0.0))])
-    places = {(0.1, 0.2, 0.0): True, (3.1, 0.0, 0.3): True, (1.5, 0.0, 0.0): False, (9.0, 0.0, 0.0): False}
-    assert {place: is_within(two.points, two.triangles, np.array(place)) for place in places} == places
-    open_too = together([two, without_lid((1.0, 1.0, 1.0), 0.5, (6.0, 0.0, 0.0))])
-    closed = closed_faces(open_too.triangles)
-    assert closed.sum() == len(two.triangles)
-    assert not is_within(open_too.points, open_too.triangles[~closed][:0], np.array([6.0, 0.0, 0.0]))
