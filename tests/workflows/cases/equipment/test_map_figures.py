@@ -208,11 +208,13 @@ def test_thickness_at_which_a_part_is_changed(rule, due):
     np.testing.assert_allclose(pictures.change_out_mm([run])["liner"], due)
 
 
-def test_a_study_without_updates_has_no_sections():
-    """All else is drawn of any study of the case."""
-    rigid = SimpleNamespace(settings={"updates": {"most": 0}})
+@pytest.mark.parametrize(("told", "left_out"), [((), {"remaining_thickness"}), ((3600.0,), set())])
+def test_a_study_without_updates_has_no_sections(told, left_out):
+    """All else is drawn of any study of the case; what is left, where it is asked for at some hours."""
+    run = SimpleNamespace(parameters={"operation": {"told_at_s": told} if told else {}})
+    rigid = SimpleNamespace(settings={"updates": {"most": 0}}, runs=[run])
     there = {make.product.name for make in FIGURES if make.product.when(rigid)}
-    assert there == {make.product.name for make in FIGURES} - {"profile_sections"}
+    assert there == {make.product.name for make in FIGURES} - {"profile_sections"} - left_out
 
 
 def test_lives_in_the_table_are_those_beside_the_figure(study):
