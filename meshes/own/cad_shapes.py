@@ -34,8 +34,9 @@ NO_NAMES = ("COMPOUND", "SOLID", "SHELL", "FACE")  # labels that nobody gave
 
 def _allow(seconds: float) -> None:
     """Let this process use seconds of processor time more than it has used; then the system ends it."""
-    used = time.process_time()
-    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(used + seconds), resource.RLIM_INFINITY))
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)  # that a shell or a batch system has set, and that stays
+    wanted = math.ceil(time.process_time() + seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (wanted if most == resource.RLIM_INFINITY else min(wanted, most), most))
 
 
 def _answer() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from pathlib import Path
 
@@ -23,11 +24,13 @@ def read_stl_solids(path: Path) -> Solids:
 
     Raises ValueError with the file's name when it is cut short or has something that is no number.
     """
-    content = path.read_bytes()
+    content = path.read_bytes().removeprefix(codecs.BOM_UTF8)
     facets = int.from_bytes(content[HEADER : HEADER + COUNT], "little") if len(content) >= HEADER + COUNT else -1
     if len(content) == HEADER + COUNT + FACET * facets:
         corners = np.frombuffer(content, FACET_TYPE, facets, HEADER + COUNT)["corners"]
         return _solids([corners.astype(np.float64)], [path.stem])
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise ValueError(f"{path}: found text as UTF-16, allowed is an ASCII STL as UTF-8")
     if b"\0" in content or not SOLID.match(content.lstrip()):  # a text has no zero bytes
         raise ValueError(
             f"{path}: found {len(content)} bytes, allowed is an ASCII STL, which begins with 'solid', or a binary one, "
@@ -45,7 +48,7 @@ def _ascii_solids(path: Path, content: bytes) -> Solids:
         raise ValueError(f"{path}: solid '{name}' is cut short, allowed are solids that end with 'endsolid'")
     names = [_name(start, path.stem, number, len(starts)) for number, start in enumerate(starts)]
     corners = [
-        _corners(path, name, content[start.end() : end])
+        _corners(path, name, content, start.end(), end)
         for name, (start, end) in zip(names, _blocks(starts, len(content)), strict=True)
     ]
     return _solids(corners, names)
@@ -62,8 +65,9 @@ def _name(start: re.Match, stem: str, number: int, count: int) -> str:
     return said or (stem if count == 1 else f"{stem}_{number + 1}")
 
 
-def _corners(path: Path, name: str, block: bytes) -> np.ndarray:
-    """Corners (m, 3, 3) of the facets of a solid."""
+def _corners(path: Path, name: str, content: bytes, start: int, end: int) -> np.ndarray:
+    """Corners (m, 3, 3) of the facets of a solid, which lies between two places of the file."""
+    block = content[start:end]
     facets = len(END_OF_FACET.findall(block))
     numbers = VERTEX.sub(b"", OTHER_LINE.sub(b"", block)).split()
     if len(numbers) != 9 * facets:
@@ -73,7 +77,23 @@ def _corners(path: Path, name: str, block: bytes) -> np.ndarray:
     try:
         return np.array(numbers, dtype="S").astype(np.float64).reshape(facets, 3, 3)
     except ValueError as error:
-        raise ValueError(f"{path}: a coordinate of solid '{name}' is not a number ({error})") from error
+        line, word = _first_no_number(content, start, end)
+        raise ValueError(
+            f"{path}, line {line}: found '{word}' as a coordinate of solid '{name}', allowed is a number "
+            "with a decimal point"
+        ) from error
+
+
+def _first_no_number(content: bytes, start: int, end: int) -> tuple[int, str]:
+    """The line of the first vertex of a solid whose coordinates are no numbers, from 1, and the word at fault."""
+    first = content.count(b"\n", 0, start) + 1
+    for line, text in enumerate(content[start:end].split(b"\n"), start=first):
+        for word in VERTEX.sub(b"", text).split() if VERTEX.search(text) else ():
+            try:
+                float(word)
+            except ValueError:
+                return line, word.decode("utf-8", "replace")
+    return first, ""
 
 
 def _solids(corners: list[np.ndarray], names: list[str]) -> Solids:

@@ -6,6 +6,6 @@ import sys
 
 if __name__ == "__main__":
     pickle.load(sys.stdin.buffer)
-    resource.setrlimit(resource.RLIMIT_CPU, (1, resource.RLIM_INFINITY))
+    resource.setrlimit(resource.RLIMIT_CPU, (1, resource.getrlimit(resource.RLIMIT_CPU)[1]))
     while True:
         pass

@@ -1,6 +1,9 @@
 """Every format gives the same surface; units, names and parts are the file's; what cannot be read is one sentence."""
 
 import re
+import shlex
+import subprocess
+import sys
 
 import meshio
 import numpy as np
@@ -10,6 +13,7 @@ from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own import cad
 from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.meshes.own.read import part_areas
+from tests import REPOSITORY
 from tests.support.own_solids import (
     AREA,
     BOX,
@@ -27,6 +31,7 @@ EDGE = 0.02  # m
 EXACT = 1e-12  # relative: formats with all digits
 SINGLE = 1e-6  # relative: binary STL has 24 bits
 RADIUS = 30.0  # mm, of a pipe
+HOUR_S = 3600
 CAD = 1e-9  # relative: OpenCASCADE's own precision on flat faces
 FORMATS = {
     "ascii.stl": EXACT,
@@ -314,8 +319,41 @@ def test_a_coordinate_that_is_no_number_is_refused(tmp_path):
         own_mesh(tmp_path / "a.stl", "mm")
     write_ascii(tmp_path / "b.stl", bodies())
     (tmp_path / "b.stl").write_text((tmp_path / "b.stl").read_text().replace("120.0", "12O.0", 1))
-    with pytest.raises(ValueError, match=r"b\.stl: a coordinate of solid 'trough' is not a number"):
+    with pytest.raises(ValueError, match=r"b\.stl, line \d+: found '12O.0' as a coordinate of solid 'trough', allowed"):
         own_mesh(tmp_path / "b.stl", "mm")
+
+
+def test_a_limit_of_processor_time_that_a_shell_has_set_stays(folder):
+    """CAD files are read where `ulimit -t` has set a hard limit, which nobody may raise."""
+    code = f"print(part_areas(Path({str(folder / 'bodies.step')!r}), 'mm'))"
+    code = f"from pathlib import Path; from bulkwear.meshes.own.read import part_areas; {code}"
+    asked = f"ulimit -t {HOUR_S}; exec {sys.executable} -c {shlex.quote(code)}"
+    ended = subprocess.run(["bash", "-c", asked], capture_output=True, text=True, cwd=REPOSITORY)
+    assert "trough" in ended.stdout, ended.stderr
+
+
+def test_the_line_of_a_decimal_comma_is_named(tmp_path):
+    """In a solid that is not the first; the words between vertices are no coordinates."""
+    write_ascii(tmp_path / "a.stl", bodies())
+    lines = (tmp_path / "a.stl").read_text().splitlines()
+    at = [number for number, line in enumerate(lines) if "vertex" in line][-2]
+    words = lines[at].split()
+    words[2] = "1,5"
+    (tmp_path / "a.stl").write_text("\n".join([*lines[:at], " ".join(words), *lines[at + 1 :]]) + "\n")
+    with pytest.raises(ValueError, match=rf"a\.stl, line {at + 1}: found '1,5' .* a number with a decimal point"):
+        own_mesh(tmp_path / "a.stl", "mm")
+
+
+def test_byte_order_marks(tmp_path):
+    """That of UTF-8 changes nothing; UTF-16 is named."""
+    write_ascii(tmp_path / "a.stl", bodies())
+    text = (tmp_path / "a.stl").read_text()
+    (tmp_path / "b.stl").write_text(text, encoding="utf-8-sig")
+    (tmp_path / "c.stl").write_text(text, encoding="utf-16")
+    plain, marked = (own_mesh(tmp_path / name, "mm").surface for name in ("a.stl", "b.stl"))
+    np.testing.assert_array_equal(marked.points, plain.points)
+    with pytest.raises(ValueError, match=r"c\.stl: found text as UTF-16, allowed is an ASCII STL as UTF-8"):
+        own_mesh(tmp_path / "c.stl", "mm")
 
 
 @pytest.mark.parametrize(
