@@ -2,7 +2,7 @@
 // library calls it through its table of virtual functions, where a definition in the program comes first. The library
 // evaluates these forces without moving the tangential springs on. A sliding contact's spring then stands at its limit
 // of friction, by rounding often just below it, where the contact counts as sticking and the damping of its sliding is
-// added without any limit: gamma_t times 2 m/s were 52 times the friction of a bed. Half a step of it kicks the particles
+// added without any limit: gamma_t times 2 m/s were 53 times the friction of a bed. Half a step of it kicks the particles
 // that slide, and the load on the wall is wrong by up to a third for some forty steps. With the springs moved on by
 // one step, as in every other evaluation, they slide at their limit.
 

@@ -1,6 +1,6 @@
 """Hashes of the code that simulated numbers depend on, part by part, so that two versions can be compared without git.
 
-Comments, docstrings and blank lines of Python do not count, nor does what only draws, forecasts, checks or reports.
+Comments, docstrings and blank lines do not count, nor does what only draws, forecasts, checks or reports.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ PARTS = {  # name: what it is of the package
     "wear": ("postproc/wear/*.py", "postproc/mesh.py", "postproc/mesh_checks.py", "postproc/readers/*.py"),
     "flow": ("postproc/flow/*.py",),
     "engine": ("workflows/engine/*.py",),
-    "meshes": ("meshes/**/*.py",),
-    "solver": ("solver/*.cpp", "solver/*.h"),
+    "meshes": ("meshes/*.py",),
+    "solver": ("solver/**/*.cpp", "solver/**/*.h"),
 }
 OF_CASE = {"case": "workflows/cases", "templates": "templates"}  # parts of which each run has its case's
 SHARED_TEMPLATES = "_shared"
@@ -64,7 +64,14 @@ def part_files(cases: Iterable[str], root: Path = PACKAGE) -> dict[str, list[str
     folders = [SHARED_TEMPLATES, *cases]
     found["templates"] = _matching(root, [f"{OF_CASE['templates']}/{folder}/*.in.j2" for folder in folders])
     found["case"] = sorted({file for case in cases for file in case_files(case, root)})
+    found["meshes"] += _matching(root, [f"{folder}/*.py" for folder in _mesh_folders(found["case"], root)])
     return found
+
+
+def _mesh_folders(files: Iterable[str], root: Path) -> set[str]:
+    """Return the folders within `meshes` that a case's files import from."""
+    reached = {path.parent.relative_to(root).as_posix() for file in files for path in _imported(root / file, root)}
+    return {folder for folder in reached if folder.startswith("meshes/")}
 
 
 def _matching(root: Path, patterns: Iterable[str]) -> list[str]:
@@ -122,7 +129,12 @@ def _essence_of(path: Path) -> str:
 @cache  # a process that simulates several runs asks for each
 def _kept_essence(path: Path, changed_ns: int) -> str:
     text = path.read_text(encoding="utf-8")
-    return essence(text) if path.suffix == ".py" else text
+    return {".py": essence, ".cpp": essence_of_solver, ".h": essence_of_solver}.get(path.suffix, str)(text)
+
+
+def essence_of_solver(text: str) -> str:
+    """Return C++ without blank lines and lines that are comments alone."""
+    return "\n".join(line.rstrip() for line in text.splitlines() if not line.lstrip().startswith("//") and line.strip())
 
 
 def essence(text: str) -> str:

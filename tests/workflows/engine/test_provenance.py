@@ -7,7 +7,7 @@ import pytest
 
 from bulkwear.workflows.engine import provenance
 from bulkwear.workflows.engine.cases import case_names
-from bulkwear.workflows.engine.code_parts import PARTS, essence, part_files, part_hashes
+from bulkwear.workflows.engine.code_parts import PARTS, essence, essence_of_solver, part_files, part_hashes
 from bulkwear.workflows.engine.project import PACKAGE
 from tests import REPOSITORY
 
@@ -31,8 +31,11 @@ def copied(tmp_path_factory) -> Path:
         ("postproc/mesh.py", "wear"),
         ("postproc/flow/bed.py", "flow"),
         ("workflows/engine/wear_step.py", "engine"),
-        ("meshes/own/solids.py", "meshes"),
+        ("meshes/sample.py", "meshes"),
+        ("meshes/own/solids.py", None),
         ("solver/fix_load_ledger.cpp", "solver"),
+        ("solver/rolling/rolling_models.cpp", "solver"),
+        ("solver/search/gap.h", "solver"),
         ("templates/_shared/particles.in.j2", "templates"),
         (f"templates/{CASE}/sliding_sample.in.j2", "templates"),
         (f"workflows/cases/{CASE}/decks.py", "case"),
@@ -68,6 +71,24 @@ def test_words_about_code_are_no_code():
     assert essence(bare.replace("1", "2")) != essence(bare) != essence(bare.replace("#", "%"))
 
 
+def test_words_about_the_solver_are_no_code():
+    """Lines of comments and blank ones change nothing; a number does."""
+    bare = "double twice(double x) { return 2.0 * x; }"
+    assert essence_of_solver(f"// says\n\n{bare} \n  // why\n") == essence_of_solver(bare)
+    assert essence_of_solver(bare.replace("2.0", "3.0")) != essence_of_solver(bare)
+
+
+def test_drawings_read_are_of_the_cases_that_read_them(copied):
+    """A change of what reads CAD files is one of equipment, and of no sample."""
+    path = copied / "meshes/own/stl.py"
+    text, before = path.read_text(), {case: part_hashes([case], copied) for case in (CASE, "equipment")}
+    path.write_text(f"{text}\nADDED = 1\n")
+    after = {case: part_hashes([case], copied) for case in before}
+    path.write_text(text)
+    assert after[CASE] == before[CASE]
+    assert {name for name in OF_RUN if after["equipment"][name] != before["equipment"][name]} == {"meshes"}
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -100,7 +121,7 @@ def test_the_engine_a_driver_imports_is_all_counted():
 
     from bulkwear.workflows.engine import code_parts
 
-    counted = {file for part in part_files([CASE]).values() for file in part} | code_parts.ASIDE
+    counted = {file for part in part_files(case_names()).values() for file in part} | code_parts.ASIDE
     folders = ("postproc/wear/", "postproc/readers/", "workflows/engine/", "meshes/")
     files = (getattr(module, "__file__", None) for name, module in sys.modules.items() if name.startswith("bulkwear."))
     loaded = {
