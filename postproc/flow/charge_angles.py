@@ -26,7 +26,6 @@ PARTICLES_EVENED = 50.0  # of which the filling at an angle is told: it scatters
 BELL_WIDTH = 2.0 * math.sqrt(math.pi)  # -, intervals that a bell evens out over its standard deviation
 SPREADS = (0.7, 8.0)  # intervals, least and most of that deviation
 BRIDGED_DEG = 8.0  # a gap in the charge up to this is a lifter, not its end
-THREE_OCLOCK_DEG = 90.0  # from 12 o'clock
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,14 +70,6 @@ def polar_places(
     from_axis = np.asarray(positions, dtype=float) - np.asarray(point, dtype=float)
     high, forward = from_axis @ top, from_axis @ ahead
     return np.hypot(high, forward), np.degrees(np.arctan2(forward, high)) % 360.0
-
-
-def from_three_oclock(angle_deg: float) -> float:
-    """Return an angle from 12 o'clock as one from 3 o'clock, 0 to 360 degrees.
-
-    Both anticlockwise, for a mill that is seen to turn anticlockwise: the convention of Morrell (1996).
-    """
-    return (angle_deg + THREE_OCLOCK_DEG) % 360.0
 
 
 def charge_angles(

@@ -72,10 +72,3 @@ def discharge_time(curve: pd.DataFrame) -> tuple[float, float]:
     share = np.maximum.accumulate(mass) / mass[-1]
     early, at, late = np.interp([DISCHARGED_BAND[0], DISCHARGED, DISCHARGED_BAND[1]], share, curve["time_s"])
     return float(at), float((late - early) / 2.0)
-
-
-def mass_flow(curve: pd.DataFrame) -> float:
-    """Return the mean mass flow (kg/s) between 20 and 80 % of the outflow."""
-    mass = curve["mass_kg"].to_numpy()
-    times = np.interp([0.2, 0.8], np.maximum.accumulate(mass) / mass[-1], curve["time_s"])
-    return float(0.6 * mass[-1] / (times[1] - times[0]))

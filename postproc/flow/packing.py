@@ -7,7 +7,6 @@ volume to the layer of its centre, and the exact one, which cuts it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
@@ -37,23 +36,6 @@ def porosity_of_whole_particles(height: np.ndarray, radius: np.ndarray, edges: n
     """Return the porosity (k,) where a particle counts whole in the layer of its centre (Yan 2022, section 4.3.1)."""
     solid, _ = np.histogram(height, edges, weights=4.0 / 3.0 * math.pi * radius**3)
     return 1.0 - solid / (area * np.diff(edges))
-
-
-def contacts_of(places: np.ndarray, radius: np.ndarray, period: Sequence[float] = (0.0, 0.0, 0.0)) -> np.ndarray:
-    """Return the number (k,) of others that each sphere (centres (k, 3) m) touches or overlaps.
-
-    period: m, along each axis, 0 where it is not periodic. Contacts are overlaps of micrometres: places that were
-    printed with six digits do not tell them, and the solver's own count is to be taken.
-    """
-    from scipy.spatial import cKDTree  # slow to import, and every start of Snakemake reads this module
-
-    period = np.asarray(period)
-    wrapped = np.where(period > 0.0, np.mod(places, np.where(period > 0.0, period, 1.0)), places)
-    pairs = cKDTree(wrapped, boxsize=period).query_pairs(2.0 * radius.max(), output_type="ndarray")
-    apart = wrapped[pairs[:, 0]] - wrapped[pairs[:, 1]]
-    apart -= period * np.round(apart / np.where(period > 0.0, period, np.inf))
-    touching = pairs[np.linalg.norm(apart, axis=1) <= radius[pairs].sum(axis=1)]
-    return np.bincount(touching.ravel(), minlength=len(radius))
 
 
 def layer_edges(height: np.ndarray, radius: np.ndarray, median_diameter: float, floor: float = 0.0) -> np.ndarray:

@@ -127,12 +127,6 @@ def steady_rest(table: pd.DataFrame, block_s: float, tolerance: float = LARGEST_
     return _judged(series[middles >= min(latest, middles[-FEWEST_BLOCKS])], block_s, tolerance)
 
 
-def first_steady_time(table: pd.DataFrame, block_s: float, tolerance: float = LARGEST_DRIFT) -> float:
-    """Return from which time (s) on the flow is steady to the table's end; NaN where that is not shown."""
-    found = steady_rest(table, block_s, tolerance)
-    return found.start_s if found.steady else math.nan
-
-
 def _block_series(table: pd.DataFrame, block_s: float) -> pd.DataFrame:
     """Return a row per block: start_s, rates of INSERTED and OUT in kg/s, means of HELD and of the powers in W."""
     missing = [name for name in (TIME, HELD, INSERTED, OUT) if name not in table]

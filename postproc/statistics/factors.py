@@ -75,11 +75,6 @@ def factors_of(design: pd.DataFrame, columns: Sequence[str]) -> list[Factor]:
     return [factor_of(column, design[column].to_numpy()) for column in columns]
 
 
-def coded_table(design: pd.DataFrame, factors: Sequence[Factor]) -> np.ndarray:
-    """Return a design table in coded units, (runs, factors)."""
-    return np.column_stack([factor.coded(design[factor.name].to_numpy()) for factor in factors])
-
-
 def half_normal_table(
     terms: Sequence[Term], coded: np.ndarray, response: np.ndarray, names: Sequence[str]
 ) -> pd.DataFrame:

@@ -88,27 +88,6 @@ def aliased_pairs(correlation: pd.DataFrame, least: float = PARALLEL) -> pd.Data
     return pairs.sort_values("correlation", key=np.abs, ascending=False, kind="stable", ignore_index=True)
 
 
-def obeys(choices: np.ndarray, terms: Sequence[Term], heredity: Heredity) -> np.ndarray:
-    """Return which models (m,) obey a heredity.
-
-    choices: (m, s) positions in `terms` of each model's terms. An interaction or a square needs in the model: with
-    "strong" the main effects of all its factors, with "weak" of one of them, with "none" nothing.
-    """
-    allowed = np.ones(len(choices), dtype=bool)
-    if heredity == "none" or not choices.size:
-        return allowed
-    chosen = np.zeros((len(choices), len(terms)), dtype=bool)
-    np.put_along_axis(chosen, choices, True, axis=1)
-    mains = {term[0]: position for position, term in enumerate(terms) if len(term) == 1}
-    absent = np.zeros(len(choices), dtype=bool)
-    enough = np.logical_and if heredity == "strong" else np.logical_or
-    for position, term in enumerate(terms):
-        if len(term) == 2:
-            parents = [chosen[:, mains[k]] if k in mains else absent for k in term]
-            allowed &= ~chosen[:, position] | enough(*parents)
-    return allowed
-
-
 def parents_of(terms: Sequence[Term], heredity: Heredity) -> tuple[np.ndarray, np.ndarray]:
     """Return (T, T) which main effects are parents of each term, and (T,) how many of them it needs by a heredity.
 

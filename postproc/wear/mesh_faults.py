@@ -163,14 +163,8 @@ def tangle_message(mesh: SurfaceMesh, faults: MeshFaults) -> str:
     return f"{cause} at ({place}) mm; {count} such faces"
 
 
-def aspects(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Longest edge over smallest altitude of each triangle, (m,), infinite without area."""
-    _, _, longest, area = face_measures(points, triangles)
-    return _aspects(longest, area)
-
-
 def _aspects(longest: np.ndarray, area: np.ndarray) -> np.ndarray:
-    """The same (m,) of the longest edges (m,) m and the areas (m,) m2."""
+    """Longest edge over smallest altitude (m,), - of faces with these longest edges (m,) m and areas (m,) m2."""
     return np.divide(longest**2, 2.0 * area, out=np.full(len(area), np.inf), where=area > 0.0)
 
 

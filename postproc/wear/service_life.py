@@ -147,8 +147,3 @@ def hour_reached(
 def throughput_mt(hours: float, rate_t_per_h: float) -> float:
     """Bulk (Mt) that passes in so many hours at so many t/h."""
     return hours * rate_t_per_h / TONNES_PER_MT
-
-
-def hours_of(throughput_mt: float, rate_t_per_h: float) -> float:
-    """Hours in which so much bulk (Mt) passes at so many t/h."""
-    return throughput_mt * TONNES_PER_MT / rate_t_per_h

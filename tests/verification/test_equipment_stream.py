@@ -15,6 +15,7 @@ from bulkwear.postproc.statistics.block_means import mean_of_blocks
 from bulkwear.postproc.statistics.intervals import CONFIDENCE, difference
 from bulkwear.workflows.cases.equipment import blocks, flow
 from bulkwear.workflows.cases.equipment.life import part_life
+from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.cases.equipment.tables import read_runs, values_of_runs
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.cycles import run_chain
@@ -51,7 +52,7 @@ ALPHA, BY_MASS = "wear_coefficient_per_pa", "change_out_worn_mass_fraction"
 def sampled(chain) -> SimpleNamespace:
     """What the sampled blocks of a run tell: recession of the liner's upper side (m/h), velocity and pressure there."""
     last = len(list(chain.folder.glob("cycle_*"))) - 1
-    tables = [table[table["normal_z"] > 0.5] for table in blocks.sampled_blocks(chain.folder, last)]
+    tables = [table[table["normal_z"] > 0.5] for table in blocks.patch_tables(chain.folder, last, (PRISTINE,))]
     whole = flow.whole_flow(chain.folder, chain.parameters, last).groupby("cycle").last()
     fed = whole["inserted_mass_kg"].diff().iloc[-len(tables) :]
 
@@ -98,7 +99,7 @@ def test_every_place_of_the_liner_wears_alike(once):
     """Patches of the upper side scatter about the mean; no other side wears, but for its ends' edges."""
     rates = np.mean([table["recession_m_per_h"] for table in once.tables], axis=0)
     assert np.abs(rates / once.recession.mean() - 1.0).max() < PATCHES
-    whole = blocks.sampled_blocks(once.chain.folder, int(once.tables[-1]["cycle"].iloc[0]))
+    whole = blocks.patch_tables(once.chain.folder, int(once.tables[-1]["cycle"].iloc[0]), (PRISTINE,))
     volume = sum(table["recession_m_per_h"] * table["area_m2"] for table in whole)
     assert volume[whole[0]["normal_z"] < 0.5].sum() < OFF * volume.sum()  # its end under the last balls on it
 

@@ -10,7 +10,6 @@ from bulkwear.postproc.flow.outflow import (
     check_count,
     check_not_blocked,
     discharge_time,
-    mass_flow,
     outflow_curve,
 )
 
@@ -32,11 +31,6 @@ def test_discharge_of_a_constant_flow():
     assert seconds == pytest.approx(0.99 * 5.0, rel=EXACT)
     assert uncertainty == pytest.approx(0.5 * (0.995 - 0.98) * 5.0, rel=EXACT)
     assert discharge_time(constant_flow(after=30.0))[0] == pytest.approx(seconds, rel=EXACT)
-
-
-def test_mass_flow_of_a_constant_flow():
-    """The mean mass flow is the rate."""
-    assert mass_flow(constant_flow(rate=1.7)) == pytest.approx(1.7, rel=EXACT)
 
 
 def test_a_blocked_opening_is_refused():

@@ -8,7 +8,6 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.flow.packing import (
-    contacts_of,
     inner_means,
     layer_edges,
     loose_and_dense,
@@ -19,6 +18,7 @@ from bulkwear.postproc.flow.packing import (
     volume_below,
     within,
 )
+from tests.support.touching import contacts_of
 
 ROUNDING = 1e-12  # relative
 RADIUS = 0.001  # m

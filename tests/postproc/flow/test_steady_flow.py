@@ -11,7 +11,6 @@ from bulkwear.postproc.flow.steady_flow import (
     FEWEST_BLOCKS,
     MASS,
     POWER,
-    first_steady_time,
     steady_flow,
     steady_rest,
 )
@@ -109,7 +108,6 @@ def test_the_start_is_cut_off(seed):
     found = steady_rest(table, 0.1)
     assert found.steady
     assert 0.8 * STAY < found.start_s < 3.0
-    assert first_steady_time(table, 0.1) == found.start_s
     low, high = found.rate_out_kg_per_s.interval(0.9999)
     assert low < RATE < high
     assert found.held_kg == pytest.approx(RATE * STAY, rel=0.05)
@@ -128,8 +126,8 @@ def test_enough_blocks_stay_to_judge(blocks):
 
 def test_no_time_is_steady_while_a_machine_fills():
     """Before the first particles go out, and where in and out never meet."""
-    assert math.isnan(first_steady_time(chute(1, 0.4), 0.02))
-    assert math.isnan(first_steady_time(table_of(20.0, 18.0), 0.2))
+    assert not steady_rest(chute(1, 0.4), 0.02).steady
+    assert not steady_rest(table_of(20.0, 18.0), 0.2).steady
 
 
 @pytest.mark.verify
@@ -173,7 +171,7 @@ def test_few_blocks_tell_nothing():
         found = steady_rest(table_of(20.0, 20.0, seconds=seconds), 0.2)
         assert found.answer == UNSAID
         assert f"{FEWEST_BLOCKS} blocks or more are needed" in found.said()
-    assert math.isnan(first_steady_time(table_of(20.0, 20.0, seconds=1.0), 0.2))
+    assert not steady_rest(table_of(20.0, 20.0, seconds=1.0), 0.2).steady
 
 
 def test_the_sentence_states_the_numbers():

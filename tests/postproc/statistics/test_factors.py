@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.statistics.factors import Factor, coded_table, factor_of, factors_of
+from bulkwear.postproc.statistics.factors import Factor, factor_of, factors_of
+from tests.support.models import coded_table
 
 ROUNDING = 1e-13  # of a logarithm and its power
 

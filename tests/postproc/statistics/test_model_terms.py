@@ -7,11 +7,11 @@ from bulkwear.postproc.statistics.model_terms import (
     aliased_pairs,
     aliasing,
     candidate_terms,
-    obeys,
     parse_term,
     term_name,
     told_apart,
 )
+from tests.support.models import obeys
 
 NAMES = ["a", "b", "c"]
 ROUNDING = 1e-12

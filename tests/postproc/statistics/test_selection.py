@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.statistics import selection
-from bulkwear.postproc.statistics.factors import coded_table, factors_of
-from bulkwear.postproc.statistics.model_terms import candidate_terms, obeys, parse_term, term_columns, told_apart
+from bulkwear.postproc.statistics.factors import factors_of
+from bulkwear.postproc.statistics.model_terms import candidate_terms, parse_term, term_columns, told_apart
 from bulkwear.postproc.statistics.regression import fit
 from bulkwear.postproc.statistics.screening_design import coded_design
 from bulkwear.postproc.statistics.selection import (
@@ -21,6 +21,7 @@ from bulkwear.postproc.statistics.selection import (
     score_of,
 )
 from tests import REPOSITORY
+from tests.support.models import coded_table, obeys
 
 NAMES = "abdhvt"
 MODEL = ("a", "b", "d", "v", "t", "b*d")

@@ -7,7 +7,6 @@ from bulkwear.meshes.plate import flat_plate, sphere
 from bulkwear.postproc.mesh import SurfaceMesh
 from bulkwear.postproc.wear.mesh_faults import (
     Bounds,
-    aspects,
     folded_faces,
     mesh_faults,
     tangle_message,
@@ -28,9 +27,9 @@ def test_sound_surfaces_have_no_faults():
 def test_aspect_of_an_equilateral_triangle():
     """Longest edge over smallest altitude: 2 / sqrt 3 when equilateral, infinite without area."""
     points = np.array([[0, 0, 0], [1, 0, 0], [0.5, np.sqrt(0.75), 0], [2, 0, 0.0]])
-    found = aspects(points, np.array([[0, 1, 2], [0, 1, 3]]))
-    assert found[0] == pytest.approx(2.0 / np.sqrt(3.0), rel=EXACT)
-    assert found[1] == np.inf
+    for corners, aspect in (([0, 1, 2], 2.0 / np.sqrt(3.0)), ([0, 1, 3], np.inf)):
+        faults = mesh_faults(SurfaceMesh(points, np.array([corners]), {}))
+        assert faults.largest_aspect == pytest.approx(aspect, rel=EXACT)
 
 
 def test_fold_of_two_faces():

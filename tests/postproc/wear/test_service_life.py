@@ -12,7 +12,6 @@ from bulkwear.postproc.wear.service_life import (
     allowed_depth,
     allowed_volume,
     hour_reached,
-    hours_of,
     life,
     life_interval,
     throughput_mt,
@@ -147,12 +146,11 @@ def test_what_does_not_wear_lasts():
 
 
 def test_other_units():
-    """1,000 t/h for 10,000 h are 10 Mt, and hours come back; 5,000 h a year are two years."""
+    """1,000 t/h for 10,000 h are 10 Mt; 5,000 h a year are two years."""
     found = life(Estimate(TRUTH, 0.1, 5, 3, log=True), 0.2, ALLOWED)
     assert found.throughput_mt(1000.0) == pytest.approx((10.0, found.low_h / 1000.0, found.high_h / 1000.0), rel=EXACT)
     assert found.years(5000.0) == pytest.approx((2.0, found.low_h / 5000.0, found.high_h / 5000.0), rel=EXACT)
     assert throughput_mt(1e4, 1000.0) == pytest.approx(10.0, rel=EXACT)
-    assert hours_of(10.0, 1000.0) == pytest.approx(1e4, rel=EXACT)
 
 
 # ---------------------------------------------------------------- histories

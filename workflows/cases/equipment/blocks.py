@@ -27,7 +27,7 @@ from bulkwear.postproc.wear.part_loads import part_loads
 from bulkwear.postproc.wear.thickness import LOCAL_THICKNESS, with_thickness
 from bulkwear.workflows.cases.equipment.motions import axis_point
 from bulkwear.workflows.cases.equipment.parameters import law_values, sums_of
-from bulkwear.workflows.cases.equipment.phases import PRISTINE, phase_of
+from bulkwear.workflows.cases.equipment.phases import phase_of
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, label_of
 from bulkwear.workflows.engine.schedule import Span
 
@@ -217,8 +217,3 @@ def held_back_per_s(run: Parameters, span: Span, surface: SurfaceMesh, ledger: p
 
     first, last = np.log((room / volume).min()), np.log((room / volume).max()) - math.log1p(-MOST_HELD_BACK)
     return math.exp(-optimize.brentq(held_back, first, last + 1.0))
-
-
-def sampled_blocks(folder: Path, last: int) -> list[pd.DataFrame]:
-    """Return the tables of patches of the blocks on the shape as built."""
-    return patch_tables(folder, last, (PRISTINE,))

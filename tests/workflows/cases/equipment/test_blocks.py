@@ -13,6 +13,7 @@ from bulkwear.postproc.wear.kernels import kernel_column
 from bulkwear.postproc.wear.ledger import vector_columns
 from bulkwear.postproc.wear.update import REMOVED_THICKNESS
 from bulkwear.workflows.cases.equipment import blocks
+from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.cases.equipment.surfaces import faces_of, machine_surface
 from bulkwear.workflows.engine.cases import find_case
 from bulkwear.workflows.engine.schedule import Span
@@ -279,6 +280,6 @@ def test_sampled_blocks_are_those_on_the_shape_as_built(tmp_path):
         folder = tmp_path / f"cycle_{number:03d}"
         folder.mkdir()
         pd.DataFrame({"phase": [phase], "cycle": [number]}).to_csv(folder / blocks.PATCHES, index=False)
-    found = [table["cycle"].iloc[0] for table in blocks.sampled_blocks(tmp_path, 5)]
-    assert found == [2, 3] and len(blocks.sampled_blocks(tmp_path, 2)) == 1
+    found = [table["cycle"].iloc[0] for table in blocks.patch_tables(tmp_path, 5, (PRISTINE,))]
+    assert found == [2, 3] and len(blocks.patch_tables(tmp_path, 2, (PRISTINE,))) == 1
     assert len(blocks.patch_tables(tmp_path, 4)) == 4

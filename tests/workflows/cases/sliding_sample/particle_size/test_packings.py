@@ -8,7 +8,7 @@ import pytest
 
 from bulkwear.postproc.flow.bed import read_snapshot
 from bulkwear.postproc.flow.bulk_test import HEAP
-from bulkwear.postproc.flow.packing import contacts_of, inner_means, loose_and_dense, packing_profile
+from bulkwear.postproc.flow.packing import inner_means, loose_and_dense, packing_profile
 from bulkwear.workflows.cases.sliding_sample.decks import bed_contacts
 from bulkwear.workflows.cases.sliding_sample.particle_size.packings import (
     AT_REST_BEHIND,
@@ -29,6 +29,7 @@ from bulkwear.workflows.engine.derived import PERIODIC
 from bulkwear.workflows.engine.solver import DECK, LEDGER_EXECUTABLE, run_deck
 from bulkwear.workflows.engine.templates import render, used_sections
 from tests.support.tiny import tiny_chain, tiny_study
+from tests.support.touching import contacts_of
 
 SCALE = 8.0
 DIGITS = 0.02  # -, of the contacts: positions printed with six digits lose or invent a few. Measured: 2e-3
