@@ -105,7 +105,10 @@ def hertz_elastic_energy(force, radius, effective_modulus):
 
 
 def columns_of_solver(
-    columns: Mapping[str, np.ndarray], corners: np.ndarray, kernels: Iterable[str] = ()
+    columns: Mapping[str, np.ndarray],
+    corners: np.ndarray,
+    kernels: Iterable[str] = (),
+    frames: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
     """Return the ledger that the solver has summed: the columns that `LedgerBuilder.table` returns.
 
@@ -114,12 +117,13 @@ def columns_of_solver(
     corners: (n, 3, 3) m, corners of the facets as the solver got them (`postproc.mesh.stl_corners`), in the frame
         where positions and vectors are wanted
     kernels: labels of the sums of contact kernels that are wanted
+    frames: (n, 3, 3) of the facets (`facet_frames`), where they are known
 
     Raises KeyError when a column is missing, ValueError for an unknown kernel.
     """
     weights = np.column_stack([columns[f"contact_weight_{k}"] for k in (1, 2, 3)])
     found = {**columns, **_by_axis(POSITION_FIELDS, np.einsum("ik,ikj->ij", weights, corners))}
-    frames = facet_frames(corners)
+    frames = facet_frames(corners) if frames is None else frames
     for name in VECTOR_UNITS:
         parts = np.column_stack([columns[part] for part in vector_columns(name, ("along", "across", "normal"))])
         found |= _by_axis(vector_columns(name), np.einsum("ik,ikj->ij", parts, frames))

@@ -17,6 +17,7 @@ from bulkwear.postproc.mesh import stl_corners
 from bulkwear.postproc.readers.contacts import read_contact_batches
 from bulkwear.postproc.readers.load_ledger import read_load_ledger
 from bulkwear.postproc.wear.ledger import LedgerBuilder, columns_of_solver
+from bulkwear.postproc.wear.mesh_frame import facet_frames
 from bulkwear.workflows.engine import state
 from bulkwear.workflows.engine.case import Piece as Mesh
 from bulkwear.workflows.engine.chain import Chain
@@ -64,25 +65,30 @@ def producer(parameters: Mapping[str, Any]) -> Producer:
 
 def summed_by_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Columns:
     """Return the ledger that the solver has summed. Raises LoadLedgerError where it is not that of this cycle."""
-    return _columns_of_file(folder / mesh.ledger, chain, span, mesh, span.solver_steps, _corners(mesh))
+    return _columns_of_file(folder / mesh.ledger, chain, span, mesh, span.solver_steps, *_facets(mesh))
 
 
 def history_of_solver(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Iterator[tuple[int, Columns]]:
     """Yield steps of a cycle and what the solver had summed until then. Raises LoadLedgerError."""
-    corners = _corners(mesh)
+    facets = _facets(mesh)
     for steps in sorted(int(path.suffix[1:]) for path in folder.glob(f"{mesh.ledger}.*")):
-        yield steps, _columns_of_file(folder / f"{mesh.ledger}.{steps}", chain, span, mesh, steps, corners)
+        yield steps, _columns_of_file(folder / f"{mesh.ledger}.{steps}", chain, span, mesh, steps, *facets)
 
 
-def _columns_of_file(path: Path, chain: Chain, span: Span, mesh: Mesh, steps: int, corners: np.ndarray) -> Columns:
+def _columns_of_file(
+    path: Path, chain: Chain, span: Span, mesh: Mesh, steps: int, corners: np.ndarray, frames: np.ndarray
+) -> Columns:
     loads = read_load_ledger(path, mesh=f"{mesh.name}_{span.cycle}", n_triangles=len(mesh.triangles), steps=steps)
-    return columns_of_solver(loads.columns, corners, chain.case.kernels(chain.parameters))
+    return columns_of_solver(loads.columns, corners, chain.case.kernels(chain.parameters), frames)
 
 
-def _corners(mesh: Mesh) -> np.ndarray:
-    """Return the corners (m, 3, 3) m of a mesh's facets as the solver got them, in the frame of its ledger."""
+def _facets(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners (m, 3, 3) m of a mesh's facets as the solver got them, in the frame of its ledger, and the
+    frames (m, 3, 3) of these facets.
+    """
     facets = mesh.frame or mesh.mesh
-    return stl_corners(facets.points, facets.triangles)
+    corners = stl_corners(facets.points, facets.triangles)
+    return corners, facet_frames(corners)
 
 
 def summed_from_dumps(chain: Chain, span: Span, folder: Path, mesh: Mesh) -> Columns:
