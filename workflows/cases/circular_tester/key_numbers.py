@@ -12,7 +12,7 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import PLAIN
 from bulkwear.postproc.statistics.intervals import UNKNOWN
-from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES
+from bulkwear.postproc.tables.display import CUBIC_MILLIMETRES, MILLIMETRES
 from bulkwear.postproc.tables.summary import patterned_name, published_value, read_summary
 from bulkwear.postproc.wear.prediction import Prediction, joined
 from bulkwear.workflows.cases.circular_tester.comparison import worn_out_at
@@ -325,10 +325,33 @@ def by_column(folder: Path) -> list[Block]:
     return [Table(table, "wear_by_column", INTERVALS, heads=heads)]
 
 
-def until_worn_out(folder: Path) -> list[Block]:
-    """Return when less than a twentieth of the pattern is left, run by run; nothing where no row is for that."""
+def until_worn_out(folder: Path, thickness_mm: float) -> list[Block]:
+    """Return when less than a twentieth of the pattern is left, run by run, and from when on a sample is worn deeper
+    than it is thick; nothing where no row is for that. thickness_mm: of sample and holder
+    """
     path = folder / "figures" / "tester_worn_out.csv"
-    return [Table(worn_out_at(pd.read_csv(path)))] if path.is_file() else []
+    if not path.is_file():
+        return []
+    left = pd.read_csv(path)
+    histories = {run: pd.read_csv(folder / run / "wear.csv") for run in left["run"].unique()}
+    said = [deeper_than_sample(left[left["run"] == run], history, thickness_mm) for run, history in histories.items()]
+    return [Table(worn_out_at(left)), *(Text(each) for each in said if each)]
+
+
+def deeper_than_sample(left: pd.DataFrame, history: pd.DataFrame, thickness_mm: float) -> str | None:
+    """Return a sentence on a run that is somewhere worn deeper than sample and holder are thick; None of another.
+
+    left: of the run, as from `comparison.pattern_left`; history: its wear.csv
+    """
+    deepest = MILLIMETRES * history["largest_depth_m"]
+    if not (deepest > thickness_mm).any():
+        return None
+    share = history["revolution"][deepest > thickness_mm].iloc[0] / history["revolution"].iloc[-1]
+    return (
+        f"From revolution {number(share * left['revolution'].iloc[-1], 2)} on {left['run'].iloc[0]} is somewhere worn "
+        f"deeper than sample and holder are thick, {thickness_mm:g} mm; at its end by {number(deepest.iloc[-1], 2)} mm."
+        " What it loses there and then is that of a thicker one."
+    )
 
 
 def by_elements(folder: Path) -> list[Block]:

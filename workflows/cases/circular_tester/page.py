@@ -66,6 +66,7 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
     columns = ("tester_columns", "tester_bumps", "tester_contours", "tester_force_columns")
     places = (*columns, "wear_by_law", "maps_by_law")
     layer = ("tester_spin", "tester_velocity", "tester_force", "tester_spin_map", "tester_velocity_map")
+    thickness_mm = study["settings"]["sample"]["thickness_mm"]
     parts = (
         (
             "Experiment, thesis' model and ours",
@@ -79,7 +80,11 @@ def sections(study: Mapping[str, Any], folder: Path) -> list[Section]:
         ("Beds", blocks_of_beds(folder, NOTE), ()),
         ("Steadiness", key_numbers.steadiness(folder), ("tester_steadiness",)),
         ("Where it wears", key_numbers.by_column(folder), places),
-        ("Until the pattern is gone", key_numbers.until_worn_out(folder), ("tester_worn_out",)),
+        (
+            "Until the pattern is gone",
+            key_numbers.until_worn_out(folder, thickness_mm),
+            ("tester_worn_out",),
+        ),
         ("The lowest layer", [], layer),
         ("Elements", key_numbers.by_elements(folder), ("tester_mesh", "tester_mesh_contours")),
     )
