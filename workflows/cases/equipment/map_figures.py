@@ -130,9 +130,10 @@ def recession_against_time(job: Job) -> Any:
     caption="""
     Recession of the shape as built, each part alone and seen square to its worn side, or from where most of its wear is
     seen; two sides where one hides much of it. A part that closes round its axis is shown unrolled. All designs and
-    parts share one scale, which ends at the value that 99 % of the area of the most worn part does not exceed. Values
-    are means over blocks and packings of area patches; colours run from face to face. Numbers: the worst places of each
-    part, as in the table. Lengths are true to scale, bars tell them.
+    parts share one scale, which ends at the value that 99 % of the area of the most worn part does not exceed; it is of
+    decades where a part wears less than a tenth as fast as another. Values are means over blocks and packings of area
+    patches; colours run from face to face. Numbers: the worst places of each part, as in the table. Lengths are true to
+    scale, bars tell them.
     """,
 )
 def wear_map(job: Job) -> Any:

@@ -7,14 +7,14 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib import colormaps
-from matplotlib.colors import to_rgb
+from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 
 from bulkwear.postproc.mesh import SurfaceMesh, area_vectors, centroids, unit_normals
 from bulkwear.workflows.cases.equipment.flow_panels import FlowPanel
 from bulkwear.workflows.cases.equipment.pictures import RECESSION, REMAINING, PartMap
 from bulkwear.workflows.cases.equipment.plane_cuts import cut, part_plane, turning_plane, values_on
-from bulkwear.workflows.cases.equipment.plots import curves, flow, maps, panels, sections, views
+from bulkwear.workflows.cases.equipment.plots import curves, flow, maps, panels, scales, sections, views
 from tests.workflows.cases.equipment import scenes
 from tests.workflows.cases.equipment.scenes import REMARKS, faults_of
 
@@ -254,8 +254,23 @@ def test_maps_share_a_scale_that_single_faces_do_not_set():
     values = np.where(worn > 0.0, 2.0, np.nan)
     values[np.flatnonzero(worn)[0]] = 100.0
     most = PartMap("A", "plate", mesh, {RECESSION: values}, worn)
-    assert maps.top_of([most, part_map("B", value=1.0)], RECESSION) == 2.0
-    assert maps.top_of([], RECESSION) > 0.0
+    assert scales.top_of([most, part_map("B", value=1.0)], RECESSION) == 2.0
+    assert scales.top_of([], RECESSION) > 0.0
+
+
+def test_a_part_far_below_another_one_has_colours_too():
+    """Then the scale is of decades, from a tenth of the lowest part's rates on, and four decades long at most."""
+    near, far, further = (part_map(part=f"p{value:g}", value=value) for value in (5.0, 0.1, 1e-6))
+    fast = part_map(part="fast", value=20.0)
+    assert type(scales.scale_of([fast, near], RECESSION)) is Normalize
+    found = scales.scale_of([fast, near, far], RECESSION)
+    assert (found.vmin, found.vmax) == pytest.approx((0.01, 20.0))
+    assert scales.scale_of([fast, further], RECESSION).vmin == pytest.approx(20.0 / 1e4)
+    (shares,) = (each.values[RECESSION] for each in scales.on_scale([far], RECESSION, found))
+    assert np.nanmax(shares) == pytest.approx(np.log(10.0) / np.log(2000.0)) and np.isnan(shares).any()
+    figure = maps.wear_map([fast, far], {}, {}, REMARKS)
+    (bar,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("Recession"))
+    assert bar.get_yscale() == "log" and not faults_of(figure)
 
 
 def test_what_is_due_is_red():

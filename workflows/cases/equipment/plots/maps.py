@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Colormap, ListedColormap, Normalize, to_rgba
 from matplotlib.figure import Figure
@@ -18,7 +17,8 @@ from bulkwear.postproc.plots.style import LARGEST_HEIGHT, MAP, REMARK_LINE, SMAL
 from bulkwear.postproc.tables.depths import area_quantile
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.workflows.cases.equipment.pictures import RECESSION, REMAINING, PartMap
-from bulkwear.workflows.cases.equipment.plots.panels import Box, Picture, part_of, picture_grid
+from bulkwear.workflows.cases.equipment.plots.panels import Box, Picture, picture_grid
+from bulkwear.workflows.cases.equipment.plots.scales import colour_bar, on_scale, scale_of, second_scale, top_of
 from bulkwear.workflows.cases.equipment.plots.views import (
     NO_VALUE,
     View,
@@ -29,7 +29,6 @@ from bulkwear.workflows.cases.equipment.plots.views import (
     view_of,
 )
 
-TOP_SHARE = 0.99  # of the area that has a value: higher ones share the top colour
 BAR_ROOM, SMALL_BAR_ROOM = 1.4, 0.85  # inches, for a colour bar with its labels
 BAR_LEFT, SMALL_BAR_LEFT, BAR_WIDE = 0.84, 0.76, 0.12  # inches: from the right to the bar, and its width
 MARGIN, BESIDE = 0.08, 0.15  # inches, round all pictures, and beside that of the machine
@@ -37,6 +36,7 @@ FACING = 0.5  # -, cosine of a face to the eye from which its thickness counts f
 MOST_OF_WEAR = 0.75  # -, of what a part has lost: where this is lost sets the scale of what is left
 FINE_COLOURS = 1024  # of a scale with a step in it
 MACHINE_SHARE, MACHINE_WIDTHS = 0.6, (1.0, 1.9)  # -, of the height; inches: the picture of the whole machine
+WHOLE_SCALE = (0.0, 1.0)  # of values that are shares of a scale
 SAME_DIGITS = 9  # of factors that count as the same
 WINDOW_DEG = 60.0  # of the circumference of a part that closes round its axis, which is shown unrolled
 DUE_COLOUR = "#d62728"  # where a part is due for change
@@ -176,17 +176,6 @@ def _seen_marks(shown: PartMap, view: View) -> dict[str, np.ndarray]:
     return {text: shown.marks[text] for text, face in near.items() if front[face]}
 
 
-def top_of(maps: Sequence[PartMap], quantity: str) -> float:
-    """Return the value that 99 % of the area with one does not exceed, of the map where that is highest."""
-    tops = [0.0]
-    for shown in maps:
-        values, area = shown.values[quantity], areas(shown.mesh.points, shown.mesh.triangles)
-        there = np.isfinite(values) & (values > 0.0)
-        if there.any():
-            tops.append(area_quantile(values[there], area[there], TOP_SHARE))
-    return max(max(tops), np.finfo(float).tiny)
-
-
 def machine_picture(
     maps: Sequence[PartMap], quantity: str, limits: tuple[float, float], rigid: Sequence[SurfaceMesh]
 ) -> Picture:
@@ -218,7 +207,7 @@ def wear_map(
     remarks: Sequence[str],
 ) -> Figure:
     """Draw the recession (mm per 1,000 h) of the parts that wear, a row or column per setting, and the whole machine of
-    the first setting, all on one scale.
+    the first setting, all on one scale, of decades where a part is far below another one.
 
     maps: with quantity `recession` (mm per 1,000 h), NaN where nothing touched, in the frame they were drawn in
     rigid: {setting: surfaces of its parts that keep their shape}
@@ -229,20 +218,21 @@ def wear_map(
     factors = {setting: mm_per_mt.get(setting, np.nan) for setting in settings}
     shared = len(set(np.round(list(factors.values()), SAME_DIGITS))) == 1 and np.isfinite(factors[settings[0]])
     figure = page([*remarks, *([] if shared else per_mt_words(factors))])
-    limits = (0.0, top_of(maps, RECESSION))
+    scale = scale_of(maps, RECESSION)
+    maps = on_scale(maps, RECESSION, scale)
     shown, views = shown_parts(maps)
     box = room(figure)
     if len(views) > 1 or any(rigid.values()) or shown[0].mesh is not maps[0].mesh:
-        whole = machine_picture(maps, RECESSION, limits, rigid.get(settings[0], ()))
+        whole = machine_picture(maps, RECESSION, WHOLE_SCALE, rigid.get(settings[0], ()))
         narrow = float(np.clip(MACHINE_SHARE * box.height * whole.aspect, *MACHINE_WIDTHS))
         name = f"machine\n{settings[0]}" if len(settings) > 1 else "machine"
         picture_grid(figure, {("", name): whole}, replace(box, width=narrow))
         box = replace(box, left=box.left + narrow + BESIDE, width=box.width - narrow - BESIDE)
-    pictures = part_pictures(shown, views, RECESSION, limits)
+    pictures = part_pictures(shown, views, RECESSION, WHOLE_SCALE)
     picture_grid(figure, _in_order(pictures), box)
-    bar = colour_bar(figure, bar_box(figure), limits, "Recession (mm per 1,000 h)")
+    bar = colour_bar(figure, bar_box(figure), scale, "Recession (mm per 1,000 h)")
     if shared:
-        _second_scale(bar, factors[settings[0]])
+        second_scale(bar, factors[settings[0]])
     _key(bar, [], "not worn")
     return figure
 
@@ -285,29 +275,6 @@ def bar_box(figure: Figure, quarter: Box | None = None) -> Box:
     return Box(box.left + box.width - away, low, BAR_WIDE, (0.94 - below) * box.height)
 
 
-def colour_bar(
-    figure: Figure,
-    box: Box,
-    limits: tuple[float, float],
-    label: str,
-    extend: str = "max",
-    colours: str | Colormap = MAP,
-    **look: object,
-) -> Colorbar:
-    """Draw a colour bar into a box."""
-    axes = figure.add_axes(part_of(figure, box))
-    bar = figure.colorbar(ScalarMappable(Normalize(*limits), colours), cax=axes, extend=extend, **look)
-    bar.set_label(label)
-    return bar
-
-
-def _second_scale(bar: Colorbar, factor: float) -> None:
-    """Write the scale of a bar once more on its other side, per Mt."""
-    other = bar.ax.secondary_yaxis("left", functions=(lambda value: factor * value, lambda value: value / factor))
-    other.set_ylabel("mm per Mt", fontsize=SMALLEST_FONT)
-    other.tick_params(labelsize=SMALLEST_FONT)
-
-
 def remaining_thickness(maps: Sequence[PartMap], change_out_mm: Mapping[str, float], remarks: Sequence[str]) -> Figure:
     """Draw the remaining thickness (mm) of the parts that wear, settings and hours side by side, all on one scale.
 
@@ -323,9 +290,8 @@ def remaining_thickness(maps: Sequence[PartMap], change_out_mm: Mapping[str, flo
     pictures = part_pictures(shown, views, REMAINING, limits, colours, marked=False)
     picture_grid(figure, _in_order(pictures, maps), room(figure))
     one = len({change_out_mm.get(part, np.nan) for part in colours}) == 1
-    bar = colour_bar(
-        figure, bar_box(figure), limits, "Remaining thickness (mm)", "max", next(iter(colours.values())) if one else MAP
-    )
+    palette = next(iter(colours.values())) if one else MAP
+    bar = colour_bar(figure, bar_box(figure), Normalize(*limits), "Remaining thickness (mm)", colours=palette)
     _key(bar, [("due", DUE_COLOUR)] * any(np.isfinite(value) for value in change_out_mm.values()))
     return figure
 
@@ -393,5 +359,5 @@ def impact_and_sliding(maps: Sequence[PartMap], remarks: Sequence[str]) -> Figur
         picture_grid(figure, _in_order(pictures), inside)
         unit, ticks = scaled(unit, limits[1])
         place = bar_box(figure, quarter)
-        colour_bar(figure, place, limits, f"{title} ({unit})", format=ticks)
+        colour_bar(figure, place, Normalize(*limits), f"{title} ({unit})", format=ticks)
     return figure
