@@ -25,9 +25,10 @@ from typing import TYPE_CHECKING, Any
 from bulkwear.workflows.engine.case import Case
 from bulkwear.workflows.engine.cases import case_module, find_case
 from bulkwear.workflows.engine.own_code import code_of_pages
-from bulkwear.workflows.engine.project import CONFIG, current_project
+from bulkwear.workflows.engine.project import CONFIG, PACKAGE, current_project
 from bulkwear.workflows.engine.provenance import simulating_code
 from bulkwear.workflows.report.simulated import figure_remark, versions_of
+from bulkwear.workflows.report.spot_checks import as_new_as, passed, read_checks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 # any case may show what is there
 SHARED = tuple(f"bulkwear.workflows.report.{name}" for name in ("beds", "surfaces", "laws"))
+DOCS = PACKAGE / "docs"  # of the repository, with its spot checks
 VECTORS = ("svg", "pdf")
 OfStudy = Callable[["Study"], Any]
 Source = str | OfStudy  # a path, in which {study} stands for its name, or what gives one path or several
@@ -276,4 +278,6 @@ def simulated_remark(case: Case, folder: Path, runs: Sequence[str]) -> str:
         found = versions_of(case.simulation_folders(folder, runs))
     except FileNotFoundError:  # a case that lists its simulations has none yet
         found = []
-    return figure_remark(found, simulating_code(case))
+    checks = read_checks(DOCS)
+    checked = [as_new_as(version, passed(version, folder.name, checks)) for version in found]
+    return figure_remark(found, simulating_code(case), checked)

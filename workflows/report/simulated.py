@@ -153,14 +153,20 @@ def _commits(
     return count, f" ({count} commit{'s' * (count > 1)} in {before}..{now['commit']})" if count else ""
 
 
-def figure_remark(versions: Sequence[Simulated], now: Mapping[str, Any]) -> str:
-    """Return the phrase that a figure has of what simulated it: commits, days, parts of the code that are newer."""
+def figure_remark(
+    versions: Sequence[Simulated], now: Mapping[str, Any], checked: Sequence[Simulated] | None = None
+) -> str:
+    """Return the phrase that a figure has of what simulated it: commits, days, parts of the code that are newer.
+
+    checked: the versions as new as spot checks make them (`spot_checks.as_new_as`), where there are any
+    """
     if not versions:
         return ""
     names = [_short(version) for version in versions]
     days = sorted(day for version in versions for day in version.dates if day)
     when = f", {days[0]}{f' to {days[-1]}' if days[0] != days[-1] else ''}" if days else ""
-    parts = list(dict.fromkeys(part for version in versions if version.found for part in newer_parts(version, now)))
+    known = [version for version in (versions if checked is None else checked) if version.found]
+    parts = list(dict.fromkeys(part for version in known for part in newer_parts(version, now)))
     newer = f" (code newer since: {', '.join(parts)})" if parts else ""
     return f"simulated by {', '.join(names)}{when}{newer}"
 

@@ -1,12 +1,14 @@
 """What pages and figures say of the versions that simulated, and where the code is newer."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from bulkwear.workflows.config.design import load_study
 from bulkwear.workflows.engine.provenance import PROVENANCE, PROVENANCE_FILE, simulating_code
+from bulkwear.workflows.report import products
 from bulkwear.workflows.report.markdown import provenance
 from bulkwear.workflows.report.products import job_of, simulated_remark
 from bulkwear.workflows.report.simulated import (
@@ -17,6 +19,7 @@ from bulkwear.workflows.report.simulated import (
     versions_of,
     warnings_of,
 )
+from bulkwear.workflows.report.spot_checks import SpotCheck, keep_check
 from tests.support.finished_runs import leave_runs
 from tests.support.finished_samples import page_of_results, write_results
 
@@ -131,6 +134,23 @@ def test_pages_and_figures_name_what_simulated(study, tmp_path):
     assert remark.startswith("simulated by 01234567") and remark.endswith("(code newer since: meshes)")
     assert job_of({}, {}, ["reduced", remark]).remarks == ["reduced", remark]
     assert "by commit 0123456789ab" in " ".join(provenance(tmp_path, study).split())
+
+
+def test_a_figure_takes_a_spot_check_into_account(study, tmp_path, monkeypatch):
+    """Code that made the same numbers is not newer for it; the commit that simulated stays named."""
+    code = simulating_code(study.case)
+    old = code | {
+        "commit": "0123456789ab",
+        "parts": code["parts"] | {"meshes": "older"},
+        "date": "2026-11-20T10:00:00Z",
+    }
+    leave(tmp_path / "small" / "R5_convex", old)
+    monkeypatch.setattr(products, "DOCS", tmp_path)
+    check = SpotCheck("small", "quick", "R5", "0123456789ab", "feedfacecafe", code, "2026-11-21", 3)
+    for difference, newer in (("wear.csv", " (code newer since: meshes)"), ("", "")):
+        keep_check(tmp_path, replace(check, difference=difference))
+        remark = simulated_remark(study.case, tmp_path / "small", ["R5_convex"])
+        assert remark == f"simulated by 01234567, 2026-11-20{newer}"
 
 
 def test_a_study_not_yet_run_has_no_remark(study, tmp_path):

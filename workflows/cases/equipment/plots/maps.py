@@ -330,8 +330,9 @@ def _with_due(due: float, top: float) -> Colormap:
 
 def _key(bar: Colorbar, words: Sequence[tuple[str, str]], grey: str = "not known") -> None:
     """Say below a bar what colours mean, (text, colour), and what grey does."""
+    lowest = -0.05 if bar.extend == "max" else -0.12  # below the arrow that a bar of lower values ends in
     for number, (text, colour) in enumerate([*words, (grey, NO_VALUE)]):
-        height = -0.05 - 0.07 * number
+        height = lowest - 0.07 * number
         box = {"width": 1.0, "height": 0.05, "facecolor": colour, "edgecolor": "none", "clip_on": False}
         bar.ax.add_patch(Rectangle((0.0, height - 0.025), transform=bar.ax.transAxes, **box))
         place = {"xytext": (4.0, 0.0), "textcoords": "offset points", "va": "center", "ha": "left"}
