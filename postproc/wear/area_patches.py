@@ -21,6 +21,7 @@ from bulkwear.postproc.mesh import (
     unit_normals,
     worn_faces,
 )
+from bulkwear.postproc.wear.side import turned_as
 
 REACH = math.sqrt(0.5)  # -, of the length, from a centre to its faces: half the diagonal of a square
 ALIKE_DEGREES = 45.0  # between two normals of a patch at most; those of a box's sides are 90 apart
@@ -55,11 +56,12 @@ def patches_of(mesh: SurfaceMesh, pristine: SurfaceMesh, patches: np.ndarray) ->
     """Number (k,) of the patch of each face of a worn or remeshed surface, -1 on faces that do not wear.
 
     Each face has the patch of the pristine face of its part that is nearest, places over the mean size of that part's
-    patches and normals weighted as in `area_patches`. mesh, pristine: in one body frame; patches: as from
-    `area_patches`, of the pristine faces.
+    patches and normals weighted as in `area_patches`, which look the way they do in `mesh`, where pieces may have been
+    turned. mesh, pristine: in one body frame; patches: as from `area_patches`, of the pristine faces.
     Raises ValueError for patches of another surface, or for a part that the pristine surface has not.
     """
     _check_patches(pristine, patches)
+    pristine = turned_as(pristine, mesh)
     part, known = _parts(mesh), np.where(patches >= 0, _parts(pristine), -1)
     area = areas(pristine.points, pristine.triangles)
     numbers = np.full(len(part), -1, dtype=np.int64)
@@ -105,9 +107,12 @@ def patch_sums(values: np.ndarray, patches: np.ndarray, count: int) -> np.ndarra
 
 
 def patch_means(values: np.ndarray, area_m2: np.ndarray, patches: np.ndarray, count: int) -> np.ndarray:
-    """Mean (count,) over each patch of the values (m,) of its faces, by their area (m,); NaN of a patch without one."""
-    whole = patch_sums(area_m2, patches, count)
-    total = patch_sums(np.asarray(values) * area_m2, patches, count)
+    """Mean (count,) over each patch of the values (m,) of its faces, by their area (m,); faces whose value is NaN are
+    left out, and a patch without any other has NaN.
+    """
+    known = np.isfinite(values)
+    whole = patch_sums(np.where(known, area_m2, 0.0), patches, count)
+    total = patch_sums(np.where(known, values, 0.0) * area_m2, patches, count)
     return np.divide(total, whole, out=np.full(count, np.nan), where=whole > 0.0)
 
 

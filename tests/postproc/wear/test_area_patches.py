@@ -8,6 +8,7 @@ import pytest
 from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids, unit_normals
 from bulkwear.postproc.wear import area_patches as module
 from bulkwear.postproc.wear.area_patches import area_patches, patch_means, patch_sums, patch_table, patches_of
+from bulkwear.postproc.wear.side import turned_to_flow, with_sides
 from tests.support.shapes import box, cone, flipped, plate, sheet, shifted, welded
 
 LENGTH = 0.1  # m, of a patch
@@ -142,6 +143,18 @@ def test_a_worn_surface_keeps_its_patches():
     assert away[flat].max() < EXTENT * LENGTH
 
 
+def test_a_trough_that_was_turned_to_the_flow_keeps_its_patches():
+    """Its file's normals look away from the particles: walls that face one another have patches of their own after the
+    turn as before.
+    """
+    across = np.array([[-0.2, 0.3], [-0.2, 0.15], [-0.2, 0.0], [0.0, 0.0], [0.2, 0.0], [0.2, 0.15], [0.2, 0.3]])
+    mesh = sheet(np.arange(7.0), np.linspace(0.0, 1.0, 8), lambda u, v: (*np.moveaxis(across[u.astype(int)], -1, 0), v))
+    patches, pressed = area_patches(mesh, 0.16), np.ones(len(mesh.triangles))
+    turned, told = turned_to_flow(with_sides(mesh), 0.0 * pressed, pressed)
+    assert len(told) == 1 and (turned.triangles != mesh.triangles).any()
+    assert np.array_equal(patches_of(turned, mesh, patches), patches)
+
+
 def test_the_part_counts_before_the_place():
     """A face nearer to another part finds a patch of its own part; a part without patches is refused."""
     mesh = welded(plate(0.2, 0.2, 4), shifted(plate(0.2, 0.2, 4), (0.0, 0.0, 0.05)), labels=True)
@@ -165,6 +178,10 @@ def test_sums_and_means():
     means = patch_means(height, area, patches, count)
     assert means[:-1] == pytest.approx(patch_table(mesh, patches)["x_m"], rel=SAME)
     assert np.isnan(means[-1])
+    height[1] = np.nan
+    there = (patches == patches[1]) & np.isfinite(height)
+    left = patch_means(height, area, patches, count)[patches[1]]
+    assert left == pytest.approx(np.average(height[there], weights=area[there]), rel=SAME)
 
 
 def test_the_table_of_a_square():

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 
 from bulkwear.postproc.statistics.intervals import UNKNOWN, Estimate, difference, estimate
 from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.wear.prediction import coefficient_reaches
 from bulkwear.workflows.cases.equipment.life import WHOLE_PART, PartLife
 from bulkwear.workflows.cases.equipment.phases import PRISTINE
 from bulkwear.workflows.cases.equipment.tables import HOURS, Runs, with_ends
 
-LIFE = "life"
+LIFE, POWER = "life", "power"
+OF_LAW = ("law", "wear_coefficient_per_pa", "parameters")  # of a part: what one coefficient's error is of
 COMPARED = {  # quantity: unit, and whether more of it is better; None: neither
     LIFE: ("h", True),
     "worst_recession": ("mm per 1,000 h", False),
     "steel_lost": ("kg/h", False),
-    "power": ("W", None),
+    POWER: ("W", None),
 }
 FIRST, UNSAID = "first design", "cannot be said"
 
@@ -31,7 +33,8 @@ def designs_table(runs: Runs, lives: Mapping[tuple[str, str], PartLife]) -> pd.D
     """Return a row per quantity, part and setting: its value and its ratio to that of the study's first setting.
 
     The packings of two settings share nothing, so ratios are of logarithms by Welch. verdict: whether the interval of
-    the ratio says which is better. The coefficient's own error, which both have, is not in them.
+    the ratio says which is better. The error of a wear coefficient that both have is not in it; those of different
+    coefficients or laws are, but for power.
     """
     rows, settings = [], runs.settings
     parts = dict.fromkeys(part for _, part in lives)
@@ -46,16 +49,39 @@ def designs_table(runs: Runs, lives: Mapping[tuple[str, str], PartLife]) -> pd.D
                 row |= with_ends("value", value)
                 alone = name == settings[0] or first is None or not np.isfinite(first.value)
                 ratio = Estimate(np.nan, np.nan, 0, value.packings, log=True) if alone else difference(value, first)
-                said = FIRST if name == settings[0] else "" if alone else verdict(ratio, more_is_better)
-                rows.append(row | with_ends("ratio", ratio) | {"verdict": said})
+                errors = () if alone or quantity == POWER else coefficient_errors(runs, part, name)
+                low, high = ratio_ends(ratio, errors)
+                said = FIRST if name == settings[0] else "" if alone else verdict(ratio, low, high, more_is_better)
+                rows.append(row | {"ratio": ratio.value, "ratio_low": low, "ratio_high": high, "verdict": said})
     return pd.DataFrame(rows)
 
 
-def verdict(ratio: Estimate, more_is_better: bool | None) -> str:
-    """Return whether a ratio to the first design says better or worse, larger or smaller where neither is better."""
+def coefficient_errors(runs: Runs, part: str, setting: str) -> tuple[float, ...]:
+    """Return the errors (-, half widths over the coefficient) of the wear coefficients of a part in the first setting
+    and in another one; none where both have one law and coefficient.
+    """
+    first, other = (runs.first(name)["parts"][part] for name in (runs.settings[0], setting))
+    if all(first.get(key) == other.get(key) for key in OF_LAW):
+        return ()
+    return tuple(each["wear_coefficient_error"] or 0.0 for each in (first, other))
+
+
+def ratio_ends(ratio: Estimate, errors: Sequence[float]) -> tuple[float, float]:
+    """Return the 95 % interval of a ratio, its reaches joined with those of errors of coefficients as squares, in the
+    logarithm; NaN where the scatter is not known. errors: as from `coefficient_errors`
+    """
+    further = sum(max(coefficient_reaches(error)) ** 2 for error in errors)
+    low, high = (math.hypot(math.log(end / ratio.value), math.sqrt(further)) for end in ratio.interval())
+    return ratio.value * math.exp(-low), ratio.value * math.exp(high)
+
+
+def verdict(ratio: Estimate, low: float, high: float, more_is_better: bool | None) -> str:
+    """Return whether a ratio to the first design says better or worse, larger or smaller where neither is better.
+
+    low, high: ends of its interval
+    """
     if not ratio.known:
         return UNKNOWN if ratio.packings < 2 else UNSAID
-    low, high = ratio.interval()
     if low <= 1.0 <= high:
         return UNSAID
     if more_is_better is None:

@@ -29,6 +29,7 @@ BY_MASS = "change_out_worn_mass_fraction"
 FOLLOWED, PARTLY, EXTRAPOLATED, AS_BUILT = "followed", "partly followed", "last rate goes on", "rate as built goes on"
 NO_THICKNESS, NO_VOLUME = "its thickness is not known", "its mass is not known: its surface is open"
 NO_WEAR = "nothing wears it in the time simulated"
+RARE = "some packings do not wear it at all where it wears most, so that more has to be simulated"
 LATEST = 4  # blocks at least whose mean rate goes on: where fewer are on the worn shape, those of updates before too
 WORST = 5  # patches of a part that are listed
 MUCH_EARLIER = 0.5  # -, of a life: the shortest in one packing of alike places, which scatter by 5 to 20 %, is above it
@@ -215,6 +216,8 @@ def _life(patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], e
     if not (loads[:, np.isfinite(allowed)] > 0.0).any():
         return without(NO_WEAR)
     place, life, agreement = _of_packings(loads) if len(courses) > 1 else _of_one(loads[0], allowed, courses[0])
+    if not (loads[:, place] > 0.0).all():
+        return without(RARE)
     as_built = worst_place(pristine, allowed, of_blocks)
     reached = [course.lost[-1, place] >= allowed[place] for course in courses]
     how = FOLLOWED if all(reached) else PARTLY if any(reached) else EXTRAPOLATED if simulated > 0.0 else AS_BUILT
@@ -276,5 +279,5 @@ def _over_their_mean(blocks: np.ndarray) -> np.ndarray:
 def _inverse(load: Estimate, lifted: float, packings: int) -> Estimate:
     """Return one over an estimate of the logarithm; of a single block one over the load of the place that it names."""
     if not math.isfinite(load.value):
-        return Estimate(1.0 / lifted, math.nan, 0, packings, log=True)
+        return Estimate(1.0 / lifted if lifted > 0.0 else math.nan, math.nan, 0, packings, log=True)
     return Estimate(1.0 / load.value, load.error, load.freedom, load.packings, log=True)

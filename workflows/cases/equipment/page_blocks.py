@@ -35,7 +35,7 @@ WORST_NOTE = (
 )
 DESIGN_NOTE = (
     "Ratios to the first design, of packings that share nothing (Welch), of the logarithm. What both designs have, as "
-    "the error of one wear coefficient, is not in them."
+    "the error of one wear coefficient, is not in them; the errors of two different ones are."
 )
 IMPACT_NOTE = (
     "As built. Sliding: normal force times sliding velocity. Impacts: energy of the motion against the face at the "

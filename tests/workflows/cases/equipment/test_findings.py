@@ -1,5 +1,6 @@
 """Sentences on what a study of equipment found: they say what the numbers say, and what they do not."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -178,6 +179,21 @@ def test_overlap_and_one_packing_say_nothing(found):
     runs = [*packings("A", (1.0,)), *packings("B", (2.0,))]
     one = findings.answers_on_designs(found("designs", runs), found("life", runs))
     assert all(UNKNOWN in each and each.endswith("which is better cannot be said.") for each in one) and one
+
+
+def test_errors_of_two_coefficients_are_in_the_ratio(found):
+    """A liner of another steel: its life is told within both errors, as squares in the logarithm; power is not."""
+    steel, harder = (replace(LINER, coefficient=each, error=0.3, power=9.0) for each in (6e-13, 4.8e-13))
+    runs = [
+        *packings("mild", (0.98, 1.0, 1.02), parts=(steel,)),
+        *packings("hard", (0.784, 0.8, 0.816), parts=(harder,)),
+    ]
+    table = found("designs", runs).set_index(["quantity", "setting"])
+    lasts, power = (table.loc[(name, "hard")] for name in ("life", "power"))
+    errors, scatter = math.sqrt(2.0) * math.log(1.0 / 0.7), 0.1  # of two per cent between packings
+    assert lasts["ratio"] == pytest.approx(1.25, rel=1e-3) and lasts["verdict"] == comparison.UNSAID
+    assert math.exp(-math.hypot(errors, scatter)) < lasts["ratio_low"] / 1.25 < math.exp(-errors)
+    assert power["verdict"] != comparison.UNSAID and power["ratio_high"] < 0.85
 
 
 def test_neither_more_nor_less_power_is_better(found):

@@ -174,6 +174,18 @@ def test_part_that_nothing_wears_has_no_life(lives):
     assert table.set_index("part").loc["shelf", "reason"] == life.NO_WEAR
 
 
+@pytest.mark.parametrize("recession", [((1e-9, 0.0), (0.0, 0.0), (0.0, 0.0)), ((1e-9, 0.0), (0.0, 1e-9), (1e-9, 0.0))])
+def test_part_that_some_packings_do_not_wear_has_no_life(lives, recession):
+    """One packing's hit is no life of all, whichever places are hit; the tables are there all the same."""
+    runs = [
+        SyntheticRun(f"p-{k}", (UNIFORM, SyntheticPart("hood", each)), setting="p", packing=k)
+        for k, each in enumerate(recession, start=1)
+    ]
+    table = lives(*runs)[2].set_index("part")
+    assert table.loc["hood", "reason"] == life.RARE and np.isnan(table.loc["hood", "life_h"])
+    assert table.loc["liner", "life_h"] > 0.0
+
+
 # ---------------------------------------------------------------- the worn shape
 
 
