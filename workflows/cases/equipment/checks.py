@@ -115,6 +115,19 @@ def wear_as_predicted(run: CheckedRun) -> Fault | None:
     return None
 
 
+def walls_of_one_patch(run: CheckedRun) -> Fault | None:
+    """One factor leads from simulated to physical contacts of all parts that wear: their walls have the same moduli."""
+    worn = [run.parameters["walls"][part["type"] - 2] for part in run.parameters["parts"] if part["wears"]]
+    moduli = {(wall["shear_modulus_pa"], wall["poissons_ratio"]): wall["name"] for wall in worn}
+    if run.settings["wear"]["patch"] != "physical" or len(moduli) < 2:
+        return None
+    first, second = list(moduli.values())[:2]
+    return "wear.patch", (
+        f"none, simulated or radius where parts that wear have walls of different moduli, as {first} and {second}: the "
+        "factor from simulated to physical contacts is one for all of them"
+    )
+
+
 def updates_deform(run: CheckedRun) -> Fault | None:
     """A shape that is updated may change."""
     most = run.parameters["updates"]["most"]
@@ -311,6 +324,7 @@ EQUIPMENT_CHECKS: tuple[Check, ...] = (
     parameters_are_the_law_s,
     laws_have_parameters,
     physical_modulus_known,
+    walls_of_one_patch,
     fed_what_is_predicted,
     operation_within_reason,
     one_change_out_rule,

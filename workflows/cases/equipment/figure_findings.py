@@ -84,11 +84,13 @@ def fastest_place(rates: pd.DataFrame) -> str:
 
 
 def thinnest_place(rows: pd.DataFrame) -> str:
-    """Return what is left at the thinnest place that has lost some, at the last hours shown; of all where none has.
+    """Return what is left at the thinnest place that has lost some, at the last hours of each design; of all where none
+    has.
 
     rows: as from `remaining.remaining_rows`
     """
-    last, built = (rows[rows["operation_h"] == end] for end in (rows["operation_h"].max(), rows["operation_h"].min()))
+    hours = rows.groupby("setting")["operation_h"]
+    last, built = (rows[rows["operation_h"] == hours.transform(end)] for end in ("max", "min"))
     names = ["setting", "part", "patch"]
     before = last[names].merge(built, on=names, how="left")["least_remaining_mm"].to_numpy()
     worn = last[last["least_remaining_mm"].to_numpy() < (1.0 - LEAST_LOST) * before]

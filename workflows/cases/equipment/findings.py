@@ -89,7 +89,7 @@ def life_sentence(row: pd.Series, several: bool) -> str:
     further = [f"{rounded(row[f'life_{unit}'])} {unit}" for unit in ("Mt", "years") if np.isfinite(row[f"life_{unit}"])]
     after = ", ".join([f"{rounded(row.life_h)} h ({interval_words(row)})", *further])
     said = [f"{who} has to be changed after {after}; {place_words(row)}.", how_words(row), asked_words(row)]
-    said.append(earlier_words(row))
+    said += [earlier_words(row), faster_words(row)]
     return " ".join(filter(None, said))
 
 
@@ -130,6 +130,16 @@ def earlier_words(row: pd.Series) -> str:
     return (
         f"In packing {row.earlier_packing:g} alone the place at ({coordinates(row, 'earlier_')}) mm would be changed "
         f"after {rounded(row.earlier_h)} h: how often that happens, so few blocks cannot tell."
+    )
+
+
+def faster_words(row: pd.Series) -> str:
+    """Return which place of unknown thickness wears faster than the one that decides; nothing where none does."""
+    if not np.isfinite(row.faster_mm_per_1000h):
+        return ""
+    return (
+        f"The place at ({coordinates(row, 'faster_')}) mm loses more, {rounded(row.faster_mm_per_1000h)} mm per 1,000 h,"
+        " and is left out, because its thickness is not known."
     )
 
 

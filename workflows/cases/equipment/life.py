@@ -44,6 +44,14 @@ class Earlier:
     hours: float
 
 
+@dataclass(frozen=True)
+class Faster:
+    """A place that wears faster than the one that decides, of unknown thickness; rate: m/h, the last one."""
+
+    patch: int
+    rate: float
+
+
 @dataclass(frozen=True, eq=False)
 class Course:
     """What p places of a part lose along the operation of one packing; m, or m3 of the whole part.
@@ -90,6 +98,7 @@ class PartLife:
     error: -, half width of the coefficient's interval over it; how: FOLLOWED, PARTLY or EXTRAPOLATED
     blocks: behind the last rate, of all packings; agreement: -, share of packings (blocks) that name that very place
     earlier: the shortest life of one packing where that is much shorter, None where it is not
+    faster: the fastest place of unknown thickness that wears faster than the deciding one, None without
     reason: why there is no life, "" where there is one
     """
 
@@ -106,6 +115,7 @@ class PartLife:
     blocks: int
     agreement: float
     earlier: Earlier | None = None
+    faster: Faster | None = None
     reason: str = ""
 
     def ends(self, scatter: bool = True, coefficient: bool = True) -> tuple[float, float]:
@@ -204,8 +214,7 @@ def _life(patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], e
             simulated,
             blocks,
             math.nan,
-            None,
-            reason,
+            reason=reason,
         )
 
     if not np.isfinite(allowed).any():
@@ -235,7 +244,15 @@ def _life(patches: np.ndarray, allowed: np.ndarray, courses: Sequence[Course], e
         blocks=blocks,
         agreement=agreement,
         earlier=_much_earlier(loads, life.value, patches, [course.packing for course in courses]),
+        faster=_faster(np.mean([course.last.mean(axis=0) for course in courses], axis=0), allowed, place, patches),
     )
+
+
+def _faster(rates: np.ndarray, allowed: np.ndarray, place: int, patches: np.ndarray) -> Faster | None:
+    """Return the fastest place without a known thickness that wears faster than the one that decides; rates: (p,)."""
+    unknown = np.where(np.isfinite(allowed), -math.inf, rates)
+    fastest = int(unknown.argmax())
+    return Faster(int(patches[fastest]), float(rates[fastest])) if unknown[fastest] > rates[place] else None
 
 
 def _much_earlier(loads: np.ndarray, life: float, patches: np.ndarray, packings: Sequence[Any]) -> Earlier | None:

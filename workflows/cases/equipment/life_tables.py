@@ -96,7 +96,7 @@ def life_table(runs: Runs, lives: Lives) -> pd.DataFrame:
         row |= _lives_in_hours(life) | _in_other_units(life, run)
         row |= {"how": life.how, "simulated_h": life.simulated_h, "packings": runs_of(runs, setting)}
         row |= {"blocks": life.blocks, "agreement": life.agreement, "reason": life.reason}
-        row |= _earlier(runs, setting, part, life)
+        row |= _earlier(runs, setting, part, life) | _faster(runs, setting, part, life)
         rows.append(row)
     return pd.DataFrame(rows)
 
@@ -113,6 +113,14 @@ def _place(runs: Runs, setting: str, part: str, patch: int) -> dict[str, float]:
     found = places.loc[patch]
     place = {f"{axis}_mm": found[f"{axis}_m"] * MILLIMETRES for axis in PLACE}
     return place | {"thickness_mm": found["thickness_m"] * MILLIMETRES}
+
+
+def _faster(runs: Runs, setting: str, part: str, life: PartLife) -> dict[str, Any]:
+    """Return the place of unknown thickness that wears faster than the deciding one, NaN where there is none."""
+    found = life.faster
+    where = _place(runs, setting, part, found.patch if found else WHOLE_PART)
+    rate = found.rate * MILLIMETRES * HOURS if found else math.nan
+    return {"faster_mm_per_1000h": rate} | {f"faster_{axis}_mm": where[f"{axis}_mm"] for axis in PLACE}
 
 
 def _earlier(runs: Runs, setting: str, part: str, life: PartLife) -> dict[str, Any]:
@@ -185,7 +193,8 @@ def remaining_table(runs: Runs, lives: Lives) -> pd.DataFrame:
     """Return a row per setting, part and hours: the thickness left at the place that decides, and the least of all.
 
     hours: those of the updates of the first packing, the longest that all packings were worn for, the operation that
-    is asked for, those of operation.told_at_h. Intervals are over packings, without the coefficient's.
+    is asked for, those of operation.told_at_h; of what is worn through 0 is left. Intervals are over packings,
+    without the coefficient's.
     how: SIMULATED, or BEYOND what was worn.
     """
     rows = []
@@ -198,10 +207,10 @@ def remaining_table(runs: Runs, lives: Lives) -> pd.DataFrame:
         at = int(np.flatnonzero(places.index == life.patch)[0]) if life.patch in places.index else None
         run = runs.first(setting)
         for hours in _hours_told(courses[0].hours, worn_for, run["operation"]):
-            left = np.array([thickness - course.at(hours) for course in courses]) * MILLIMETRES
+            left = MILLIMETRES * np.maximum([thickness - course.at(hours) for course in courses], 0.0)
             deciding = estimate(left[:, at]) if at is not None else Estimate(math.nan, math.nan, 0, 0)
             row = {"setting": setting, "part": part, "operation_h": hours, "operation_Mt": hours * mt_per_hour(run)}
-            row |= with_ends("remaining_mm", deciding)
+            row |= {name: np.maximum(end, 0.0) for name, end in with_ends("remaining_mm", deciding).items()}
             least = np.nanmean(np.nanmin(left, axis=1))
             rows.append(row | {"least_remaining_mm": least, "packings": len(courses), "how": how_told(hours, worn_for)})
     return pd.DataFrame(rows, columns=REMAINING)

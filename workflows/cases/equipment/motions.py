@@ -67,6 +67,11 @@ def axis_point(given: Mapping[str, Any] | None) -> tuple[float, float, float]:
     return tuple((given or {}).get("point_m", (0.0, 0.0, 0.0)))
 
 
+def frame_turns(given: Mapping[str, Any] | None) -> bool:
+    """Return whether a part turns for good and its frame with it, in which a force from outside has no mean."""
+    return given is not None and given["kind"] == "rotation" and bool(given["speed_rad_per_s"])
+
+
 def surface_runs(given: Mapping[str, Any] | None) -> bool:
     """Return whether a part stays where it is and its surface runs, as a belt's does."""
     return given is not None and given["kind"] in RUNNING

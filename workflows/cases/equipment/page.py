@@ -187,7 +187,7 @@ def simplifications(study: Mapping[str, Any]) -> list[tuple[str, str]]:
         (
             "Wear coefficient",
             f"As given, to be that of the part's law; half of its 95 % interval is {range_text(errors)} % of it, "
-            "stated or assumed, and is in the interval of every life. Ratios of designs that have one coefficient do not "
+            "stated or assumed, and is in the interval of every life. Ratios of designs with one coefficient do not "
             "depend on it.",
         ),
         (

@@ -110,7 +110,10 @@ def impacts(found: Tables) -> list[Block]:
 def worn_shape(found: Tables, summary: pd.DataFrame, machines: Mapping[str, Mapping[str, Any]]) -> list[Block]:
     """Return what updates stood for, loads on the worn shape beside those as built, and the thickness that is left."""
     loads = found["loads"].assign(quantity=found["loads"]["quantity"].map(heads.LOAD_NAMES))
-    note = f"Force and torque: length of the mean vector. Change: packing by packing. {INTERVALS}"
+    note = (
+        "Force and torque: length of the mean vector, force not of parts that turn for good. "
+        f"Change: packing by packing. {INTERVALS}"
+    )
     left = f"Without the coefficient's error; what the caps of updates hold back counts as lost. {INTERVALS}"
     return [
         Text(acceleration_words(summary, [run["sampling"]["block_s"] for run in machines.values()])),

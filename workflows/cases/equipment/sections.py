@@ -11,6 +11,7 @@ import pandas as pd
 
 from bulkwear.postproc.mesh import SurfaceMesh, areas, centroids, read_surface, unit_normals
 from bulkwear.postproc.tables.display import MILLIMETRES
+from bulkwear.postproc.wear.side import turned_as
 from bulkwear.workflows.cases.equipment.pictures import SURFACE, first_runs, labels_of, part_mesh, turns_about
 from bulkwear.workflows.cases.equipment.plane_cuts import SectionPlane, cut, part_plane, turning_plane, values_on
 
@@ -60,7 +61,7 @@ def _names(sections: pd.DataFrame) -> list[str]:
 
 def shown_shapes(folder: Path, most: float = MOST_SHAPES) -> list[tuple[float, SurfaceMesh]]:
     """Return (hours of operation, surface) of a run as built and after its updates, of more than `most` in all some,
-    evenly in their number.
+    evenly in their number; faces look out of the body in all of them.
     """
     wear = pd.read_csv(folder / "wear.csv")
     wear = wear[wear["stands_for_h"] > 0.0]
@@ -68,7 +69,8 @@ def shown_shapes(folder: Path, most: float = MOST_SHAPES) -> list[tuple[float, S
     shown = np.unique(np.linspace(0, len(wear), min(len(wear) + 1, most)).round().astype(int))[1:] - 1
     files = [folder / f"cycle_{cycle:03d}" / SURFACE for cycle in wear["cycle"].to_numpy()[shown]]
     worn = [(float(hours[k]), read_surface(file)) for k, file in zip(shown, files, strict=True)]
-    return [(0.0, read_surface(folder / SURFACE)), *worn]
+    built = read_surface(folder / SURFACE)
+    return [(0.0, turned_as(built, worn[-1][1]) if worn else built), *worn]
 
 
 def _plane(

@@ -19,6 +19,7 @@ from bulkwear.postproc.readers.cycle_folders import cycle_files
 from bulkwear.postproc.statistics.intervals import Estimate, estimate
 from bulkwear.postproc.tables.display import MILLIMETRES
 from bulkwear.postproc.tables.summary import NAMES, THROUGH
+from bulkwear.workflows.cases.equipment.motions import frame_turns
 from bulkwear.workflows.cases.equipment.phases import PRISTINE, START_UP, WEARING, WORN
 from bulkwear.workflows.engine.chain import WORN_THROUGH
 from bulkwear.workflows.engine.records import read_record
@@ -35,7 +36,8 @@ PLACE = ("x", "y", "z")
 AT_A_PATCH = ("pressure_Pa", "sliding_velocity_m_per_s", "sliding_power_W_per_m2", "impact_power_W_per_m2")
 COEFFICIENT = ("wear_coefficient_per_pa", "wear_coefficient_error")
 LOADS = {"sliding_power_W": "W", "impact_power_W": "W", "worn_mass_kg_per_h": "kg/h", "power_W": "W"}
-VECTORS = {"force": "N", "torque": "N m"}
+FORCE = "force"
+VECTORS = {FORCE: "N", "torque": "N m"}
 OF_PARTS = ("wears", "file", "material", "thickness_m", "law", *COEFFICIENT, "motion")
 FIRST_WALL = 2  # type of the first wall; that of the particles is 1
 AT_THE_END = ("time_s", "carried_volume_m3", "largest_depth_m", "smallest_angle_deg")
@@ -169,13 +171,17 @@ def over_packings(blocks: pd.DataFrame, column: str, log: bool = False) -> Estim
 def loads_table(runs: Runs) -> pd.DataFrame:
     """Return a row per setting, part and quantity: on the pristine shape, on the worn one, and the change in per cent.
 
-    Force and torque: length of the mean vector. The change is taken packing by packing, then over packings. What is 0
-    on both shapes is left out.
+    Force and torque: length of the mean vector; of parts that turn for good there is no force, for it would be that in
+    their own turning frame. The change is taken packing by packing, then over packings. What is 0 on both shapes is
+    left out.
     """
     rows = []
     for (setting, part), table in runs.parts.groupby(list(NAMED), sort=False):
         by_phase = {phase: _loads_of(table[table["phase"] == phase]) for phase in KEPT}
+        turns = frame_turns(runs.first(setting)["parts"][part]["motion"])
         for name, unit in {**VECTORS, **LOADS}.items():
+            if name == FORCE and turns:
+                continue
             pristine, worn = (by_phase[phase].get(name, pd.Series(dtype=float)) for phase in KEPT)
             if not (pristine.any() or worn.any()):
                 continue

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -14,6 +15,7 @@ from bulkwear.workflows.cases.equipment.checks import (
     MOST_PARTICLES,
     MOST_STEPS,
     contact_time,
+    walls_of_one_patch,
 )
 from bulkwear.workflows.cases.equipment.motion_checks import WRITTEN
 from bulkwear.workflows.cases.equipment.motions import FREE, NEEDED
@@ -45,6 +47,21 @@ LONG = "l" * 101
 def motion(**changes):
     """Changes of the study by which its plate moves."""
     return {"parts": {"plate": {"motion": changes}}}
+
+
+@pytest.mark.parametrize(
+    ("patch", "types", "refused"),
+    [("physical", (2, 3), True), ("physical", (2, 4), False), ("simulated", (2, 3), False)],
+)
+def test_one_factor_of_contact_patches_is_for_walls_of_one_modulus(patch, types, refused):
+    """Steel and perspex that both wear have none in common; two steels have."""
+    walls = [("steel", 78e9), ("perspex", 0.1e9), ("mild_steel", 78e9)]
+    walls = [{"name": name, "shear_modulus_pa": modulus, "poissons_ratio": 0.3} for name, modulus in walls]
+    parts = [{"wears": True, "type": kind} for kind in types] + [{"wears": False, "type": 3}]
+    run = SimpleNamespace(settings={"wear": {"patch": patch}}, parameters={"walls": walls, "parts": parts})
+    fault = walls_of_one_patch(run)
+    assert (fault is not None) == refused
+    assert not refused or (fault[0] == "wear.patch" and "as steel and perspex" in fault[1])
 
 
 def message_of(folder, rows="row\nA\n", **changes) -> str:

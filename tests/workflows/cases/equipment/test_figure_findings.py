@@ -59,6 +59,15 @@ def test_the_thinnest_place(how, said):
     assert kept.startswith("The thinnest place has 1.0 mm left as built")
 
 
+def test_the_thinnest_place_of_a_design_that_wore_for_fewer_hours():
+    """Each design counts at its own last hours."""
+    own = {"part": "liner", "patch": 0, "how": "simulated"}
+    rows = [("A", 0.0, 30.0), ("A", 5000.0, 5.0), ("B", 0.0, 30.0), ("B", 6000.0, 25.0)]
+    table = pd.DataFrame(rows, columns=["setting", "operation_h", "least_remaining_mm"]).assign(**own)
+    said = "The thinnest worn place has 5.0 mm left after 5,000 h; it is on the liner of A."
+    assert findings.thinnest_place(table) == said
+
+
 def test_impacts_and_pressure():
     """Powers by area; a part without any power is left out."""
     loads = {"area_mm2": [1.0, 3.0], "impact_power_W_per_m2": [2.0, 2.0], "sliding_power_W_per_m2": [6.0, 6.0]}

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from bulkwear.postproc.mesh import SurfaceMesh, write_surface
-from bulkwear.workflows.cases.equipment import life, life_tables, tables
+from bulkwear.workflows.cases.equipment import findings, life, life_tables, tables
 from bulkwear.workflows.cases.equipment.life import AS_BUILT, BY_MASS, EXTRAPOLATED, FOLLOWED, WHOLE_PART
 from tests.support.shapes import box
 from tests.workflows.cases.equipment.synthetic import (
@@ -168,6 +168,18 @@ def test_without_thickness_there_is_no_life(lives):
     assert life_tables.remaining_table(runs, found).empty
 
 
+def test_a_faster_place_of_unknown_thickness_is_told(lives):
+    """It decides nothing, and the sentence on the life says where it is; a slower one is not told."""
+    runs, _, _ = lives(replace(ONE, parts=(SyntheticPart("liner", (1e-5, 1e-6, 5e-7)),)))
+    for unknown, rate in ((0, 10.0), (2, np.nan)):
+        thickness = runs.patches["thickness_m"].where(runs.patches["patch"] != unknown)
+        changed = replace(runs, patches=runs.patches.assign(thickness_m=thickness))
+        row = life_tables.life_table(changed, life.part_lives(changed, {})).iloc[0]
+        assert row["faster_mm_per_1000h"] == pytest.approx(rate, nan_ok=True)
+        said = findings.life_sentence(row, False)
+        assert ("mm loses more, 10 mm per 1,000 h, and is left out" in said) == np.isfinite(rate)
+
+
 def test_part_that_nothing_wears_has_no_life(lives):
     """Its reason is another one."""
     table = lives(replace(ONE, parts=(UNIFORM, SyntheticPart("shelf", (0.0, 0.0)))))[2]
@@ -239,6 +251,14 @@ def test_what_is_left_along_the_operation(lives):
     assert left["operation_h"].tolist() == [0.0, 100.0, 200.0, 300.0, 8000.0]
     assert left["remaining_mm"].tolist() == pytest.approx([30.0 - 2e-3 * hours for hours in left["operation_h"]])
     assert left["how"].tolist() == [life_tables.SIMULATED] * 4 + [life_tables.BEYOND]
+
+
+def test_what_is_worn_through_has_nothing_left(lives):
+    """A faster place at 8,000 h: 0, not less, in the table and in its interval."""
+    runs, found, _ = lives(*packings(replace(ONE, parts=(replace(UNIFORM, recession=(5.0 * RATE,)),)), (0.9, 1.0, 1.1)))
+    last = life_tables.remaining_table(runs, found).iloc[-1]
+    names = ["remaining_mm", "remaining_mm_low", "remaining_mm_high", "least_remaining_mm"]
+    assert last["operation_h"] == 8000.0 and last[names].tolist() == [0.0] * 4
 
 
 def test_wanted_hours_are_told_besides(lives):

@@ -7,14 +7,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bulkwear.postproc.mesh import SurfaceMesh, centroids, read_surface, unit_normals
+from bulkwear.postproc.mesh import SurfaceMesh, centroids, read_surface, unit_normals, write_surface
 from bulkwear.postproc.tables.display import few_digits
+from bulkwear.postproc.wear.side import turned_to_flow, with_sides
 from bulkwear.workflows.cases.equipment import map_figures, pictures, remaining
 from bulkwear.workflows.cases.equipment.life_tables import BEYOND, SIMULATED
 from bulkwear.workflows.cases.equipment.plots import views
-from bulkwear.workflows.cases.equipment.sections import COLUMNS, _plane, worst_sections
+from bulkwear.workflows.cases.equipment.sections import COLUMNS, _plane, shown_shapes, worst_sections
 from bulkwear.workflows.config.schema import case_schema
 from tests.support.charts import drawn_chart, names, values
+from tests.support.shapes import plate
 from tests.workflows.cases.equipment import scenes
 
 FIGURES = [each for each in vars(map_figures).values() if hasattr(each, "product")]
@@ -157,6 +159,19 @@ def test_sections_pass_through_the_worst_place(study):
         deepest = own.groupby("operation_h")["depth_1_mm"].max().to_numpy()
         np.testing.assert_allclose(deepest, deepest[-1] * hours / hours[-1], rtol=ROUNDED, atol=1e-12)
         assert deepest[-1] > 0.0
+
+
+def test_sections_see_the_file_s_faces_turned_as_those_of_worn_shapes_are(tmp_path):
+    """A sheet whose normals look away from the particles: all shapes look out of the body."""
+    built = plate(0.4, 0.4, 4)
+    turned, told = turned_to_flow(with_sides(built), np.zeros(32), np.ones(32))
+    (tmp_path / "cycle_001").mkdir()
+    for place, mesh in (("surface.vtu", built), ("cycle_001/surface.vtu", turned)):
+        write_surface(tmp_path / place, mesh)
+    row = {"cycle": 1, "operation_h": 0.0, "stands_for_h": 100.0}
+    pd.DataFrame([row]).to_csv(tmp_path / "wear.csv", index=False)
+    normals = [unit_normals(mesh.points, mesh.triangles)[:, 2] for _, mesh in shown_shapes(tmp_path)]
+    assert len(told) == 1 and len(normals) == 2 and (np.concatenate(normals) < 0.0).all()
 
 
 def test_a_bump_does_not_turn_the_section_of_its_plate():

@@ -1,5 +1,7 @@
 """Tables of runs of equipment, from folders whose rates are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -70,6 +72,17 @@ def test_change_of_loads_is_taken_by_packing(read):
     assert force["pristine"] == pytest.approx(100.0) and force["worn"] == pytest.approx(120.0)
     assert found.loc[("wheel", "power_W"), "pristine"] == pytest.approx(100.0)
     assert ("hood", "power_W") not in found.index and ("hood", "worn_mass_kg_per_h") not in found.index
+
+
+def test_a_part_that_turns_has_no_mean_force(read):
+    """In its own turning frame the mean is about nothing, whatever lies in it."""
+    turning = {"kind": "rotation", "point_m": (0.0, 0.0, 0.0), "axis": (0.0, 1.0, 0.0), "speed_rad_per_s": 2.0}
+    quantities = {}
+    for speed in (2.0, 0.0):
+        part = replace(LINER, motion=turning | {"speed_rad_per_s": speed})
+        found = tables.loads_table(read([replace(run, parts=(part,)) for run in packings()]))
+        quantities[speed] = set(found["quantity"])
+    assert quantities[0.0] - quantities[2.0] == {"force"}
 
 
 def test_flow_is_what_was_fed(read):
