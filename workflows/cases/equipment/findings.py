@@ -137,10 +137,9 @@ def faster_words(row: pd.Series) -> str:
     """Return which place of unknown thickness wears faster than the one that decides; nothing where none does."""
     if not np.isfinite(row.faster_mm_per_1000h):
         return ""
-    return (
-        f"The place at ({coordinates(row, 'faster_')}) mm loses more, {rounded(row.faster_mm_per_1000h)} mm per 1,000 h,"
-        " and is left out, because its thickness is not known."
-    )
+    rate = f"{rounded(row.faster_mm_per_1000h)} mm per 1,000 h"
+    where = coordinates(row, "faster_")
+    return f"The place at ({where}) mm loses more, {rate}, and is left out, because its thickness is not known."
 
 
 def how_words(row: pd.Series) -> str:
