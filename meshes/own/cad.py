@@ -15,21 +15,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from bulkwear.meshes.own.cad_units import UNIT_READERS, said_unit
 from bulkwear.meshes.own.solids import Solids, metres_per
 
 CAD_FORMATS = (".step", ".stp", ".iges", ".igs", ".brep")
-WITH_UNIT = CAD_FORMATS[:4]  # formats that tell their unit: OpenCASCADE hands over mm, whatever it is
+MM = 1e-3  # m; OpenCASCADE hands over mm of formats that tell their unit, whatever it is
 PROGRAM = "bulkwear.meshes.own.cad_shapes"
 LONGEST_REASON = 200  # letters of what a process said last
-STEP_UNIT = re.compile(
-    r"LENGTH_UNIT\s*\(\s*\)[^;]*?(?:SI_UNIT\s*\(\s*([^,\s]+)\s*,\s*\.METRE\.|CONVERSION_BASED_UNIT\s*\(\s*'([^']+)')"
-)
-CONVERSION_FIRST = re.compile(r"CONVERSION_BASED_UNIT\s*\(\s*'([^']+)'[^;]*LENGTH_UNIT")
-SI_PREFIX = {"$": "m", ".CENTI.": "cm", ".MILLI.": "mm", ".MICRO.": "um"}
-CONVERSIONS = {"INCH": "in", "FOOT": "ft"}
 # how OpenCASCADE tells of lines that it could not read
 SKIPPED = re.compile(r"ERR StepFile\s*:\s*(?:Undefined Parsing:\s*)?([^*\x1b]+)")
-IGES_UNITS = {1: "in", 2: "mm", 4: "ft", 6: "m", 9: "um", 10: "cm"}  # flag 14 of the global section
 
 
 def read_cad_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None) -> tuple[Solids, float]:
@@ -74,7 +68,7 @@ def _end_of(code: int, said: str) -> str:
 def _metres_of_file(path: Path, unit: str) -> float:
     """Metres of the numbers that OpenCASCADE hands over. Raises ValueError where the file says another unit."""
     _check_unit(path, unit)
-    return 1e-3 if path.suffix.lower() in WITH_UNIT else metres_per(unit)
+    return MM if path.suffix.lower() in UNIT_READERS else metres_per(unit)
 
 
 def _check_unit(path: Path, unit: str) -> None:
@@ -83,18 +77,3 @@ def _check_unit(path: Path, unit: str) -> None:
     said = said_unit(path)
     if said is not None and said != unit:
         raise ValueError(f"{path}: the file says that its lengths are in {said}, found unit {unit}; allowed is {said}")
-
-
-def said_unit(path: Path) -> str | None:
-    """Unit of lengths that a STEP or IGES file says itself, None where it says none that is known."""
-    suffix = path.suffix.lower()
-    text = path.read_text(encoding="latin-1") if suffix in WITH_UNIT else ""
-    if suffix in (".step", ".stp"):
-        found = STEP_UNIT.search(text)
-        if found and found[1]:
-            return SI_PREFIX.get(found[1])
-        word = found[2] if found else next(iter(CONVERSION_FIRST.findall(text)), "")
-        return CONVERSIONS.get(word.upper())
-    flags = "".join(line[:72] for line in text.splitlines() if line[72:73] == "G")
-    fields = re.sub(r"\d+H[^,;]*", "", flags).split(",")
-    return IGES_UNITS.get(int(fields[13])) if len(fields) > 13 and fields[13].strip().isdigit() else None
