@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 SI_PREFIX = {"$": "m", ".CENTI.": "cm", ".MILLI.": "mm", ".MICRO.": "um"}
@@ -14,6 +16,7 @@ STEP_CONTEXT = re.compile(r"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\s*\(([^)]*)\)")
 STEP_LENGTH = re.compile(r"\bLENGTH_UNIT\s*\(\s*\)")
 STEP_CONVERSION = re.compile(r"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'")
 STEP_SI = re.compile(r"SI_UNIT\s*\(\s*([^,\s]+)\s*,\s*\.METRE\.")
+HOLLERITH = re.compile(r"\s*(\d{1,6})H")
 
 
 def step_unit(text: str) -> str | None:
@@ -46,9 +49,29 @@ def _unit_of(words: str) -> str | None:
 
 def iges_unit(text: str) -> str | None:
     """Unit of lengths of an IGES file, by the flag in its global section, None where it is none that is known."""
-    flags = "".join(line[:72] for line in text.splitlines() if line[72:73] == "G")
-    fields = re.sub(r"\d+H[^,;]*", "", flags).split(",")
-    return IGES_UNITS.get(fields[13].strip()) if len(fields) > 13 else None
+    section = "".join(line[:72].ljust(72) for line in text.splitlines() if line[72:73] == "G")
+    flag = next(itertools.islice(_iges_fields(section), 13, None), "")
+    return IGES_UNITS.get(flag)
+
+
+def _iges_fields(section: str) -> Iterator[str]:
+    """Yield the fields of a global section, texts without their length; the first two may name the delimiters.
+
+    A text may hold delimiters itself: it is as long as it says, as in `5Ha,b;c`.
+    """
+    delimiters, place = [",", ";"], 0  # between fields, at the end
+    for number in itertools.count():
+        text = HOLLERITH.match(section, place)
+        if text:
+            place = text.end() + int(text[1])
+            field = section[text.end() : place]
+            if number < len(delimiters) and field:
+                delimiters[number] = field
+        stop = re.compile("|".join([*map(re.escape, delimiters), "$"])).search(section, place)
+        yield field if text else section[place : stop.start()].strip()
+        if stop[0] != delimiters[0]:
+            return
+        place = stop.end()
 
 
 def said_unit(path: Path) -> str | None:

@@ -51,3 +51,35 @@ def test_a_step_file_in_inches_is_read_in_inches(tmp_path):
     assert part.high_m == pytest.approx([0.0254 * size for size in SIZES["trough"]])
     with pytest.raises(ValueError, match="the file says that its lengths are in in, found unit mm; allowed is in"):
         own_mesh(tmp_path / "bodies.step", "mm", 0.5)
+
+
+AFTER = "32,308,15,308,15,7Hbox.IGS,{scale},{unit},2HMM,50,0.125,13H191011.120000,1E-08,499990.,4Hjohn,,11,0,;"
+IGES_HEADS = {
+    "nothing told": (",,7Hbox.IGS,10HC:\\box.IGS,9HSome CAD1,4HV1.0,", ",;"),
+    "delimiters told": ("1H,,1H;,7Hbox.IGS,10HC:\\box.IGS,15HSolidWorks 2019,15HSolidWorks 2019,", ",;"),
+    "the first told": ("1H,,,7Hbox.IGS,10HC:\\box.IGS,9HSome CAD1,4HV1.0,", ",;"),
+    "other delimiters": ("1H//1H#/8Hbox,/IGS/10HC;\\box#IGS/9HSome CAD1/4HV1.0/", "/#"),
+    "delimiters in texts": (",,9H;box,.IGS,10HC:\\box.IGS,16HCAD 4, Inc. V1.0,4HV,;0,", ",;"),
+}
+
+
+def iges(fields):
+    """The lines of a global section, 72 letters each."""
+    lines = [fields[first : first + 72] for first in range(0, len(fields), 72)]
+    return "\n".join([f"{'':72}S      1", *(f"{line:72}G{n:7d}" for n, line in enumerate(lines, start=1)), ""])
+
+
+@pytest.mark.parametrize("head", IGES_HEADS)
+@pytest.mark.parametrize("scale", ["1", "1."])
+@pytest.mark.parametrize(("flag", "unit"), [(1, "in"), (2, "mm"), (10, "cm"), (3, None)])
+def test_the_unit_of_an_iges_file_is_its_flag(tmp_path, head, scale, flag, unit):
+    """Whether delimiters are told, and whatever texts hold; the scale of the model is none."""
+    begin, (delimiter, end) = IGES_HEADS[head]
+    after = AFTER.format(scale=scale, unit=flag).replace(",", delimiter).replace(";", end)
+    assert said(tmp_path / "a.igs", iges(begin + after)) == unit
+
+
+@pytest.mark.parametrize("fields", ["", ",,7Hbox", ",,;", ",,99Hbox.IGS,1,2,3,4,5,6,7,8,9,10,11,12,13;"])
+def test_an_iges_file_that_is_cut_short_says_no_unit(tmp_path, fields):
+    """It is refused where it is read."""
+    assert said(tmp_path / "a.iges", iges(fields)) is None
