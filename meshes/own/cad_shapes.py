@@ -18,7 +18,7 @@ import numpy as np
 
 from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own.refine import check_count, triangle_counts
-from bulkwear.meshes.own.solids import Solids, distinct, target_edges
+from bulkwear.meshes.own.solids import OTHERS, Solids, distinct, target_edges
 
 SEWING_OF_SIZE = 1e-6  # -, of the largest extent: edges of faces that are closer are one
 READING_S, READING_S_PER_MB = (
@@ -133,14 +133,18 @@ def _entity_name(gmsh, dimension: int, tag: int) -> str:
 
 
 def _targets(path: Path, names: tuple[str, ...], area: np.ndarray, edges) -> np.ndarray:
-    """Target edge of each part, (parts,) m; area: (parts,) m2.
+    """Target edge of each part, (parts,) m; area: (parts,) m2; edges: may name parts of other files, too.
 
     Raises ValueError where there is none, or one for too many triangles.
     """
-    targets = target_edges(names, edges)
+    its = {*names, OTHERS}
+    targets = target_edges(
+        names, {name: edge for name, edge in edges.items() if name in its} if isinstance(edges, Mapping) else edges
+    )
     if not np.isfinite(targets).all():
         name = names[int(np.argmax(~np.isfinite(targets)))]
-        raise ValueError(f"part '{name}' of a CAD file has no target edge, allowed is one for each part")
+        allowed = f"one for each of {', '.join(names)}, or for '{OTHERS}'"
+        raise ValueError(f"{path}: part '{name}' of a CAD file has no target edge, allowed is {allowed}")
     check_count(str(path), names, area, targets)
     return targets
 

@@ -187,6 +187,20 @@ def test_bodies_of_a_cad_file_have_edges_of_their_own(pipe):
         own_mesh(pipe, "mm", {"elbow": 0.005, "*": 0.02})
 
 
+def test_parts_of_several_cad_files_have_edges_of_their_own(folder, tmp_path):
+    """Each file takes the edges of its parts; a name that none of them has is a sentence, with the names of all."""
+    write_bodies(tmp_path / "other.step")
+    text = (tmp_path / "other.step").read_text().replace("'trough'", "'hood'").replace("'lip'", "'apron'")
+    (tmp_path / "other.step").write_text(text)
+    files, coarse = [folder / "bodies.step", tmp_path / "other.step"], {"trough": 0.02, "hood": 0.005, "*": 0.02}
+    found = {part.name: part.triangles for part in own_mesh(files, "mm", coarse).parts}
+    assert found["hood"] > 3 * found["trough"] and found["lip"] == found["apron"]
+    with pytest.raises(ValueError, match="edges name the part 'elbow', allowed are trough, lip, hood, apron and"):
+        own_mesh(files, "mm", {"elbow": 0.005, "*": 0.02})
+    with pytest.raises(ValueError, match=r"bodies\.step: part 'lip' .* target edge, allowed is one for each of trough"):
+        own_mesh(files, "mm", {"trough": 0.02, "lipp": 0.02})
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_polygons_of_any_length_in_a_binary_ply(tmp_path, order):
     """A square pyramid of one quadrilateral and four triangles: closed, its volume a third of base times height."""
