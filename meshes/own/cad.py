@@ -26,26 +26,28 @@ LONGEST_REASON = 200  # letters of what a process said last
 SKIPPED = re.compile(r"ERR StepFile\s*:\s*(?:Undefined Parsing:\s*)?([^*\x1b]+)")
 
 
-def read_cad_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None) -> tuple[Solids, float]:
+def read_cad_solids(
+    path: Path, unit: str, edges: Mapping[str, float] | float | None, solid: str | None = None
+) -> tuple[Solids, float]:
     """Solids of a CAD file, meshed, and the m of its numbers; bodies are parts, and so are connected free faces.
 
-    edges: m, target edge of all parts or by name of a part. Raises ValueError where no edge is given, where the file
-    says another unit, or where it cannot be read or meshed.
+    edges: m, target edge of all parts or by name of a part; solid: the only part that is meshed, None: all. Raises
+    ValueError where no edge is given, where the file says another unit, or where it cannot be read or meshed.
     """
     if edges is None:
         raise ValueError(f"{path}: a CAD file has no triangles, allowed is a target edge that they are made with")
     scale = _metres_of_file(path, unit)
-    return _apart(path, "solids", scale, edges), scale
+    return _apart(path, "solids", scale, edges, solid), scale
 
 
 def cad_areas(path: Path, unit: str) -> dict[str, float]:
     """Area (m2) of the true surface of each part of a CAD file; nothing is meshed. Raises as `read_cad_solids`."""
-    return _apart(path, "areas", _metres_of_file(path, unit), None)
+    return _apart(path, "areas", _metres_of_file(path, unit))
 
 
-def _apart(path: Path, what: str, scale: float, edges: Mapping[str, float] | float | None) -> Any:
+def _apart(path: Path, what: str, scale: float, *choices: Any) -> Any:
     """Return the solids or the areas of a file, read in a process of its own. Raises ValueError with its reason."""
-    asked = pickle.dumps((path, what, scale, edges))
+    asked = pickle.dumps((path, what, scale, *choices))
     ended = subprocess.run([sys.executable, "-m", PROGRAM], input=asked, capture_output=True)
     said = ended.stderr.decode("utf-8", "replace")
     if ended.returncode:

@@ -18,7 +18,7 @@ import numpy as np
 
 from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own.refine import check_count, triangle_counts
-from bulkwear.meshes.own.solids import OTHERS, Solids, distinct, target_edges
+from bulkwear.meshes.own.solids import OTHERS, Solids, distinct, number_of, target_edges
 
 SEWING_OF_SIZE = 1e-6  # -, of the largest extent: edges of faces that are closer are one
 READING_S, READING_S_PER_MB = (
@@ -46,19 +46,23 @@ def _answer() -> None:
     """
     out = os.dup(1)
     os.dup2(2, 1)
-    path, what, scale, edges = pickle.load(sys.stdin.buffer)
+    path, what, scale, *choices = pickle.load(sys.stdin.buffer)
     _allow(READING_S + READING_S_PER_MB * path.stat().st_size / 1e6)
     try:
-        found = _solids(path, scale, edges) if what == "solids" else _areas_of_parts(path, scale)
+        found = _solids(path, scale, *choices) if what == "solids" else _areas_of_parts(path, scale)
     except ValueError as error:
         found = error
     with os.fdopen(out, "wb") as file:
         pickle.dump(found, file)
 
 
-def _solids(path: Path, scale: float, edges: Mapping[str, float] | float) -> Solids:
+def _solids(path: Path, scale: float, edges: Mapping[str, float] | float, solid: str | None) -> Solids:
     with gmsh_model() as gmsh:
         names, faces = _imported(gmsh, path)
+        if solid is not None:
+            faces = [faces[number_of(str(path), solid, names)]]
+            names = (solid,)
+            _keep(gmsh, faces[0])
         areas = scale**2 * _areas(gmsh, faces)
         targets = _targets(path, names, areas, edges)
         _allow(MESHING_S + MESHING_S_PER_TRIANGLE * float(triangle_counts(areas, targets).sum()))
@@ -93,6 +97,14 @@ def _imported(gmsh, path: Path) -> tuple[tuple[str, ...], list[list[int]]]:
 def _areas(gmsh, faces: list[list[int]]) -> np.ndarray:
     """Area of the faces of each part, (parts,) in the square of its unit."""
     return np.array([sum(gmsh.model.occ.getMass(2, tag) for tag in tags) for tags in faces])
+
+
+def _keep(gmsh, faces: list[int]) -> None:
+    """Forget all but some faces: nothing else is meshed."""
+    gmsh.model.occ.remove(gmsh.model.getEntities(3))
+    others = [(2, tag) for _, tag in gmsh.model.getEntities(2) if tag not in set(faces)]
+    gmsh.model.occ.remove(others, recursive=True)
+    gmsh.model.occ.synchronize()
 
 
 def _sew_faces(gmsh) -> None:

@@ -77,6 +77,7 @@ def own_mesh(
     fine: Sequence[Region] = (),
     weld_m: float | None = None,
     smallest_angle_deg: float = WANTED_ANGLE,
+    solid: str | None = None,
 ) -> OwnMesh:
     """Read one or more files of solids and make one surface of them that LIGGGHTS takes as it is.
 
@@ -89,6 +90,7 @@ def own_mesh(
     weld_m : m, points closer than that are one, up to 1 % of the largest extent and a tenth of the smallest edge;
         None: 1e-6 of the largest extent or coordinate
     smallest_angle_deg : degrees, 0 to 45, wanted where edges are given; facets between two creases may keep less
+    solid : name of the only part of each file that is taken, whatever the others are; None: all
 
     The surface stays on the facets: it moves by no more than the weld tolerance. Raises FileNotFoundError, ValueError
     where a file cannot be read, its unit or a choice makes no sense, and `RefusedMeshError` with place and faces where
@@ -100,7 +102,7 @@ def own_mesh(
     check_choices(edges, fine, weld_m, smallest_angle_deg)
     for path in paths:
         check_file(path)
-    found = [read_solids(path, unit, edges) for path in paths]
+    found = [read_solids(path, unit, edges, solid) for path in paths]
     solids = compacted(joined([replace(each, points=each.points * scale) for each, scale in found]))
     check_sizes(solids, unit)
     targets = target_edges(solids.names, edges)

@@ -15,7 +15,7 @@ import numpy as np
 from bulkwear.meshes.own.cad import CAD_FORMATS, cad_areas, read_cad_solids
 from bulkwear.meshes.own.obj import read_obj_solids
 from bulkwear.meshes.own.ply import read_ply_solids
-from bulkwear.meshes.own.solids import PART_DATA, Solids, distinct, metres_per
+from bulkwear.meshes.own.solids import PART_DATA, NoSuchPartError, Solids, alone, distinct, metres_per
 from bulkwear.meshes.own.stl import read_stl_solids
 from bulkwear.postproc.mesh import areas
 
@@ -48,19 +48,24 @@ def check_file(path: Path) -> None:
     _check_signature(path, suffix)
 
 
-def read_solids(path: Path, unit: str, edges: Mapping[str, float] | float | None) -> tuple[Solids, float]:
+def read_solids(
+    path: Path, unit: str, edges: Mapping[str, float] | float | None, solid: str | None = None
+) -> tuple[Solids, float]:
     """Solids of a file that `check_file` lets pass, and the m of its numbers: its unit's, or what a CAD file says.
 
-    edges: m, of CAD files: target edge of the triangles (`own_mesh`). Raises ValueError with the file, what was found
-    and what is allowed.
+    edges: m, of CAD files: target edge of the triangles (`own_mesh`); solid: the only part that is wanted, None: all.
+    Raises ValueError with the file, what was found and what is allowed, NoSuchPartError where no part is that solid.
     """
     suffix = path.suffix.lower()
     try:
         if suffix in CAD_FORMATS:
-            solids, scale = read_cad_solids(path, unit, edges)
+            solids, scale = read_cad_solids(path, unit, edges, solid)
         else:
             solids, scale = READERS[suffix](path), metres_per(unit)
+            solids = solids if solid is None else alone(solids, solid, str(path))
         _check_numbers(path, solids)
+    except NoSuchPartError:
+        raise
     except ValueError as error:  # it may quote a part of a damaged file
         raise ValueError("".join(filter(str.isprintable, str(error)))[:LONGEST_SENTENCE]) from error
     return replace(solids, source=str(path)), scale

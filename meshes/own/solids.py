@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,6 +42,18 @@ class RefusedMeshError(ValueError):
         self.surface, self.faces, self.place = surface, np.asarray(faces), np.asarray(place)
 
 
+class NoSuchPartError(ValueError):
+    """A part by a name that no part of a file has; names: those of its parts."""
+
+    def __init__(self, source: str, name: str, names: Sequence[str]) -> None:
+        super().__init__(source, name, names)
+        self.names = names
+
+    def __str__(self) -> str:
+        source, name, names = self.args
+        return f"{source}: there is no part '{name}', allowed is one of {', '.join(names)}"
+
+
 def metres_per(unit: str) -> float:
     """Length of a unit, m. Raises ValueError for a unit that is not in `UNITS`."""
     if unit not in UNITS:
@@ -70,6 +82,19 @@ def joined(files: Sequence[Solids]) -> Solids:
         distinct([name for each in files for name in each.names]),
         ", ".join(each.source for each in files),
     )
+
+
+def number_of(source: str, name: str, names: Sequence[str]) -> int:
+    """Return which of the names is that one. Raises NoSuchPartError where none is."""
+    if name not in names:
+        raise NoSuchPartError(source, name, names)
+    return names.index(name)
+
+
+def alone(solids: Solids, name: str, source: str) -> Solids:
+    """The part of that name, its nodes those of all parts. Raises NoSuchPartError for a name that none has."""
+    triangles = solids.triangles[solids.part == number_of(source, name, solids.names)]
+    return replace(solids, triangles=triangles, part=np.zeros(len(triangles), dtype=np.int64), names=(name,))
 
 
 def distinct(names: Sequence[str]) -> tuple[str, ...]:

@@ -201,6 +201,17 @@ def test_parts_of_several_cad_files_have_edges_of_their_own(folder, tmp_path):
         own_mesh(files, "mm", {"trough": 0.02, "lipp": 0.02})
 
 
+@pytest.mark.parametrize("name", WITH_NAMES)
+def test_one_part_alone(folder, name):
+    """Its triangles and nodes, and no others; a part that is not there is a sentence with those that are."""
+    found = own_mesh(folder / name, "mm", EDGE, solid="lip")
+    assert [part.name for part in found.parts] == ["lip"]
+    assert found.parts[0].volume_m3 == pytest.approx(VOLUMES[1], rel=FORMATS[name])
+    assert len(found.surface.points) == len(np.unique(found.surface.triangles))
+    with pytest.raises(ValueError, match=rf"{name}: there is no part 'elbow', allowed is one of trough, lip$"):
+        own_mesh(folder / name, "mm", EDGE, solid="elbow")
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_polygons_of_any_length_in_a_binary_ply(tmp_path, order):
     """A square pyramid of one quadrilateral and four triangles: closed, its volume a third of base times height."""

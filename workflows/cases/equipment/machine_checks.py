@@ -19,6 +19,7 @@ import numpy as np
 
 from bulkwear.meshes.own.read import check_file, read_solids
 from bulkwear.meshes.own.solids import UNITS
+from bulkwear.meshes.own.weld import compacted
 from bulkwear.postproc.mesh import SurfaceMesh, areas, boundary_nodes
 from bulkwear.postproc.wear.bodies import body
 from bulkwear.postproc.wear.directions import ON_END
@@ -76,16 +77,16 @@ def check_machine(run: Parameters, surface: SurfaceMesh) -> None:
 def check_units(run: Parameters) -> None:
     """Raise ConfigError for a part whose unit makes it far too large or too small; what cannot be read is left alone.
 
-    It needs no elements: those of a wrong unit may be too many for anything else.
+    It needs few elements, of CAD files: those of a wrong unit may be too many for anything else.
     """
     with tempfile.TemporaryDirectory() as folder:
         for part in run["parts"]:
             try:
                 check_file(path := drawing(part["file"], Path(folder)))
-                solids, scale = read_solids(path, part["unit"], LARGEST_PART)  # few elements, of CAD files
+                solids, scale = read_solids(path, part["unit"], LARGEST_PART, part.get("solid"))
             except (ValueError, OSError):
                 continue
-            _check_size(run, part, scale * diagonal(solids.points))
+            _check_size(run, part, scale * diagonal(compacted(solids).points))
 
 
 def _check_size(run: Parameters, part: Parameters, size: float) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from bulkwear.meshes.own.solids import NoSuchPartError
 from bulkwear.postproc.mesh import SurfaceMesh, areas
 from bulkwear.postproc.wear.bodies import body, together
 from bulkwear.workflows.cases.equipment.drawings import check_solid, drawing
@@ -38,7 +39,7 @@ def label_of(number: int, part: Part) -> int:
 def machine_surface(parts: Sequence[Part]) -> SurfaceMesh:
     """Return all parts as one surface with cell data `part`, see `label_of`. Raises ConfigError.
 
-    A file with several parts of the same unit and edge is meshed once.
+    A body of a file that is several parts of the same unit and edge is meshed once.
     """
     from bulkwear.meshes.own.mesh import own_mesh  # slow to import, and few jobs make meshes
 
@@ -47,26 +48,25 @@ def machine_surface(parts: Sequence[Part]) -> SurfaceMesh:
         return together([part_surface(number, part, Path(folder), meshed) for number, part in enumerate(parts)])
 
 
-def part_surface(number: int, part: Part, folder: Path, meshed: Callable[[Path, str, float], OwnMesh]) -> SurfaceMesh:
+def part_surface(number: int, part: Part, folder: Path, meshed: Callable[..., OwnMesh]) -> SurfaceMesh:
     """Return a part as the solver takes it; drawings that a script makes go into the folder. Raises ConfigError.
 
-    meshed: `own_mesh`, or what remembers its meshes
+    meshed: `own_mesh`, or what remembers its meshes. Of the bodies of a drawing only the solid that is named is meshed.
     """
     name = f"parts.{part['name']}"
     try:
-        found = meshed(drawing(part["file"], folder), part["unit"], part["edge_m"])
+        found = meshed(drawing(part["file"], folder), part["unit"], part["edge_m"], solid=part.get("solid"))
+    except NoSuchPartError as fault:
+        check_solid(part, fault.names)
+        raise
     except (ValueError, OSError) as fault:
         raise ConfigError(f"{name}: {fault}.") from fault
     surface = found.surface
     for repair in found.repairs:
-        if repair.repair.startswith(TOLD) and repair.part == part.get("solid", repair.part):
+        if repair.repair.startswith(TOLD):
             place = ", ".join(f"{1e3 * value:.4g}" for value in repair.place_m)
             words = f"{repair.repair}, {repair.count} times, the first at ({place}) mm"
             print(f"{name}: {part['file']}, {repair.part}: {words}.", file=sys.stderr)
-    if "solid" in part:
-        names = [each.name for each in found.parts]
-        check_solid(part, names)
-        surface = body(surface, surface.cell_data["part"] == names.index(part["solid"]))
     labels = np.full(len(surface.triangles), label_of(number, part), dtype=np.int64)
     return SurfaceMesh(surface.points, surface.triangles, {"part": labels})
 

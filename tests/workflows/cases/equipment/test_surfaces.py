@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from bulkwear.meshes.gmsh_model import gmsh_model
 from bulkwear.meshes.own.mesh import own_mesh
 from bulkwear.postproc.mesh import (
     SurfaceMesh,
@@ -30,7 +31,7 @@ from bulkwear.workflows.cases.equipment.surfaces import (
 from bulkwear.workflows.config.layers import ConfigError
 from tests.support.own_machine_project import CORNERS, SIZES, machine_study
 from tests.support.own_solids import SIZES as SOLID_SIZES
-from tests.support.own_solids import bodies, box, write_ascii
+from tests.support.own_solids import bodies, box, write_ascii, write_bodies
 
 VOLUME = 1e-6  # relative; binary numbers of a text file
 ROUND_OFF = 1e-12
@@ -99,28 +100,69 @@ def test_solid_is_the_body_of_that_name(two_bodies, solid):
 
 
 def test_a_file_of_several_parts_is_meshed_once(two_bodies, monkeypatch):
-    """Once for every unit and edge that its parts have; each part is what it is alone, to the last bit."""
+    """Once for every body, unit and edge that its parts have; each part is what it is alone, to the last bit."""
     parts = [
         part_of("both.stl", name="a", solid="trough"),
         part_of("both.stl", name="b", solid="lip", wears=False),
         part_of("both.stl", name="c", solid="lip", edge_m=0.04),
         part_of("both.stl", name="d", solid="lip", unit="cm", edge_m=0.5),
+        part_of("both.stl", name="e", solid="trough"),
     ]
     alone = [part_surface(number, part, two_bodies, own_mesh) for number, part in enumerate(parts)]
     asked = []
-    monkeypatch.setattr("bulkwear.meshes.own.mesh.own_mesh", lambda *given: asked.append(given) or own_mesh(*given))
+
+    def asked_for(*given, **named):
+        asked.append((*given, *named.values()))
+        return own_mesh(*given, **named)
+
+    monkeypatch.setattr("bulkwear.meshes.own.mesh.own_mesh", asked_for)
     whole = machine_surface(parts)
     path = two_bodies / "both.stl"
-    assert asked == [(path, "mm", 0.05), (path, "mm", 0.04), (path, "cm", 0.5)]
+    assert asked == [
+        (path, "mm", 0.05, "trough"),
+        (path, "mm", 0.05, "lip"),
+        (path, "mm", 0.04, "lip"),
+        (path, "cm", 0.5, "lip"),
+    ]
     for number, (part, mesh) in enumerate(zip(parts, alone, strict=True)):
         one = body(whole, faces_of(whole, number, part))
         assert np.array_equal(one.points[one.triangles], mesh.points[mesh.triangles])
 
 
-def test_unknown_solid_is_one_sentence(two_bodies):
+@pytest.mark.parametrize("name", ["both.stl", "both.step"])
+def test_unknown_solid_is_one_sentence(two_bodies, name):
     """It names part and bodies."""
+    if name == "both.step":
+        write_bodies(two_bodies / name)
     with pytest.raises(ConfigError, match=r"^parts\.lining\.solid is 'spout', allowed is one of trough, lip\.$"):
-        part_surface(0, part_of("both.stl", solid="spout"), two_bodies, own_mesh)
+        part_surface(0, part_of(name, solid="spout"), two_bodies, own_mesh)
+
+
+def test_a_fault_of_another_body_is_none_of_a_solids(two_bodies):
+    """Neither one that cuts itself and has a corner that is no number, nor one that is far too large."""
+    cut = [box((50.0, 50.0, 50.0), corner) for corner in ((500.0, 500.0, 500.0), (520.0, 510.0, 505.0))]
+    faulty = np.concatenate([cut[0][0], cut[1][0], [[np.nan, 0, 0]]]), np.concatenate([cut[0][1], cut[1][1] + 8])
+    faulty[1][-1, 0] = 16
+    huge = box((1e7, 1e7, 1e7))
+    write_ascii(two_bodies / "both.stl", {"bolts": faulty, **bodies(), "room": huge})
+    one = part_surface(0, part_of("both.stl", solid="trough", edge_m=0.01), two_bodies, own_mesh)
+    assert enclosed_volume(one.points, one.triangles) == pytest.approx(math.prod(SOLID_SIZES["trough"]) / 1e9)
+    for solid in ("bolts", "room"):
+        with pytest.raises(ConfigError, match=rf"^parts\.lining: .*'{solid}'"):
+            part_surface(0, part_of("both.stl", solid=solid, edge_m=0.01), two_bodies, own_mesh)
+
+
+def test_only_the_solid_of_a_cad_file_is_meshed(two_bodies):
+    """Another body may have as many elements at that edge as no surface may have, and faces in common with it."""
+    with gmsh_model() as gmsh:
+        low, room = gmsh.model.occ.addBox(0, 0, 0, 100, 50, 10), gmsh.model.occ.addBox(0, 0, 10, 1e5, 1e5, 1e5)
+        gmsh.model.occ.fragment([(3, low)], [(3, room)])
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(two_bodies / "rooms.brep"))
+    one = part_surface(0, part_of("rooms.brep", solid="rooms_body_1", edge_m=0.01), two_bodies, own_mesh)
+    assert enclosed_volume(one.points, one.triangles) == pytest.approx(0.1 * 0.05 * 0.01, rel=VOLUME)
+    with pytest.raises(ConfigError, match=r"the target edges give about .* part 'rooms_body_2' with 0\.01 m"):
+        part_surface(0, part_of("rooms.brep", edge_m=0.01), two_bodies, own_mesh)
 
 
 def test_file_that_is_no_mesh_is_one_sentence(two_bodies):
